@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/types.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tetskin {
+
+/// Which tet carries a vertex that lies in none. Vertices inside are bound the same under both.
+enum class OutsideRule {
+  Nearest,      ///< the tet closest in distance: a thin layer of tets keeps the vertices just above it
+  Barycentric,  ///< the tet of the smallest barycentric distance: the tutorial's rule, and Bullet's
+};
+
+struct EmbedOptions {
+  OutsideRule outside = OutsideRule::Nearest;
+};
+
+/// How well a mesh fits its cage. All lengths and boxes are in rest space.
+struct EmbedReport {
+  Status status;                  ///< not ok: nothing was embedded, and the message says why
+  std::size_t vertexCount = 0;    ///< inside + outside + unbound
+  std::size_t inside = 0;         ///< vertices in some tet
+  std::size_t outside = 0;        ///< vertices in no tet, carried by one nevertheless
+  std::size_t unbound = 0;        ///< vertices without a tet: all if status is not ok, otherwise none
+  std::size_t overlapping = 0;    ///< vertices deep (more than kOverlapDepth) in two tets or more: the cage overlaps itself
+  std::size_t coincident = 0;     ///< vertices at the position of an earlier one: embedded once, weights copied
+  std::size_t flatTets = 0;       ///< tets without volume, never used
+  double worstDistance = 0.0;     ///< longest distance from a vertex to its tet
+  std::size_t worstVertex = 0;    ///< which vertex that is
+  double worstBarycentric = 0.0;  ///< largest barycentric distance, dimensionless; not above 0 if all are inside
+  Box3 meshBox;                   ///< of the vertices
+  Box3 cageBox;                   ///< of the nodes
+  double restErrorMax = 0.0;      ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
+  std::size_t candidates = 0;     ///< pairs of vertex and tet that were tested
+  double milliseconds = 0.0;      ///< wall time of the whole embedding
+
+  bool ok() const { return status.ok(); }
+  /// Mesh and cage apart from each other, or one more than kUnitRatio times the size of the other: they are most
+  /// likely in different units. Known before any search; the embedding is made all the same.
+  bool unitsDiffer() const;
+  /// One line a fact, for people.
+  std::string describe() const;
+};
+
+/// Weight above which a vertex counts as deep inside a tet: keeps shared faces from counting as overlap.
+constexpr double kOverlapDepth = 1e-6;
+/// Ratio of the diagonals of mesh and cage from which different units are presumed: inches against metres are 39, and
+/// a cage 30 times as large as its mesh would leave the mesh in a handful of tets anyway.
+constexpr double kUnitRatio = 30.0;
+/// Tets whose distances differ by less than this fraction of their size are equally near.
+constexpr double kNearestTie = 1e-6;
+
+/// Tet and weights of one vertex.
+struct VertexBinding {
+  int tet = -1;
+  std::array<float, 4> weights{};  ///< of the tet's nodes in its order; the fourth is 1 minus the others
+  bool inside = false;
+};
+
+/// For every vertex a tet and three weights: built once, immutable, shared by any number of bodies with the same cage.
+/// Vertices are stored tet by tet, so that a tet's nodes are read once: a *slot* is a place in that order.
+/// Memory: 16 bytes a vertex, 24 bytes an occupied tet.
+class Embedding {
+ public:
+  /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes. A last run closes the list.
+  struct Run {
+    std::array<int, 4> nodes{};
+    std::uint32_t firstSlot = 0;
+    std::uint32_t tet = 0;
+  };
+  using Weights = std::array<float, 3>;
+
+  std::size_t vertexCount() const { return slotVertices_.size(); }
+  std::size_t nodeCount() const { return nodeCount_; }
+  std::size_t tetCount() const { return tetCount_; }
+  bool empty() const { return slotVertices_.empty(); }
+
+  /// occupied tets + 1, ascending by tet
+  const std::vector<Run>& runs() const { return runs_; }
+  /// vertexCount x 3, by slot: weights of the tet's first three nodes
+  const std::vector<Weights>& slotWeights() const { return slotWeights_; }
+  /// vertexCount, by slot: which vertex it is; ascending within a run
+  const std::vector<std::uint32_t>& slotVertices() const { return slotVertices_; }
+  /// The slots of the vertices outside every tet, ascending.
+  const std::vector<std::uint32_t>& outsideSlots() const { return outsideSlots_; }
+
+  /// The same by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
+  std::vector<VertexBinding> bindings() const;
+
+  /// Sorts bindings by tet. `bindings[v].tet` must be in [0, tetCount) for every v.
+  static Embedding fromBindings(const std::vector<VertexBinding>& bindings, const TetMesh& cage);
+
+ private:
+  std::size_t nodeCount_ = 0;
+  std::size_t tetCount_ = 0;
+  std::vector<Run> runs_;
+  std::vector<Weights> slotWeights_;
+  std::vector<std::uint32_t> slotVertices_;
+  std::vector<std::uint32_t> outsideSlots_;
+};
+
+/// Finds the tet and the weights of every vertex, exactly as testing all pairs would:
+/// - a vertex in one tet or more belongs to the one with the lowest index;
+/// - any other to the nearest under `options.outside`. `Nearest`: of the tets whose distance is within kNearestTie of
+///   their size of the shortest, the one of smallest barycentric distance, then of lowest index. `Barycentric`: of
+///   smallest barycentric distance, then of lowest index. Its weights extrapolate, so rest is reproduced.
+/// Vertices at the same position get identical weights. Decisions are made in double; nothing depends on the unit.
+///
+/// cage       usable (see `usable`), rest space; orientation does not matter
+/// vertices   vertexCount x 3, rest space; float or double
+/// embedding  written on success only
+/// Cost       about proportional to vertexCount + tetCount; some tens of tested pairs a vertex
+/// Errors     in the report's status: an empty or non-finite mesh, an unusable cage
+[[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
+                                Embedding& embedding);
+[[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
+                                Embedding& embedding);
+
+}  // namespace tetskin

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Pure functions of one tet, in double.
+//
+// This work is based on:
+//   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022 (barycentric distance)
+//   Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5 (closest point on a triangle)
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tetskin {
+
+/// A tet whose six-fold volume is below this fraction of the cube of its longest edge counts as flat: barycentric
+/// weights, which divide by the volume, would then keep less than half of a double's digits. Dimensionless.
+constexpr double kFlatTet = 1e-9;
+
+using TetCorners = std::array<Eigen::Vector3d, 4>;
+
+/// Signed volume; positive for a positively oriented tet.
+inline double signedVolume(const TetCorners& p) {
+  return (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6.0;
+}
+
+/// Length of the longest edge: the size of a tet.
+inline double tetSize(const TetCorners& p) {
+  double squared = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 4; ++b) squared = std::max(squared, (p[a] - p[b]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+/// True where the tet has no volume worth the name, see kFlatTet.
+inline bool isFlat(const TetCorners& p) {
+  const double size = tetSize(p);
+  return !(std::abs(6.0 * signedVolume(p)) > kFlatTet * size * size * size);
+}
+
+/// The map from a point to its barycentric weights in one tet: b_i = rows[i] . (v - p3) for i < 3, b_3 = 1 - b_0 - b_1 - b_2.
+/// The fourth is never an independent quotient, so the weights sum to 1.
+struct BarycentricMap {
+  Eigen::Vector3d origin;               ///< p3
+  std::array<Eigen::Vector3d, 3> rows;  ///< gradients of b_0, b_1, b_2
+
+  /// The tet must not be flat.
+  explicit BarycentricMap(const TetCorners& p) : origin(p[3]) {
+    const Eigen::Vector3d a = p[0] - p[3], b = p[1] - p[3], c = p[2] - p[3];
+    const Eigen::Vector3d bc = b.cross(c);
+    const double inverse = 1.0 / a.dot(bc);
+    rows[0] = bc * inverse;
+    rows[1] = c.cross(a) * inverse;
+    rows[2] = a.cross(b) * inverse;
+  }
+
+  /// Weights of the four nodes at v.
+  Eigen::Vector4d operator()(const Eigen::Vector3d& v) const {
+    const Eigen::Vector3d r = v - origin;
+    const double b0 = rows[0].dot(r), b1 = rows[1].dot(r), b2 = rows[2].dot(r);
+    return {b0, b1, b2, 1.0 - b0 - b1 - b2};
+  }
+
+  /// Length of the gradient of each weight: the inverse of the altitude over the opposite face.
+  Eigen::Vector4d gradientLengths() const {
+    return {rows[0].norm(), rows[1].norm(), rows[2].norm(), (rows[0] + rows[1] + rows[2]).norm()};
+  }
+};
+
+/// Barycentric distance d = max(-b_i): at most 0 inside, then the distance over the altitude.
+inline double barycentricDistance(const Eigen::Vector4d& weights) {
+  return -weights.minCoeff();
+}
+
+/// Closest point of triangle abc to p.
+inline Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                              const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  }
+  const double scale = 1.0 / (va + vb + vc);
+  return a + ab * (vb * scale) + ac * (vc * scale);
+}
+
+/// Distance from v to the tet, 0 inside. `weights` are v's barycentric weights in it: only faces that v lies beyond can
+/// hold the closest point.
+inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const Eigen::Vector4d& weights) {
+  double squared = weights.minCoeff() >= 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i) {
+    if (weights[i] >= 0.0) continue;
+    const Eigen::Vector3d q = closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]);
+    squared = std::min(squared, (v - q).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace tetskin

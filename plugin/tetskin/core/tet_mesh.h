@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace tetskin {
+
+/// Four node indices. A tet is positive when node 3 lies on the side of triangle (0, 1, 2) towards which
+/// (p1-p0) x (p2-p0) points.
+using Tet = std::array<int, 4>;
+
+/// The cage at rest, as flat arrays. Nothing is checked on construction; see `checkTetMesh` and `repairTetMesh`.
+struct TetMesh {
+  std::vector<Eigen::Vector3d> nodes;  ///< nodeCount x 3, rest space
+  std::vector<Tet> tets;               ///< tetCount x 4 node indices
+
+  std::size_t nodeCount() const { return nodes.size(); }
+  std::size_t tetCount() const { return tets.size(); }
+};
+
+/// What is wrong with a tet mesh: how many of each, and where the first one is (undefined where the count is 0).
+/// The first three make a mesh unusable, the others are survivable and reported.
+struct TetMeshReport {
+  struct Fault {
+    std::size_t count = 0;
+    std::size_t first = 0;  ///< index of the first tet (or node) concerned
+  };
+  Fault indexOutOfRange;    ///< tets that name a node that does not exist
+  Fault nonFiniteNodes;     ///< nodes with a coordinate that is not finite
+  Fault repeatedNode;       ///< tets that name one node twice
+  Fault zeroVolume;         ///< tets thinner than `kFlatTet` of their longest edge
+  Fault negativeVolume;     ///< tets with the orientation reversed
+  Fault duplicateTets;      ///< tets that name the same four nodes as an earlier one
+  Fault unreferencedNodes;  ///< nodes that no tet names
+
+  /// True when no count is above 0.
+  bool clean() const;
+  /// The faults in words, one a line, for people; empty when clean.
+  std::string describe() const;
+};
+
+/// Counts the faults of a mesh. Cost O(T log T) for T tets.
+TetMeshReport checkTetMesh(const TetMesh& mesh);
+
+/// Ok if the mesh can be used: it has tets, all indices exist, all coordinates are finite, at least one tet has a volume.
+Status usable(const TetMesh& mesh, const TetMeshReport& report);
+
+/// Reverses the orientation of negative tets by exchanging their last two nodes. Returns the report of the mesh as it
+/// was. A mesh with indices out of range or non-finite nodes is left untouched.
+TetMeshReport repairTetMesh(TetMesh& mesh);
+
+/// The distinct edges, each as (a, b) in the direction of the tet that names it first, in order of first appearance:
+/// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3) of tet 0, then of tet 1, ... Cost O(T log T). Indices must be in range.
+std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh);
+
+/// The faces that belong to an odd number of tets, that is the boundary, oriented outwards on positive tets and sorted
+/// by their sorted node indices. Cost O(T log T). Indices must be in range.
+std::vector<std::array<int, 3>> boundaryFaces(const TetMesh& mesh);
+
+}  // namespace tetskin

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tetskin {
+
+/// A run of consecutive triangles that share a name and a material.
+struct TriangleGroup {
+  std::string name;
+  std::string material;
+  std::size_t firstTriangle = 0;
+  std::size_t triangleCount = 0;
+};
+
+/// A render mesh at rest. Vertices may coincide (texture seams), surfaces may be open, and several parts are fine.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> positions;     ///< vertexCount x 3, rest space, the file's own unit
+  std::vector<std::array<int, 3>> triangles;  ///< triangleCount x 3 vertex indices, counter-clockwise from outside
+  std::vector<Eigen::Vector3f> normals;       ///< authored unit normals, one a vertex; or empty
+  std::vector<Eigen::Vector2f> texcoords;     ///< texture coordinates, one a vertex; or empty
+  std::vector<TriangleGroup> groups;          ///< cover all triangles in order; or empty: one group without a name
+
+  std::size_t vertexCount() const { return positions.size(); }
+  std::size_t triangleCount() const { return triangles.size(); }
+};
+
+/// Ok if the mesh has vertices, all finite, and every triangle names existing vertices. A mesh without triangles (a
+/// point cloud) is fine. Cost O(vertexCount + triangleCount).
+Status checkTriangleMesh(const TriangleMesh& mesh);
+
+}  // namespace tetskin
