@@ -1,2 +1,89 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/types.h>
+
+#include <limits>
+#include <memory>
+#include <set>
+
+namespace tetskin {
+namespace {
+
+TEST(StatusCode, EveryCodeHasItsOwnName) {
+  std::set<std::string> names;
+  constexpr int kCodes = static_cast<int>(StatusCode::InvalidOption) + 1;
+  for (int c = 0; c < kCodes; ++c) names.insert(toString(static_cast<StatusCode>(c)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kCodes));
+  EXPECT_EQ(names.count("unknown status"), 0u);
+}
+
+TEST(Result, ConvertsToItsValueWhereUsedDirectly) {
+  const auto make = [] { return Result<std::string>(std::string("value")); };
+  const std::string value = make();
+  EXPECT_EQ(value, "value");
+  EXPECT_TRUE(make().ok());
+}
+
+TEST(Result, OfAFailureConvertsToAnEmptyValueAndKeepsTheMessage) {
+  const auto fail = [] { return Result<int*>(Status{StatusCode::Empty, "nothing there"}); };
+  int* const value = fail();
+  EXPECT_EQ(value, nullptr);
+  EXPECT_FALSE(fail().ok());
+  EXPECT_EQ(fail().status().message, "nothing there");
+}
+
+TEST(Result, HoldsMoveOnlyValues) {
+  Result<std::unique_ptr<int>> result(std::make_unique<int>(7));
+  const std::unique_ptr<int> value = std::move(result).value();
+  EXPECT_EQ(*value, 7);
+}
+
+TEST(PointView, WalksAnInterleavedBuffer) {
+  struct Vertex {
+    float uv[2];
+    float position[3];
+  };
+  std::vector<Vertex> buffer{{{9, 9}, {1, 2, 3}}, {{9, 9}, {4, 5, 6}}};
+  const PointView<float> view(buffer[0].position, buffer.size(), sizeof(Vertex));
+  EXPECT_EQ(view[1][2], 6.0f);
+  view[0][0] = 7.0f;
+  EXPECT_EQ(buffer[0].position[0], 7.0f);
+  EXPECT_EQ(buffer[0].uv[1], 9.0f);
+}
+
+TEST(PointView, FindsTheFirstPointThatIsNotFinite) {
+  std::vector<Eigen::Vector3f> points(5, Eigen::Vector3f::Zero());
+  EXPECT_EQ(firstNonFinite(viewOf(std::as_const(points))), 5u);
+  points[3].y() = -std::numeric_limits<float>::infinity();
+  EXPECT_EQ(firstNonFinite(viewOf(std::as_const(points))), 3u);
+  points[2].z() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(firstNonFinite(viewOf(std::as_const(points))), 2u);
+}
+
+TEST(PointView, BoundingBoxOfNothingIsEmpty) {
+  EXPECT_TRUE(boundingBox(std::vector<Eigen::Vector3d>{}).isEmpty());
+  const Box3 box = boundingBox(std::vector<Eigen::Vector3d>{{1, -2, 3}, {0, 5, 3}});
+  EXPECT_EQ(box.min(), Eigen::Vector3d(0, -2, 3));
+  EXPECT_EQ(box.max(), Eigen::Vector3d(1, 5, 3));
+}
+
+TEST(TriangleMesh, CheckNamesTheFirstFault) {
+  TriangleMesh mesh;
+  EXPECT_EQ(checkTriangleMesh(mesh).code, StatusCode::Empty);
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(checkTriangleMesh(mesh).ok());
+  mesh.triangles.push_back({0, 1, 3});
+  const Status outOfRange = checkTriangleMesh(mesh);
+  EXPECT_EQ(outOfRange.code, StatusCode::IndexOutOfRange);
+  EXPECT_NE(outOfRange.message.find("triangle 1"), std::string::npos);
+  mesh.positions[1].x() = std::numeric_limits<double>::quiet_NaN();
+  const Status notFinite = checkTriangleMesh(mesh);
+  EXPECT_EQ(notFinite.code, StatusCode::NonFinite);
+  EXPECT_NE(notFinite.message.find("vertex 1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,3 +1,42 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Meshes that tests make for themselves, well-behaved and otherwise.
 #pragma once
+
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace tetskin::test {
+
+/// The unit corner tet: nodes at the origin and the three unit points.
+TetMesh singleTet();
+
+/// nx x ny x nz cubes of the given edge from the origin, six tets each, mirrored in alternate cubes; all positive.
+TetMesh latticeCage(int nx, int ny, int nz, double edge = 1.0);
+
+/// Independent positive tets of edges up to `size` in the unit cube: they overlap at random.
+TetMesh randomTets(std::size_t count, double size, unsigned seed);
+
+/// A lattice over the unit cube whose cells grow from about 0.001 to 0.3 along each axis.
+TetMesh gradedCage();
+
+/// A lattice over the unit square, 0.5 high, with one thin layer of tets on top.
+TetMesh thinLayerCage(double thickness);
+
+/// Two equal lattices, the second shifted by half a cell: every vertex inside both lies in two tets.
+TetMesh overlappingCage();
+
+/// Closed sphere of about 2 x rings x rings triangles.
+TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre);
+
+/// Points uniform in a box, reproducible.
+std::vector<Eigen::Vector3d> randomPoints(std::size_t count, const Box3& box, unsigned seed);
+
+std::vector<Eigen::Vector3d> scaledAndMoved(std::vector<Eigen::Vector3d> points, double scale,
+                                            const Eigen::Vector3d& offset);
+
+}  // namespace tetskin::test

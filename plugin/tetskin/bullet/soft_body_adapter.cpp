@@ -1,2 +1,45 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/soft_body_adapter.h>
+
+#include <cstdint>
+
+namespace tetskin {
+namespace {
+
+/// Index of the node pointed to, or -1. Pointers are compared as numbers: dangling ones must not be subtracted.
+int indexOf(const btSoftBody::Node* node, const btSoftBody& body) {
+  if (body.m_nodes.size() == 0) return -1;
+  const auto address = reinterpret_cast<std::uintptr_t>(node);
+  const auto begin = reinterpret_cast<std::uintptr_t>(&body.m_nodes[0]);
+  const std::uintptr_t offset = address - begin;
+  const std::uintptr_t size = sizeof(btSoftBody::Node);
+  const bool inside = address >= begin && offset < size * static_cast<std::uintptr_t>(body.m_nodes.size());
+  return inside && offset % size == 0 ? static_cast<int>(offset / size) : -1;
+}
+
+}  // namespace
+
+PointView<const btScalar> nodePositions(const btSoftBody& body) {
+  if (body.m_nodes.size() == 0) return {};
+  return {&body.m_nodes[0].m_x.m_floats[0], static_cast<std::size_t>(body.m_nodes.size()), sizeof(btSoftBody::Node)};
+}
+
+TetMesh tetMeshOf(const btSoftBody& body) {
+  TetMesh mesh;
+  mesh.nodes.resize(static_cast<std::size_t>(body.m_nodes.size()));
+  for (int i = 0; i < body.m_nodes.size(); ++i) mesh.nodes[i] = toEigen(body.m_nodes[i].m_x);
+  mesh.tets.resize(static_cast<std::size_t>(body.m_tetras.size()));
+  for (int t = 0; t < body.m_tetras.size(); ++t) {
+    for (int k = 0; k < 4; ++k) mesh.tets[t][k] = indexOf(body.m_tetras[t].m_n[k], body);
+  }
+  return mesh;
+}
+
+PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount) {
+  assert(buffer.hasVertexPositions());
+  return {buffer.getBasePointer() + buffer.getVertexOffset(), vertexCount,
+          static_cast<std::size_t>(buffer.getVertexStride()) * sizeof(float)};
+}
+
+}  // namespace tetskin

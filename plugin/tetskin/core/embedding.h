@@ -24,12 +24,13 @@ struct EmbedOptions {
 
 /// How well a mesh fits its cage. All lengths and boxes are in rest space.
 struct EmbedReport {
-  Status status;                  ///< not ok: nothing was embedded, and the message says why
-  std::size_t vertexCount = 0;    ///< inside + outside + unbound
-  std::size_t inside = 0;         ///< vertices in some tet
-  std::size_t outside = 0;        ///< vertices in no tet, carried by one nevertheless
-  std::size_t unbound = 0;        ///< vertices without a tet: all if status is not ok, otherwise none
-  std::size_t overlapping = 0;    ///< vertices deep (more than kOverlapDepth) in two tets or more: the cage overlaps itself
+  Status status;                ///< not ok: nothing was embedded, and the message says why
+  std::size_t vertexCount = 0;  ///< inside + outside + unbound
+  std::size_t inside = 0;       ///< vertices in some tet
+  std::size_t outside = 0;      ///< vertices in no tet, carried by one nevertheless
+  std::size_t unbound = 0;      ///< vertices without a tet: all if status is not ok, otherwise none
+  std::size_t overlapping =
+      0;  ///< vertices deep (more than kOverlapDepth) in two tets or more: the cage overlaps itself
   std::size_t coincident = 0;     ///< vertices at the position of an earlier one: embedded once, weights copied
   std::size_t flatTets = 0;       ///< tets without volume, never used
   double worstDistance = 0.0;     ///< longest distance from a vertex to its tet

@@ -19,7 +19,8 @@ using PackedNodes = std::vector<Eigen::Matrix<Scalar, 4, 1>, Eigen::aligned_allo
 template <class Scalar>
 bool packNodes(PointView<const Scalar> positions, PackedNodes<Scalar>& packed);
 
-/// Writes the current position of every vertex, x(v) = p3 + b0 (p0-p3) + b1 (p1-p3) + b2 (p2-p3), and returns their box.
+/// Writes the current position of every vertex, x(v) = p3 + b0 (p0-p3) + b1 (p1-p3) + b2 (p2-p3), and returns their
+/// box.
 ///
 /// embedding  shared, read only
 /// nodes      nodeCount current positions, world space
@@ -28,7 +29,7 @@ bool packNodes(PointView<const Scalar> positions, PackedNodes<Scalar>& packed);
 /// out        vertexCount x 3, caller-owned, any stride; each point is written exactly once, in the mesh's order
 /// Cost       O(vertexCount), no allocation; cannot fail, sizes are asserted
 template <class Scalar, class Out>
-Box3 skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes,
-                const Eigen::Matrix<Scalar, 3, 1>& origin, PointView<Out> out);
+Box3 skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const Eigen::Matrix<Scalar, 3, 1>& origin,
+                PointView<Out> out);
 
 }  // namespace tetskin

@@ -43,8 +43,8 @@ inline bool isFlat(const TetCorners& p) {
   return !(std::abs(6.0 * signedVolume(p)) > kFlatTet * size * size * size);
 }
 
-/// The map from a point to its barycentric weights in one tet: b_i = rows[i] . (v - p3) for i < 3, b_3 = 1 - b_0 - b_1 - b_2.
-/// The fourth is never an independent quotient, so the weights sum to 1.
+/// The map from a point to its barycentric weights in one tet: b_i = rows[i] . (v - p3) for i < 3, b_3 = 1 - b_0 - b_1
+/// - b_2. The fourth is never an independent quotient, so the weights sum to 1.
 struct BarycentricMap {
   Eigen::Vector3d origin;               ///< p3
   std::array<Eigen::Vector3d, 3> rows;  ///< gradients of b_0, b_1, b_2
@@ -59,11 +59,19 @@ struct BarycentricMap {
     rows[2] = a.cross(b) * inverse;
   }
 
-  /// Weights of the four nodes at v.
+  /// Weights of the four nodes at (x, y, z). The order of the operations is written out, so that every caller decides
+  /// on the same bits, whether its compiler vectorises the call or not.
+  void weightsAt(double x, double y, double z, double& b0, double& b1, double& b2, double& b3) const {
+    const double rx = x - origin.x(), ry = y - origin.y(), rz = z - origin.z();
+    b0 = (rows[0].x() * rx + rows[0].y() * ry) + rows[0].z() * rz;
+    b1 = (rows[1].x() * rx + rows[1].y() * ry) + rows[1].z() * rz;
+    b2 = (rows[2].x() * rx + rows[2].y() * ry) + rows[2].z() * rz;
+    b3 = ((1.0 - b0) - b1) - b2;
+  }
   Eigen::Vector4d operator()(const Eigen::Vector3d& v) const {
-    const Eigen::Vector3d r = v - origin;
-    const double b0 = rows[0].dot(r), b1 = rows[1].dot(r), b2 = rows[2].dot(r);
-    return {b0, b1, b2, 1.0 - b0 - b1 - b2};
+    Eigen::Vector4d b;
+    weightsAt(v.x(), v.y(), v.z(), b[0], b[1], b[2], b[3]);
+    return b;
   }
 
   /// Length of the gradient of each weight: the inverse of the altitude over the opposite face.

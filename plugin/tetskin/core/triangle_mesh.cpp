@@ -8,13 +8,15 @@ Status checkTriangleMesh(const TriangleMesh& mesh) {
   if (mesh.positions.empty()) return {StatusCode::Empty, "the mesh has no vertices"};
   const std::size_t bad = firstNonFinite(viewOf(mesh.positions));
   if (bad < mesh.vertexCount()) {
-    return {StatusCode::NonFinite, "vertex " + std::to_string(bad) + " of the mesh has a coordinate that is not finite"};
+    return {StatusCode::NonFinite,
+            "vertex " + std::to_string(bad) + " of the mesh has a coordinate that is not finite"};
   }
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
     for (const int v : mesh.triangles[t]) {
       if (v >= 0 && static_cast<std::size_t>(v) < mesh.vertexCount()) continue;
       return {StatusCode::IndexOutOfRange, "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
-                                               ", but the mesh has " + std::to_string(mesh.vertexCount()) + " vertices"};
+                                               ", but the mesh has " + std::to_string(mesh.vertexCount()) +
+                                               " vertices"};
     }
   }
   return {};

@@ -6,17 +6,28 @@ namespace tetskin {
 
 const char* toString(StatusCode code) {
   switch (code) {
-    case StatusCode::Ok: return "ok";
-    case StatusCode::FileNotFound: return "file not found";
-    case StatusCode::FileNotWritable: return "file not writable";
-    case StatusCode::UnsupportedFormat: return "unsupported format";
-    case StatusCode::Malformed: return "malformed";
-    case StatusCode::Empty: return "empty";
-    case StatusCode::IndexOutOfRange: return "index out of range";
-    case StatusCode::NonFinite: return "not finite";
-    case StatusCode::Degenerate: return "degenerate";
-    case StatusCode::SizeMismatch: return "size mismatch";
-    case StatusCode::InvalidOption: return "invalid option";
+    case StatusCode::Ok:
+      return "ok";
+    case StatusCode::FileNotFound:
+      return "file not found";
+    case StatusCode::FileNotWritable:
+      return "file not writable";
+    case StatusCode::UnsupportedFormat:
+      return "unsupported format";
+    case StatusCode::Malformed:
+      return "malformed";
+    case StatusCode::Empty:
+      return "empty";
+    case StatusCode::IndexOutOfRange:
+      return "index out of range";
+    case StatusCode::NonFinite:
+      return "not finite";
+    case StatusCode::Degenerate:
+      return "degenerate";
+    case StatusCode::SizeMismatch:
+      return "size mismatch";
+    case StatusCode::InvalidOption:
+      return "invalid option";
   }
   return "unknown status";
 }

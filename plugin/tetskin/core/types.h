@@ -19,16 +19,16 @@ using Box3 = Eigen::AlignedBox3d;
 /// What went wrong with data. `Ok` is the only success.
 enum class StatusCode {
   Ok,
-  FileNotFound,      ///< the file cannot be opened for reading
-  FileNotWritable,   ///< the file or folder cannot be created or written
-  UnsupportedFormat, ///< the format, or this flavour of it, is not read
-  Malformed,         ///< the text or bytes do not follow the format
-  Empty,             ///< no vertices, no triangles, no nodes or no tets
-  IndexOutOfRange,   ///< an index names a point that does not exist
-  NonFinite,         ///< a coordinate is infinite or not a number
-  Degenerate,        ///< every tet is flat, or repeats a node
-  SizeMismatch,      ///< two arrays that belong together differ in count
-  InvalidOption,     ///< an option's value makes no sense
+  FileNotFound,       ///< the file cannot be opened for reading
+  FileNotWritable,    ///< the file or folder cannot be created or written
+  UnsupportedFormat,  ///< the format, or this flavour of it, is not read
+  Malformed,          ///< the text or bytes do not follow the format
+  Empty,              ///< no vertices, no triangles, no nodes or no tets
+  IndexOutOfRange,    ///< an index names a point that does not exist
+  NonFinite,          ///< a coordinate is infinite or not a number
+  Degenerate,         ///< every tet is flat, or repeats a node
+  SizeMismatch,       ///< two arrays that belong together differ in count
+  InvalidOption,      ///< an option's value makes no sense
 };
 
 /// Name of a status code, for messages and logs. Never null.
@@ -48,8 +48,8 @@ struct [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}                                // NOLINT: implicit by design
-  Result(Status status) : status_(std::move(status)) { assert(!status_.ok()); } // NOLINT: implicit by design
+  Result(T value) : value_(std::move(value)) {}                                  // NOLINT: implicit by design
+  Result(Status status) : status_(std::move(status)) { assert(!status_.ok()); }  // NOLINT: implicit by design
 
   bool ok() const { return status_.ok(); }
   const Status& status() const { return status_; }
