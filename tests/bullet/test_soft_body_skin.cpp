@@ -1,2 +1,281 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/allocation_count.h"
+#include "support/odd_meshes.h"
+
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <gtest/gtest.h>
+#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/tet_geometry.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace tetskin {
+namespace {
+
+class Skin : public testing::Test {
+ protected:
+  Skin() : body(makeSoftBody(cage, info)) {}
+
+  void bend() {
+    for (int n = 0; n < body->m_nodes.size(); ++n) {
+      const Eigen::Vector3d p = cage.nodes[n];
+      body->m_nodes[n].m_x =
+          toBullet(p + 0.2 * Eigen::Vector3d(std::sin(4 * p.y()), p.x() * p.z(), std::cos(3 * p.x())));
+    }
+  }
+
+  static Eigen::Vector3d at(const SoftBodySkin& of, std::size_t v) {
+    const btScalar* p = of.positions()[v];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+
+  TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+  TriangleMesh mesh = test::sphere(30, 0.53, Eigen::Vector3d::Constant(0.5));
+  btSoftBodyWorldInfo info;
+  std::unique_ptr<btSoftBody> body;
+  SoftBodySkin skin;
+};
+
+constexpr double kRounding = 2e-6;
+
+TEST_F(Skin, IsAtRestRightAfterBind) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_LT((at(skin, v) - mesh.positions[v]).norm(), kRounding);
+}
+
+TEST_F(Skin, BindsToTheBodyAsItIsNow) {
+  body->translate(btVector3(3, 0, 0));
+  for (Eigen::Vector3d& p : mesh.positions) p.x() += 3.0;
+  const EmbedReport report = skin.bind(*body, mesh);
+  ASSERT_TRUE(report.ok());
+  EXPECT_GT(report.inside, mesh.vertexCount() / 2);
+  EXPECT_LT((at(skin, 0) - mesh.positions[0]).norm(), kRounding);
+}
+
+TEST_F(Skin, RestCageServesForABodyThatHasMovedBefore) {
+  body->translate(btVector3(0, 7, 0));
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_LT((at(skin, v) - mesh.positions[v] - Eigen::Vector3d(0, 7, 0)).norm(), 4 * kRounding);
+  }
+}
+
+TEST_F(Skin, RotatedScaledAndTeleportedBodyNeedsOnlyTheNextUpdate) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  const btQuaternion turn(btVector3(0, 0, 1), btScalar(SIMD_HALF_PI));
+  body->rotate(turn);
+  body->scale(btVector3(2, 2, 2));
+  body->translate(btVector3(-1, 4, 2));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d p = mesh.positions[v];
+    const Eigen::Vector3d expected = 2.0 * Eigen::Vector3d(-p.y(), p.x(), p.z()) + Eigen::Vector3d(-1, 4, 2);
+    EXPECT_LT((at(skin, v) - expected).norm(), 8 * kRounding);
+  }
+}
+
+TEST_F(Skin, UpdateAllocatesNothing) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  bend();
+  const std::size_t before = test::allocationCount();
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(test::allocationCount(), before);
+}
+
+TEST_F(Skin, SeveralSkinsShareOneBodyAndSeveralBodiesOneEmbedding) {
+  const TriangleMesh small = test::sphere(8, 0.3, Eigen::Vector3d::Constant(0.5));
+  SoftBodySkin second, third;
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  ASSERT_TRUE(second.bind(*body, cage, small).ok());
+  const std::unique_ptr<btSoftBody> other(makeSoftBody(cage, info));
+  other->translate(btVector3(5, 0, 0));
+  ASSERT_TRUE(third.bind(*other, skin.embedding()).ok());
+  EXPECT_EQ(third.embedding().get(), skin.embedding().get());
+  bend();
+  skin.update();
+  second.update();
+  third.update();
+  EXPECT_EQ(second.positions().size(), small.vertexCount());
+  EXPECT_LT((at(third, 9) - mesh.positions[9] - Eigen::Vector3d(5, 0, 0)).norm(), 8 * kRounding);
+  EXPECT_GT((at(skin, 9) - mesh.positions[9]).norm(), 0.05);
+}
+
+TEST_F(Skin, WritesIntoTheCallersInterleavedBuffer) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  std::vector<float> buffer(8 * mesh.vertexCount(), -5.0f);
+  const btCPUVertexBufferDescriptor descriptor(buffer.data(), 1, 8);
+  SkinOptions options;
+  options.target = positionsOf(descriptor, mesh.vertexCount());
+  SoftBodySkin into;
+  ASSERT_TRUE(into.bind(*body, cage, mesh, options).ok());
+  EXPECT_TRUE(into.positions().empty());
+  bend();
+  skin.update();
+  ASSERT_EQ(into.update(), UpdateStatus::Updated);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d p(buffer[8 * v + 1], buffer[8 * v + 2], buffer[8 * v + 3]);
+    EXPECT_LT((p - at(skin, v)).norm(), kRounding);
+    EXPECT_EQ(buffer[8 * v], -5.0f);
+    EXPECT_EQ(buffer[8 * v + 4], -5.0f);
+  }
+}
+
+TEST_F(Skin, OriginIsSubtracted) {
+  std::vector<Eigen::Vector3d> points(mesh.vertexCount());
+  SkinOptions options;
+  options.target = viewOf(points);
+  options.origin = btVector3(10, 20, 30);
+  body->translate(btVector3(10, 20, 30));
+  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+  EXPECT_LT((points[3] - mesh.positions[3]).norm(), 16 * kRounding);
+  skin.setOrigin(btVector3(9, 20, 30));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
+}
+
+TEST_F(Skin, KeepsTheLastGoodSurfaceWhenTheSimulationExplodes) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  const Eigen::Vector3d good = at(skin, 17);
+  body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
+  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_EQ(at(skin, 17), good);
+  body->m_nodes[20].m_x = toBullet(cage.nodes[20]);
+  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+}
+
+TEST_F(Skin, NoticesAppendedNodesAndTets) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  const Eigen::Vector3d good = at(skin, 17);
+  body->appendNode(btVector3(0, 0, 0), 1);
+  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(at(skin, 17), good);
+  const std::unique_ptr<btSoftBody> other(makeSoftBody(cage, info));
+  ASSERT_TRUE(skin.bind(*other, cage, mesh).ok());
+  other->appendTetra(0, 1, 5, 25);
+  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
+}
+
+TEST_F(Skin, UnboundSkinSaysSo) {
+  EXPECT_EQ(skin.update(), UpdateStatus::Unbound);
+  EXPECT_TRUE(skin.positions().empty());
+  EXPECT_EQ(skin.embedding(), nullptr);
+}
+
+TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  const auto embedding = skin.embedding();
+  const auto fails = [&](const EmbedReport& report, StatusCode code, const char* mentions) {
+    EXPECT_EQ(report.status.code, code);
+    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    EXPECT_EQ(skin.embedding(), embedding);
+    EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  };
+  fails(skin.bind(*body, test::latticeCage(2, 2, 2), mesh), StatusCode::SizeMismatch, "125 nodes");
+  fails(skin.bind(*body, cage, TriangleMesh{}), StatusCode::Empty, "no vertices");
+  std::vector<Eigen::Vector3f> tooFew(3);
+  SkinOptions options;
+  options.target = viewOf(tooFew);
+  fails(skin.bind(*body, cage, mesh, options), StatusCode::SizeMismatch, "3 points");
+  EXPECT_EQ(skin.bind(*body, std::shared_ptr<const Embedding>()).code, StatusCode::Empty);
+  const std::unique_ptr<btSoftBody> exploded(makeSoftBody(cage, info));
+  exploded->m_nodes[1].m_x.setY(std::numeric_limits<btScalar>::infinity());
+  fails(skin.bind(*exploded, cage, mesh), StatusCode::NonFinite, "not finite");
+}
+
+TEST_F(Skin, EveryUpdateStatusHasAName) {
+  EXPECT_STREQ(toString(UpdateStatus::Updated), "updated");
+  EXPECT_STREQ(toString(UpdateStatus::Asleep), "asleep");
+  EXPECT_STREQ(toString(UpdateStatus::NonFinite), "not finite");
+  EXPECT_STREQ(toString(UpdateStatus::TopologyChanged), "topology changed");
+  EXPECT_STREQ(toString(UpdateStatus::Unbound), "unbound");
+}
+
+/// Bullet's own render mesh on the same body.
+class BulletsRenderMesh : public Skin {
+ protected:
+  /// An irregular cage: in a lattice, vertices outside have several equally good tets.
+  BulletsRenderMesh() {
+    const auto noise =
+        test::randomPoints(cage.nodeCount(), {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.06)}, 5);
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) cage.nodes[n] = inBulletsPrecision(cage.nodes[n] + noise[n]);
+    body.reset(makeSoftBody(cage, info));
+  }
+
+  static Eigen::Vector3d inBulletsPrecision(const Eigen::Vector3d& p) { return toEigen(toBullet(p)); }
+
+  void addRenderNodes(const std::vector<Eigen::Vector3d>& vertices) {
+    for (const Eigen::Vector3d& p : vertices) {
+      btSoftBody::RenderNode node;
+      node.m_x = toBullet(p);
+      node.m_uv1.setZero();
+      node.m_normal.setZero();
+      body->m_renderNodes.push_back(node);
+    }
+    btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
+  }
+
+  /// The tet that Bullet chose, by its nodes; -1 if none.
+  int bulletsTet(int v) const {
+    const auto& parents = body->m_renderNodesParents[v];
+    if (parents.size() != 4) return -1;
+    Tet tet{};
+    for (int k = 0; k < 4; ++k) tet[k] = static_cast<int>(parents[k] - &body->m_nodes[0]);
+    const auto found = std::find(cage.tets.begin(), cage.tets.end(), tet);
+    return found == cage.tets.end() ? -1 : static_cast<int>(found - cage.tets.begin());
+  }
+
+  double barycentric(int tet, const Eigen::Vector3d& v) const {
+    const Tet& n = cage.tets[tet];
+    return barycentricDistance(
+        BarycentricMap({cage.nodes[n[0]], cage.nodes[n[1]], cage.nodes[n[2]], cage.nodes[n[3]]})(v));
+  }
+};
+
+TEST_F(BulletsRenderMesh, AgreesOnTetsAndPositions) {
+  std::vector<Eigen::Vector3d> vertices =
+      test::randomPoints(3000, {Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(1.15)}, 3);
+  std::transform(vertices.begin(), vertices.end(), vertices.begin(), inBulletsPrecision);
+  addRenderNodes(vertices);
+  SkinOptions options;
+  options.outside = OutsideRule::Barycentric;
+  ASSERT_TRUE(skin.bind(*body, cage, viewOf(std::as_const(vertices)), options).ok());
+  bend();
+  body->interpolateRenderMesh();
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+
+  const auto bindings = skin.embedding()->bindings();
+  int otherTets = 0;
+  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
+    const int bullets = bulletsTet(v);
+    ASSERT_GE(bullets, 0);
+    if (bullets != bindings[v].tet) {
+      // Bullet decides in its own precision: it may differ where two tets are equally good.
+      EXPECT_NEAR(barycentric(bullets, vertices[v]), barycentric(bindings[v].tet, vertices[v]), 1e-5);
+      ++otherTets;
+      continue;
+    }
+    EXPECT_LT((toEigen(body->m_renderNodes[v].m_x) - at(skin, v)).norm(), 1e-5) << "vertex " << v;
+  }
+  EXPECT_LE(otherTets, sizeof(btScalar) == 8 ? 0 : 3);
+}
+
+TEST_F(BulletsRenderMesh, SendsAFarVertexToTheOriginWhereOursFollows) {
+  // Defect, reproduced here: farther than 1,000 altitudes Bullet keeps no tet and draws the vertex at the world's
+  // origin.
+  const std::vector<Eigen::Vector3d> vertices{{400.0, 0.3, 0.4}};
+  addRenderNodes(vertices);
+  EXPECT_EQ(body->m_renderNodesParents[0].size(), 0);
+  ASSERT_TRUE(skin.bind(*body, cage, viewOf(vertices)).ok());
+  body->translate(btVector3(0, 2, 0));
+  body->interpolateRenderMesh();
+  skin.update();
+  EXPECT_EQ(body->m_renderNodes[0].m_x.length(), 0);
+  EXPECT_LT((at(skin, 0) - Eigen::Vector3d(400.0, 2.3, 0.4)).norm(), 1e-2);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,2 +1,141 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The skin in each of Bullet's worlds: after stepSimulation it is the weights applied to the nodes.
+#include "support/odd_meshes.h"
+#include "worlds.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <cmath>
+#include <functional>
+
+namespace tetskin {
+namespace {
+
+using MakeWorld = std::function<std::unique_ptr<test::TestWorld>(const TetMesh&)>;
+
+struct NamedWorld {
+  const char* name;
+  MakeWorld make;
+};
+
+template <class World>
+std::unique_ptr<test::TestWorld> makeWorld(const TetMesh& cage) {
+  return std::make_unique<World>(cage);
+}
+
+class Worlds : public testing::TestWithParam<NamedWorld> {
+ protected:
+  Worlds() : cage(test::latticeCage(4, 4, 4, 0.25)), mesh(test::sphere(24, 0.52, Eigen::Vector3d::Constant(0.5))) {
+    for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.3;  // above the floor
+    for (Eigen::Vector3d& p : mesh.positions) p.y() += 0.3;
+    world = GetParam().make(cage);
+    const EmbedReport report = skin.bind(world->body(), cage, mesh);
+    EXPECT_TRUE(report.ok()) << report.status.message;
+    EXPECT_GT(report.outside, 0u);
+  }
+
+  /// Compares the skin with the weights applied to the nodes, in double.
+  void expectSkinFollowsNodes() const {
+    const auto bindings = skin.embedding()->bindings();
+    const PointView<const btScalar> positions = skin.positions();
+    for (std::size_t v = 0; v < bindings.size(); ++v) {
+      Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+      for (int k = 0; k < 4; ++k) {
+        expected += bindings[v].weights[k] * toEigen(world->body().m_nodes[cage.tets[bindings[v].tet][k]].m_x);
+      }
+      const Eigen::Vector3d actual(positions[v][0], positions[v][1], positions[v][2]);
+      ASSERT_LT((actual - expected).norm(), 1e-5) << "vertex " << v;
+    }
+  }
+
+  std::vector<Eigen::Vector3d> surface() const {
+    std::vector<Eigen::Vector3d> copy;
+    for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+      const btScalar* p = skin.positions()[v];
+      copy.emplace_back(p[0], p[1], p[2]);
+    }
+    return copy;
+  }
+
+  TetMesh cage;
+  TriangleMesh mesh;
+  std::unique_ptr<test::TestWorld> world;
+  SoftBodySkin skin;
+};
+
+constexpr btScalar kStep = btScalar(1) / 240;
+
+TEST_P(Worlds, SkinFollowsTheNodesAfterOneSubstep) {
+  for (int step = 0; step < 120; ++step) {
+    ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
+    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    expectSkinFollowsNodes();
+  }
+  EXPECT_LT(skin.bounds().min().y(), 0.25);  // it fell
+}
+
+TEST_P(Worlds, SkinFollowsTheNodesAfterTenSubsteps) {
+  for (int step = 0; step < 12; ++step) {
+    // A little more than ten steps of time, so that rounding does not leave it at nine.
+    ASSERT_EQ(world->world->stepSimulation(btScalar(10.01) * kStep, 10, kStep), 10);
+    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    expectSkinFollowsNodes();
+  }
+  EXPECT_LT(skin.bounds().min().y(), 0.25);
+}
+
+TEST_P(Worlds, NothingMovesWithoutASubstep) {
+  ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  const auto before = surface();
+  ASSERT_EQ(world->world->stepSimulation(kStep / 100, 10, kStep), 0);
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);  // needless, but right
+  EXPECT_EQ(surface(), before);
+}
+
+TEST_P(Worlds, FallingBodyReachesTheFloorAndStaysAboveIt) {
+  for (int step = 0; step < 240; ++step) {
+    world->world->stepSimulation(kStep, 1, kStep);
+    skin.update();
+    ASSERT_GT(skin.bounds().min().y(), -0.2);  // free fall would have reached -4.7
+  }
+  EXPECT_LT(skin.bounds().min().y(), 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Worlds,
+                         testing::Values(NamedWorld{"SoftRigid", makeWorld<test::RigidWorld>},
+                                         NamedWorld{"SoftMultiBody", makeWorld<test::MultiBodyWorld>},
+                                         NamedWorld{"Deformable", makeWorld<test::DeformableWorld>},
+                                         NamedWorld{"Reduced", makeWorld<test::ReducedWorld>}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(DeformableWorld, SleepingBodyIsSkippedUntilItIsMoved) {
+  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  test::DeformableWorld world(cage);
+  const TriangleMesh mesh = test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5));
+  SoftBodySkin skin;
+  ASSERT_TRUE(skin.bind(world.body(), cage, mesh).ok());
+
+  int steps = 0;
+  while (world.body().isActive() && steps++ < 3000) {
+    world.world->stepSimulation(kStep, 1, kStep);
+    ASSERT_EQ(skin.update(), UpdateStatus::Updated) << "the step of falling asleep is still updated";
+  }
+  ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
+  const Box3 before = skin.bounds();
+  world.world->stepSimulation(kStep, 1, kStep);
+  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+
+  world.body().translate(btVector3(2, 0, 0));  // a teleport does not wake it
+  ASSERT_FALSE(world.body().isActive());
+  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(skin.bounds().min().x(), before.min().x() + 2.0, 1e-5);
+  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+}
+
+}  // namespace
+}  // namespace tetskin
