@@ -229,9 +229,7 @@ class BulletsRenderMesh : public Skin {
   }
 
   double barycentric(int tet, const Eigen::Vector3d& v) const {
-    const Tet& n = cage.tets[tet];
-    return barycentricDistance(
-        BarycentricMap({cage.nodes[n[0]], cage.nodes[n[1]], cage.nodes[n[2]], cage.nodes[n[3]]})(v));
+    return barycentricDistance(BarycentricMap(cornersOf(cage, cage.tets[tet]))(v));
   }
 };
 

@@ -69,7 +69,7 @@ class ClassicWorld : public TestWorld {
     soft->getWorldInfo().m_gravity.setValue(0, -10, 0);
     soft->getWorldInfo().m_sparsesdf.Initialize();
     SoftBodyOptions options;
-    options.collisions = btSoftBody::fCollision::SDF_RS;
+    options.forceModel = ForceModel::MassSpring;
     body_.reset(makeSoftBody(cage, soft->getWorldInfo(), options));
     soft->addSoftBody(body_.get());
   }

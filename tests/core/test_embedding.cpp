@@ -37,9 +37,7 @@ EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, Outsid
     EXPECT_EQ(bindings[v].tet, expected[v].tet) << "vertex " << v;
     EXPECT_EQ(bindings[v].inside, expected[v].inside) << "vertex " << v;
     if (bindings[v].tet != expected[v].tet) break;
-    const Tet& n = cage.tets[expected[v].tet];
-    const Eigen::Vector4d b =
-        BarycentricMap({cage.nodes[n[0]], cage.nodes[n[1]], cage.nodes[n[2]], cage.nodes[n[3]]})(vertices[v]);
+    const Eigen::Vector4d b = BarycentricMap(cornersOf(cage, cage.tets[expected[v].tet]))(vertices[v]);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(bindings[v].weights[k], static_cast<float>(b[k])) << "vertex " << v;
     inside += expected[v].inside;
     worstDistance = std::max(worstDistance, expected[v].distance);

@@ -14,10 +14,9 @@
 namespace tetskin {
 namespace {
 
-double totalVolume(const TetMesh& mesh) {
+double signedTotal(const TetMesh& mesh) {
   double sum = 0.0;
-  for (const Tet& t : mesh.tets)
-    sum += signedVolume({mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]], mesh.nodes[t[3]]});
+  for (const Tet& t : mesh.tets) sum += signedVolume(cornersOf(mesh, t));
   return sum;
 }
 
@@ -27,6 +26,7 @@ TEST(TetMesh, LatticeIsClean) {
   EXPECT_TRUE(report.clean()) << report.describe();
   EXPECT_TRUE(report.describe().empty());
   EXPECT_TRUE(usable(mesh, report).ok());
+  EXPECT_NEAR(signedTotal(mesh), 3 * 4 * 5 * 0.125, 1e-12);
   EXPECT_NEAR(totalVolume(mesh), 3 * 4 * 5 * 0.125, 1e-12);
 }
 
@@ -90,14 +90,14 @@ TEST(TetMesh, UsableAcceptsSurvivableFaults) {
 
 TEST(TetMesh, RepairReorientsNegativeTetsAndReportsThem) {
   TetMesh mesh = test::latticeCage(2, 2, 2);
-  const double volume = totalVolume(mesh);
+  const double volume = signedTotal(mesh);
   std::swap(mesh.tets[3][0], mesh.tets[3][1]);
   std::swap(mesh.tets[7][2], mesh.tets[7][3]);
-  EXPECT_LT(totalVolume(mesh), volume - 0.1);
+  EXPECT_LT(signedTotal(mesh), volume - 0.1);
   const TetMeshReport report = repairTetMesh(mesh);
   EXPECT_EQ(report.negativeVolume.count, 2u);
   EXPECT_EQ(report.negativeVolume.first, 3u);
-  EXPECT_NEAR(totalVolume(mesh), volume, 1e-12);
+  EXPECT_NEAR(signedTotal(mesh), volume, 1e-12);
   EXPECT_TRUE(checkTetMesh(mesh).clean());
 }
 

@@ -20,8 +20,7 @@ struct Candidate {
 std::vector<Candidate> candidatesOf(const TetMesh& cage, const Eigen::Vector3d& v) {
   std::vector<Candidate> all;
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    const Tet& n = cage.tets[t];
-    const TetCorners p{cage.nodes[n[0]], cage.nodes[n[1]], cage.nodes[n[2]], cage.nodes[n[3]]};
+    const TetCorners p = cornersOf(cage, cage.tets[t]);
     if (isFlat(p)) continue;
     const Eigen::Vector4d b = BarycentricMap(p)(v);
     all.push_back({static_cast<int>(t), tetSize(p), barycentricDistance(b), distanceToTet(v, p, b)});

@@ -14,10 +14,8 @@ namespace {
 constexpr double kLightestNode = 0.3;
 /// Default margin over the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
 constexpr double kMarginFraction = 0.02;
-
-double volumeOf(const TetMesh& cage, const Tet& t) {
-  return std::abs(signedVolume({cage.nodes[t[0]], cage.nodes[t[1]], cage.nodes[t[2]], cage.nodes[t[3]]}));
-}
+/// Bullet's default of one pass over the links leaves a body of thousands of tets a puddle.
+constexpr int kMassSpringIterations = 8;
 
 Status checkOptions(const SoftBodyOptions& options) {
   if (!(options.density >= 0.0) || (options.density == 0.0 && !(options.mass > 0.0))) {
@@ -25,6 +23,15 @@ Status checkOptions(const SoftBodyOptions& options) {
   }
   if (!(options.friction >= 0.0) || std::isnan(options.margin)) {
     return {StatusCode::InvalidOption, "a soft body's friction must not be negative, nor its margin NaN"};
+  }
+  if (!(options.youngsModulus >= 0.0) || !(options.damping >= 0.0)) {
+    return {StatusCode::InvalidOption, "a soft body's stiffness and damping must not be negative"};
+  }
+  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
+    return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};
+  }
+  if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
+    return {StatusCode::InvalidOption, "a soft body's link stiffness must be above 0 and at most 1"};
   }
   return {};
 }
@@ -62,8 +69,7 @@ void appendElements(const TetMesh& cage, btSoftBody& body) {
 void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
   double mass = options.mass;
   if (options.density > 0.0) {
-    mass = options.density * std::accumulate(cage.tets.begin(), cage.tets.end(), 0.0,
-                                             [&](double sum, const Tet& t) { return sum + volumeOf(cage, t); });
+    mass = options.density * totalVolume(cage);
   }
   const std::vector<double> masses = lumpedMasses(cage, mass);
   for (std::size_t n = 0; n < masses.size(); ++n) {
@@ -79,7 +85,13 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   body.m_cfg.kDF = static_cast<btScalar>(options.friction);
   body.m_cfg.kCHR = 1;  // hard contacts with rigid and with kinematic bodies
   body.m_cfg.kKHR = 1;
-  body.m_cfg.collisions = options.collisions;
+  if (options.forceModel == ForceModel::MassSpring) {
+    body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
+    body.m_cfg.piterations = kMassSpringIterations;
+    body.m_materials[0]->m_kLST = static_cast<btScalar>(options.linkStiffness);
+  } else {
+    body.m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+  }
 }
 
 }  // namespace
@@ -88,7 +100,7 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
   std::vector<double> masses(cage.nodeCount(), 0.0);
   double sum = 0.0;
   for (const Tet& t : cage.tets) {
-    const double quarter = volumeOf(cage, t) / 4.0;
+    const double quarter = std::abs(signedVolume(cornersOf(cage, t))) / 4.0;
     for (const int n : t) masses[n] += quarter;
     sum += 4.0 * quarter;
   }

@@ -10,19 +10,39 @@
 
 namespace tetskin {
 
-/// What a soft body is made of, beside its shape. Lengths are world lengths. The defaults suit Bullet's deformable
-/// world at 60 Hz with 4 substeps.
+/// What holds a body together.
+enum class ForceModel {
+  NeoHookean,        ///< deformable world; large deformations, resists inversion
+  LinearElasticity,  ///< deformable world; cheaper, for moderate rotations
+  MassSpring,        ///< the classic worlds: the body's links, solved as constraints
+};
+
+/// What a soft body is made of, beside its shape. Lengths are world lengths. The defaults are stable in Bullet's
+/// deformable world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
   double mass = 1.0;      ///< total, in kg; ignored where density is given
   double density = 0.0;   ///< mass per volume; 0: from mass
   double margin = -1.0;   ///< collision margin; below 0: 2 % of the largest side of the cage's box
   double friction = 0.5;  ///< Bullet's m_cfg.kDF, 0 to 1
-  /// How the body meets rigid bodies. The default is for the deformable world; the two classic worlds want
-  /// btSoftBody::fCollision::SDF_RS.
-  int collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
-  /// Nodes to hold in place, by their rest position: given infinite mass. Empty: none.
+  /// Nodes to hold in place, by their rest position: given infinite mass. Empty: none. See `pinnedIn`.
   std::function<bool(const Eigen::Vector3d& restPosition)> pinned;
+
+  /// Also chooses how the body meets rigid ones: MassSpring as the classic worlds expect, the others as the deformable.
+  ForceModel forceModel = ForceModel::NeoHookean;
+  /// Stiffness in pressure units; 0: as stiff as needed not to sag much, 100 x density x gravity x size. For MassSpring
+  /// Bullet has no such unit: there `linkStiffness` counts.
+  double youngsModulus = 0.0;
+  double poissonRatio = 0.3;   ///< 0 to below 0.5
+  double damping = 0.05;       ///< seconds: damping forces are this times the rate of the elastic ones
+  double linkStiffness = 0.5;  ///< MassSpring only: Bullet's m_kLST, 0 to 1
+  /// Deformable world: one Newton step an update instead of explicit elastic forces. A property of the whole world.
+  bool implicit = false;
 };
+
+/// For `SoftBodyOptions::pinned`: the nodes in a box, rest space.
+inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
+  return [box](const Eigen::Vector3d& p) { return box.contains(p); };
+}
 
 /// Makes a soft body of a cage: a node for every node, in order; a tet for every tet, in order; each edge once as a
 /// link and each boundary face once, in the order of btSoftBodyHelpers::CreateFromVtkFile; rest volumes and inverse

@@ -8,6 +8,7 @@
 //   Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5 (closest point on a triangle)
 #pragma once
 
+#include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <algorithm>
@@ -22,6 +23,10 @@ namespace tetskin {
 constexpr double kFlatTet = 1e-9;
 
 using TetCorners = std::array<Eigen::Vector3d, 4>;
+
+inline TetCorners cornersOf(const TetMesh& mesh, const Tet& tet) {
+  return {mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]};
+}
 
 /// Signed volume; positive for a positively oriented tet.
 inline double signedVolume(const TetCorners& p) {

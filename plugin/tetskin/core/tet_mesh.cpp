@@ -28,10 +28,6 @@ bool repeatsNode(const Tet& tet) {
   return std::adjacent_find(s.begin(), s.end()) != s.end();
 }
 
-TetCorners cornersOf(const TetMesh& mesh, const Tet& tet) {
-  return {mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]};
-}
-
 /// Indices of keys, sorted by key and then by index.
 template <class Key>
 std::vector<std::size_t> orderOf(const std::vector<Key>& keys) {
@@ -140,6 +136,12 @@ TetMeshReport repairTetMesh(TetMesh& mesh) {
     if (!isFlat(p) && signedVolume(p) < 0.0) std::swap(tet[2], tet[3]);
   }
   return report;
+}
+
+double totalVolume(const TetMesh& mesh) {
+  double sum = 0.0;
+  for (const Tet& tet : mesh.tets) sum += std::abs(signedVolume(cornersOf(mesh, tet)));
+  return sum;
 }
 
 std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh) {

@@ -55,6 +55,9 @@ Status usable(const TetMesh& mesh, const TetMeshReport& report);
 /// was. A mesh with indices out of range or non-finite nodes is left untouched.
 TetMeshReport repairTetMesh(TetMesh& mesh);
 
+/// Sum of the tets' volumes, whatever their orientation. Indices must be in range.
+double totalVolume(const TetMesh& mesh);
+
 /// The distinct edges, each as (a, b) in the direction of the tet that names it first, in order of first appearance:
 /// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3) of tet 0, then of tet 1, ... Cost O(T log T). Indices must be in range.
 std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh);

@@ -247,8 +247,7 @@ std::vector<SearchTet> searchTets(const TetMesh& cage) {
   std::vector<SearchTet> tets;
   tets.reserve(cage.tetCount());
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    const Tet& tet = cage.tets[t];
-    const TetCorners corners{cage.nodes[tet[0]], cage.nodes[tet[1]], cage.nodes[tet[2]], cage.nodes[tet[3]]};
+    const TetCorners corners = cornersOf(cage, cage.tets[t]);
     if (!isFlat(corners)) tets.emplace_back(static_cast<int>(t), corners);
   }
   return tets;
