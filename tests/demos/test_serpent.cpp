@@ -1,2 +1,316 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/serpent.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/tet_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "scenes/serpent_shape.h"
+
+namespace tetskin::scenes {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kSmall = 6000;  ///< triangles that are enough to see every part
+
+/// For every vertex the first vertex at the same position.
+std::vector<int> welded(const TriangleMesh& mesh) {
+  std::map<std::array<double, 3>, int> firsts;
+  std::vector<int> weld;
+  for (const Vector3d& p : mesh.positions) {
+    weld.push_back(
+        firsts.emplace(std::array<double, 3>{p.x(), p.y(), p.z()}, static_cast<int>(weld.size())).first->second);
+  }
+  return weld;
+}
+
+/// How often each directed edge of the welded surface is used.
+std::map<std::pair<int, int>, int> directedEdges(const TriangleMesh& mesh, const std::vector<int>& weld) {
+  std::map<std::pair<int, int>, int> uses;
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) ++uses[{weld[t[k]], weld[t[(k + 1) % 3]]}];
+  }
+  return uses;
+}
+
+/// Number of pieces that hang together.
+int countParts(const TriangleMesh& mesh, const std::vector<int>& weld) {
+  std::vector<int> parent = weld;
+  const auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    parent[root(t[0])] = root(t[2]);
+    parent[root(t[1])] = root(t[2]);
+  }
+  int parts = 0;
+  for (std::size_t v = 0; v < parent.size(); ++v) parts += root(static_cast<int>(v)) == static_cast<int>(v);
+  return parts;
+}
+
+/// The tets of a cage, ready to be asked what they contain.
+class Cage {
+ public:
+  explicit Cage(const TetMesh& mesh) {
+    for (const Tet& tet : mesh.tets) {
+      corners_.push_back({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]});
+      maps_.emplace_back(corners_.back());
+      boxes_.emplace_back();
+      for (const Vector3d& corner : corners_.back()) boxes_.back().extend(corner);
+    }
+  }
+  const std::vector<TetCorners>& corners() const { return corners_; }
+
+  /// Number of tets that contain the point, faces with a width of `tolerance` (barycentric) included.
+  int containing(const Vector3d& point, double tolerance) const {
+    int count = 0;
+    for (std::size_t t = 0; t < maps_.size(); ++t) {
+      count += boxes_[t].contains(point) && barycentricDistance(maps_[t](point)) <= tolerance;
+    }
+    return count;
+  }
+
+ private:
+  std::vector<TetCorners> corners_;
+  std::vector<BarycentricMap> maps_;
+  std::vector<Box3> boxes_;
+};
+
+double outsideShare(const TriangleMesh& mesh, const Cage& cage) {
+  const auto outside = std::count_if(mesh.positions.begin(), mesh.positions.end(),
+                                     [&](const Vector3d& p) { return cage.containing(p, 0.0) == 0; });
+  return static_cast<double>(outside) / static_cast<double>(mesh.vertexCount());
+}
+
+class SerpentOfSize : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(SerpentOfSize, HasTheTrianglesWishedFor) {
+  const TriangleMesh mesh = makeSerpent({GetParam()});
+  const double wish = static_cast<double>(GetParam());
+  EXPECT_NEAR(static_cast<double>(mesh.triangleCount()), wish, 0.02 * wish);
+  EXPECT_TRUE(checkTriangleMesh(mesh).ok());
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, SerpentOfSize,
+                         testing::Values(2000, 2345, 3000, 5000, 10000, 33333, 60000, 300000, 2000000));
+
+TEST(Serpent, ClampsWishesThatItCannotFulfil) {
+  EXPECT_EQ(makeSerpent({0}).triangleCount(), makeSerpent({kMinSerpentTriangles}).triangleCount());
+  EXPECT_EQ(makeSerpentCage(0).tetCount(), makeSerpentCage(kMinSerpentTets).tetCount());
+  EXPECT_EQ(makeSerpentCage(10 * kMaxSerpentTets).tetCount(), makeSerpentCage(kMaxSerpentTets).tetCount());
+}
+
+TEST(Serpent, IsClosedAndConsistentlyOrientedWhenWelded) {
+  for (std::size_t triangles : {kMinSerpentTriangles, kSmall, std::size_t{60000}}) {
+    const TriangleMesh mesh = makeSerpent({triangles});
+    const std::vector<int> weld = welded(mesh);
+    const auto edges = directedEdges(mesh, weld);
+    for (const auto& [edge, uses] : edges) {
+      EXPECT_EQ(uses, 1);
+      EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+    }
+    const auto seams = std::count_if(mesh.texcoords.begin(), mesh.texcoords.end(),
+                                     [](const Eigen::Vector2f& uv) { return uv.x() == 1.0f; });
+    const auto vertices = static_cast<long>(mesh.vertexCount()) - seams;
+    const auto euler = vertices - static_cast<long>(edges.size() / 2) + static_cast<long>(mesh.triangleCount());
+    EXPECT_EQ(euler, 2 * countParts(mesh, weld)) << "every part is a sphere";
+  }
+}
+
+TEST(Serpent, EnclosesVolumeInEveryGroup) {
+  const TriangleMesh mesh = makeSerpent({kSmall});
+  const auto volumeOf = [&](std::size_t first, std::size_t count) {
+    double volume = 0.0;
+    for (std::size_t t = first; t < first + count; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      volume += mesh.positions[a].dot(mesh.positions[b].cross(mesh.positions[c])) / 6.0;
+    }
+    return volume;
+  };
+  const TriangleGroup& body = mesh.groups[mesh.groups.size() - 2];
+  ASSERT_EQ(body.name, "body");
+  EXPECT_NEAR(volumeOf(body.firstTriangle, mesh.triangleCount() - body.firstTriangle), 0.3, 0.05);
+  for (std::size_t g = 0; g + 2 < mesh.groups.size(); ++g) {
+    EXPECT_GT(volumeOf(mesh.groups[g].firstTriangle, mesh.groups[g].triangleCount), 0.0) << mesh.groups[g].name;
+  }
+}
+
+TEST(Serpent, RepeatsVerticesAtTheTextureSeamBitForBit) {
+  const TriangleMesh mesh = makeSerpent({kSmall});
+  ASSERT_EQ(mesh.texcoords.size(), mesh.vertexCount());
+  const std::vector<int> weld = welded(mesh);
+  for (std::size_t v = 0; v < weld.size(); ++v) {
+    const bool repeated = weld[v] != static_cast<int>(v);
+    EXPECT_EQ(repeated, mesh.texcoords[v].x() == 1.0f) << "vertex " << v;
+    if (!repeated) continue;
+    EXPECT_EQ(mesh.texcoords[weld[v]].x(), 0.0f);
+    EXPECT_EQ(mesh.texcoords[weld[v]].y(), mesh.texcoords[v].y());
+    EXPECT_EQ(mesh.normals[weld[v]], mesh.normals[v]);
+  }
+}
+
+TEST(Serpent, HasTexcoordsInTheUnitSquareAndUnitNormals) {
+  const TriangleMesh mesh = makeSerpent({kSmall});
+  ASSERT_EQ(mesh.normals.size(), mesh.vertexCount());
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_GE(mesh.texcoords[v].minCoeff(), 0.0f);
+    EXPECT_LE(mesh.texcoords[v].maxCoeff(), 1.0f);
+    EXPECT_NEAR(mesh.normals[v].norm(), 1.0f, 1e-5f);
+  }
+}
+
+TEST(Serpent, HasGroupsThatCoverAllTriangles) {
+  const TriangleMesh mesh = makeSerpent({kSmall});
+  std::size_t next = 0;
+  for (const TriangleGroup& group : mesh.groups) {
+    EXPECT_EQ(group.firstTriangle, next) << group.name;
+    EXPECT_GT(group.triangleCount, 0u) << group.name;
+    EXPECT_FALSE(group.material.empty()) << group.name;
+    next += group.triangleCount;
+  }
+  EXPECT_EQ(next, mesh.triangleCount());
+}
+
+TEST(Serpent, IsTwoUnitsWideAndStandsAtTheOrigin) {
+  const Box3 box = boundingBox(makeSerpent({kSmall}).positions);
+  EXPECT_NEAR(box.sizes().maxCoeff(), 2.0, 0.1);
+  EXPECT_NEAR(box.center().x(), 0.0, 0.05);
+  EXPECT_NEAR(box.center().z(), 0.0, 0.05);
+  EXPECT_NEAR(box.min().y(), 0.0, 0.05);
+  EXPECT_NEAR(box.max().y(), 1.1, 0.1);
+}
+
+TEST(Serpent, KeepsItsBackOnTop) {
+  const SerpentShape shape;
+  for (double t = 0.0; t < shape.headStart(); t += 0.01) {
+    const Frame frame = shape.spine().frame(t);
+    const Vector3d highest = (Vector3d::UnitY() - frame.tangent.y() * frame.tangent).normalized();
+    EXPECT_GT(frame.up.dot(highest), 0.3) << "t = " << t;
+  }
+}
+
+TEST(Serpent, BendsLessThanItIsThick) {
+  constexpr double kStep = 1e-3;
+  const SerpentShape shape;
+  for (double t = kStep; t < 1.0 - kStep; t += kStep) {
+    const Vector3d bend = shape.spine().frame(t + kStep).tangent - shape.spine().frame(t - kStep).tangent;
+    const double bendRadius = 2.0 * kStep * shape.spine().length() / bend.norm();
+    EXPECT_GT(bendRadius, 1.5 * shape.radius(t)) << "t = " << t;
+  }
+}
+
+TEST(Serpent, HasStrandsThatComeCloseButDoNotTouch) {
+  constexpr int kSamples = 600;
+  constexpr double kFarApart = 6.0;  ///< radii along the spine
+  const SerpentShape shape;
+  double closest = 1e9;  // in thicknesses
+  for (int i = 0; i < kSamples; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double a = (i + 0.5) / kSamples, b = (j + 0.5) / kSamples;
+      const double thickness = shape.radius(a) + shape.radius(b);
+      if ((a - b) * shape.spine().length() < kFarApart * std::max(shape.radius(a), shape.radius(b))) continue;
+      const double distance = (shape.spine().frame(a).origin - shape.spine().frame(b).origin).norm();
+      closest = std::min(closest, (distance - thickness) / thickness);
+    }
+  }
+  EXPECT_GT(closest, 0.3);
+  EXPECT_LT(closest, 0.6);
+}
+
+TEST(Serpent, IsTheSameEveryTime) {
+  const TriangleMesh a = makeSerpent({kSmall}), b = makeSerpent({kSmall});
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.normals, b.normals);
+  const TetMesh c = makeSerpentCage(), d = makeSerpentCage();
+  EXPECT_EQ(c.nodes, d.nodes);
+  EXPECT_EQ(c.tets, d.tets);
+}
+
+class SerpentCageOfSize : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(SerpentCageOfSize, HasTheTetsWishedForAndNoFaults) {
+  const TetMesh cage = makeSerpentCage(GetParam());
+  const double wish = static_cast<double>(GetParam());
+  EXPECT_NEAR(static_cast<double>(cage.tetCount()), wish, 0.1 * wish);
+  const TetMeshReport report = checkTetMesh(cage);
+  EXPECT_TRUE(report.clean()) << report.describe();
+}
+
+TEST_P(SerpentCageOfSize, IsConforming) {
+  const TetMesh cage = makeSerpentCage(GetParam());
+  std::map<std::array<int, 3>, int> uses;
+  for (const Tet& tet : cage.tets) {
+    for (int skip = 0; skip < 4; ++skip) {
+      std::array<int, 3> face = {tet[(skip + 1) % 4], tet[(skip + 2) % 4], tet[(skip + 3) % 4]};
+      std::sort(face.begin(), face.end());
+      ++uses[face];
+    }
+  }
+  for (const auto& [face, count] : uses) EXPECT_LE(count, 2);
+  // Were a quad split in two ways, its four triangles would be boundary inside, and the boundary no sphere.
+  const std::vector<std::array<int, 3>> boundary = boundaryFaces(cage);
+  std::map<std::pair<int, int>, int> edges;
+  std::map<int, int> nodes;
+  for (const std::array<int, 3>& face : boundary) {
+    for (int k = 0; k < 3; ++k) {
+      ++edges[{face[k], face[(k + 1) % 3]}];
+      ++nodes[face[k]];
+    }
+  }
+  for (const auto& [edge, count] : edges) EXPECT_EQ(count, edges.count({edge.second, edge.first}));
+  EXPECT_EQ(nodes.size() + boundary.size(), edges.size() / 2 + 2);
+}
+
+TEST_P(SerpentCageOfSize, HoldsTheSerpentButForTipsOfSpikes) {
+  const double outside = outsideShare(makeSerpent({kSmall}), Cage(makeSerpentCage(GetParam())));
+  EXPECT_GT(outside, 0.005);
+  EXPECT_LT(outside, 0.04);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, SerpentCageOfSize, testing::Values(300, 450, 777, 1000, 3000, 10000, 30000));
+
+TEST(SerpentCage, DoesNotOverlapItself) {
+  constexpr double kNearCorner = 0.97;
+  for (std::size_t tets : {450, 1000, 3000}) {
+    const Cage cage(makeSerpentCage(tets));
+    for (const TetCorners& p : cage.corners()) {
+      const Vector3d centre = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+      ASSERT_EQ(cage.containing(centre, -1e-9), 1);
+      for (const Vector3d& corner : p) {
+        ASSERT_EQ(cage.containing(kNearCorner * corner + (1.0 - kNearCorner) * centre, -1e-9), 1);
+      }
+    }
+  }
+}
+
+TEST(SerpentCage, HasWellShapedTetsAtItsUsualSize) {
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  double smallest = 180.0, largest = 0.0;
+  const Cage cage(makeSerpentCage());
+  for (const TetCorners& p : cage.corners()) {
+    const BarycentricMap map(p);
+    const Vector3d gradients[] = {map.rows[0], map.rows[1], map.rows[2], -map.rows[0] - map.rows[1] - map.rows[2]};
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const double angle = std::acos(-gradients[a].normalized().dot(gradients[b].normalized())) * kDegrees;
+        smallest = std::min(smallest, angle);
+        largest = std::max(largest, angle);
+      }
+    }
+  }
+  EXPECT_GT(smallest, 10.0);
+  EXPECT_LT(largest, 150.0);
+}
+
+}  // namespace
+}  // namespace tetskin::scenes
