@@ -9,14 +9,11 @@
 namespace tetskin {
 namespace {
 
-/// Default stiffness over density x gravity x size. From 30 to 300 a body bounces, visibly deforms and comes to rest.
-constexpr double kDefaultStiffness = 100.0;
-
 double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, double gravity) {
   const double density = options.density > 0.0 ? options.density : options.mass / totalVolume(cage);
   // Without gravity nothing sags; the earth's serves as a scale.
   constexpr double kEarth = 9.81;
-  return kDefaultStiffness * density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
+  return options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
 }
 
 std::unique_ptr<btDeformableLagrangianForce> elasticForce(const SoftBodyOptions& options, double youngsModulus) {

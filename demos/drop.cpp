@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
+#include <tetskin/io/obj_sequence_writer.h>
+#include <tetskin/io/tet_mesh_writer.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "scenes/drop_scene.h"
+#include "scenes/options.h"
+#include "scenes/progress.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+
+struct DropOptions {
+  ModelOptions model;
+  OutputOptions output{"out/drop", "", 240, 1, false};
+  bool writeCage = false;
+};
+
+/// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
+constexpr double kExploded = 20.0;
+/// The surface may pass the floor by the collision margin and this fraction of its size.
+constexpr double kFloorTolerance = 0.01;
+/// Slower than this many sizes a second over the last half second is at rest.
+constexpr double kRestSpeed = 0.05;
+
+/// What is measured on the way.
+struct Totals {
+  int frames = 0;
+  int written = 0;
+  double simulationMs = 0.0;
+  double skinUs = 0.0;
+  double writeMs = 0.0;
+  bool finite = true;
+  double extentMax = 1.0;
+  double lowest = HUGE_VAL;
+  std::vector<double> speeds;  ///< a frame, in sizes a second
+
+  double restSpeed() const {
+    const std::size_t half = std::min(speeds.size(), static_cast<std::size_t>(DropScene::kFrameRate / 2));
+    double squared = 0.0;
+    for (std::size_t k = speeds.size() - half; k < speeds.size(); ++k) squared += speeds[k] * speeds[k];
+    return half == 0 ? 0.0 : std::sqrt(squared / static_cast<double>(half));
+  }
+};
+
+std::string cagePath(const std::string& folder, int frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "cage_%04d.vtk", frame);
+  return (std::filesystem::path(folder) / name).string();
+}
+
+void writeFrame(const DropScene& scene, const DropOptions& options, int frame, ObjSequenceWriter& writer,
+                std::vector<Eigen::Vector3f>& buffer, Totals& totals) {
+  const auto start = std::chrono::steady_clock::now();
+  const Box3 bounds = scene.bounds();
+  // float is what Bullet computes and what viewers read, unless the model lies so far out that float cannot hold it.
+  constexpr double kFarOut = 100.0;
+  if (bounds.center().norm() > kFarOut * scene.size()) {
+    require(writer.write(frame, viewOf(scene.surface())));
+  } else {
+    for (std::size_t v = 0; v < buffer.size(); ++v) buffer[v] = scene.surface()[v].cast<float>();
+    require(writer.write(frame, viewOf(std::as_const(buffer))));
+  }
+  if (options.writeCage) require(saveTetMesh(scene.currentCage(), cagePath(options.output.out, frame)));
+  totals.writeMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  ++totals.written;
+}
+
+void measure(const DropScene& scene, double restExtent, Totals& totals) {
+  const Box3 bounds = scene.bounds();
+  totals.extentMax = std::max(totals.extentMax, bounds.sizes().maxCoeff() / restExtent);
+  totals.lowest = std::min(totals.lowest, bounds.min().y());
+  totals.speeds.push_back(scene.nodeSpeed());
+}
+
+Totals simulate(DropScene& scene, const DropOptions& options, ObjSequenceWriter& writer) {
+  Totals totals;
+  const double restExtent = scene.bounds().sizes().maxCoeff();
+  std::vector<Eigen::Vector3f> buffer(scene.surface().size());
+  Progress progress("simulating", options.output.frames, options.output.quiet);
+  for (int frame = 0; frame < options.output.frames; ++frame) {
+    if (frame > 0) {
+      totals.finite = scene.step();
+      totals.simulationMs += scene.simulationMs();
+      totals.skinUs += scene.skinUs();
+    }
+    if (totals.finite) measure(scene, restExtent, totals);
+    totals.finite = totals.finite && totals.extentMax < kExploded;
+    if (!totals.finite) break;
+    if (frame % options.output.every == 0) writeFrame(scene, options, frame, writer, buffer, totals);
+    totals.frames = frame + 1;
+    progress.show(frame + 1);
+  }
+  return totals;
+}
+
+nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, const DropOptions& options,
+                                 const Totals& totals) {
+  const double steps = std::max(1, totals.frames - 1);
+  const double limit = scene.floorY() - scene.margin() - kFloorTolerance * scene.size();
+  nlohmann::ordered_json json;
+  json["model"] = model.name;
+  json["vertices"] = model.mesh.vertexCount();
+  json["triangles"] = model.mesh.triangleCount();
+  json["nodes"] = model.cage.nodeCount();
+  json["tets"] = model.cage.tetCount();
+  json["inside"] = scene.fit().inside;
+  json["outside"] = scene.fit().outside;
+  json["unbound"] = scene.fit().unbound;
+  json["attach_ms"] = scene.fit().milliseconds;
+  json["rest_error_max"] = scene.fit().restErrorMax;
+  json["simulation_ms_per_frame"] = totals.simulationMs / steps;
+  json["skin_us_per_frame"] = totals.skinUs / steps;
+  json["write_ms_per_frame"] = totals.writeMs / std::max(1, totals.written);
+  json["frames"] = totals.frames;
+  json["frames_written"] = totals.written;
+  json["floor_y"] = scene.floorY();
+  json["margin"] = scene.margin();
+  json["lowest_y"] = totals.lowest;
+  json["above_floor"] = totals.lowest >= limit;
+  json["extent_max"] = totals.extentMax;
+  json["rest_speed"] = totals.restSpeed();
+  json["at_rest"] = totals.restSpeed() < kRestSpeed;
+  json["finite"] = totals.finite;
+  json["out"] = options.output.out;
+  return json;
+}
+
+void writeSummary(const nlohmann::ordered_json& json, const std::string& path) {
+  std::ofstream file(path);
+  file << json.dump(2) << "\n";
+  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
+}
+
+void printTable(const nlohmann::ordered_json& json, const std::string& summaryPath) {
+  const auto row = [](const char* name, const std::string& value) { std::printf("  %-22s %s\n", name, value.c_str()); };
+  const auto number = [&](const char* key, const char* format) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, json.at(key).get<double>());
+    return std::string(text);
+  };
+  std::printf("\n%s\n", json.at("model").get<std::string>().c_str());
+  row("vertices", number("vertices", "%.0f"));
+  row("triangles", number("triangles", "%.0f"));
+  row("nodes", number("nodes", "%.0f"));
+  row("tets", number("tets", "%.0f"));
+  row("inside / outside", number("inside", "%.0f") + " / " + number("outside", "%.0f"));
+  row("attach", number("attach_ms", "%.2f ms"));
+  row("rest error", number("rest_error_max", "%.1e box diagonals"));
+  row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
+  row("skin", number("skin_us_per_frame", "%.1f us a frame"));
+  row("write", number("write_ms_per_frame", "%.2f ms a frame"));
+  row("speed at the end", number("rest_speed", "%.3f sizes a second"));
+  row("frames", number("frames", "%.0f"));
+  row("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summaryPath);
+}
+
+int run(const DropOptions& options) {
+  const Model model = loadModel(options.model);
+  DropScene scene(model.mesh, model.cage, options.model.outside);
+  requireFit(scene.fit(), options.model);
+  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(options.output.out, model.layout);
+  require(writer.status());
+  const std::filesystem::path folder = options.output.out;
+  const TriangleMesh obstacles = scene.obstacles();
+  require(ObjLayout::fromMesh(obstacles).writeTo((folder / "obstacles.obj").string(), viewOf(obstacles.positions)));
+
+  const Totals totals = simulate(scene, options, writer.value());
+  const nlohmann::ordered_json json = summarise(model, scene, options, totals);
+  const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
+  writeSummary(json, path);
+  if (!options.output.quiet) printTable(json, path);
+  if (!totals.finite) {
+    std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", totals.frames - 1);
+    return kRunFailed;
+  }
+  if (!json.at("above_floor").get<bool>()) {
+    std::fprintf(stderr, "tetskin_drop: the surface passed through the floor, down to y = %g\n", totals.lowest);
+    return kRunFailed;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  DropOptions options;
+  CLI::App app("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
+  addModelOptions(app, options.model);
+  addOutputOptions(app, options.output);
+  app.add_flag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
+  return runDemo(app, argc, argv, [&] { return run(options); });
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/options.h"
+
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <new>
+
+#include "scenes/serpent.h"
+
+namespace tetskin::scenes {
+namespace {
+
+TetMesh loadCage(const std::string& path) {
+  Result<TetMesh> cage = loadTetMesh(path);
+  require(cage.status());
+  TetMesh mesh = std::move(cage).value();
+  const TetMeshReport report = repairTetMesh(mesh);
+  if (const Status status = usable(mesh, report); !status.ok()) throw InputError(path + ": " + status.message);
+  return mesh;
+}
+
+TetMesh cageFor(const TriangleMesh& mesh, const std::string& name, std::size_t tets) {
+  CageOptions options;
+  options.targetTets = tets;
+  Result<TetMesh> cage = buildCage(mesh, options);
+  if (!cage.ok()) throw InputError(name + ": " + cage.status().message);
+  return std::move(cage).value();
+}
+
+}  // namespace
+
+void require(const Status& status) {
+  if (!status.ok()) throw InputError(status.message);
+}
+
+void addModelOptions(CLI::App& app, ModelOptions& options) {
+  app.add_option("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a built-in serpent)");
+  app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
+  app.add_option("--tets", options.tets, "Tets of a built cage")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--triangles", options.triangles, "Triangles of the built-in serpent")
+      ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
+      ->capture_default_str();
+  const std::map<std::string, OutsideRule> rules{{"nearest", OutsideRule::Nearest},
+                                                 {"barycentric", OutsideRule::Barycentric}};
+  app.add_option("--outside", options.outside, "Tet of a vertex outside the cage: nearest (default) or barycentric")
+      ->transform(CLI::CheckedTransformer(rules));
+}
+
+void addOutputOptions(CLI::App& app, OutputOptions& options) {
+  app.add_option("--frames", options.frames, "Frames of 1/60 s")->check(CLI::Range(1, 1000000))->capture_default_str();
+  app.add_option("--every", options.every, "Write every so many frames")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--out", options.out, "Folder of the OBJ sequence")->capture_default_str();
+  app.add_option("--json", options.json, "File of the summary (default: summary.json in the folder)");
+  app.add_flag("--quiet", options.quiet, "Print nothing but errors");
+}
+
+Model loadModel(const ModelOptions& options) {
+  Model model;
+  if (options.mesh.empty()) {
+    model.name = "serpent";
+    model.mesh = makeSerpent({options.triangles});
+    model.layout = ObjLayout::fromMesh(model.mesh);
+  } else {
+    model.name = options.mesh;
+    Result<TriangleMesh> mesh = loadMesh(options.mesh);
+    require(mesh.status());
+    model.mesh = std::move(mesh).value();
+    Result<ObjLayout> layout = objLayoutFor(options.mesh, model.mesh);
+    require(layout.status());
+    model.layout = std::move(layout).value();
+  }
+  model.cage = options.cage.empty() ? cageFor(model.mesh, model.name, options.tets) : loadCage(options.cage);
+  return model;
+}
+
+void requireFit(const EmbedReport& report, const ModelOptions& options) {
+  const std::string mesh = options.mesh.empty() ? "serpent" : options.mesh;
+  if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
+  if (!report.unitsDiffer()) return;
+  char text[256];
+  std::snprintf(text, sizeof text, "their boxes have diagonals of %.4g and %.4g and %s",
+                report.meshBox.diagonal().norm(), report.cageBox.diagonal().norm(),
+                report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
+  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text +
+                   "; are they in different units? Scale one of them");
+}
+
+int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  try {
+    app.parse(argc, argv);
+    return run();
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(app.help().c_str(), stdout);
+    return kDone;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: out of memory; ask for fewer tets or triangles\n", name.c_str());
+  } catch (const std::exception& error) {  // CLI::Error and InputError among them
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+  }
+  return kBadInput;
+}
+
+}  // namespace tetskin::scenes

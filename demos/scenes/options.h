@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The command-line options that the demos share, spelled alike everywhere, and what they lead to.
+#pragma once
+
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/io/obj_layout.h>
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace tetskin::scenes {
+
+/// Exit statuses of every demo.
+constexpr int kDone = 0, kRunFailed = 1, kBadInput = 2;
+
+/// Bad arguments or unreadable input: caught by `runDemo`, printed as one line, exit status 2.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// Throws an InputError unless the status is ok.
+void require(const Status& status);
+
+/// Which mesh, and which cage.
+struct ModelOptions {
+  std::string mesh;               ///< file; empty: the serpent
+  std::string cage;               ///< file; empty: built from the mesh
+  std::size_t tets = 3000;        ///< of a built cage
+  std::size_t triangles = 60000;  ///< of the serpent
+  OutsideRule outside = OutsideRule::Nearest;
+};
+
+/// Where the results go.
+struct OutputOptions {
+  std::string out;   ///< folder of the OBJ sequence
+  std::string json;  ///< file of the summary; empty: summary.json in the folder
+  int frames = 0;
+  int every = 1;  ///< write every so many frames
+  bool quiet = false;
+};
+
+void addModelOptions(CLI::App& app, ModelOptions& options);
+/// The defaults of `options` are the demo's.
+void addOutputOptions(CLI::App& app, OutputOptions& options);
+
+struct Model {
+  std::string name;
+  TriangleMesh mesh;
+  TetMesh cage;
+  ObjLayout layout;  ///< in which frames are written
+};
+
+/// Loads or makes mesh and cage. Throws InputError, with the file and the fault.
+Model loadModel(const ModelOptions& options);
+
+/// Throws InputError if mesh and cage cannot belong together: see EmbedReport.
+void requireFit(const EmbedReport& report, const ModelOptions& options);
+
+/// Parses the command line and runs the demo; turns errors into one line on standard error and an exit status.
+int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,47 @@
+# For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
+
+# What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 22.04 and later.
+build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev)
+test_packages=(libgtest-dev clang-format clang-tidy git)
+
+# Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
+require_packages() {
+  local missing=() package
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    local tool
+    for tool in cmake c++; do
+      if ! command -v "$tool" >/dev/null; then
+        echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
+          "assimp, CLI11, nlohmann-json and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
+        exit 1
+      fi
+    done
+    return
+  fi
+  for package in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  local install="apt-get install -y --no-install-recommends ${missing[*]}"
+  local sudo=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "Missing packages. As root, run: apt-get update && $install" >&2
+      exit 1
+    fi
+    sudo=(sudo)
+  fi
+  echo "Installing missing packages: ${missing[*]}"
+  "${sudo[@]}" apt-get update -qq
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive $install
+}
+
+# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed.
+configure() {
+  local repository=$1
+  shift
+  local generator=()
+  if [ ! -f "$repository/build/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
+  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
+}
