@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/triangle_mesh.h>
+
+#include <string>
+
+namespace tetskin::io {
+
+/// Reads any format that assimp reads, as `loadMesh` describes. Throws nothing.
+Result<TriangleMesh> readWithAssimp(const std::string& path);
+
+}  // namespace tetskin::io

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace tetskin::io {
+
+/// All bytes of a file. Errors: FileNotFound, also for a folder and for a file that cannot be read.
+Result<std::string> readFile(const std::string& path);
+
+/// A status whose message starts with the place: "path:line: what", or "path: what" where line is 0.
+Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what);
+
+/// Extension of a path in lower case, with its dot; empty if it has none.
+std::string lowerExtension(const std::string& path);
+
+/// A piece of a file for use in a message: in quotes, without control characters, cut after some 40 characters.
+std::string excerpt(std::string_view text);
+
+/// The operating system's words for the current errno.
+std::string systemReason();
+
+}  // namespace tetskin::io

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/triangle_mesh.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetskin {
+
+namespace io {
+struct ObjStatement;
+}
+
+/// An OBJ file without its vertex positions: the text of a written file, formatted once, with a gap for every vertex.
+///
+/// What is kept: everything an OBJ file has, byte for byte (order, polygons, texture coordinates, groups, materials,
+/// comments, vertex colours behind the coordinates), except
+/// - normals: `vn` lines and the faces' references to them are left out. Authored normals belong to the rest shape and
+///   would be wrong on a deformed one; without any, every viewer makes its own;
+/// - a byte order mark, on which some readers stumble.
+class ObjLayout {
+ public:
+  /// The layout of an OBJ file; its k-th `v` line is vertex k.
+  /// Errors: FileNotFound; Malformed, with the line, for a `v` line without three numbers; Empty without `v` lines.
+  static Result<ObjLayout> fromFile(const std::string& objPath);
+
+  /// A layout for a mesh from elsewhere: `v`, `vt` (if it has texture coordinates), `f`, and `g` and `usemtl` for its
+  /// groups. Blanks in names become underscores, as OBJ separates names by blanks. Indices must be in range.
+  static ObjLayout fromMesh(const TriangleMesh& mesh);
+
+  std::size_t vertexCount() const { return gaps_.size(); }
+
+  /// The same layout for a file in `folder`: material libraries (`mtllib`) that lie beside the source file are named by
+  /// their path from that folder, others are kept as they are.
+  ObjLayout inFolder(const std::string& folder) const;
+
+  /// The whole file with these positions, in `buffer`, whose memory is reused: nothing is allocated if it has served
+  /// the same layout before. Every number is the shortest that reads back as the same float, or double.
+  /// positions  vertexCount x 3, finite; the count is asserted
+  template <class Scalar>
+  std::string_view format(PointView<const Scalar> positions, std::vector<char>& buffer) const;
+
+  /// Writes one file, complete or not at all, whose `mtllib` lines fit its folder.
+  /// Cost: formats about 30 million numbers a second.
+  /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
+  Status writeTo(const std::string& path, PointView<const float> positions) const;
+  Status writeTo(const std::string& path, PointView<const double> positions) const;
+
+  /// Ok if these positions can be written at `path`: the first two errors above.
+  template <class Scalar>
+  Status checkPositions(const std::string& path, PointView<const Scalar> positions) const;
+
+ private:
+  struct Library {
+    std::size_t offset = 0;  ///< of the name in text_
+    std::string name;        ///< as written
+  };
+
+  Status addPosition(const std::string& path, const io::ObjStatement& statement);
+  void addFace(const io::ObjStatement& statement);
+  void addLibraries(const io::ObjStatement& statement);
+  bool addLibrary(std::string_view name, std::size_t offset);
+
+  std::string text_;
+  std::vector<std::size_t> gaps_;   ///< vertexCount offsets in text_, ascending: where each position goes
+  std::vector<Library> libraries_;  ///< the material libraries found beside the source
+  std::string sourceFolder_;
+};
+
+/// The layout in which a mesh loaded by `loadMesh(meshPath)` is written: that of the file itself if it is an OBJ file,
+/// otherwise one made from the mesh.
+/// Errors: those of `ObjLayout::fromFile`; SizeMismatch if the file has changed since it was loaded.
+Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh);
+
+}  // namespace tetskin

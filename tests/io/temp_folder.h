@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tetskin/core/types.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <random>
+#include <string>
+#include <system_error>
+
+namespace tetskin::test {
+
+/// A new empty folder, removed with all that is in it at the end of its scope.
+class TempFolder {
+ public:
+  TempFolder() {
+    static std::atomic<unsigned> counter{0};
+    const std::string name = "tetskin_io_" + std::to_string(std::random_device{}()) + "_" + std::to_string(++counter);
+    root_ = std::filesystem::temp_directory_path() / name;
+    std::filesystem::create_directories(root_);
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(root_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  std::string path(const std::string& name = "") const { return (root_ / name).string(); }
+  /// Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
+  }
+  static std::string read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+  std::size_t fileCount() const {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(root_)) count += entry.is_regular_file();
+    return count;
+  }
+
+ private:
+  std::filesystem::path root_;
+};
+
+/// The status has this code, and its message all these parts.
+inline void expectError(const Status& status, StatusCode code, std::initializer_list<std::string> parts) {
+  EXPECT_STREQ(toString(status.code), toString(code)) << status.message;
+  for (const std::string& part : parts) {
+    EXPECT_NE(status.message.find(part), std::string::npos) << "'" << part << "' is not in: " << status.message;
+  }
+}
+
+}  // namespace tetskin::test

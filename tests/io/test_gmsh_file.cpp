@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+
+Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
+  const TempFolder folder;
+  return loadTetMesh(folder.write("c.msh", text), report);
+}
+
+const std::string kHead2 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+const std::string kNodes2 = "$Nodes\n5\n10 0 0 0\n20 1 0 0\n15 0 1 0\n40 0 0 1\n1000000 0.1 1 1\n$EndNodes\n";
+const std::string kElements2 =
+    "$Elements\n4\n1 15 2 0 1 10\n2 2 2 0 1 10 20 15\n3 4 2 0 1 10 20 15 40\n9 4 3 0 1 5 20 15 40 "
+    "1000000\n$EndElements\n";
+
+const std::string kHead4 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+const std::string kNodes4 =
+    "$Nodes\n3 5 10 1000000\n2 1 0 3\n10\n20\n15\n0 0 0\n1 0 0\n0 1 0\n2 2 1 1\n40\n0 0 1 0.5 0.25\n3 1 0 1\n1000000\n"
+    "0.1 1 1\n$EndNodes\n";
+const std::string kElements4 =
+    "$Elements\n2 3 1 3\n2 1 2 1\n1 10 20 15\n3 1 4 2\n2 10 20 15 40\n3 20 15 40 1000000\n$EndElements\n";
+
+void expectTwoTets(const Result<TetMesh>& mesh) {
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  const std::vector<Eigen::Vector3d> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}};
+  EXPECT_EQ(mesh.value().nodes, nodes);
+  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {1, 2, 3, 4}}));
+}
+
+TEST(LoadGmsh, ReadsVersion2) {
+  TetFileReport report;
+  expectTwoTets(loadText(kHead2 + kNodes2 + kElements2, &report));
+  EXPECT_EQ(report.skippedCells, 2u);
+  EXPECT_EQ(report.skippedHighOrder, 0u);
+}
+
+TEST(LoadGmsh, ReadsVersion4WithParametricNodes) {
+  TetFileReport report;
+  expectTwoTets(loadText(kHead4 + kNodes4 + kElements4, &report));
+  EXPECT_EQ(report.skippedCells, 1u);
+}
+
+TEST(LoadGmsh, ReadsOverOtherSections) {
+  expectTwoTets(loadText("$Comments\nany text, 5 numbers\n$EndComments\n" + kHead4 +
+                         "$PhysicalNames\n1\n3 1 \"the $body\"\n$EndPhysicalNames\n$Entities\n0 0 0 0\n$EndEntities\n" +
+                         kNodes4 + kElements4 + "$NodeData\n1\n\"T\"\n$EndNodeData\n"));
+}
+
+TEST(LoadGmsh, SectionsMayComeInAnyOrder) {
+  expectTwoTets(loadText(kHead2 + kElements2 + kNodes2));
+}
+
+TEST(LoadGmsh, SkipsAndCountsTetsOfHigherOrder) {
+  TetFileReport report;
+  const Result<TetMesh> mesh =
+      loadText(kHead2 + kNodes2 + "$Elements\n1\n1 11 2 0 1 10 20 15 40 10 20 15 40 10 20\n$EndElements\n", &report);
+  expectError(mesh.status(), StatusCode::Empty, {"c.msh: ", "no linear tets", "1 of them tets of higher order"});
+  EXPECT_EQ(report.skippedHighOrder, 1u);
+}
+
+TEST(LoadGmsh, RefusesBinaryFilesAndOtherVersions) {
+  const StatusCode code = StatusCode::UnsupportedFormat;
+  expectError(loadText(std::string("$MeshFormat\n4.1 1 8\n\1\0\0\0\n", 26)).status(), code,
+              {"c.msh:2:", "binary", "ASCII"});
+  expectError(loadText("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'4.0'", "2.2 or 4.1"});
+  expectError(loadText("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'1.0'"});
+}
+
+TEST(LoadGmsh, RefusesWhatIsNoGmshFile) {
+  const StatusCode code = StatusCode::Malformed;
+  expectError(loadText("").status(), code, {"c.msh:1:", "$MeshFormat"});
+  expectError(loadText("(0 \"fluent\")\n").status(), code, {"c.msh:1:", "is it a Gmsh file?"});
+  expectError(loadText(kNodes2).status(), code, {"c.msh:1:", "no $MeshFormat before"});
+}
+
+TEST(LoadGmsh, NamesTheLineOfANodeThatDoesNotExist) {
+  expectError(loadText(kHead2 + kNodes2 + "$Elements\n1\n7 4 2 0 1 10 20 15 16\n$EndElements\n").status(),
+              StatusCode::IndexOutOfRange, {"c.msh:14:", "tet 7", "node 16"});
+  expectError(loadText(kHead4 + kNodes4 + "$Elements\n1 1 1 1\n3 1 4 1\n7 10 20 15 -1\n$EndElements\n").status(),
+              StatusCode::IndexOutOfRange, {"tet 7", "node -1"});
+}
+
+TEST(LoadGmsh, NamesTheLineOfMalformedText) {
+  const StatusCode code = StatusCode::Malformed;
+  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n2 0 x 0\n$EndNodes\n").status(), code, {"c.msh:7:", "number"});
+  expectError(loadText(kHead2 + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n").status(), code, {"c.msh:7:", "$EndNodes"});
+  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n").status(), code, {"c.msh:", "complete"});
+  expectError(loadText(kHead2 + kNodes2 + "$Elements\n1\n1 4 2 0 1 10 20\n$EndElements\n").status(), code,
+              {"c.msh:", "number"});
+  expectError(loadText(kHead2 + kNodes2 + kElements2 + "$Comments\n").status(), code, {"c.msh:", "$EndComments"});
+  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n").status(), code,
+              {"c.msh: ", "node 1 twice"});
+}
+
+TEST(LoadGmsh, RefusesCountsThatDoNotFit) {
+  const StatusCode code = StatusCode::Malformed;
+  for (const char* count : {"2000000000", "18446744073709551615", "99999999999999999999", "-1"}) {
+    expectError(loadText(kHead2 + "$Nodes\n" + count + "\n1 0 0 0\n").status(), code, {"c.msh:5:"});
+    expectError(loadText(kHead2 + kNodes2 + "$Elements\n" + count + "\n").status(), code, {"c.msh:13:"});
+    expectError(loadText(kHead4 + "$Nodes\n1 1 1 1\n3 1 0 " + count + "\n").status(), code, {"c.msh:6:"});
+  }
+}
+
+TEST(LoadGmsh, NamesTheLineOfACoordinateThatIsNotFinite) {
+  expectError(loadText(kHead2 + "$Nodes\n1\n7 0 0 nan\n$EndNodes\n").status(), StatusCode::NonFinite,
+              {"c.msh:6:", "node 7"});
+  expectError(loadText(kHead4 + "$Nodes\n1 1 7 7\n3 1 0 1\n7\n0 inf 0\n$EndNodes\n").status(), StatusCode::NonFinite,
+              {"c.msh:8:", "node 7"});
+}
+
+}  // namespace
+}  // namespace tetskin

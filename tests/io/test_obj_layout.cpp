@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/obj_layout.h>
+
+#include <filesystem>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+
+std::string formatted(const ObjLayout& layout, const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<char> buffer;
+  return std::string(layout.format(viewOf(positions), buffer));
+}
+
+const std::vector<Eigen::Vector3f> kMoved = {{1, 2, 3}, {0.5f, -0.25f, 1e-7f}, {4, 5, 6}};
+
+/// A text written with kMoved as its positions.
+std::string rewritten(const std::string& text) {
+  const TempFolder folder;
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  EXPECT_TRUE(layout.ok()) << layout.status().message;
+  if (!layout.ok() || layout.value().vertexCount() != kMoved.size()) return {};
+  return formatted(layout.value(), kMoved);
+}
+
+TEST(ObjLayout, ReplacesPositionsAndDropsNormalsOnly) {
+  EXPECT_EQ(
+      rewritten(
+          "# made by hand\nmtllib none.mtl\no Body\nv 0 0 0\n v 1 0 0\nvt 0 0\nvn 0 0 1\nv\t0 1 0\n\n"
+          "g wing left\nusemtl skin\ns 1\nf 1/1/1 2/1/1  3/1/1 # 4/5/6\nf 1//1 2//1 3//1\nf 1 2 3\nf 1/1 2/1 3/1\n"
+          "l 1/1 2/1\np 1\nunknown 1/2/3\n"),
+      "# made by hand\nmtllib none.mtl\no Body\nv 1 2 3\n v 0.5 -0.25 1e-07\nvt 0 0\nv\t4 5 6\n\n"
+      "g wing left\nusemtl skin\ns 1\nf 1/1 2/1  3/1 # 4/5/6\nf 1 2 3\nf 1 2 3\nf 1/1 2/1 3/1\n"
+      "l 1/1 2/1\np 1\nunknown 1/2/3\n");
+}
+
+TEST(ObjLayout, KeepsColoursAndWeightsBehindThePosition) {
+  EXPECT_EQ(rewritten("v 0 0 0 0.1 0.2 0.3\nv 1 0 0 1.0 # w\nv 0 1 0\nf 1 2 3"),
+            "v 1 2 3 0.1 0.2 0.3\nv 0.5 -0.25 1e-07 1.0 # w\nv 4 5 6\nf 1 2 3");
+}
+
+TEST(ObjLayout, KeepsDosLineBreaksAndContinuedLines) {
+  EXPECT_EQ(rewritten("v 0 \\\r\n0 0 \r\nv 1 0 0\r\nv 0 1 0\r\nvn 0 \\\r\n0 1\r\nf 1//1 2//1 \\\r\n 3//1\r\n"),
+            "v 1 2 3 \r\nv 0.5 -0.25 1e-07\r\nv 4 5 6\r\nf 1 2 \\\r\n 3\r\n");
+}
+
+TEST(ObjLayout, KeepsNegativeIndicesAndDropsAByteOrderMark) {
+  EXPECT_EQ(rewritten("\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf -3/-1/-1 -2/-1/-1 -1/-1/-1\n"),
+            "v 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nvt 0 0\nf -3/-1 -2/-1 -1/-1\n");
+}
+
+TEST(ObjLayout, WritesAMeshThatReadsBack) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.1, 1, 0}, {1, 1, 1.0 / 3.0}};
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {0, 3, 1}};
+  mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {0.3f, 0.7f}};
+  mesh.groups = {{"left wing", "skin", 0, 2}, {"", "", 2, 1}};
+  const TempFolder folder;
+  const std::string path = folder.path("out.obj");
+  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(path, viewOf(std::as_const(mesh.positions))).ok());
+  const Result<TriangleMesh> back = loadMesh(path);
+  ASSERT_TRUE(back.ok()) << back.status().message;
+  EXPECT_EQ(back.value().positions, mesh.positions);
+  EXPECT_EQ(back.value().triangles, mesh.triangles);
+  EXPECT_EQ(back.value().texcoords, mesh.texcoords);
+  ASSERT_EQ(back.value().groups.size(), 2u);
+  EXPECT_EQ(back.value().groups[0].name, "left_wing");
+  EXPECT_EQ(back.value().groups[0].material, "skin");
+  EXPECT_EQ(back.value().groups[1].triangleCount, 1u);
+}
+
+TEST(ObjLayout, AMeshWithoutGroupsHasNone) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_EQ(formatted(ObjLayout::fromMesh(mesh), kMoved), "v 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nf 1 2 3\n");
+}
+
+TEST(ObjLayout, AMaterialKeepsToItsOwnGroup) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+  mesh.groups = {{"a", "skin", 0, 1}, {"b", "", 1, 1}};
+  const TempFolder folder;
+  const std::string path = folder.path("out.obj");
+  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(path, viewOf(kMoved)).ok());
+  const TriangleMesh back = loadMesh(path);
+  ASSERT_EQ(back.groups.size(), 2u);
+  EXPECT_EQ(back.groups[0].material, "skin");
+  EXPECT_EQ(back.groups[1].material, "");
+}
+
+const std::string kBody = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// First line of a text, written as out/m.obj below the folder of the source.
+std::string firstLineInSubfolder(const TempFolder& folder, const std::string& text) {
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  EXPECT_TRUE(layout.ok());
+  std::filesystem::create_directories(folder.path("out"));
+  EXPECT_TRUE(layout.value().writeTo(folder.path("out/m.obj"), viewOf(kMoved)).ok());
+  const std::string written = TempFolder::read(folder.path("out/m.obj"));
+  EXPECT_NE(written.find("\nv 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nf 1 2 3\n"), std::string::npos) << written;
+  return written.substr(0, written.find('\n'));
+}
+
+TEST(ObjLayout, NamesMaterialLibrariesFromTheOutputFolder) {
+  const TempFolder folder;
+  folder.write("skin.mtl", "newmtl skin\n");
+  folder.write("two words.mtl", "newmtl skin\n");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib skin.mtl\n" + kBody), "mtllib ../skin.mtl");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib two words.mtl\n" + kBody), "mtllib ../two words.mtl");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib none.mtl\n" + kBody), "mtllib none.mtl");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib none.mtl skin.mtl out/../skin.mtl\n" + kBody),
+            "mtllib none.mtl ../skin.mtl ../skin.mtl");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib " + folder.path("skin.mtl") + "\n" + kBody),
+            "mtllib " + folder.path("skin.mtl"));
+}
+
+TEST(ObjLayout, ALibraryNameMayGetShorter) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder.path("out"));
+  folder.write("out/skin.mtl", "newmtl skin\n");
+  EXPECT_EQ(firstLineInSubfolder(folder, "mtllib out/skin.mtl\n" + kBody), "mtllib skin.mtl");
+}
+
+TEST(ObjLayout, RefusesWhatIsNoModel) {
+  const TempFolder folder;
+  const std::string path = folder.path("m.obj");
+  expectError(ObjLayout::fromFile(path).status(), StatusCode::FileNotFound, {path});
+  folder.write("m.obj", "v 0 0 0\nv 0 0\n");
+  expectError(ObjLayout::fromFile(path).status(), StatusCode::Malformed, {path + ":2:", "3 numbers"});
+  folder.write("m.obj", "f 1 2 3\n");
+  expectError(ObjLayout::fromFile(path).status(), StatusCode::Empty, {path, "no vertices"});
+}
+
+TEST(ObjLayoutFor, TakesTheFileIfItIsObjAndElseTheMesh) {
+  const TempFolder folder;
+  const std::string path = folder.write("m.Obj", "# kept\n" + kBody);
+  const TriangleMesh mesh = loadMesh(path);
+  const Result<ObjLayout> own = objLayoutFor(path, mesh);
+  ASSERT_TRUE(own.ok());
+  EXPECT_EQ(formatted(own.value(), kMoved).substr(0, 7), "# kept\n");
+  const Result<ObjLayout> other = objLayoutFor("m.ply", mesh);
+  ASSERT_TRUE(other.ok());
+  EXPECT_EQ(formatted(other.value(), kMoved), "v 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nf 1 2 3\n");
+}
+
+TEST(ObjLayoutFor, NoticesThatTheFileHasChanged) {
+  const TempFolder folder;
+  const std::string path = folder.write("m.obj", kBody);
+  const TriangleMesh mesh = loadMesh(path);
+  folder.write("m.obj", kBody + "v 1 1 1\n");
+  expectError(objLayoutFor(path, mesh).status(), StatusCode::SizeMismatch,
+              {path, "has 4 vertices", "load the mesh again"});
+}
+
+TEST(ObjLayout, FormatsTwiceWithoutAllocating) {
+  TriangleMesh mesh;
+  mesh.positions.assign(50, Eigen::Vector3d(0, 0, 0));
+  mesh.triangles = {{0, 1, 2}};
+  const ObjLayout layout = ObjLayout::fromMesh(mesh);
+  std::vector<char> buffer;
+  const std::vector<Eigen::Vector3d> shortest(50, Eigen::Vector3d(0, 0, 0));
+  const std::vector<Eigen::Vector3d> longest(50, Eigen::Vector3d::Constant(-2.2250738585072014e-308));
+  const std::size_t size = layout.format(viewOf(shortest), buffer).size();
+  const char* memory = buffer.data();
+  EXPECT_EQ(layout.format(viewOf(longest), buffer).size(), size + 50 * 3 * 23);
+  EXPECT_EQ(buffer.data(), memory);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/obj_reader.h>
+
+#include <cmath>
+#include <random>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+using Triangle = std::array<int, 3>;
+
+Result<TriangleMesh> loadText(const std::string& text) {
+  const TempFolder folder;
+  return loadMesh(folder.write("m.obj", text));
+}
+
+const char* const kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(LoadObj, KeepsVertexOrderAndUnusedVertices) {
+  const Result<TriangleMesh> mesh = loadText("v 9 9 9\nv 0 1 0\nv 0 0 0\nv 8 8 8\nv 1 0 0\nf 3 5 2\nv 7 7 7\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  const std::vector<Eigen::Vector3d> expected = {{9, 9, 9}, {0, 1, 0}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {7, 7, 7}};
+  EXPECT_EQ(mesh.value().positions, expected);
+  EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{2, 4, 1}}));
+  EXPECT_TRUE(mesh.value().groups.empty());
+}
+
+TEST(LoadObj, ReadsPositionsExactlyInDouble) {
+  const TriangleMesh mesh = loadText("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_EQ(mesh.vertexCount(), 3u);
+  EXPECT_EQ(mesh.positions[0], Eigen::Vector3d(0.1, 1.0, -2.5e-3));
+  EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1234567.890123456, 100, 0.5));
+}
+
+TEST(LoadObj, ReadsEveryFormOfCorner) {
+  const std::string head = std::string(kThree) + "vt 0 0\nvn 0 0 1\n";
+  for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f 1/1/1 2/1/1 3/1/1", "f 1/ 2/1/ 3"}) {
+    const Result<TriangleMesh> mesh = loadText(head + face);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}})) << face;
+  }
+}
+
+TEST(LoadObj, NegativeIndicesCountBackFromTheLastVertex) {
+  const TriangleMesh mesh = loadText(std::string(kThree) + "f -3 -2 -1\nv 5 5 5\nf -4 -2 -1\n");
+  EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(LoadObj, FacesMayNameVerticesDefinedLater) {
+  const TriangleMesh mesh = loadText(std::string("f 1 2 3\n") + kThree);
+  EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
+}
+
+TEST(LoadObj, AcceptsDosLineBreaksTabsAndBlanks) {
+  const TriangleMesh mesh = loadText("\r\n\tv\t0  0\t0\r\n  v 1 0 0 \r\nv 0 1 0\r\n f  1\t2 3 \r\n");
+  EXPECT_EQ(mesh.vertexCount(), 3u);
+  EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
+}
+
+TEST(LoadObj, JoinsContinuedLines) {
+  const TriangleMesh mesh = loadText("v 0 \\\n0 0\nv \\\r\n1 0 0\nv 0 1\\\n 0\nf 1 2 \\\n  3");
+  ASSERT_EQ(mesh.vertexCount(), 3u);
+  EXPECT_EQ(mesh.positions[2], Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
+}
+
+TEST(LoadObj, CountsTheLinesOfContinuedStatements) {
+  const Result<TriangleMesh> mesh = loadText("v 0 \\\n0 0\n# c\nv 1 0 x\n");
+  expectError(mesh.status(), StatusCode::Malformed, {"m.obj:4:"});
+}
+
+TEST(LoadObj, ABackslashDoesNotContinueAComment) {
+  const TriangleMesh mesh = loadText("# C:\\models\\\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # 4 5\n");
+  EXPECT_EQ(mesh.vertexCount(), 3u);
+  EXPECT_EQ(mesh.triangleCount(), 1u);
+}
+
+TEST(LoadObj, AcceptsAByteOrderMarkAndAnExtensionInCapitals) {
+  const TempFolder folder;
+  const TriangleMesh mesh = loadMesh(folder.write("M.OBJ", std::string("\xEF\xBB\xBF") + kThree + "f 1 2 3"));
+  EXPECT_EQ(mesh.vertexCount(), 3u);
+}
+
+TEST(LoadObj, ReadsOverWeightsColoursLinesAndCurves) {
+  const TriangleMesh mesh =
+      loadText("v 0 0 0 1\nv 1 0 0 0.5 0.25 1\nv 0 1 0\nl 1 2\np 3\nvp 0.5\ncurv 0 1 1 2\nf 1 2 3");
+  EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(mesh.triangleCount(), 1u);
+}
+
+double area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    sum += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return sum;
+}
+
+TEST(LoadObj, FansAConvexPolygonFromItsFirstCorner) {
+  const TriangleMesh mesh = loadText("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5\n");
+  EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
+}
+
+TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
+  const std::string points = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";  // vertex 3 is the reflex one
+  for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
+    const TriangleMesh mesh = loadText(points + face);
+    ASSERT_EQ(mesh.triangleCount(), 2u);
+    EXPECT_DOUBLE_EQ(area(mesh), 4.0) << face;
+  }
+}
+
+TEST(LoadObj, ConcavePolygonsAreNotFolded) {
+  const TriangleMesh mesh = loadText("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n");
+  ASSERT_EQ(mesh.triangleCount(), 3u);
+  EXPECT_DOUBLE_EQ(area(mesh), 5.5);
+  // A comb, which no single corner sees as a whole.
+  const TriangleMesh comb = loadText(
+      "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
+      "f 4 5 6 7 8 9 10 11 12 1 2 3\n");
+  ASSERT_EQ(comb.triangleCount(), 10u);
+  EXPECT_DOUBLE_EQ(area(comb), 13.0);
+}
+
+TEST(LoadObj, GroupsAreRunsOfOneNameAndMaterial) {
+  const TriangleMesh mesh =
+      loadText(std::string(kThree) +
+               "f 1 2 3\no Left wing \nusemtl skin\nf 1 2 3\nf 1 2 3 1\nusemtl claw\ng toe # comment\n"
+               "usemtl skin\ng claws\nf 1 2 3\n");
+  ASSERT_EQ(mesh.groups.size(), 3u);
+  EXPECT_EQ(mesh.groups[0].name, "");
+  EXPECT_EQ(mesh.groups[0].triangleCount, 1u);
+  EXPECT_EQ(mesh.groups[1].name, "Left wing");
+  EXPECT_EQ(mesh.groups[1].material, "skin");
+  EXPECT_EQ(mesh.groups[1].firstTriangle, 1u);
+  EXPECT_EQ(mesh.groups[1].triangleCount, 3u);
+  EXPECT_EQ(mesh.groups[2].name, "claws");
+  EXPECT_EQ(mesh.groups[2].firstTriangle, 4u);
+  EXPECT_EQ(mesh.groups[2].triangleCount, 1u);
+}
+
+TEST(LoadObj, TexcoordsAreGivenIfEveryVertexHasOneValue) {
+  const std::string head = std::string(kThree) + "v 5 5 5\nvt 0 0\nvt 1 0\nvt 0 0.5\nvt 1 0\nvt 0.25 0.25\n";
+  const TriangleMesh one = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/4 3/3\n");
+  const std::vector<Eigen::Vector2f> expected = {{0, 0}, {1, 0}, {0, 0.5f}, {0, 0}};
+  EXPECT_EQ(one.texcoords, expected);
+  const TriangleMesh seam = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/5 3/3\n");
+  EXPECT_EQ(seam.triangleCount(), 2u);
+  EXPECT_TRUE(seam.texcoords.empty());
+  const TriangleMesh partly = loadText(head + "f 1/1 2/2 3/3\nf 1 2 3\n");
+  EXPECT_EQ(partly.triangleCount(), 2u);
+  EXPECT_TRUE(partly.texcoords.empty());
+}
+
+TEST(LoadObj, NormalsAreMadeUnitAndHardEdgesLeaveNone) {
+  const std::string head = std::string(kThree) + "vn 0 0 2\nvn 0 3 4\nvn nan 0 0\n";
+  const TriangleMesh mesh = loadText(head + "f 1//1 2//2 3//3\n");
+  const std::vector<Eigen::Vector3f> expected = {{0, 0, 1}, {0, 0.6f, 0.8f}, {0, 0, 0}};
+  EXPECT_EQ(mesh.normals, expected);
+  EXPECT_TRUE(mesh.texcoords.empty());
+  EXPECT_TRUE(TriangleMesh(loadText(head + "f 1//1 2//2 3//3\nf 1//2 2//2 3//3\n")).normals.empty());
+}
+
+TEST(LoadObj, NamesAMissingFileAndAFolder) {
+  const TempFolder folder;
+  expectError(loadMesh(folder.path("none.obj")).status(), StatusCode::FileNotFound, {folder.path("none.obj"), "check"});
+  std::filesystem::create_directory(folder.path("dir.obj"));
+  expectError(loadMesh(folder.path("dir.obj")).status(), StatusCode::FileNotFound, {folder.path("dir.obj"), "folder"});
+}
+
+TEST(LoadObj, NamesTheLineOfAnIndexOutOfRange) {
+  const std::string three = kThree;
+  const StatusCode code = StatusCode::IndexOutOfRange;
+  expectError(loadText(three + "f 1 2 4\n").status(), code, {"m.obj:4:", "number 4 of the vertices", "has 3"});
+  expectError(loadText(three + "\nf 1 2 0\n").status(), code, {"m.obj:5:", "counts from 1"});
+  expectError(loadText(three + "f 1 2 -4\n").status(), code, {"m.obj:4:", "vertex -4"});
+  expectError(loadText(three + "f 1 2 99999999999\n").status(), code, {"m.obj:4:", "99999999999"});
+  expectError(loadText(three + "f 1/1 2/1 3/1\n").status(), code, {"m.obj:4:", "texture coordinates", "has 0"});
+  expectError(loadText(three + "vn 0 0 1\nf 1//1 2//1 3//2\n").status(), code, {"m.obj:5:", "normals", "has 1"});
+}
+
+TEST(LoadObj, NamesTheLineOfMalformedText) {
+  const std::string three = kThree;
+  const StatusCode code = StatusCode::Malformed;
+  expectError(loadText(three + "v 1 2,5 3\n").status(), code, {"m.obj:4:", "'2,5' is not a number"});
+  expectError(loadText(three + "v 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "needs 3 numbers and has 2"});
+  expectError(loadText(three + "vn 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vn' needs 3"});
+  expectError(loadText(three + "vt\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vt' needs 1"});
+  expectError(loadText(three + "f 1 2\n").status(), code, {"m.obj:4:", "a face of 2 corners"});
+  expectError(loadText(three + "f 1 2 3x\n").status(), code, {"m.obj:4:", "'3x'"});
+  expectError(loadText(three + "vt 0 0\nvn 0 0 1\nf 1/1/1/1 2 3\n").status(), code, {"m.obj:6:", "'1/1/1/1'"});
+}
+
+TEST(LoadObj, NamesTheLineOfACoordinateThatIsNotFinite) {
+  expectError(loadText("v 0 0 0\nv 1 nan 0\n").status(), StatusCode::NonFinite, {"m.obj:2:", "vertex 1"});
+  expectError(loadText("v 0 0 -inf\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
+  expectError(loadText("v 0 0 1e999\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
+}
+
+TEST(LoadObj, RefusesFilesWithoutVerticesOrFaces) {
+  expectError(loadText("").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
+  expectError(loadText("# nothing\nvt 0 0\n").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
+  expectError(loadText(std::string(kThree) + "l 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
+}
+
+TEST(LoadObj, RefusesBinaryFiles) {
+  expectError(loadText(std::string("v 0 0 0\n\0\1", 10)).status(), StatusCode::Malformed, {"m.obj: ", "is binary"});
+}
+
+TEST(LoadObj, SurvivesDamagedFiles) {
+  const std::string text =
+      "\xEF\xBB\xBF# c\nmtllib a.mtl\no x\nv 0 0 0\nv 1e0 \\\n0 0\nv 0 1 0 1 1 1\nv -1 .5 +2\nvt 0 0\nvn 0 0 1\n"
+      "g a\nusemtl m\nf 1/1/1 2/1/1 3/1/1 -1/-1/-1\nf 1//1 2//1 3//1\nl 1 2\n";
+  std::mt19937 random(3);
+  std::size_t read = 0, refused = 0;
+  const auto count = [&](const Result<TriangleMesh>& mesh) {
+    EXPECT_TRUE(!mesh.ok() || checkTriangleMesh(mesh.value()).ok());
+    ++(mesh.ok() ? read : refused);
+  };
+  for (std::size_t length = 0; length <= text.size(); ++length) count(loadText(text.substr(0, length)));
+  for (int i = 0; i < 600; ++i) {
+    std::string mutated = text;
+    for (int k = 0; k < 3; ++k) mutated[random() % mutated.size()] = static_cast<char>(random() % 256);
+    count(loadText(mutated));
+  }
+  EXPECT_GT(read, 20u);
+  EXPECT_GT(refused, 100u);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_mesh_writer.h>
+
+#include <random>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+
+TetMesh twoTets() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}};
+}
+
+TEST(LoadTetMesh, TellsTheFormatByTheExtensionInAnyCase) {
+  const TempFolder folder;
+  ASSERT_TRUE(saveTetMesh(twoTets(), folder.path("c.vtk")).ok());
+  std::filesystem::rename(folder.path("c.vtk"), folder.path("C.VTK"));
+  const Result<TetMesh> mesh = loadTetMesh(folder.path("C.VTK"));
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().tets, twoTets().tets);
+}
+
+TEST(LoadTetMesh, RefusesOtherFormatsByName) {
+  const StatusCode code = StatusCode::UnsupportedFormat;
+  expectError(loadTetMesh("cage.vtu").status(), code, {"cage.vtu", "XML", "save it as legacy VTK"});
+  expectError(loadTetMesh("cage.xyz").status(), code, {"cage.xyz", ".node", ".msh"});
+  expectError(loadTetMesh("cage").status(), code, {"cage: "});
+}
+
+TEST(LoadTetMesh, NamesAMissingFile) {
+  const TempFolder folder;
+  for (const char* name : {"c.vtk", "c.msh", "c.node", "c.ele"}) {
+    expectError(loadTetMesh(folder.path(name)).status(), StatusCode::FileNotFound,
+                {folder.path("c."), "check the path"});
+  }
+}
+
+TEST(LoadTetMesh, ResetsTheReport) {
+  const TempFolder folder;
+  ASSERT_TRUE(saveTetMesh(twoTets(), folder.path("c.msh")).ok());
+  TetFileReport report;
+  report.skippedCells = 7;
+  ASSERT_TRUE(loadTetMesh(folder.path("c.msh"), &report).ok());
+  EXPECT_EQ(report.skippedCells, 0u);
+  EXPECT_EQ(report.describe(), "");
+}
+
+/// The corner tet with coordinates of one byte each.
+std::string binaryVtk() {
+  const auto bytes = [](std::initializer_list<char> values) { return std::string(values); };
+  const auto word = [](char value) { return std::string(3, '\0') + value; };
+  return "# vtk DataFile Version 4.2\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 char\n" +
+         bytes({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) + "\nCELLS 1 5\n" + word(4) + word(0) + word(1) + word(2) +
+         word(3) + "\nCELL_TYPES 1\n" + word(10) + "\n";
+}
+
+/// Files of every format; those of more than the writer writes are given here.
+std::vector<std::pair<std::string, std::string>> validFiles() {
+  const TempFolder folder;
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const char* name : {"c.vtk", "c.msh", "c.node", "c.ele"}) {
+    EXPECT_TRUE(saveTetMesh(twoTets(), folder.path(name)).ok());
+    files.emplace_back(name, TempFolder::read(folder.path(name)));
+  }
+  files.emplace_back(
+      "c.vtk",
+      "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD F 1\nT 1 1 double\n0\nPOINTS 4 "
+      "float\n0 0 0 1 0 0 0 1 0 0 0 1\nMETADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n0 "
+      "4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n");
+  files.emplace_back("c.vtk", binaryVtk());
+  files.emplace_back(
+      "c.msh",
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nc\n$EndComments\n$Nodes\n1 4 1 4\n3 1 1 "
+      "4\n1\n2\n3\n4\n0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n0 0 1 0 0 0\n$EndNodes\n$Elements\n1 1 1 1\n3 1 4 "
+      "1\n1 1 2 3 4\n$EndElements\n");
+  return files;
+}
+
+/// Loads bytes under a name, beside the intact partner if it is a TetGen file. True if they were read.
+bool loads(const TempFolder& folder, const std::string& name, const std::string& bytes) {
+  const Result<TetMesh> mesh = loadTetMesh(folder.write(name, bytes));
+  if (!mesh.ok()) {
+    EXPECT_FALSE(mesh.status().message.empty());
+    return false;
+  }
+  const TetMeshReport report = checkTetMesh(mesh.value());
+  EXPECT_EQ(report.indexOutOfRange.count, 0u);
+  EXPECT_EQ(report.nonFiniteNodes.count, 0u);
+  EXPECT_GT(mesh.value().tetCount(), 0u);
+  return true;
+}
+
+TEST(LoadTetMesh, SurvivesFilesCutShortAnywhere) {
+  for (const auto& [name, bytes] : validFiles()) {
+    const TempFolder folder;
+    ASSERT_TRUE(saveTetMesh(twoTets(), folder.path("c.node")).ok());
+    EXPECT_TRUE(loads(folder, name, bytes)) << name;
+    std::size_t refused = 0;
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      refused += !loads(folder, name, bytes.substr(0, length));
+    EXPECT_GT(refused, bytes.size() / 2) << name;
+  }
+}
+
+TEST(LoadTetMesh, SurvivesDamagedBytes) {
+  std::mt19937 random(5);
+  for (const auto& [name, bytes] : validFiles()) {
+    const TempFolder folder;
+    ASSERT_TRUE(saveTetMesh(twoTets(), folder.path("c.node")).ok());
+    std::size_t refused = 0;
+    for (int i = 0; i < 300; ++i) {
+      std::string mutated = bytes;
+      for (unsigned k = 0; k <= random() % 3; ++k) {
+        // Digits and blanks keep the text a mesh, so that the damage gets past the first check.
+        const char plausible[] = "0123456789 -.e\n";
+        const bool plain = random() % 2 == 0;
+        mutated[random() % mutated.size()] =
+            plain ? plausible[random() % (sizeof(plausible) - 1)] : static_cast<char>(random() % 256);
+      }
+      refused += !loads(folder, name, mutated);
+    }
+    EXPECT_GT(refused, 20u) << name;
+    EXPECT_LT(refused, 300u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+#include <cstring>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+
+Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
+  const TempFolder folder;
+  return loadTetMesh(folder.write("c.vtk", text), report);
+}
+
+const std::string kHead = "# vtk DataFile Version 2.0\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+const std::string kPoints = "POINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0.1 1 1e0\n";
+const std::string kCells = "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\n";
+const std::string kTypes = "CELL_TYPES 2\n10\n10\n";
+
+void expectTwoTets(const Result<TetMesh>& mesh) {
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  const std::vector<Eigen::Vector3d> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}};
+  EXPECT_EQ(mesh.value().nodes, nodes);
+  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {1, 2, 3, 4}}));
+}
+
+TEST(LoadVtk, ReadsCountedCells) {
+  expectTwoTets(loadText(kHead + kPoints + kCells + kTypes));
+}
+
+TEST(LoadVtk, LineBreaksMeanNothing) {
+  expectTwoTets(
+      loadText("# vtk DataFile Version 3.0\r\n\r\nascii\r\nDATASET unstructured_grid\r\npoints 5 float 0 0 0 1 0 0\r\n"
+               "0 1\t0 0 0\r\n1 0.1 1 1\r\n\r\nCells 2 10 4 0 1 2 3 4 1 2 3 4\r\ncell_types 2\r\n10 10"));
+}
+
+TEST(LoadVtk, ReadsOffsetsAndConnectivity) {
+  const std::string head = "# vtk DataFile Version 5.1\nvtk output\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  expectTwoTets(loadText(head + kPoints +
+                         "METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1\n\n"
+                         "CELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4\n" +
+                         kTypes));
+}
+
+TEST(LoadVtk, WithoutCellTypesAllCellsAreTets) {
+  expectTwoTets(loadText(kHead + kPoints + kCells));
+  const std::string wedge = "CELLS 2 12\n4 0 1 2 3\n6 0 1 2 3 4 0\n";
+  expectError(loadText(kHead + kPoints + wedge).status(), StatusCode::Malformed, {"c.vtk:13:", "cell 1", "6 nodes"});
+}
+
+TEST(LoadVtk, SkipsAndCountsOtherCells) {
+  TetFileReport report;
+  expectTwoTets(loadText(kHead + kPoints +
+                             "CELLS 4 25\n3 0 1 2\n4 0 1 2 3\n10 0 1 2 3 4 0 1 2 3 4\n4 1 2 3 4\n"
+                             "CELL_TYPES 4\n5\n10\n24\n10\n",
+                         &report));
+  EXPECT_EQ(report.skippedCells, 2u);
+  EXPECT_EQ(report.skippedHighOrder, 1u);
+  EXPECT_NE(report.describe().find("2 cells"), std::string::npos);
+}
+
+TEST(LoadVtk, ReadsOverFieldsAndData) {
+  expectTwoTets(loadText(
+      kHead + "FIELD FieldData 3\nTIME 1 1 double\n0.5\nNAMES 1 2 string\nPOINTS\n\nEMPTY 0 0 int\n" + kPoints +
+      kCells + kTypes + "CELL_DATA 2\nSCALARS m int 1\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 5\nnonsense"));
+}
+
+/// Big-endian bytes of a number.
+template <class Number>
+std::string big(Number value) {
+  std::string bytes(sizeof(value), '\0');
+  std::memcpy(&bytes[0], &value, sizeof(value));
+  const std::uint16_t one = 1;
+  unsigned char first = 0;
+  std::memcpy(&first, &one, 1);
+  return first == 1 ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
+}
+
+template <class Number>
+std::string bigAll(std::initializer_list<double> values) {
+  std::string bytes;
+  for (const double value : values) bytes += big(static_cast<Number>(value));
+  return bytes;
+}
+
+std::string binaryText() {
+  return "# vtk DataFile Version 4.2\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\nTIME 1 1 double\n" +
+         big(0.5) + "\nPOINTS 5 double\n" + bigAll<double>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.1, 1, 1}) +
+         "\nCELLS 3 14\n" + bigAll<std::int32_t>({4, 0, 1, 2, 3, 3, 0, 1, 2, 4, 1, 2, 3, 4}) + "\nCELL_TYPES 3\n" +
+         bigAll<std::int32_t>({10, 5, 10}) + "\nPOINT_DATA 5\n";
+}
+
+TEST(LoadVtk, ReadsBinaryCountedCells) {
+  TetFileReport report;
+  expectTwoTets(loadText(binaryText(), &report));
+  EXPECT_EQ(report.skippedCells, 1u);
+}
+
+TEST(LoadVtk, ReadsBinaryOffsetsAndFloats) {
+  const Result<TetMesh> mesh =
+      loadText("# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+               bigAll<float>({0, 0, 0, 0.1, 0, 0, 0, 1, 0, 0, 0, 1}) +
+               "\nMETADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n" + bigAll<std::int64_t>({0, 4}) +
+               "\nCONNECTIVITY vtktypeint64\n" + bigAll<std::int64_t>({3, 1, 2, 0}) + "\nCELL_TYPES 1\n" +
+               bigAll<std::int32_t>({10}) + "\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().nodes[1], Eigen::Vector3d(0.1f, 0, 0));
+  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{3, 1, 2, 0}}));
+}
+
+TEST(LoadVtk, RefusesBinaryFilesThatAreDamaged) {
+  const std::string text = binaryText();
+  expectError(loadText(text.substr(0, text.find("CELLS") - 8)).status(), StatusCode::Malformed,
+              {"c.vtk:", "too short"});
+  std::string nan = text;
+  nan.replace(nan.find("POINTS 5 double\n") + 16 + 24, 8, big(std::numeric_limits<double>::quiet_NaN()));
+  expectError(loadText(nan).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1"});
+  std::string index = text;
+  index.replace(index.find("CELLS 3 14\n") + 11 + 4, 4, big(std::int32_t(-2)));
+  expectError(loadText(index).status(), StatusCode::IndexOutOfRange, {"c.vtk: ", "cell 0", "node -2"});
+  std::string type = text;
+  type.replace(type.find("double"), 6, "string");
+  expectError(loadText(type).status(), StatusCode::UnsupportedFormat, {"c.vtk:", "'string'", "save it as ASCII"});
+}
+
+TEST(LoadVtk, RefusesOtherKindsOfFiles) {
+  expectError(loadText("solid x\n").status(), StatusCode::Malformed, {"c.vtk:1:", "legacy VTK"});
+  expectError(loadText("").status(), StatusCode::Malformed, {"c.vtk:1:"});
+  expectError(loadText("<?xml version=\"1.0\"?>\n").status(), StatusCode::UnsupportedFormat, {"c.vtk:", "XML"});
+  expectError(loadText("# vtk DataFile Version 2.0\nt\nASCII\nDATASET POLYDATA\n").status(),
+              StatusCode::UnsupportedFormat, {"c.vtk:4:", "'polydata'", "UNSTRUCTURED_GRID"});
+  expectError(loadText("# vtk DataFile Version 2.0\nt\nBASE64\n").status(), StatusCode::Malformed,
+              {"c.vtk:3:", "'base64'"});
+}
+
+TEST(LoadVtk, NamesTheLineOfAnIndexOutOfRange) {
+  expectError(loadText(kHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 5\n" + kTypes).status(),
+              StatusCode::IndexOutOfRange, {"c.vtk:13:", "cell 1", "node 5", "there are 5"});
+  expectError(
+      loadText(kHead + kPoints + "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1\n-1 3\nCELL_TYPES 1\n10").status(),
+      StatusCode::IndexOutOfRange, {"c.vtk:16:", "cell 0", "node -1"});
+}
+
+TEST(LoadVtk, NamesTheLineOfACoordinateThatIsNotFinite) {
+  expectError(loadText(kHead + "POINTS 2 float\n0 0 0\n0 nan 0\n").status(), StatusCode::NonFinite,
+              {"c.vtk:7:", "node 1"});
+}
+
+TEST(LoadVtk, RefusesCountsThatDoNotFit) {
+  const StatusCode code = StatusCode::Malformed;
+  expectError(loadText(kHead + "POINTS 2000000000 float\n0 0 0\n").status(), code, {"c.vtk:5:", "too short"});
+  expectError(loadText(kHead + "POINTS 99999999999999999999 float\n").status(), code, {"c.vtk:5:"});
+  expectError(loadText(kHead + "POINTS 18446744073709551615 float\n").status(), code, {"c.vtk:5:"});
+  expectError(loadText(kHead + "POINTS 4 float\n0 0 0 1\n0 0 0 1 0 x 0 1\n").status(), code, {"c.vtk:7:", "number"});
+  expectError(loadText(kHead + kPoints + "CELLS 9 10\n4 0 1 2 3\n4 1 2 3 4\n" + kTypes).status(), code, {"cell 2"});
+  expectError(loadText(kHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n5 1 2 3 4\n" + kTypes).status(), code,
+              {"c.vtk:13:", "cell 1"});
+  expectError(loadText(kHead + kPoints + "CELLS 1 10\n4 0 1 2 3\n4 1 2 3 4\n").status(), code, {"c.vtk:13:", "behind"});
+  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 1\n10\n").status(), code, {"1 cell types for 2 cells"});
+  expectError(loadText(kHead + "POINTS 1 float\n0 0 0\n1 1 1\n").status(), code, {"c.vtk:7:", "'1'", "section"});
+  expectError(loadText(kHead + kPoints).status(), code, {"ends before CELLS"});
+  expectError(loadText(kHead + kPoints + "CELLS 3 8\nOFFSETS int\n0 4 9\nCONNECTIVITY int\n0 1 2 3 1 2 3 4\n").status(),
+              code, {"cell 1", "offsets"});
+}
+
+TEST(LoadVtk, RefusesAMeshWithoutTets) {
+  TetFileReport report;
+  const Result<TetMesh> mesh = loadText(kHead + kPoints + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", &report);
+  expectError(mesh.status(), StatusCode::Empty, {"c.vtk: ", "no linear tets", "1 cells"});
+  EXPECT_EQ(report.skippedCells, 1u);
+}
+
+}  // namespace
+}  // namespace tetskin
