@@ -4,13 +4,11 @@
 // The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
 #include <tetskin/io/obj_sequence_writer.h>
 #include <tetskin/io/tet_mesh_writer.h>
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "scenes/drop_scene.h"
 #include "scenes/options.h"
@@ -137,12 +135,6 @@ nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, con
   return json;
 }
 
-void writeSummary(const nlohmann::ordered_json& json, const std::string& path) {
-  std::ofstream file(path);
-  file << json.dump(2) << "\n";
-  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
-}
-
 void printTable(const nlohmann::ordered_json& json, const std::string& summaryPath) {
   const auto row = [](const char* name, const std::string& value) { std::printf("  %-22s %s\n", name, value.c_str()); };
   const auto number = [&](const char* key, const char* format) {
@@ -179,7 +171,7 @@ int run(const DropOptions& options) {
   const Totals totals = simulate(scene, options, writer.value());
   const nlohmann::ordered_json json = summarise(model, scene, options, totals);
   const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
-  writeSummary(json, path);
+  writeJson(json, path);
   if (!options.output.quiet) printTable(json, path);
   if (!totals.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", totals.frames - 1);

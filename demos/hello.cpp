@@ -16,7 +16,11 @@
 tetskin::TetMesh makeBar() {
   tetskin::TetMesh bar;
   const auto node = [](int x, int y, int z) { return x + 9 * (y + 3 * z); };
-  for (int i = 0; i < 9 * 3 * 3; ++i) bar.nodes.emplace_back(0.25 * (i % 9), 0.25 * (i / 9 % 3), 0.25 * (i / 27));
+  for (int z = 0; z < 3; ++z) {
+    for (int y = 0; y < 3; ++y) {
+      for (int x = 0; x < 9; ++x) bar.nodes.emplace_back(0.25 * x, 0.25 * y, 0.25 * z);
+    }
+  }
   const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   for (int cube = 0; cube < 8 * 2 * 2; ++cube) {
     for (const auto& order : orders) {  // from one corner of the cube to the opposite one, along three edges
@@ -36,9 +40,12 @@ tetskin::TetMesh makeBar() {
 /// A fine surface inside the bar: 200 rings of 100 vertices. Yours may come from tetskin::loadMesh.
 tetskin::TriangleMesh makeTube() {
   tetskin::TriangleMesh tube;
-  for (int i = 0; i < 200 * 100; ++i) {
-    const double x = 2.0 * (i / 100) / 199, angle = 6.2831853 * (i % 100) / 100, radius = 0.2 + 0.03 * std::sin(40 * x);
-    tube.positions.emplace_back(x, 0.25 + radius * std::cos(angle), 0.25 + radius * std::sin(angle));
+  for (int ring = 0; ring < 200; ++ring) {
+    const double x = 2.0 * ring / 199, radius = 0.2 + 0.03 * std::sin(40 * x);
+    for (int k = 0; k < 100; ++k) {
+      const double angle = 6.2831853 * k / 100;
+      tube.positions.emplace_back(x, 0.25 + radius * std::cos(angle), 0.25 + radius * std::sin(angle));
+    }
   }
   return tube;
 }
@@ -52,7 +59,6 @@ int main() {
   solver.setDeformableSolver(&bodySolver);
   btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration, &bodySolver);
   world.setGravity(btVector3(0, -9.81f, 0));
-
   const tetskin::TetMesh cage = makeBar();
   const tetskin::TriangleMesh surface = makeTube();
   tetskin::SoftBodyOptions options;

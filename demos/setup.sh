@@ -1,7 +1,7 @@
 # For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
 
 # What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 22.04 and later.
-build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev)
+build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev libbenchmark-dev)
 test_packages=(libgtest-dev clang-format clang-tidy git)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
@@ -12,7 +12,7 @@ require_packages() {
     for tool in cmake c++; do
       if ! command -v "$tool" >/dev/null; then
         echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
-          "assimp, CLI11, nlohmann-json and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
+          "assimp, CLI11, nlohmann-json, Google Benchmark and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
         exit 1
       fi
     done

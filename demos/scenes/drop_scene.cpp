@@ -17,9 +17,6 @@ constexpr double kDomeRadius = 1.2;
 constexpr double kDomeHeight = 0.3;
 constexpr double kRampSlope = 0.3;  ///< radians
 constexpr double kFloorHalfSide = 10.0;
-/// Softer and livelier than the library's defaults, to show deformation; see SoftBodyOptions.
-constexpr double kStiffness = 40.0;
-constexpr double kDamping = 0.01;  ///< seconds
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -45,10 +42,7 @@ DropScene::DropScene(const TriangleMesh& mesh, const TetMesh& cage, OutsideRule 
 
   TetMesh placed = cage;
   for (Eigen::Vector3d& p : placed.nodes) p = scale_ * (p - centre_) + start_;
-  SoftBodyOptions material;
-  material.relativeStiffness = kStiffness;
-  material.damping = kDamping;
-  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world_.world(), placed, material);
+  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world_.world(), placed);
   require(body.status());
   body_ = std::move(body).value();
 

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/options.h"
 
-#include <tetskin/cage/cage_builder.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <new>
 
@@ -25,27 +25,23 @@ TetMesh loadCage(const std::string& path) {
   return mesh;
 }
 
-TetMesh cageFor(const TriangleMesh& mesh, const std::string& name, std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  Result<TetMesh> cage = buildCage(mesh, options);
-  if (!cage.ok()) throw InputError(name + ": " + cage.status().message);
-  return std::move(cage).value();
-}
-
 }  // namespace
 
 void require(const Status& status) {
   if (!status.ok()) throw InputError(status.message);
 }
 
-void addModelOptions(CLI::App& app, ModelOptions& options) {
+void addMeshOptions(CLI::App& app, ModelOptions& options) {
   app.add_option("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a built-in serpent)");
-  app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
   app.add_option("--tets", options.tets, "Tets of a built cage")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--triangles", options.triangles, "Triangles of the built-in serpent")
       ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
       ->capture_default_str();
+}
+
+void addModelOptions(CLI::App& app, ModelOptions& options) {
+  addMeshOptions(app, options);
+  app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
   const std::map<std::string, OutsideRule> rules{{"nearest", OutsideRule::Nearest},
                                                  {"barycentric", OutsideRule::Barycentric}};
   app.add_option("--outside", options.outside, "Tet of a vertex outside the cage: nearest (default) or barycentric")
@@ -62,23 +58,39 @@ void addOutputOptions(CLI::App& app, OutputOptions& options) {
   app.add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
 
+Surface loadSurface(const ModelOptions& options) {
+  if (options.mesh.empty()) return {"serpent", makeSerpent({options.triangles})};
+  Result<TriangleMesh> mesh = loadMesh(options.mesh);
+  require(mesh.status());
+  return {options.mesh, std::move(mesh).value()};
+}
+
+TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
+  Result<TetMesh> cage = buildCage(surface.mesh, options, report);
+  if (!cage.ok()) throw InputError(surface.name + ": " + cage.status().message);
+  return std::move(cage).value();
+}
+
 Model loadModel(const ModelOptions& options) {
   Model model;
+  static_cast<Surface&>(model) = loadSurface(options);
   if (options.mesh.empty()) {
-    model.name = "serpent";
-    model.mesh = makeSerpent({options.triangles});
     model.layout = ObjLayout::fromMesh(model.mesh);
   } else {
-    model.name = options.mesh;
-    Result<TriangleMesh> mesh = loadMesh(options.mesh);
-    require(mesh.status());
-    model.mesh = std::move(mesh).value();
     Result<ObjLayout> layout = objLayoutFor(options.mesh, model.mesh);
     require(layout.status());
     model.layout = std::move(layout).value();
   }
-  model.cage = options.cage.empty() ? cageFor(model.mesh, model.name, options.tets) : loadCage(options.cage);
+  CageOptions cage;
+  cage.targetTets = options.tets;
+  model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage);
   return model;
+}
+
+void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
+  std::ofstream file(path);
+  file << json.dump(2) << "\n";
+  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
 }
 
 void requireFit(const EmbedReport& report, const ModelOptions& options) {

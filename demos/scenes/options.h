@@ -4,6 +4,7 @@
 // The command-line options that the demos share, spelled alike everywhere, and what they lead to.
 #pragma once
 
+#include <tetskin/cage/cage_builder.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
@@ -12,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -45,19 +47,27 @@ struct OutputOptions {
   bool quiet = false;
 };
 
+/// --mesh, --triangles, --tets.
+void addMeshOptions(CLI::App& app, ModelOptions& options);
+/// Those, --cage and --outside.
 void addModelOptions(CLI::App& app, ModelOptions& options);
 /// The defaults of `options` are the demo's.
 void addOutputOptions(CLI::App& app, OutputOptions& options);
 
-struct Model {
+struct Surface {
   std::string name;
   TriangleMesh mesh;
+};
+struct Model : Surface {
   TetMesh cage;
   ObjLayout layout;  ///< in which frames are written
 };
 
-/// Loads or makes mesh and cage. Throws InputError, with the file and the fault.
+/// These load, make or write; they throw InputError, with the file and the fault.
+Surface loadSurface(const ModelOptions& options);
+TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 Model loadModel(const ModelOptions& options);
+void writeJson(const nlohmann::ordered_json& json, const std::string& path);
 
 /// Throws InputError if mesh and cage cannot belong together: see EmbedReport.
 void requireFit(const EmbedReport& report, const ModelOptions& options);

@@ -105,8 +105,8 @@ std::size_t appendBody(TriangleMesh& mesh, const SerpentShape& shape, const Tube
   const std::vector<double> places =
       spread(static_cast<std::size_t>(grid.rings) + 2, 0.0, 1.0, [&](double t) { return ringDensity(shape, t); });
   const double ringsPerScale = std::max(1.0, std::round(grid.rings / kScaleRows));
-  const double columnsPerScale = grid.columns / kScaleColumns;
-  const double legible = smoothStep(1.0, 3.0, std::min(2.0 * ringsPerScale, columnsPerScale));
+  const int columnsPerScale = grid.columns / kScaleColumns;
+  const double legible = smoothStep(1.0, 3.0, std::min(2.0 * ringsPerScale, 1.0 * columnsPerScale));
   appendTube(mesh, grid, [&](int ring, int column) -> Vector3d {
     const double t = places[ring], turn = static_cast<double>(column) / grid.columns;
     const double theta = 2.0 * kPi * turn + kBackCrowding * std::sin(2.0 * kPi * turn);

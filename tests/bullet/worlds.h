@@ -85,7 +85,9 @@ using MultiBodyWorld = ClassicWorld<btSoftMultiBodyDynamicsWorld, btMultiBodyCon
 /// Deformable worlds share everything but the body and its solver.
 class DeformableWorldBase : public TestWorld {
  public:
-  ~DeformableWorldBase() override { soft->removeSoftBody(body_.get()); }
+  ~DeformableWorldBase() override {
+    if (body_) soft->removeSoftBody(body_.get());
+  }
 
  protected:
   explicit DeformableWorldBase(std::unique_ptr<btDeformableBodySolver> bodySolver) {

@@ -13,7 +13,8 @@ double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options,
   const double density = options.density > 0.0 ? options.density : options.mass / totalVolume(cage);
   // Without gravity nothing sags; the earth's serves as a scale.
   constexpr double kEarth = 9.81;
-  return options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
+  return options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) *
+         boundingBox(cage.nodes).sizes().maxCoeff();
 }
 
 std::unique_ptr<btDeformableLagrangianForce> elasticForce(const SoftBodyOptions& options, double youngsModulus) {

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Google Benchmark cases, each beside Bullet's own where it has one. Results are read from --benchmark_out, never from
+// standard output: Bullet prints there.
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <benchmark/benchmark.h>
+#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/io/tet_mesh_writer.h>
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "scenes/options.h"
+#include "scenes/serpent.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+using benchmark::State;
+
+/// A body made of the model's cage, with Bullet's own render nodes at the model's vertices.
+struct Bench {
+  explicit Bench(Model made) : model(std::move(made)) {
+    Result<btSoftBody*> result = makeSoftBody(model.cage, worldInfo);
+    require(result.status());
+    body.reset(result.value());
+    btSoftBody::RenderNode node;
+    node.m_uv1.setZero();
+    node.m_normal.setZero();
+    for (const Eigen::Vector3d& p : model.mesh.positions) {
+      node.m_x = toBullet(p);
+      body->m_renderNodes.push_back(node);
+    }
+  }
+
+  Model model;
+  btSoftBodyWorldInfo worldInfo;
+  std::unique_ptr<btSoftBody> body;
+};
+
+void attachTetskin(State& state, const Bench& bench) {
+  EmbedReport report;
+  for (auto _ : state) {
+    Embedding embedding;
+    report = embed(bench.model.cage, viewOf(bench.model.mesh.positions), {}, embedding);
+    benchmark::DoNotOptimize(embedding);
+  }
+  state.counters["outside"] = static_cast<double>(report.outside);
+  state.counters["candidates"] = static_cast<double>(report.candidates) / static_cast<double>(report.vertexCount);
+}
+
+void attachBullet(State& state, const Bench& bench) {
+  for (auto _ : state) btSoftBodyHelpers::interpolateBarycentricWeights(bench.body.get());
+}
+
+void updateLinearOriginal(State& state, const Bench& bench) {
+  std::vector<Eigen::Vector3f> out(bench.model.mesh.vertexCount());
+  SkinOptions options;
+  options.target = viewOf(out);
+  SoftBodySkin skin;
+  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
+  for (auto _ : state) {
+    skin.update();
+    benchmark::ClobberMemory();
+  }
+}
+
+void updateBullet(State& state, const Bench& bench) {
+  btSoftBodyHelpers::interpolateBarycentricWeights(bench.body.get());
+  for (auto _ : state) {
+    bench.body->interpolateRenderMesh();
+    benchmark::ClobberMemory();
+  }
+}
+
+void updateMemcpy(State& state, const Bench& bench) {
+  const std::vector<Eigen::Vector3f> from(bench.model.mesh.vertexCount(), Eigen::Vector3f::Ones());
+  std::vector<Eigen::Vector3f> to(from.size());
+  for (auto _ : state) {
+    std::memcpy(to.front().data(), from.front().data(), from.size() * sizeof(from[0]));
+    benchmark::ClobberMemory();
+  }
+}
+
+void buildBodyTetskin(State& state, Bench& bench) {
+  for (auto _ : state) delete makeSoftBody(bench.model.cage, bench.worldInfo).value();
+}
+
+void buildBodyBullet(State& state, Bench& bench) {
+  const auto path = std::filesystem::temp_directory_path() / "tetskin_bench_cage.vtk";
+  require(saveTetMesh(bench.model.cage, path.string()));
+  for (auto _ : state) delete btSoftBodyHelpers::CreateFromVtkFile(bench.worldInfo, path.c_str());
+  std::filesystem::remove(path);
+}
+
+void writeObj(State& state, const Bench& bench) {
+  const auto path = std::filesystem::temp_directory_path() / "tetskin_bench_frame.obj";
+  std::vector<Eigen::Vector3f> positions;
+  for (const Eigen::Vector3d& p : bench.model.mesh.positions) positions.push_back(p.cast<float>());
+  for (auto _ : state) require(bench.model.layout.writeTo(path.string(), viewOf(std::as_const(positions))));
+  std::filesystem::remove(path);
+}
+
+void buildCageOf(State& state, const TriangleMesh& mesh, std::size_t tets) {
+  CageOptions options;
+  options.targetTets = tets;
+  CageReport report;
+  for (auto _ : state) benchmark::DoNotOptimize(buildCage(mesh, options, &report));
+  require(report.status);
+  state.counters["triangles"] = static_cast<double>(mesh.triangleCount());
+  state.counters["tets"] = static_cast<double>(report.tets);
+}
+
+/// Cost against size, on serpents of growing resolution; only without a mesh of the user's.
+void registerBuildCageSizes() {
+  for (const std::size_t triangles : {10000, 30000, 60000, 100000, 300000, 1000000}) {
+    const std::string name = "BuildCage/triangles:" + std::to_string(triangles) + "/tets:30000";
+    benchmark::RegisterBenchmark(name.c_str(), [triangles](State& state) {
+      buildCageOf(state, makeSerpent({triangles}), 30000);
+    })->Unit(benchmark::kMillisecond);
+  }
+}
+
+void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
+  const auto add = [&](const char* name, auto function, benchmark::TimeUnit unit) {
+    benchmark::RegisterBenchmark(name, [bench, function](State& state) { function(state, *bench); })->Unit(unit);
+  };
+  add("Attach/tetskin", attachTetskin, benchmark::kMillisecond);
+  add("Attach/bullet", attachBullet, benchmark::kMillisecond);
+  add("Update/linear_original", updateLinearOriginal, benchmark::kMicrosecond);
+  add("Update/bullet", updateBullet, benchmark::kMicrosecond);
+  add("Update/memcpy", updateMemcpy, benchmark::kMicrosecond);
+  add("BuildBody/tetskin", buildBodyTetskin, benchmark::kMillisecond);
+  add("BuildBody/bullet", buildBodyBullet, benchmark::kMillisecond);
+  add("WriteObj/tetskin", writeObj, benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("BuildCage", [bench, tets](State& state) {
+    buildCageOf(state, bench->model.mesh, tets);
+  })->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);  // takes its own flags out
+  ModelOptions options;
+  CLI::App app(
+      "Benchmarks of attaching, updating, building and writing, each beside Bullet's own. Takes Google "
+      "Benchmark's flags, too: --benchmark_filter=REGEX, --benchmark_out=FILE, ...");
+  addModelOptions(app, options);
+  return runDemo(app, argc, argv, [&] {
+    registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);
+    if (options.mesh.empty()) registerBuildCageSizes();
+    benchmark::RunSpecifiedBenchmarks();
+    return kDone;
+  });
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Any mesh -> a cage of tets that holds it, as a file for Bullet, tetskin or a meshing program.
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/io/tet_mesh_writer.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes/options.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+
+struct CageCommand {
+  ModelOptions model;
+  CageOptions cage;
+  std::string output;
+  std::string json;
+  bool loose = false;
+  bool quiet = false;
+};
+
+nlohmann::ordered_json summarise(const Surface& surface, const CageReport& report, const EmbedReport& fit) {
+  nlohmann::ordered_json json;
+  json["model"] = surface.name;
+  json["vertices"] = surface.mesh.vertexCount();
+  json["triangles"] = surface.mesh.triangleCount();
+  json["target_tets"] = report.targetTets;
+  json["tets"] = report.tets;
+  json["nodes"] = report.nodes;
+  json["vertices_outside"] = fit.outside;
+  json["min_dihedral_deg"] = report.minDihedralDeg;
+  json["max_dihedral_deg"] = report.maxDihedralDeg;
+  json["components"] = report.cageComponents;
+  json["mesh_components"] = report.meshComponents;
+  json["spacing"] = report.spacing;
+  json["volume_ratio"] = report.volumeRatio;
+  json["volume_ratio_unfitted"] = report.volumeRatioUnfitted;
+  json["build_ms"] = report.milliseconds;
+  return json;
+}
+
+int run(CageCommand command) {
+  const Surface surface = loadSurface(command.model);
+  command.cage.targetTets = command.model.tets;
+  command.cage.fit = !command.loose;
+  CageReport report;
+  const TetMesh cage = cageFor(surface, command.cage, &report);
+  require(saveTetMesh(cage, command.output));
+
+  // Counted as an application would see it, not as the builder believes it to be.
+  Embedding embedding;
+  const EmbedReport fit = embed(cage, viewOf(surface.mesh.positions), {}, embedding);
+  require(fit.status);
+  if (!command.json.empty()) writeJson(summarise(surface, report, fit), command.json);
+  if (!command.quiet) std::printf("%s%s\n", report.describe().c_str(), command.output.c_str());
+  if (fit.outside == 0) return kDone;
+  std::fprintf(stderr, "tetskin_cage: %zu vertices lie outside the cage, vertex %zu by %g\n", fit.outside,
+               fit.worstVertex, fit.worstDistance);
+  return kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CageCommand command;
+  CLI::App app("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
+  addMeshOptions(app, command.model);
+  app.add_option("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node")->required();
+  app.add_option("--json", command.json, "File of the summary");
+  app.add_flag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
+  app.add_flag("--quiet", command.quiet, "Print nothing but errors");
+  return runDemo(app, argc, argv, [&] { return run(command); });
+}

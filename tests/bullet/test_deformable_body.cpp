@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+#include "worlds.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/bullet/deformable_body.h>
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+/// A deformable world without a body of its own.
+class EmptyWorld : public test::DeformableWorldBase {
+ public:
+  EmptyWorld() : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {}
+  btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
+};
+
+std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage, const SoftBodyOptions& options = {}) {
+  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, options);
+  EXPECT_TRUE(body.ok()) << body.status().message;
+  return std::move(body).value();
+}
+
+double lowest(const btSoftBody& body) {
+  double y = HUGE_VAL;
+  for (int n = 0; n < body.m_nodes.size(); ++n) y = std::min<double>(y, body.m_nodes[n].m_x.y());
+  return y;
+}
+
+double rmsSpeed(const btSoftBody& body) {
+  double squared = 0.0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) squared += body.m_nodes[n].m_v.length2();
+  return std::sqrt(squared / body.m_nodes.size());
+}
+
+void step(EmptyWorld& world, int frames) {
+  for (int f = 0; f < frames; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+}
+
+TetMesh cageAbove(double height) {
+  TetMesh cage = test::latticeCage(5, 4, 5, 0.2);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
+  return cage;
+}
+
+struct Material {
+  const char* name;
+  ForceModel model;
+  bool implicit;
+};
+
+class Materials : public testing::TestWithParam<Material> {};
+
+TEST_P(Materials, FallBounceAndRestWithDefaults) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.forceModel = GetParam().model;
+  options.implicit = GetParam().implicit;
+  const auto body = added(world, cageAbove(0.5), options);
+  step(world, 240);
+  EXPECT_LT(rmsSpeed(body->body()), 0.05);
+  EXPECT_GT(lowest(body->body()), -0.03);  // the margin is 0.02
+  EXPECT_LT(lowest(body->body()), 0.1);
+  for (int t = 0; t < body->body().m_tetras.size(); ++t) {
+    const btSoftBody::Tetra& tet = body->body().m_tetras[t];
+    const btVector3 &a = tet.m_n[0]->m_x, &b = tet.m_n[1]->m_x, &c = tet.m_n[2]->m_x, &d = tet.m_n[3]->m_x;
+    ASSERT_GT((b - a).cross(c - a).dot(d - a), 0) << "tet " << t << " is inverted";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(DeformableBody, Materials,
+                         testing::Values(Material{"NeoHookean", ForceModel::NeoHookean, false},
+                                         Material{"LinearElasticity", ForceModel::LinearElasticity, false},
+                                         Material{"NeoHookeanImplicit", ForceModel::NeoHookean, true}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(DeformableBody, FallsFreelyWithoutDampingItsFall) {
+  EmptyWorld world;
+  for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::LinearElasticity}) {
+    SoftBodyOptions options;
+    options.forceModel = model;
+    const auto body = added(world, cageAbove(10.0), options);
+    step(world, 60);
+    EXPECT_NEAR(lowest(body->body()), 10.0 - 5.0, 0.1);  // half of 10 m/s2, one second
+  }
+}
+
+TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
+  // Bullet's addForce would give the second body the first one's.
+  EmptyWorld world;
+  const Box3 left(Eigen::Vector3d(-0.1, 0, -9), Eigen::Vector3d(0.1, 9, 9));
+  SoftBodyOptions firm, limp;
+  firm.pinned = limp.pinned = pinnedIn(left);
+  firm.relativeStiffness = 1000;
+  limp.relativeStiffness = 30;
+  TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
+  for (Eigen::Vector3d& p : beam.nodes) p.y() += 5.0;
+  TetMesh aside = beam;
+  for (Eigen::Vector3d& p : aside.nodes) p.z() += 3.0;
+  const auto firmBody = added(world, beam, firm);
+  const auto limpBody = added(world, aside, limp);
+  EXPECT_NEAR(firmBody->youngsModulus() / limpBody->youngsModulus(), 1000.0 / 30.0, 1e-6);
+  step(world, 60);
+  EXPECT_LT(lowest(limpBody->body()), lowest(firmBody->body()) - 0.3);
+}
+
+TEST(DeformableBody, PinnedNodesStayWhereTheyAre) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
+  const TetMesh cage = cageAbove(3.0);
+  const auto body = added(world, cage, options);
+  step(world, 60);
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    if (cage.nodes[n].x() < 0.1) {
+      EXPECT_LT((toEigen(body->body().m_nodes[static_cast<int>(n)].m_x) - cage.nodes[n]).norm(), 1e-5);
+    }
+  }
+}
+
+TEST(DeformableBody, LeavesTheWorldWithItsForces) {
+  EmptyWorld world;
+  {
+    const auto first = added(world, cageAbove(0.5));
+    const auto second = added(world, cageAbove(3.0));
+    EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 2);
+    step(world, 2);
+  }
+  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
+  auto* solver = static_cast<btDeformableBodySolver*>(world.softSolver.get());
+  EXPECT_EQ(solver->getLagrangianForceArray()->size(), 0);
+  step(world, 2);  // nothing dangles
+}
+
+TEST(DeformableBody, StiffnessScalesWithSizeSoThatBodiesOfAllSizesSagAlike) {
+  EmptyWorld world;
+  const auto sag = [&](double scale) {
+    TetMesh beam = test::latticeCage(8, 2, 2, 0.25 * scale);
+    for (Eigen::Vector3d& p : beam.nodes) p.y() += 20.0;
+    SoftBodyOptions options;
+    options.density = 100;
+    options.pinned = [scale](const Eigen::Vector3d& p) { return p.x() < 0.1 * scale; };
+    const auto body = added(world, beam, options);
+    step(world, 240);
+    return (20.0 - lowest(body->body())) / scale;
+  };
+  const double small = sag(0.5), large = sag(2.0);
+  EXPECT_GT(small, 0.05);
+  EXPECT_NEAR(small / large, 1.0, 0.15);
+}
+
+TEST(DeformableBody, RefusesMassSpringAndBadOptions) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::MassSpring;
+  EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
+  options = {};
+  options.poissonRatio = 0.5;
+  EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(DeformableBody::add(world.deformable(), {}).status().code, StatusCode::Empty);
+  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
+}
+
+}  // namespace
+}  // namespace tetskin

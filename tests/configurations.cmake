@@ -1,0 +1,98 @@
+# Tests that configure and build: other configurations of the project, projects that use it, and its style.
+set(nested_options --build-generator ${CMAKE_GENERATOR} --build-noclean)
+set(nested_parallel 2)
+
+# Builds the project elsewhere with these options, and runs the tests that it then has.
+function(tetskin_test_configuration name)
+  add_test(NAME configuration.${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
+      ${nested_options}
+      --build-options ${ARGN} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
+  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 2400 PROCESSORS ${nested_parallel})
+endfunction()
+
+tetskin_test_configuration(double_precision
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
+tetskin_test_configuration(sanitized
+  -DCMAKE_BUILD_TYPE=Debug -DTETSKIN_SANITIZE=address,undefined)
+tetskin_test_configuration(optional_parts_off
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
+
+# A project that uses the library, through the installed package and as a subdirectory; both run what they have built.
+function(tetskin_test_consumer name)
+  add_test(NAME consumer.${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumer
+      ${PROJECT_BINARY_DIR}/consumers/${name} ${nested_options}
+      --build-options -DCMAKE_BUILD_TYPE=Release ${ARGN}
+      --test-command consumer)
+  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600)
+endfunction()
+
+if(TETSKIN_INSTALL)
+  set(prefix ${PROJECT_BINARY_DIR}/consumers/prefix)
+  add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
+  set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed_package)
+  tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
+  tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
+  set_tests_properties(consumer.installed_package consumer.installed_core_alone
+    PROPERTIES FIXTURES_REQUIRED installed_package)
+endif()
+tetskin_test_consumer(add_subdirectory -DTETSKIN_SOURCE=${PROJECT_SOURCE_DIR} -DCONSUME=subdirectory)
+
+# Configurations that must stop, with a message that says why.
+function(tetskin_test_refusal name message)
+  add_test(NAME refusal.${name}
+    COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${PROJECT_BINARY_DIR}/refusals/${name} --fresh
+      -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF -DTETSKIN_IO=OFF ${ARGN})
+  string(REPLACE " " "[^A-Za-z]+" pattern "${message}")  # CMake wraps the lines of its messages
+  set_tests_properties(refusal.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${pattern}")
+endfunction()
+
+# Bullet configurations as a user's machine may have them: in the other precision, and not saying so.
+function(tetskin_fake_bullet name definitions suffix)
+  file(WRITE ${PROJECT_BINARY_DIR}/fake_bullet/${name}/BulletConfig.cmake
+    "set(BULLET_DEFINITIONS \"${definitions}\")\n"
+    "set(BULLET_INCLUDE_DIRS \"${bullet_includes}\")\n"
+    "set(BULLET_LIBRARIES LinearMath${suffix} BulletCollision${suffix} BulletDynamics${suffix} BulletSoftBody${suffix})\n"
+    "set(BULLET_LIBRARY_DIRS \"${bullet_folder}\")\nset(BULLET_ROOT_DIR /)\n")
+endfunction()
+if(TARGET tetskin::bullet_physics)
+  get_target_property(bullet_includes tetskin::bullet_physics INTERFACE_INCLUDE_DIRECTORIES)
+  get_target_property(bullet_libraries tetskin::bullet_physics INTERFACE_LINK_LIBRARIES)
+  list(GET bullet_libraries 0 bullet_library)
+  cmake_path(GET bullet_library PARENT_PATH bullet_folder)
+  tetskin_fake_bullet(float "" "")
+  tetskin_fake_bullet(double "-DBT_USE_DOUBLE_PRECISION" "-float64")
+  tetskin_fake_bullet(lying "" "-float64")
+  tetskin_test_refusal(double_wanted_but_float_found "PRECISION is ON but the Bullet found"
+    -DTETSKIN_DOUBLE_PRECISION=ON -DBullet_DIR=${PROJECT_BINARY_DIR}/fake_bullet/float)
+  tetskin_test_refusal(float_wanted_but_double_found "is built in double precision but TETSKIN"
+    -DBullet_DIR=${PROJECT_BINARY_DIR}/fake_bullet/double)
+  tetskin_test_refusal(library_of_the_other_precision "does not link in the precision asked for"
+    -DBullet_DIR=${PROJECT_BINARY_DIR}/fake_bullet/lying)
+endif()
+tetskin_test_refusal(demos_without_their_parts "The demos need every part" -DTETSKIN_DEMOS=ON)
+
+# Style, with the one version that the files are formatted with.
+find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)
+find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
+foreach(tool CLANG_FORMAT CLANG_TIDY)
+  set(${tool}_VERSION "")
+  if(${tool})
+    execute_process(COMMAND ${${tool}} --version OUTPUT_VARIABLE ${tool}_VERSION)
+  endif()
+endforeach()
+if(CLANG_FORMAT_VERSION MATCHES "version 14")
+  add_test(NAME style.format COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+else()
+  message(STATUS "clang-format 14 not found: no test of the format")
+endif()
+if(CLANG_TIDY_VERSION MATCHES "version 14" AND CMAKE_EXPORT_COMPILE_COMMANDS)
+  add_test(NAME style.tidy COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/style/tidy ${CLANG_TIDY} ${PROJECT_BINARY_DIR}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(style.tidy PROPERTIES TIMEOUT 1800 PROCESSORS ${nested_parallel})
+else()
+  message(STATUS "clang-tidy 14 or compile commands not found: no test with clang-tidy")
+endif()

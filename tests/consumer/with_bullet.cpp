@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <cstdio>
+#include <memory>
+
+#ifdef WITH_ALL_PARTS
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/io/mesh_loader.h>
+#endif
+
+int main() {
+  tetskin::TetMesh cage{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+  tetskin::TriangleMesh mesh;
+  mesh.positions = {{0.1, 0.1, 0.1}, {0.2, 0.1, 0.1}, {0.1, 0.2, 0.1}};
+  mesh.triangles = {{0, 1, 2}};
+#ifdef WITH_ALL_PARTS
+  if (tetskin::loadMesh("no such file.obj").ok()) return 1;
+  tetskin::Result<tetskin::TetMesh> built = tetskin::buildCage(mesh);
+  if (!built.ok()) return 2;
+  cage = std::move(built).value();
+#endif
+  btSoftBodyWorldInfo worldInfo;
+  const std::unique_ptr<btSoftBody> body(tetskin::makeSoftBody(cage, worldInfo));
+  tetskin::SoftBodySkin skin;
+  const tetskin::EmbedReport fit = skin.bind(*body, cage, mesh);
+  std::printf("%s", fit.describe().c_str());
+  body->translate(btVector3(0, 5, 0));
+  const bool moved = skin.update() == tetskin::UpdateStatus::Updated && skin.bounds().min().y() > 5;
+  return fit.ok() && fit.inside == 3 && moved ? 0 : 3;
+}
