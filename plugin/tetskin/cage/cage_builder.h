@@ -1,3 +1,84 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// From any triangle mesh to a cage for it: a body-centred cubic lattice of tets, of which those are kept that touch the
+// surface or lie inside. The mesh need not be watertight, welded, consistently oriented or free of intersections.
+//
+//   prepareSurface   weld, orient                                        surface, orientation
+//   searchLattice    spacing and origin for the wanted number of tets    lattice_search
+//     coverSurface     tets that triangles touch                         surface_cover, bcc_lattice
+//     fillInside       tets inside                                       inside_fill, winding_number
+//     joinPinches      tets that make the boundary a manifold            cage_joints
+//   bindPoints       which tet holds which vertex                        cage_binding
+//   fitCage          pull the boundary towards the surface               cage_fit
 #pragma once
+
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <cstddef>
+#include <string>
+
+namespace tetskin {
+
+/// Largest number of tets that may be asked for; takes some 1.5 GB and a minute.
+constexpr std::size_t kLargestTargetTets = 20'000'000;
+
+struct CageOptions {
+  /// How many tets the cage should have. Met within 10 % but for very small numbers, see `CageReport::targetMet`.
+  std::size_t targetTets = 3000;
+  /// Pull boundary nodes towards the surface: a smaller cage, of tets that are no longer all alike.
+  bool fit = true;
+};
+
+/// What was built, and how well it fits. Lengths and volumes are in rest space, the mesh's unit.
+struct CageReport {
+  Status status;  ///< not ok: there is no cage, and the message says why
+
+  std::size_t targetTets = 0;
+  std::size_t tets = 0;
+  std::size_t nodes = 0;
+  std::size_t joiningTets = 0;  ///< tets that neither touch the surface nor lie inside, but join parts that would hang
+                                ///< together by one node or edge; included in `tets`
+  double spacing = 0.0;         ///< side of the lattice's cubes, which is a tet's longest edge before fitting
+  std::size_t lattices = 0;     ///< how many were tried
+
+  std::size_t verticesOutside = 0;  ///< distinct positions of the mesh's vertices in no tet: 0
+  double minDihedralDeg = 0.0;
+  double maxDihedralDeg = 0.0;
+  std::size_t cageComponents = 0;  ///< parts connected by nodes; fewer than the mesh's where parts have fused
+  std::size_t meshComponents = 0;  ///< sets of triangles connected by coincident vertices
+  std::size_t looseVertices = 0;   ///< distinct positions that no triangle uses; inside the cage as well
+  std::size_t openEdges = 0;       ///< edges of the mesh without a partner triangle on the other side: holes
+
+  double meshVolume = 0.0;           ///< 0 for a sheet; a hole is closed by a cone from the box's centre
+  double cageVolume = 0.0;           ///< sum of the tets' volumes
+  double cageVolumeUnfitted = 0.0;   ///< the same before fitting
+  double volumeRatio = 0.0;          ///< cage over mesh; 0 for a sheet
+  double volumeRatioUnfitted = 0.0;  ///< the same before fitting
+  double milliseconds = 0.0;         ///< wall time of the whole build
+
+  bool ok() const { return status.ok(); }
+  /// True if the number of tets is within 10 % of what was asked for.
+  bool targetMet() const;
+  /// One line a fact, for people.
+  std::string describe() const;
+};
+
+/// Builds a cage of about `options.targetTets` tets that holds every vertex of the mesh: `embed` of it reports 0
+/// outside. Its tets are positive, conforming, without duplicates, with dihedral angles within kMinDihedralDeg and
+/// kMaxDihedralDeg; its boundary is a manifold; every node is used. Parts thinner than a tet are never lost. Parts
+/// nearer to each other than a tet may fuse. Between its vertices, a triangle lies wholly inside an unfitted cage; out
+/// of a fitted one it may stick by a few hundredths of the spacing. The same input gives the same cage.
+///
+/// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
+///          no triangle uses get tets of their own, however far away.
+/// report   written if not null, on failure too
+/// Cost     about proportional to triangles + tets: a second per million triangles, and three to six seconds per
+///          million tets, most of it for fitting
+/// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
+///          kLargestTargetTets), Degenerate (all vertices in one point, or so near each other, or so far apart, that
+///          double cannot hold a lattice)
+Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options = {}, CageReport* report = nullptr);
+
+}  // namespace tetskin

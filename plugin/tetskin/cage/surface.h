@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The mesh as the later stages want it: welded, without repeated triangles, consistently oriented where it can be.
+#pragma once
+
+#include <tetskin/core/triangle_mesh.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tetskin::cage_detail {
+
+/// A surface whose volume is below this fraction of its area to the power of 3/2 (0.094 for a sphere) is a sheet
+/// without an inside; what is left is rounding error.
+constexpr double kSheetVolume = 1e-6;
+
+struct Surface {
+  std::vector<Eigen::Vector3d> points;        ///< distinct positions of the mesh's vertices, rest space
+  std::vector<std::array<int, 3>> triangles;  ///< distinct ones; the first `solidCount` of them have an area
+  std::size_t solidCount = 0;
+  std::vector<int> loosePoints;  ///< points that no triangle uses
+  Box3 box;                      ///< of all points
+
+  std::size_t components = 0;  ///< sets of triangles connected by points
+  std::size_t openEdges = 0;   ///< edges without a partner triangle that runs along them the other way
+  bool oriented = false;       ///< most edges have such partners, so that winding numbers can be believed
+  double area = 0.0;
+  double volume = 0.0;  ///< enclosed, by the divergence theorem about the box's centre; 0 for a sheet
+};
+
+/// Welds coincident vertices, drops repeated triangles (double-sided faces are one face), makes the orientation of
+/// neighbours agree, and measures. The mesh must have passed `checkTriangleMesh`. Cost O(n log n) at worst, in practice
+/// linear in vertices and triangles.
+Surface prepareSurface(const TriangleMesh& mesh);
+
+/// Area-weighted normal of a triangle: half the cross product of two edges.
+inline Eigen::Vector3d areaVector(const Surface& surface, const std::array<int, 3>& t) {
+  const Eigen::Vector3d& a = surface.points[t[0]];
+  return 0.5 * (surface.points[t[1]] - a).cross(surface.points[t[2]] - a);
+}
+
+}  // namespace tetskin::cage_detail

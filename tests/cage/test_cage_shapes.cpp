@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Every kind of surface, at 300 and 3,000 tets, some at 30,000, fitted and not.
+#include "cage_checks.h"
+#include "cage_models.h"
+#include "support/odd_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace tetskin::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+const char* const kNoFault = "";
+/// Debug builds, with sanitizers above all, are a hundred times slower.
+#ifdef NDEBUG
+constexpr std::size_t kMany = 30000;
+#else
+constexpr std::size_t kMany = 6000;
+#endif
+
+void expectCages(const TriangleMesh& mesh) {
+  for (const std::size_t target : {300, 3000}) {
+    EXPECT_EQ(buildFault(mesh, target), kNoFault);
+    EXPECT_EQ(buildFault(mesh, target, false), kNoFault);
+  }
+}
+
+TriangleMesh singleTriangle() {
+  TriangleMesh mesh;
+  mesh.positions = {{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.3, 0.8, 0.4}};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+TEST(CageShapes, Sphere) {
+  expectCages(unitSphere(24));
+}
+
+TEST(CageShapes, Torus) {
+  expectCages(torusMesh(32));
+}
+
+TEST(CageShapes, BoxOfTwelveTriangles) {
+  expectCages(boxMesh({1.0, 1.0, 1.0}));
+}
+
+TEST(CageShapes, FlatBox) {
+  expectCages(boxMesh({1.0, 1.0, 0.01}));
+}
+
+TEST(CageShapes, ThinRod) {
+  expectCages(boxMesh({100.0, 1.0, 1.0}));
+}
+
+TEST(CageShapes, FlatSheet) {
+  expectCages(sheetMesh(20));
+}
+
+TEST(CageShapes, SheetOfTwoTriangles) {
+  expectCages(sheetMesh(1));
+}
+
+TEST(CageShapes, SingleTriangle) {
+  expectCages(singleTriangle());
+}
+
+TEST(CageShapes, Line) {
+  TriangleMesh mesh;
+  mesh.positions = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}};
+  mesh.triangles = {{0, 1, 2}, {0, 0, 2}};
+  expectCages(mesh);
+}
+
+TEST(CageShapes, OpenHemisphere) {
+  expectCages(openSphereMesh(16, kPi / 2.0));
+}
+
+TEST(CageShapes, TwoSpheresApart) {
+  expectCages(joined(unitSphere(16), sphere(16, 0.5, {3.0, 0.2, 0.1})));
+}
+
+TEST(CageShapes, TwoSpheresOverlapping) {
+  expectCages(joined(unitSphere(16), sphere(16, 0.8, {0.9, 0.1, 0.2})));
+}
+
+TEST(CageShapes, TwoSpheresTouchingInAPoint) {
+  expectCages(joined(unitSphere(16), sphere(16, 1.0, {2.0, 0.0, 0.0})));
+}
+
+TEST(CageShapes, InvertedSphere) {
+  expectCages(invertedMesh(unitSphere(16)));
+}
+
+TEST(CageShapes, DoubledFaces) {
+  expectCages(joined(unitSphere(16), unitSphere(16)));
+  expectCages(joined(unitSphere(16), invertedMesh(unitSphere(16))));
+}
+
+TEST(CageShapes, RandomOrientation) {
+  expectCages(shuffledOrientation(unitSphere(16)));
+}
+
+TEST(CageShapes, UnweldedSoupOfRandomOrientation) {
+  expectCages(shuffledOrientation(unwelded(figurineMesh(16))));
+}
+
+TEST(CageShapes, FinnedSphere) {
+  expectCages(finnedSphereMesh());
+}
+
+TEST(CageShapes, Figurine) {
+  expectCages(figurineMesh(40));
+}
+
+TEST(CageShapes, ScatteredTriangles) {
+  TriangleMesh mesh;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int t = 0; t < 100; ++t) {
+    const Eigen::Vector3d centre(uniform(random), uniform(random), uniform(random));
+    for (int i = 0; i < 3; ++i) {
+      mesh.positions.push_back(centre + 0.1 * Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
+    }
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  expectCages(mesh);
+}
+
+TEST(CageShapes, DegenerateTrianglesAmongGoodOnes) {
+  TriangleMesh mesh = unitSphere(16);
+  for (int v = 2; v < 100; ++v) {
+    mesh.triangles.push_back({v, v, v + 1});
+    mesh.triangles.push_back({v, v, v});
+  }
+  mesh.positions.push_back(0.5 * (mesh.positions[0] + mesh.positions[1]));
+  mesh.triangles.push_back({0, static_cast<int>(mesh.positions.size()) - 1, 1});
+  expectCages(mesh);
+}
+
+TEST(CageShapes, VerticesOnLatticeFriendlyCoordinates) {
+  TriangleMesh mesh;
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y)
+      mesh = joined(mesh, transformed(boxMesh({1, 1, 1}), 1.0, Eigen::Vector3d(x, y, (x + y) % 3)));
+  }
+  expectCages(mesh);
+}
+
+TEST(CageShapes, AnyUnitAndPlace) {
+  const TriangleMesh mesh = figurineMesh(16);
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    EXPECT_EQ(buildFault(transformed(mesh, scale, Eigen::Vector3d::Zero()), 1000), kNoFault) << scale;
+    EXPECT_EQ(buildFault(transformed(mesh, scale, {1e6, -1e6, 1e6}), 1000), kNoFault) << scale << " far away";
+  }
+  EXPECT_EQ(buildFault(transformed(mesh, 1e-20, Eigen::Vector3d::Zero()), 1000), kNoFault);
+  EXPECT_EQ(buildFault(transformed(mesh, 1e20, Eigen::Vector3d::Zero()), 1000), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, Sphere) {
+  EXPECT_EQ(buildFault(unitSphere(24), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, BoxOfTwelveTriangles) {
+  EXPECT_EQ(buildFault(boxMesh({1.0, 1.0, 1.0}), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, FlatBox) {
+  EXPECT_EQ(buildFault(boxMesh({1.0, 1.0, 0.01}), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, ThinRod) {
+  EXPECT_EQ(buildFault(boxMesh({100.0, 1.0, 1.0}), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, FlatSheet) {
+  EXPECT_EQ(buildFault(sheetMesh(20), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, FinnedSphere) {
+  EXPECT_EQ(buildFault(finnedSphereMesh(), kMany), kNoFault);
+}
+
+TEST(CageShapesOfManyTets, Figurine) {
+  EXPECT_EQ(buildFault(figurineMesh(40), kMany), kNoFault);
+}
+
+}  // namespace
+}  // namespace tetskin::test
