@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The built-in model: a coiled, scaly serpent of any number of triangles, and a cage for it. Nothing is loaded, nothing
-// is random: the same options give the same bits.
+// The built-in model: a coiled, scaly serpent of any number of triangles. Nothing is loaded, nothing is random: the
+// same options give the same bits.
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <cstddef>
@@ -15,9 +14,6 @@ namespace tetskin::scenes {
 /// Fewest and most triangles that `makeSerpent` makes; a wish beyond them is clamped.
 constexpr std::size_t kMinSerpentTriangles = 2000, kMaxSerpentTriangles = 2000000;
 
-/// Fewest and most tets that `makeSerpentCage` makes; a wish beyond them is clamped.
-constexpr std::size_t kMinSerpentTets = 300, kMaxSerpentTets = 30000;
-
 struct SerpentOptions {
   std::size_t triangles = 60000;  ///< wish; the mesh has within 2 % of it
 };
@@ -26,9 +22,5 @@ struct SerpentOptions {
 /// to +z. "body" and "head" are one closed tube; the groups before them are closed parts sunk into it. Every part has a
 /// texture seam: vertices at bit-identical positions with u = 0 and u = 1. Normals and texcoords are filled.
 TriangleMesh makeSerpent(const SerpentOptions& options = {});
-
-/// Tets along the same spine, within 10 % of `targetTets`, all positive and conforming. They hold the serpent but for
-/// the tips of its spikes and horns, 1 to 4 % of its vertices. From 450 tets on, the coil's strands do not touch.
-TetMesh makeSerpentCage(std::size_t targetTets = 3000);
 
 }  // namespace tetskin::scenes

@@ -3,7 +3,6 @@
 #include "scenes/serpent.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,40 +56,6 @@ int countParts(const TriangleMesh& mesh, const std::vector<int>& weld) {
   return parts;
 }
 
-/// The tets of a cage, ready to be asked what they contain.
-class Cage {
- public:
-  explicit Cage(const TetMesh& mesh) {
-    for (const Tet& tet : mesh.tets) {
-      corners_.push_back({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]});
-      maps_.emplace_back(corners_.back());
-      boxes_.emplace_back();
-      for (const Vector3d& corner : corners_.back()) boxes_.back().extend(corner);
-    }
-  }
-  const std::vector<TetCorners>& corners() const { return corners_; }
-
-  /// Number of tets that contain the point, faces with a width of `tolerance` (barycentric) included.
-  int containing(const Vector3d& point, double tolerance) const {
-    int count = 0;
-    for (std::size_t t = 0; t < maps_.size(); ++t) {
-      count += boxes_[t].contains(point) && barycentricDistance(maps_[t](point)) <= tolerance;
-    }
-    return count;
-  }
-
- private:
-  std::vector<TetCorners> corners_;
-  std::vector<BarycentricMap> maps_;
-  std::vector<Box3> boxes_;
-};
-
-double outsideShare(const TriangleMesh& mesh, const Cage& cage) {
-  const auto outside = std::count_if(mesh.positions.begin(), mesh.positions.end(),
-                                     [&](const Vector3d& p) { return cage.containing(p, 0.0) == 0; });
-  return static_cast<double>(outside) / static_cast<double>(mesh.vertexCount());
-}
-
 class SerpentOfSize : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(SerpentOfSize, HasTheTrianglesWishedFor) {
@@ -105,8 +70,6 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SerpentOfSize,
 
 TEST(Serpent, ClampsWishesThatItCannotFulfil) {
   EXPECT_EQ(makeSerpent({0}).triangleCount(), makeSerpent({kMinSerpentTriangles}).triangleCount());
-  EXPECT_EQ(makeSerpentCage(0).tetCount(), makeSerpentCage(kMinSerpentTets).tetCount());
-  EXPECT_EQ(makeSerpentCage(10 * kMaxSerpentTets).tetCount(), makeSerpentCage(kMaxSerpentTets).tetCount());
 }
 
 TEST(Serpent, IsClosedAndConsistentlyOrientedWhenWelded) {
@@ -231,85 +194,6 @@ TEST(Serpent, IsTheSameEveryTime) {
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.normals, b.normals);
-  const TetMesh c = makeSerpentCage(), d = makeSerpentCage();
-  EXPECT_EQ(c.nodes, d.nodes);
-  EXPECT_EQ(c.tets, d.tets);
-}
-
-class SerpentCageOfSize : public testing::TestWithParam<std::size_t> {};
-
-TEST_P(SerpentCageOfSize, HasTheTetsWishedForAndNoFaults) {
-  const TetMesh cage = makeSerpentCage(GetParam());
-  const double wish = static_cast<double>(GetParam());
-  EXPECT_NEAR(static_cast<double>(cage.tetCount()), wish, 0.1 * wish);
-  const TetMeshReport report = checkTetMesh(cage);
-  EXPECT_TRUE(report.clean()) << report.describe();
-}
-
-TEST_P(SerpentCageOfSize, IsConforming) {
-  const TetMesh cage = makeSerpentCage(GetParam());
-  std::map<std::array<int, 3>, int> uses;
-  for (const Tet& tet : cage.tets) {
-    for (int skip = 0; skip < 4; ++skip) {
-      std::array<int, 3> face = {tet[(skip + 1) % 4], tet[(skip + 2) % 4], tet[(skip + 3) % 4]};
-      std::sort(face.begin(), face.end());
-      ++uses[face];
-    }
-  }
-  for (const auto& [face, count] : uses) EXPECT_LE(count, 2);
-  // Were a quad split in two ways, its four triangles would be boundary inside, and the boundary no sphere.
-  const std::vector<std::array<int, 3>> boundary = boundaryFaces(cage);
-  std::map<std::pair<int, int>, int> edges;
-  std::map<int, int> nodes;
-  for (const std::array<int, 3>& face : boundary) {
-    for (int k = 0; k < 3; ++k) {
-      ++edges[{face[k], face[(k + 1) % 3]}];
-      ++nodes[face[k]];
-    }
-  }
-  for (const auto& [edge, count] : edges) EXPECT_EQ(count, edges.count({edge.second, edge.first}));
-  EXPECT_EQ(nodes.size() + boundary.size(), edges.size() / 2 + 2);
-}
-
-TEST_P(SerpentCageOfSize, HoldsTheSerpentButForTipsOfSpikes) {
-  const double outside = outsideShare(makeSerpent({kSmall}), Cage(makeSerpentCage(GetParam())));
-  EXPECT_GT(outside, 0.005);
-  EXPECT_LT(outside, 0.04);
-}
-
-INSTANTIATE_TEST_SUITE_P(Sizes, SerpentCageOfSize, testing::Values(300, 450, 777, 1000, 3000, 10000, 30000));
-
-TEST(SerpentCage, DoesNotOverlapItself) {
-  constexpr double kNearCorner = 0.97;
-  for (std::size_t tets : {450, 1000, 3000}) {
-    const Cage cage(makeSerpentCage(tets));
-    for (const TetCorners& p : cage.corners()) {
-      const Vector3d centre = 0.25 * (p[0] + p[1] + p[2] + p[3]);
-      ASSERT_EQ(cage.containing(centre, -1e-9), 1);
-      for (const Vector3d& corner : p) {
-        ASSERT_EQ(cage.containing(kNearCorner * corner + (1.0 - kNearCorner) * centre, -1e-9), 1);
-      }
-    }
-  }
-}
-
-TEST(SerpentCage, HasWellShapedTetsAtItsUsualSize) {
-  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-  double smallest = 180.0, largest = 0.0;
-  const Cage cage(makeSerpentCage());
-  for (const TetCorners& p : cage.corners()) {
-    const BarycentricMap map(p);
-    const Vector3d gradients[] = {map.rows[0], map.rows[1], map.rows[2], -map.rows[0] - map.rows[1] - map.rows[2]};
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < a; ++b) {
-        const double angle = std::acos(-gradients[a].normalized().dot(gradients[b].normalized())) * kDegrees;
-        smallest = std::min(smallest, angle);
-        largest = std::max(largest, angle);
-      }
-    }
-  }
-  EXPECT_GT(smallest, 10.0);
-  EXPECT_LT(largest, 150.0);
 }
 
 }  // namespace

@@ -24,8 +24,10 @@ Status checkOptions(const SoftBodyOptions& options) {
   if (!(options.friction >= 0.0) || std::isnan(options.margin)) {
     return {StatusCode::InvalidOption, "a soft body's friction must not be negative, nor its margin NaN"};
   }
-  if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0)) {
-    return {StatusCode::InvalidOption, "a soft body's stiffness and damping must not be negative"};
+  if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
+      !(options.timeStep > 0.0)) {
+    return {StatusCode::InvalidOption,
+            "a soft body's stiffness and damping must not be negative, and its time step must be above 0"};
   }
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
     return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};

@@ -29,14 +29,16 @@ struct SoftBodyOptions {
 
   /// Also chooses how the body meets rigid ones: MassSpring as the classic worlds expect, the others as the deformable.
   ForceModel forceModel = ForceModel::NeoHookean;
-  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size. For MassSpring Bullet has no such
+  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size, but no more than is stable for
+  /// timeStep: fine cages are softer by default, and need shorter steps to be stiff. For MassSpring Bullet has no such
   /// unit: there `linkStiffness` counts.
   double youngsModulus = 0.0;
   /// From 30 (wobbles, sags) to 300 (firm) a body bounces, visibly deforms and comes to rest, whatever its size.
   double relativeStiffness = 50.0;
-  double poissonRatio = 0.3;   ///< 0 to below 0.5
-  double damping = 0.02;       ///< seconds: damping forces are this times the rate of the elastic ones
-  double linkStiffness = 0.5;  ///< MassSpring only: Bullet's m_kLST, 0 to 1
+  double poissonRatio = 0.3;      ///< 0 to below 0.5
+  double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
+  double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
+  double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Deformable world: one Newton step an update instead of explicit elastic forces. A property of the whole world.
   bool implicit = false;
 };
