@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""Draws the pictures from what the demos wrote; called by the script make, which see.
+
+compose.py drop  FOLDER PNG FRAME...         moments of the drop demo's sequence in FOLDER, side by side
+compose.py cages MESH.obj PNG CAGE.vtk...    cages around their mesh, side by side
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter, ImageFont
+
+PANEL = 500       # pixels a side
+GAP = 6           # pixels between panels
+OVERSAMPLING = 2  # drawn larger and scaled down: f3d's own smoothing leaves the edges of scales ragged
+BACKGROUND = (244, 242, 238)
+INK = (84, 86, 92)
+SUN = np.array((0.30, -1.0, -0.25))  # where its light goes, for the shadows
+FLOOR_HALF_SIDE = 8.0
+
+# Diffuse, ambient and specular colour, each as a part of the first. f3d lights from beside the camera alone: without an
+# ambient part what faces upwards is black.
+MATERIALS = {
+    "scales": ((0.10, 0.44, 0.27), 1.0, 0.25, 0.25),
+    "horn": ((0.80, 0.60, 0.34), 0.9, 0.25, 0.2),
+    "ivory": ((0.95, 0.92, 0.80), 0.9, 0.2, 0.2),
+    "eye": ((1.00, 0.62, 0.05), 0.9, 0.3, 0.3),
+    "pupil": ((0.02, 0.02, 0.02), 1.0, 0.0, 0.3),
+    "ramp": ((0.66, 0.74, 0.84), 0.4, 0.7, 0.0),
+    "dome": ((0.93, 0.66, 0.50), 0.4, 0.7, 0.0),
+    "floor": (tuple(c / 255 for c in BACKGROUND), 0.0, 1.0, 0.0),
+    "cage": ((0.95, 0.45, 0.12), 0.0, 1.0, 0.0),
+}
+
+
+def read_obj(path):
+    """Vertices, and the triangles of each (group, material), in order."""
+    vertices, parts, group, material, triangles = [], [], "", "", None
+    for line in open(path):
+        word, _, rest = line.partition(" ")
+        if word == "v":
+            vertices.append(rest)
+        elif word in ("g", "usemtl"):
+            group, material = (rest.strip(), material) if word == "g" else (group, rest.strip())
+            triangles = None
+        elif word == "f":
+            if triangles is None:
+                triangles = []
+                parts.append((group, material, triangles))
+            triangles.append([int(corner.split("/")[0]) - 1 for corner in rest.split()])
+    return np.array([v.split() for v in vertices], float), [(g, m, np.array(t)) for g, m, t in parts]
+
+
+def read_cage(path):
+    """Nodes and tets of a legacy VTK file."""
+    words = Path(path).read_text().split()
+    at = words.index("POINTS")
+    count = int(words[at + 1])
+    nodes = np.array(words[at + 3:at + 3 + 3 * count], float).reshape(-1, 3)
+    at = words.index("CELLS")
+    count = int(words[at + 1])
+    return nodes, np.array(words[at + 3:at + 3 + 5 * count], int).reshape(-1, 5)[:, 1:]
+
+
+def smooth_normals(vertices, triangles):
+    """Of the vertices; f3d would shade each triangle flat."""
+    corners = vertices[triangles]
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.zeros_like(vertices)
+    for k in range(3):
+        np.add.at(normals, triangles[:, k], face)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+
+
+class Scene:
+    """Collects triangles by material, and has f3d draw them."""
+
+    def __init__(self):
+        self.lines, self.count = [], 0
+
+    def add(self, material, vertices, triangles, uv=None):
+        normals = smooth_normals(vertices, triangles)
+        uv = np.zeros((len(vertices), 2)) if uv is None else uv
+        self.lines += ["v %.6f %.6f %.6f" % tuple(v) for v in vertices]
+        self.lines += ["vn %.4f %.4f %.4f" % tuple(n) for n in normals]
+        self.lines += ["vt %.5f %.5f" % tuple(t) for t in uv]
+        self.lines += [f"g {material}", f"usemtl {material}"]
+        for a, b, c in triangles + self.count + 1:
+            self.lines.append(f"f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")
+        self.count += len(vertices)
+
+    def draw(self, position, focus, angle, shadows=None):
+        """One panel, seen from a position. Shadows: images by material, see shadow()."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = Path(folder)
+            # f3d finds the materials by the name of the file, not by a mtllib line.
+            (folder / "scene.obj").write_text("\n".join(self.lines) + "\n")
+            with open(folder / "scene.mtl", "w") as out:
+                for name, (colour, diffuse, ambient, specular) in MATERIALS.items():
+                    out.write(f"newmtl {name}\nNs 40\n")
+                    for key, part in (("Kd", diffuse), ("Ka", ambient)):
+                        out.write("%s %g %g %g\n" % (key, *[part * c for c in colour]))
+                    out.write("Ks %g %g %g\n" % (3 * (specular,)))
+                    if shadows and name in shadows:
+                        out.write(f"map_Kd {name}.png\n")
+                        shadows[name].save(folder / f"{name}.png")
+            # No --ssao: it darkens the floor towards the horizon.
+            subprocess.run(
+                ["xvfb-run", "-a", "f3d", "--dry-run", "--quiet", "scene.obj", "--output=scene.png", "--up=+Y",
+                 "--fxaa", "--resolution=%d,%d" % (2 * (OVERSAMPLING * PANEL,)),
+                 "--bg-color=%g,%g,%g" % tuple(c / 255 for c in BACKGROUND), "--camera-position=%g,%g,%g" % position,
+                 "--camera-focal-point=%g,%g,%g" % focus, f"--camera-view-angle={angle}"], cwd=folder, check=True)
+            return Image.open(folder / "scene.png").convert("RGB").resize((PANEL, PANEL), Image.LANCZOS)
+
+
+def on_floor(points, floor):
+    """Where on the floor, as texture coordinates, the sun puts the shadows of points."""
+    p = points + (floor - points[:, 1:2]) / SUN[1] * SUN
+    return 0.5 + 0.5 * p[:, (0, 2)] / FLOOR_HALF_SIDE
+
+
+def shadow(size, *surfaces):
+    """A texture: white, and darker where a surface keeps the sun from the floor. f3d itself casts no shadows."""
+    image = Image.new("L", (size, size), 255)
+    draw = ImageDraw.Draw(image)
+    for uv, triangles in surfaces:
+        for a, b, c in (uv * (1, -1) + (0, 1))[triangles] * size:
+            draw.polygon([tuple(a), tuple(b), tuple(c)], fill=150)
+    return image.filter(ImageFilter.GaussianBlur(0.005 * size)).convert("RGB")
+
+
+def add_mesh(scene, vertices, parts):
+    for _, material, triangles in parts:
+        used, renumbered = np.unique(triangles, return_inverse=True)
+        scene.add(material, vertices[used], renumbered.reshape(-1, 3))
+
+
+def drop_panel(folder, frame):
+    vertices, parts = read_obj(folder / f"frame_{frame:04d}.obj")
+    points, ((_, _, base), (_, _, ramp), (_, _, dome)) = read_obj(folder / "obstacles.obj")
+    floor = points[base, 1].max()
+    scene = Scene()
+    add_mesh(scene, vertices, parts)
+    square = FLOOR_HALF_SIDE * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]) + (0, floor, 0)
+    scene.add("floor", square, np.array([[0, 1, 2], [0, 2, 3]]), on_floor(square, floor))
+    corners = points[ramp.ravel()]  # not shared by faces: its edges are sharp
+    scene.add("ramp", corners, np.arange(len(corners)).reshape(-1, 3), on_floor(corners, floor))
+    used, renumbered = np.unique(dome, return_inverse=True)
+    scene.add("dome", points[used], renumbered.reshape(-1, 3), on_floor(points[used], floor))
+
+    serpent = on_floor(vertices, floor), np.concatenate([triangles for _, _, triangles in parts])
+    # The rest of the sphere lies below the floor. The ramp's shadow falls behind it, out of sight.
+    cap = on_floor(points, floor), dome[points[dome, 1].min(axis=1) > floor]
+    shadows = {"floor": shadow(2048, serpent, cap), "ramp": shadow(2048, serpent), "dome": shadow(2048, serpent)}
+    return scene.draw((-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5, shadows)
+
+
+def cage_panel(mesh, cage):
+    """The cage's boundary over the mesh, and its number of tets. Only what faces the viewer: the rest is clutter."""
+    position, focus = (-1.3, 2.0, 4.1), (-0.03, 0.45, 0.05)
+    scene = Scene()
+    add_mesh(scene, *read_obj(mesh))
+    nodes, tets = read_cage(cage)
+    faces = np.concatenate([tets[:, k] for k in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))])
+    inside = np.tile(tets.sum(axis=1), 4) - faces.sum(axis=1)  # the tet's fourth node
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    faces, inside = faces[first[count == 1]], inside[first[count == 1]]
+    a, b, c = (nodes[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    normal *= -np.sign(np.sum(normal * (nodes[inside] - a), axis=1, keepdims=True))
+    faces = faces[np.sum(normal * (position - a), axis=1) > 0]
+    edges = np.unique(np.sort(np.concatenate([faces[:, (0, 1)], faces[:, (1, 2)], faces[:, (2, 0)]]), axis=1), axis=0)
+
+    # f3d draws either surfaces or edges, so an edge is a thin prism.
+    start, end = nodes[edges[:, 0]], nodes[edges[:, 1]]
+    along = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
+    aside = np.cross(along, np.where(np.abs(along[:, 1:2]) < 0.9, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)))
+    aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+    above = np.cross(along, aside)
+    # The more edges, the thinner: otherwise a fine cage hides its mesh.
+    radius = min(0.005, 0.012 * len(edges) ** -0.22)
+    ring = [radius * (np.cos(t) * aside + np.sin(t) * above) for t in 2 * np.pi / 3 * np.arange(3)]
+    points = np.stack([tip + r for tip in (start, end) for r in ring], axis=1)
+    prism = np.array([[0, 1, 3], [1, 2, 4], [2, 0, 5], [1, 4, 3], [2, 5, 4], [0, 3, 5]])
+    scene.add("cage", points.reshape(-1, 3), (6 * np.arange(len(edges))[:, None, None] + prism).reshape(-1, 3))
+    return scene.draw(position, focus, 25.5), len(tets)
+
+
+def save(panels, labels, gap, path):
+    """The panels side by side, each with its label in a corner, in 256 colours: a quarter of the size."""
+    sheet = Image.new("RGB", (len(panels) * (PANEL + gap) - gap, PANEL), "white")
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.truetype("DejaVuSans.ttf", 20)
+    for k, (panel, label) in enumerate(zip(panels, labels)):
+        x = k * (PANEL + gap)
+        sheet.paste(panel, (x, 0))
+        draw.text((x + 18, 14), label, INK, font)
+    # The commonest colours alone would leave out the eyes; the most different alone, soft shadows.
+    common, different = sheet.quantize(155), sheet.quantize(100, Image.MAXCOVERAGE)
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*BACKGROUND, *common.getpalette()[:3 * 155], *different.getpalette()[:3 * 100]])
+    sheet.quantize(palette=palette).save(path, optimize=True)
+    print(f"{path}: {Path(path).stat().st_size // 1000} kB")
+
+
+def main():
+    what, source, target, *rest = sys.argv[1:]
+    if what == "drop":
+        frames = [int(frame) for frame in rest]
+        labels = [f"{frame / 60:.1f} s" for frame in frames]
+        save([drop_panel(Path(source), frame) for frame in frames], labels, GAP, target)
+    else:
+        panels, tets = zip(*[cage_panel(source, cage) for cage in rest])
+        save(panels, [f"{count:,} tets" for count in tets], 0, target)
+
+
+if __name__ == "__main__":
+    main()
