@@ -15,7 +15,7 @@ endfunction()
 tetskin_test_configuration(double_precision
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
 tetskin_test_configuration(sanitized
-  -DCMAKE_BUILD_TYPE=Debug -DTETSKIN_SANITIZE=address,undefined)
+  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DTETSKIN_SANITIZE=address,undefined)
 tetskin_test_configuration(optional_parts_off
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
 
@@ -73,6 +73,8 @@ if(TARGET tetskin::bullet_physics)
     -DBullet_DIR=${PROJECT_BINARY_DIR}/fake_bullet/lying)
 endif()
 tetskin_test_refusal(demos_without_their_parts "The demos need every part" -DTETSKIN_DEMOS=ON)
+
+add_test(NAME style.readme COMMAND ${CMAKE_COMMAND} -P tests/style/readme.cmake WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 
 # Style, with the one version that the files are formatted with.
 find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)

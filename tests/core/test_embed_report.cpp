@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What an embedding reports, of good input and of bad.
+#include "support/odd_meshes.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/embedding.h>
+
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+const Box3 kUnitBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+
+TEST(EmbedReport, ReportNamesTheWorstVertex) {
+  const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  const Points vertices{{0.5, 0.5, 0.5}, {0.5, 1.5, 0.5}, {0.5, 0.5, -2.0}, {1.1, 0.5, 0.5}};
+  Embedding embedding;
+  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  EXPECT_EQ(report.inside, 1u);
+  EXPECT_EQ(report.outside, 3u);
+  EXPECT_EQ(report.worstVertex, 2u);
+  EXPECT_DOUBLE_EQ(report.worstDistance, 2.0);
+  EXPECT_GE(report.worstBarycentric, 4.0);
+  EXPECT_GT(report.milliseconds, 0.0);
+  EXPECT_FALSE(report.unitsDiffer());
+  EXPECT_NE(report.describe().find("vertex 2"), std::string::npos);
+}
+
+TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {
+  const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+  Embedding embedding;
+  const Points vertices =
+      test::randomPoints(2000, {Eigen::Vector3d::Constant(-0.25), Eigen::Vector3d::Constant(1.25)}, 25);
+  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  EXPECT_GT(report.restErrorMax, 0.0);
+  EXPECT_LT(report.restErrorMax, 1e-6);
+}
+
+TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
+  const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+  const Points metres = test::randomPoints(200, kUnitBox, 26);
+  Embedding embedding;
+  EXPECT_FALSE(embed(cage, viewOf(metres), {}, embedding).unitsDiffer());
+  for (const double scale : {1e-3, 0.0254, 39.37, 1e3}) {
+    const Points others = test::scaledAndMoved(metres, scale, Eigen::Vector3d::Zero());
+    const EmbedReport report = embed(cage, viewOf(others), {}, embedding);
+    EXPECT_TRUE(report.ok());
+    EXPECT_TRUE(report.unitsDiffer()) << scale;
+    EXPECT_NE(report.describe().find("different units"), std::string::npos);
+  }
+}
+
+TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
+  const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  const Points vertices = test::scaledAndMoved(test::randomPoints(10, kUnitBox, 27), 1.0, {5, 0, 0});
+  Embedding embedding;
+  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  EXPECT_TRUE(report.unitsDiffer());
+  EXPECT_EQ(report.outside, 10u);
+}
+
+TEST(EmbedReport, RefusesBadInputAndLeavesTheEmbeddingAlone) {
+  const TetMesh cage = test::latticeCage(1, 1, 1);
+  const Points good{{0.5, 0.5, 0.5}};
+  Embedding embedding;
+  ASSERT_TRUE(embed(cage, viewOf(good), {}, embedding).ok());
+
+  const auto fails = [&](const TetMesh& badCage, const Points& vertices, StatusCode code, const char* mentions) {
+    const EmbedReport report = embed(badCage, viewOf(vertices), {}, embedding);
+    EXPECT_EQ(report.status.code, code);
+    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    EXPECT_EQ(report.describe(), report.status.message);
+    EXPECT_EQ(report.unbound, vertices.size());
+    EXPECT_EQ(embedding.vertexCount(), 1u);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  fails(cage, {}, StatusCode::Empty, "no vertices");
+  fails(cage, {{0, 0, 0}, {0, nan, 0}}, StatusCode::NonFinite, "vertex 1");
+  fails(cage, {{1e31, 0, 0}}, StatusCode::NonFinite, "1e30");
+  fails({}, good, StatusCode::Empty, "no tets");
+  TetMesh bad = cage;
+  bad.tets[2][1] = 8;
+  fails(bad, good, StatusCode::IndexOutOfRange, "tet 2");
+  bad = cage;
+  bad.nodes[3].x() = nan;
+  fails(bad, good, StatusCode::NonFinite, "node 3");
+  bad = cage;
+  for (Eigen::Vector3d& p : bad.nodes) p.z() = 0.0;
+  fails(bad, good, StatusCode::Degenerate, "flat");
+  bad = cage;
+  for (Eigen::Vector3d& p : bad.nodes) p *= 1e-20;
+  fails(bad, {{1e29, 0, 0}, {0, 0, 0}}, StatusCode::Degenerate, "unit");
+}
+
+}  // namespace
+}  // namespace tetskin
