@@ -1,6 +1,6 @@
 # For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
 
-# What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 22.04 and later.
+# What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 24.04 and later.
 build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev libbenchmark-dev)
 test_packages=(libgtest-dev clang-format clang-tidy)
 

@@ -9,7 +9,7 @@ function(tetskin_test_configuration name)
       ${nested_options}
       --build-options ${ARGN} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
-  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 2400 PROCESSORS ${nested_parallel})
+  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel})
 endfunction()
 
 tetskin_test_configuration(double_precision
@@ -43,7 +43,7 @@ tetskin_test_consumer(add_subdirectory -DTETSKIN_SOURCE=${PROJECT_SOURCE_DIR} -D
 # Configurations that must stop, with a message that says why.
 function(tetskin_test_refusal name message)
   add_test(NAME refusal.${name}
-    COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${PROJECT_BINARY_DIR}/refusals/${name} --fresh
+    COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${PROJECT_BINARY_DIR}/refusals/${name}
       -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF -DTETSKIN_IO=OFF ${ARGN})
   string(REPLACE " " "[^A-Za-z]+" pattern "${message}")  # CMake wraps the lines of its messages
   set_tests_properties(refusal.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${pattern}")

@@ -15,9 +15,9 @@ function(_tetskin_check_bullet_precision)
   file(WRITE "${probe}" "#include <BulletSoftBody/btSoftBody.h>\n"
     "void (btSoftBody::*volatile probe)(btScalar, bool) = &btSoftBody::setTotalMass;\n"
     "int main() { return probe == nullptr; }\n")
-  try_compile(matches "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/tetskin_bullet_probe" SOURCES "${probe}"
+  try_compile(tetskin_bullet_matches "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/tetskin_bullet_probe" SOURCES "${probe}"
     LINK_LIBRARIES tetskin::bullet_physics OUTPUT_VARIABLE log)
-  if(NOT matches)
+  if(NOT tetskin_bullet_matches)
     if(TETSKIN_DOUBLE_PRECISION)
       set(cure "TETSKIN_DOUBLE_PRECISION is ON: install Bullet built with BT_USE_DOUBLE_PRECISION (Debian's "
         "libbullet-dev has it as BulletConfig-float64.cmake), point Bullet_DIR at it, or set the option to OFF.")

@@ -67,7 +67,7 @@ double deformation(const std::vector<std::array<double, 3>>& rest, const std::ve
 }
 
 TEST_F(Drop, SerpentFallsDeformsStaysAboveTheFloorAndRests) {
-  const CommandResult result = drop({"--triangles", "8000", "--every", "30"});
+  const CommandResult result = drop({"--triangles", "8000", "--tets", "1000", "--every", "30"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/drop/summary.json");
   EXPECT_EQ(json["frames"], 240);
