@@ -109,6 +109,8 @@ class DeformableWorldBase : public TestWorld {
 
   btDeformableMultiBodyDynamicsWorld* soft;
   btDeformableGravityForce gravity{btVector3(0, -10, 0)};
+  // Here, not in the class that adds it: the body leaves the world, and its forces, in this class's destructor.
+  btDeformableNeoHookeanForce elasticity{400, 600, btScalar(0.05)};
 };
 
 class DeformableWorld : public DeformableWorldBase {
@@ -119,9 +121,6 @@ class DeformableWorld : public DeformableWorldBase {
     soft->addForce(body_.get(), &gravity);
     soft->addForce(body_.get(), &elasticity);
   }
-
- private:
-  btDeformableNeoHookeanForce elasticity{400, 600, btScalar(0.05)};
 };
 
 /// A reduced body with two modes that are polynomials of the rest position: no files needed.
