@@ -33,7 +33,7 @@ struct SoftBodyOptions {
   /// timeStep: fine cages are softer by default, and need shorter steps to be stiff. For MassSpring Bullet has no such
   /// unit: there `linkStiffness` counts.
   double youngsModulus = 0.0;
-  /// From 30 (wobbles, sags) to 300 (firm) a body bounces, visibly deforms and comes to rest, whatever its size.
+  /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded by timeStep as said above.
   double relativeStiffness = 50.0;
   double poissonRatio = 0.3;      ///< 0 to below 0.5
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
