@@ -31,19 +31,6 @@ std::vector<Eigen::Vector3d> distinctPoints(PointView<const double> vertices, co
   return points;
 }
 
-VertexBinding bindingOf(const SearchTet& tet, const TetHit& hit, const Eigen::Vector3d& point) {
-  const Eigen::Vector4d b = tet.map(point);
-  const std::array<float, 3> w{static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2])};
-  return {tet.index, {w[0], w[1], w[2], 1.0f - w[0] - w[1] - w[2]}, hit.barycentric <= 0.0};
-}
-
-double restError(const SearchTet& tet, const VertexBinding& binding, const Eigen::Vector3d& point) {
-  const TetCorners& p = tet.corners;
-  const Eigen::Vector3d skinned = p[3] + binding.weights[0] * (p[0] - p[3]) + binding.weights[1] * (p[1] - p[3]) +
-                                  binding.weights[2] * (p[2] - p[3]);
-  return (skinned - point).norm();
-}
-
 /// Everything that can be known before the search. Boxes too, so that they are reported even for a mesh that fails.
 Status checkInputs(const TetMesh& cage, PointView<const double> vertices, EmbedReport& report) {
   report.vertexCount = report.unbound = vertices.size();
@@ -64,28 +51,40 @@ Status checkInputs(const TetMesh& cage, PointView<const double> vertices, EmbedR
   return {};
 }
 
-/// Binds every distinct point and collects the fit's extremes. Vertex v is the point placeOf[v].
-std::vector<VertexBinding> bindPoints(const std::vector<SearchTet>& tets, const std::vector<Eigen::Vector3d>& points,
-                                      const TetSearch& search, EmbedReport& report, std::size_t& worstPoint) {
-  std::vector<VertexBinding> bindings(points.size());
-  report.worstBarycentric = search.hits.front().barycentric;
-  worstPoint = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const TetHit& hit = search.hits[i];
-    bindings[i] = bindingOf(tets[hit.tet], hit, points[i]);
-    const double error = restError(tets[hit.tet], bindings[i], points[i]);
-    // Weights beyond float's range make the error infinite or NaN.
-    report.restErrorMax = std::max(report.restErrorMax, std::isfinite(error) ? error : HUGE_VAL);
-    report.worstBarycentric = std::max(report.worstBarycentric, hit.barycentric);
-    if (hit.distance > report.worstDistance) {
-      report.worstDistance = hit.distance;
-      worstPoint = i;
+/// Distance from what skinning at rest gives to the vertex itself, from its float weights.
+double restError(const TetCorners& p, const Embedding& embedding, std::uint32_t slot, const Eigen::Vector3d& vertex) {
+  const Eigen::Vector3d skinned = p[3] + embedding.weights(0)[slot] * (p[0] - p[3]) +
+                                  embedding.weights(1)[slot] * (p[1] - p[3]) +
+                                  embedding.weights(2)[slot] * (p[2] - p[3]);
+  return (skinned - vertex).norm();
+}
+
+/// The extremes of a finished embedding, with the first vertex where there are several.
+void measureFit(const TetMesh& cage, PointView<const double> vertices, const Embedding& embedding,
+                EmbedReport& report) {
+  report.worstBarycentric = -1.0;
+  for (std::size_t r = 0; r + 1 < embedding.runs().size(); ++r) {
+    const Embedding::Run& run = embedding.runs()[r];
+    const TetCorners corners = cornersOf(cage, run.nodes);
+    const BarycentricMap map(corners);
+    for (std::uint32_t slot = run.firstSlot; slot < embedding.runs()[r + 1].firstSlot; ++slot) {
+      const std::size_t v = embedding.slotVertices()[slot];
+      const Eigen::Vector3d vertex(vertices[v][0], vertices[v][1], vertices[v][2]);
+      const Eigen::Vector4d weights = map(vertex);
+      const double error = restError(corners, embedding, slot, vertex);
+      // Weights beyond float's range make the error infinite or NaN.
+      report.restErrorMax = std::max(report.restErrorMax, std::isfinite(error) ? error : HUGE_VAL);
+      report.worstBarycentric = std::max(report.worstBarycentric, barycentricDistance(weights));
+      if (r < embedding.insideRunCount()) continue;
+      const double distance = distanceToTet(vertex, corners, weights);
+      if (distance < report.worstDistance || (distance == report.worstDistance && v > report.worstVertex)) continue;
+      report.worstDistance = distance;
+      report.worstVertex = v;
     }
   }
   const double diagonal = report.meshBox.diagonal().norm();
   // One point, or all at one place: compare with the cage instead of dividing by nothing.
   report.restErrorMax /= diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm();
-  return bindings;
 }
 
 Status embedVertices(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
@@ -96,26 +95,26 @@ Status embedVertices(const TetMesh& cage, PointView<const double> vertices, cons
   const std::vector<SearchTet> tets = searchTets(cage);
   const TetSearch search = findTets(tets, points, options.outside);
 
-  std::size_t worstPoint = 0;
-  const std::vector<VertexBinding> ofPoint = bindPoints(tets, points, search, report, worstPoint);
+  std::vector<std::int32_t> tetOf(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const TetHit& hit = search.hits[placeOf[v]];
+    tetOf[v] = hit.barycentric <= 0.0 ? tets[hit.tet].index : ~tets[hit.tet].index;
+  }
+  Embedding made = Embedding::fromTets(cage, vertices, tetOf);
+  measureFit(cage, vertices, made, report);
   if (!std::isfinite(report.restErrorMax)) {
     return {StatusCode::Degenerate,
             "some vertices are so far from the cage that their weights overflow; are mesh and "
             "cage in the same unit?"};
   }
-  std::vector<VertexBinding> bindings(vertices.size());
-  report.worstVertex = vertices.size();
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    bindings[v] = ofPoint[placeOf[v]];
-    ++(bindings[v].inside ? report.inside : report.outside);
-    if (placeOf[v] == worstPoint) report.worstVertex = std::min(report.worstVertex, v);
-  }
+  report.inside = made.insideCount();
+  report.outside = made.vertexCount() - made.insideCount();
   report.unbound = 0;
   report.coincident = vertices.size() - points.size();
   report.flatTets = cage.tetCount() - tets.size();
   report.overlapping = search.overlapping;
   report.candidates = search.candidates;
-  embedding = Embedding::fromBindings(bindings, cage);
+  embedding = std::move(made);
   return {};
 }
 
@@ -151,44 +150,64 @@ std::vector<VertexBinding> Embedding::bindings() const {
   std::vector<VertexBinding> result(vertexCount());
   for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
     for (std::uint32_t slot = runs_[r].firstSlot; slot < runs_[r + 1].firstSlot; ++slot) {
-      const Weights& w = slotWeights_[slot];
+      const float b0 = weights_[0][slot], b1 = weights_[1][slot], b2 = weights_[2][slot];
       result[slotVertices_[slot]] = {
-          static_cast<int>(runs_[r].tet), {w[0], w[1], w[2], 1.0f - w[0] - w[1] - w[2]}, true};
+          static_cast<int>(runs_[r].tet), {b0, b1, b2, 1.0f - b0 - b1 - b2}, slot < insideCount_};
     }
   }
-  for (const std::uint32_t slot : outsideSlots_) result[slotVertices_[slot]].inside = false;
   return result;
 }
 
-Embedding Embedding::fromBindings(const std::vector<VertexBinding>& bindings, const TetMesh& cage) {
+Embedding Embedding::fromTets(const TetMesh& cage, PointView<const double> vertices,
+                              const std::vector<std::int32_t>& tetOf) {
+  assert(vertices.size() == tetOf.size());
   Embedding e;
   e.nodeCount_ = cage.nodeCount();
   e.tetCount_ = cage.tetCount();
-  std::vector<std::uint32_t> nextSlot(cage.tetCount() + 1, 0);
-  for (const VertexBinding& b : bindings) {
-    assert(b.tet >= 0 && static_cast<std::size_t>(b.tet) < cage.tetCount());
-    ++nextSlot[b.tet + 1];
-  }
-  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    if (nextSlot[t + 1] > 0) e.runs_.push_back({cage.tets[t], nextSlot[t], static_cast<std::uint32_t>(t)});
-    nextSlot[t + 1] += nextSlot[t];
-  }
-  e.runs_.push_back({{}, static_cast<std::uint32_t>(bindings.size()), static_cast<std::uint32_t>(cage.tetCount())});
-
-  e.slotWeights_.resize(bindings.size());
-  e.slotVertices_.resize(bindings.size());
-  std::vector<char> outside(bindings.size(), 0);
-  for (std::uint32_t v = 0; v < bindings.size(); ++v) {
-    const VertexBinding& b = bindings[v];
-    const std::uint32_t slot = nextSlot[b.tet]++;
-    e.slotWeights_[slot] = {b.weights[0], b.weights[1], b.weights[2]};
-    e.slotVertices_[slot] = v;
-    outside[slot] = !b.inside;
-  }
-  for (std::uint32_t slot = 0; slot < bindings.size(); ++slot) {
-    if (outside[slot]) e.outsideSlots_.push_back(slot);
+  e.sortByTet(cage, tetOf);
+  for (std::vector<float>& plane : e.weights_) plane.resize(vertices.size() + kPadding);
+  for (std::vector<float>& plane : e.closestWeights_) plane.resize(vertices.size() - e.insideCount_ + kPadding);
+  for (std::size_t r = 0; r + 1 < e.runs_.size(); ++r) {
+    const TetCorners corners = cornersOf(cage, e.runs_[r].nodes);
+    const BarycentricMap map(corners);
+    for (std::uint32_t slot = e.runs_[r].firstSlot; slot < e.runs_[r + 1].firstSlot; ++slot) {
+      const double* v = vertices[e.slotVertices_[slot]];
+      const Eigen::Vector3d point(v[0], v[1], v[2]);
+      const Eigen::Vector4d b = map(point);
+      for (std::size_t k = 0; k < 3; ++k) e.weights_[k][slot] = static_cast<float>(b[static_cast<int>(k)]);
+      if (slot < e.insideCount_) continue;
+      const Eigen::Vector4d c = map(closestPointInTet(point, corners, b));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double clamped = std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding is a hair off the face
+        e.closestWeights_[k][slot - e.insideCount_] = static_cast<float>(clamped);
+      }
+    }
   }
   return e;
+}
+
+/// A counting sort with two bins a tet: the vertices inside, and after all of those the ones outside.
+void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf) {
+  const std::size_t tets = cage.tetCount();
+  const auto binOf = [&](std::int32_t tet) {
+    const std::size_t bin = tet >= 0 ? static_cast<std::size_t>(tet) : tets + static_cast<std::size_t>(~tet);
+    assert(bin < 2 * tets);
+    return bin;
+  };
+  std::vector<std::uint32_t> next(2 * tets + 1, 0);
+  for (const std::int32_t tet : tetOf) ++next[binOf(tet) + 1];
+  for (std::size_t bin = 0; bin < 2 * tets; ++bin) {
+    const auto tet = static_cast<std::uint32_t>(bin < tets ? bin : bin - tets);
+    if (next[bin + 1] > 0) runs_.push_back({cage.tets[tet], next[bin], tet});
+    next[bin + 1] += next[bin];
+    if (bin + 1 != tets) continue;
+    insideRunCount_ = runs_.size();
+    insideCount_ = next[tets];
+  }
+  runs_.push_back({{}, static_cast<std::uint32_t>(tetOf.size()), static_cast<std::uint32_t>(tets)});
+
+  slotVertices_.resize(tetOf.size());
+  for (std::uint32_t v = 0; v < tetOf.size(); ++v) slotVertices_[next[binOf(tetOf[v])]++] = v;
 }
 
 EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,

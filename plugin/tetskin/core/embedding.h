@@ -66,45 +66,59 @@ struct VertexBinding {
 };
 
 /// For every vertex a tet and three weights: built once, immutable, shared by any number of bodies with the same cage.
-/// Vertices are stored tet by tet, so that a tet's nodes are read once: a *slot* is a place in that order.
-/// Memory: 16 bytes a vertex, 24 bytes an occupied tet.
+/// Vertices are stored tet by tet, so that a tet's nodes are read once: a *slot* is a place in that order. The slots
+/// [0, insideCount()) are those of the vertices inside, the others those of the vertices outside.
+/// Memory: 16 bytes a vertex, 12 more a vertex outside, 24 bytes an occupied tet.
 class Embedding {
  public:
-  /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes. A last run closes the list.
+  /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes.
   struct Run {
     std::array<int, 4> nodes{};
     std::uint32_t firstSlot = 0;
     std::uint32_t tet = 0;
   };
-  using Weights = std::array<float, 3>;
+  /// Weights come in planes of one float a slot, so that kernels take several vertices at a time; each is followed by
+  /// this many zeros, which they may read.
+  static constexpr std::size_t kPadding = 16;
 
   std::size_t vertexCount() const { return slotVertices_.size(); }
+  std::size_t insideCount() const { return insideCount_; }
   std::size_t nodeCount() const { return nodeCount_; }
   std::size_t tetCount() const { return tetCount_; }
   bool empty() const { return slotVertices_.empty(); }
 
-  /// occupied tets + 1, ascending by tet
+  /// The runs of the tets with vertices inside, ascending by tet; then those of the tets with vertices outside,
+  /// likewise; and one more that closes the list.
   const std::vector<Run>& runs() const { return runs_; }
-  /// vertexCount x 3, by slot: weights of the tet's first three nodes
-  const std::vector<Weights>& slotWeights() const { return slotWeights_; }
+  std::size_t insideRunCount() const { return insideRunCount_; }
+  /// vertexCount + kPadding, by slot: weight of node k < 3 of the slot's tet
+  const float* weights(int k) const { return weights_[static_cast<std::size_t>(k)].data(); }
+  /// vertexCount - insideCount + kPadding, by slot - insideCount: weight of node k < 3 at the point of the slot's tet
+  /// closest to the vertex, at rest
+  const float* closestWeights(int k) const { return closestWeights_[static_cast<std::size_t>(k)].data(); }
   /// vertexCount, by slot: which vertex it is; ascending within a run
   const std::vector<std::uint32_t>& slotVertices() const { return slotVertices_; }
-  /// The slots of the vertices outside every tet, ascending.
-  const std::vector<std::uint32_t>& outsideSlots() const { return outsideSlots_; }
 
   /// The same by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
   std::vector<VertexBinding> bindings() const;
 
-  /// Sorts bindings by tet. `bindings[v].tet` must be in [0, tetCount) for every v.
-  static Embedding fromBindings(const std::vector<VertexBinding>& bindings, const TetMesh& cage);
+  /// Sorts vertices by tet and computes their weights.
+  /// vertices  vertexCount x 3, rest space
+  /// tetOf     by vertex: its tet, or ~tet if it lies outside of it; in [0, tetCount), and not flat
+  static Embedding fromTets(const TetMesh& cage, PointView<const double> vertices,
+                            const std::vector<std::int32_t>& tetOf);
 
  private:
+  void sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf);
+
   std::size_t nodeCount_ = 0;
   std::size_t tetCount_ = 0;
+  std::size_t insideCount_ = 0;
+  std::size_t insideRunCount_ = 0;
   std::vector<Run> runs_;
-  std::vector<Weights> slotWeights_;
+  std::array<std::vector<float>, 3> weights_;
+  std::array<std::vector<float>, 3> closestWeights_;
   std::vector<std::uint32_t> slotVertices_;
-  std::vector<std::uint32_t> outsideSlots_;
 };
 
 /// Finds the tet and the weights of every vertex, exactly as testing all pairs would:

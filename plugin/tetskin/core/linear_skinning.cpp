@@ -29,7 +29,7 @@ Box3 skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, co
   Point low = Point::Constant(std::numeric_limits<Scalar>::infinity()), high = -low;
 
   const std::vector<Embedding::Run>& runs = embedding.runs();
-  const Embedding::Weights* weights = embedding.slotWeights().data();
+  const float *b0 = embedding.weights(0), *b1 = embedding.weights(1), *b2 = embedding.weights(2);
   const std::uint32_t* vertices = embedding.slotVertices().data();
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
     const auto& n = runs[r].nodes;
@@ -40,8 +40,7 @@ Box3 skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, co
     const Point e1 = nodes[n[1]].array() - nodes[n[3]].array();
     const Point e2 = nodes[n[2]].array() - nodes[n[3]].array();
     for (std::uint32_t slot = runs[r].firstSlot; slot < runs[r + 1].firstSlot; ++slot) {
-      const Embedding::Weights& w = weights[slot];
-      const Point x = p3 + (e0 * Scalar(w[0]) + e1 * Scalar(w[1]) + e2 * Scalar(w[2]));
+      const Point x = p3 + (e0 * Scalar(b0[slot]) + e1 * Scalar(b1[slot]) + e2 * Scalar(b2[slot]));
       low = low.min(x);
       high = high.max(x);
       Out* target = out[vertices[slot]];

@@ -114,16 +114,26 @@ inline Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& p, const Ei
   return a + ab * (vb * scale) + ac * (vc * scale);
 }
 
-/// Distance from v to the tet, 0 inside. `weights` are v's barycentric weights in it: only faces that v lies beyond can
-/// hold the closest point.
-inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const Eigen::Vector4d& weights) {
-  double squared = weights.minCoeff() >= 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+/// Closest point of the tet to v: v itself inside. `weights` are v's barycentric weights in it: only faces that v lies
+/// beyond can hold the closest point.
+inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorners& p,
+                                         const Eigen::Vector4d& weights) {
+  Eigen::Vector3d closest = v;
+  double squared = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 4; ++i) {
     if (weights[i] >= 0.0) continue;
     const Eigen::Vector3d q = closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]);
-    squared = std::min(squared, (v - q).squaredNorm());
+    const double d = (v - q).squaredNorm();
+    if (d >= squared) continue;
+    squared = d;
+    closest = q;
   }
-  return std::sqrt(squared);
+  return closest;
+}
+
+/// Distance from v to the tet, 0 inside; see `closestPointInTet`.
+inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const Eigen::Vector4d& weights) {
+  return (v - closestPointInTet(v, p, weights)).norm();
 }
 
 }  // namespace tetskin
