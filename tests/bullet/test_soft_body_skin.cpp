@@ -93,8 +93,8 @@ TEST_F(Skin, SeveralSkinsShareOneBodyAndSeveralBodiesOneEmbedding) {
   ASSERT_TRUE(second.bind(*body, cage, small).ok());
   const std::unique_ptr<btSoftBody> other(makeSoftBody(cage, info));
   other->translate(btVector3(5, 0, 0));
-  ASSERT_TRUE(third.bind(*other, skin.embedding()).ok());
-  EXPECT_EQ(third.embedding().get(), skin.embedding().get());
+  ASSERT_TRUE(third.bind(*other, skin.binding()).ok());
+  EXPECT_EQ(third.binding().get(), skin.binding().get());
   bend();
   skin.update();
   second.update();
@@ -128,7 +128,7 @@ TEST_F(Skin, OriginIsSubtracted) {
   std::vector<Eigen::Vector3d> points(mesh.vertexCount());
   SkinOptions options;
   options.target = viewOf(points);
-  options.origin = btVector3(10, 20, 30);
+  options.origin = Eigen::Vector3d(10, 20, 30);
   body->translate(btVector3(10, 20, 30));
   ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
   EXPECT_LT((points[3] - mesh.positions[3]).norm(), 16 * kRounding);
@@ -162,16 +162,16 @@ TEST_F(Skin, NoticesAppendedNodesAndTets) {
 TEST_F(Skin, UnboundSkinSaysSo) {
   EXPECT_EQ(skin.update(), UpdateStatus::Unbound);
   EXPECT_TRUE(skin.positions().empty());
-  EXPECT_EQ(skin.embedding(), nullptr);
+  EXPECT_EQ(skin.binding(), nullptr);
 }
 
 TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
-  const auto embedding = skin.embedding();
+  const auto binding = skin.binding();
   const auto fails = [&](const EmbedReport& report, StatusCode code, const char* mentions) {
     EXPECT_EQ(report.status.code, code);
     EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
-    EXPECT_EQ(skin.embedding(), embedding);
+    EXPECT_EQ(skin.binding(), binding);
     EXPECT_EQ(skin.update(), UpdateStatus::Updated);
   };
   fails(skin.bind(*body, test::latticeCage(2, 2, 2), mesh), StatusCode::SizeMismatch, "125 nodes");
@@ -245,7 +245,7 @@ TEST_F(BulletsRenderMesh, AgreesOnTetsAndPositions) {
   body->interpolateRenderMesh();
   ASSERT_EQ(skin.update(), UpdateStatus::Updated);
 
-  const auto bindings = skin.embedding()->bindings();
+  const auto bindings = skin.binding()->embedding.bindings();
   int otherTets = 0;
   for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
     const int bullets = bulletsTet(v);

@@ -39,7 +39,7 @@ class Worlds : public testing::TestWithParam<NamedWorld> {
 
   /// Compares the skin with the weights applied to the nodes, in double.
   void expectSkinFollowsNodes() const {
-    const auto bindings = skin.embedding()->bindings();
+    const auto bindings = skin.binding()->embedding.bindings();
     const PointView<const btScalar> positions = skin.positions();
     for (std::size_t v = 0; v < bindings.size(); ++v) {
       Eigen::Vector3d expected = Eigen::Vector3d::Zero();

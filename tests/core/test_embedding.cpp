@@ -338,7 +338,7 @@ TEST(Embedding, RunsListEverySlotOnceInAscendingOrder) {
     if (r + 1 != embedding.insideRunCount()) {
       EXPECT_LT(runs[r].tet, runs[r + 1].tet);
     }
-    EXPECT_EQ(runs[r].nodes, cage.tets[runs[r].tet]);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(runs[r].nodes[k], cage.tets[runs[r].tet][k]);
   }
   EXPECT_EQ(runs[embedding.insideRunCount()].firstSlot, embedding.insideCount());
   std::vector<std::uint32_t> order = embedding.slotVertices();

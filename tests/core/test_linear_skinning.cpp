@@ -18,6 +18,7 @@ class LinearSkinning : public testing::Test {
   using OutScalar = typename Types::second_type;
   using Nodes = std::vector<Eigen::Matrix<NodeScalar, 3, 1>>;
   using Surface = std::vector<Eigen::Matrix<OutScalar, 3, 1>>;
+  using Output = SkinOutput<NodeScalar, OutScalar>;
 
   LinearSkinning() : cage(test::latticeCage(4, 4, 4, 0.25)) {
     vertices = test::randomPoints(1000, {Eigen::Vector3d::Constant(-0.2), Eigen::Vector3d::Constant(1.2)}, 41);
@@ -35,9 +36,9 @@ class LinearSkinning : public testing::Test {
   Surface skin(const Nodes& nodes,
                const Eigen::Matrix<NodeScalar, 3, 1>& origin = Eigen::Matrix<NodeScalar, 3, 1>::Zero()) {
     PackedNodes<NodeScalar> packed(nodes.size());
-    EXPECT_TRUE(packNodes(viewOf(nodes), packed));
+    EXPECT_EQ(packed.pack(viewOf(nodes)), nodes.size());
     Surface surface(embedding.vertexCount());
-    bounds = skinLinear(embedding, packed, origin, viewOf(surface));
+    skinLinear(embedding, packed, Output{viewOf(surface), VertexOrder::Mesh, origin}, &bounds);
     return surface;
   }
 
@@ -162,9 +163,10 @@ TYPED_TEST(LinearSkinning, WritesOnlyThePositionsOfAnInterleavedBuffer) {
   const auto expected = this->skin(nodes);
   std::vector<Vertex> buffer(this->vertices.size(), Vertex{7, {0, 0, 0}, {8, 9}});
   PackedNodes<typename TestFixture::NodeScalar> packed(nodes.size());
-  ASSERT_TRUE(packNodes(viewOf(nodes), packed));
-  skinLinear(this->embedding, packed, Eigen::Matrix<typename TestFixture::NodeScalar, 3, 1>::Zero().eval(),
-             PointView<Out>(buffer[0].position, buffer.size(), sizeof(Vertex)));
+  ASSERT_EQ(packed.pack(viewOf(nodes)), nodes.size());
+  typename TestFixture::Output output;
+  output.points = PointView<Out>(buffer[0].position, buffer.size(), sizeof(Vertex));
+  skinLinear(this->embedding, packed, output);
   for (std::size_t v = 0; v < buffer.size(); ++v) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(buffer[v].position[k], expected[v][k]);
     EXPECT_EQ(buffer[v].before, Out(7));
@@ -173,7 +175,35 @@ TYPED_TEST(LinearSkinning, WritesOnlyThePositionsOfAnInterleavedBuffer) {
   }
 }
 
-TEST(PackNodes, ReadsAnyStrideAndNoticesWhatIsNotFinite) {
+TYPED_TEST(LinearSkinning, SortedOrderIsThatOfTheSlots) {
+  using Out = typename TestFixture::OutScalar;
+  std::vector<Eigen::Vector3d> bent = this->cage.nodes;
+  for (Eigen::Vector3d& p : bent) p += 0.2 * Eigen::Vector3d(std::sin(7 * p.z()), std::cos(3 * p.x()), p.x() * p.y());
+  const auto nodes = this->nodesFrom(bent);
+  const auto expected = this->skin(nodes);
+  const Box3 expectedBounds = this->bounds;
+  PackedNodes<typename TestFixture::NodeScalar> packed(nodes.size());
+  ASSERT_EQ(packed.pack(viewOf(nodes)), nodes.size());
+  // Side by side, and with room between: two ways of writing. Nothing behind the last point is touched.
+  for (const std::size_t step : {1, 2}) {
+    using Point = Eigen::Matrix<Out, 3, 1>;
+    const std::size_t count = this->embedding.vertexCount();
+    std::vector<Point> points(step * count + 20, Point::Constant(-77));
+    Box3 sortedBounds;
+    typename TestFixture::Output output;
+    output.points = PointView<Out>(points.front().data(), count, step * sizeof(Point));
+    output.order = VertexOrder::Sorted;
+    skinLinear(this->embedding, packed, output, &sortedBounds);
+    for (std::size_t slot = 0; slot < count; ++slot) {
+      EXPECT_EQ(points[step * slot], expected[this->embedding.slotVertices()[slot]]);
+    }
+    for (std::size_t k = step * count; k < points.size(); ++k) EXPECT_EQ(points[k], Point::Constant(-77));
+    EXPECT_EQ(sortedBounds.min(), expectedBounds.min());
+    EXPECT_EQ(sortedBounds.max(), expectedBounds.max());
+  }
+}
+
+TEST(PackedNodes, ReadsAnyStrideAndNamesTheFirstNodeThatIsNotFinite) {
   struct Node {
     char other[40];
     float position[4];
@@ -184,11 +214,14 @@ TEST(PackNodes, ReadsAnyStrideAndNoticesWhatIsNotFinite) {
   }
   PackedNodes<float> packed(3);
   const PointView<const float> view(nodes[0].position, 3, sizeof(Node));
-  EXPECT_TRUE(packNodes(view, packed));
-  EXPECT_EQ(packed[2], Eigen::Vector4f(20, 21, 22, 0));
+  EXPECT_EQ(packed.pack(view), 3u);
+  EXPECT_EQ(packed.mean(), Eigen::Vector3f(10, 11, 12));
+  EXPECT_EQ(Eigen::Vector4f(packed.data() + 8), Eigen::Vector4f(10, 10, 10, 0));
+  EXPECT_TRUE(packed.isAt(1, nodes[1].position));
+  EXPECT_FALSE(packed.isAt(1, nodes[2].position));
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     nodes[1].position[2] = bad;
-    EXPECT_FALSE(packNodes(view, packed));
+    EXPECT_EQ(packed.pack(view), 1u);
   }
 }
 

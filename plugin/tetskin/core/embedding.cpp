@@ -4,6 +4,7 @@
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/outside_neighbours.h>
 #include <tetskin/core/tet_search.h>
 #include <tetskin/core/weld.h>
 
@@ -65,7 +66,7 @@ void measureFit(const TetMesh& cage, PointView<const double> vertices, const Emb
   report.worstBarycentric = -1.0;
   for (std::size_t r = 0; r + 1 < embedding.runs().size(); ++r) {
     const Embedding::Run& run = embedding.runs()[r];
-    const TetCorners corners = cornersOf(cage, run.nodes);
+    const TetCorners corners = cornersOf(cage, cage.tets[run.tet]);
     const BarycentricMap map(corners);
     for (std::uint32_t slot = run.firstSlot; slot < embedding.runs()[r + 1].firstSlot; ++slot) {
       const std::size_t v = embedding.slotVertices()[slot];
@@ -82,16 +83,31 @@ void measureFit(const TetMesh& cage, PointView<const double> vertices, const Emb
       report.worstVertex = v;
     }
   }
+  const double* worst = vertices[report.worstVertex];
+  report.worstPosition = {worst[0], worst[1], worst[2]};
   const double diagonal = report.meshBox.diagonal().norm();
   // One point, or all at one place: compare with the cage instead of dividing by nothing.
   report.restErrorMax /= diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm();
 }
 
-Status embedVertices(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
+Status tooFar(const EmbedReport& report, double maxDistance) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "vertex %zu at (%.6g, %.6g, %.6g) lies %.4g outside the cage, more than the %.4g allowed; enlarge the cage "
+                "or allow more",
+                report.worstVertex, report.worstPosition.x(), report.worstPosition.y(), report.worstPosition.z(),
+                report.worstDistance, maxDistance);
+  return {StatusCode::OutsideCage, text};
+}
+
+/// triangles  of the mesh, or null if they are not known
+Status embedVertices(const TetMesh& cage, PointView<const double> vertices,
+                     const std::vector<std::array<int, 3>>* triangles, const EmbedOptions& options,
                      Embedding& embedding, EmbedReport& report) {
   if (Status status = checkInputs(cage, vertices, report); !status.ok()) return status;
   std::vector<std::uint32_t> placeOf;
-  const std::vector<Eigen::Vector3d> points = distinctPoints(vertices, weldCoincident(vertices), placeOf);
+  const std::vector<std::uint32_t> first = weldCoincident(vertices);
+  const std::vector<Eigen::Vector3d> points = distinctPoints(vertices, first, placeOf);
   const std::vector<SearchTet> tets = searchTets(cage);
   const TetSearch search = findTets(tets, points, options.outside);
 
@@ -100,6 +116,9 @@ Status embedVertices(const TetMesh& cage, PointView<const double> vertices, cons
     const TetHit& hit = search.hits[placeOf[v]];
     tetOf[v] = hit.barycentric <= 0.0 ? tets[hit.tet].index : ~tets[hit.tet].index;
   }
+  if (triangles && options.outside == OutsideRule::Nearest) {
+    report.keptWithNeighbours = keepWithNeighbours(cage, vertices, first, *triangles, tetOf);
+  }
   Embedding made = Embedding::fromTets(cage, vertices, tetOf);
   measureFit(cage, vertices, made, report);
   if (!std::isfinite(report.restErrorMax)) {
@@ -107,6 +126,7 @@ Status embedVertices(const TetMesh& cage, PointView<const double> vertices, cons
             "some vertices are so far from the cage that their weights overflow; are mesh and "
             "cage in the same unit?"};
   }
+  if (report.worstDistance > options.maxDistance) return tooFar(report, options.maxDistance);
   report.inside = made.insideCount();
   report.outside = made.vertexCount() - made.insideCount();
   report.unbound = 0;
@@ -116,6 +136,16 @@ Status embedVertices(const TetMesh& cage, PointView<const double> vertices, cons
   report.candidates = search.candidates;
   embedding = std::move(made);
   return {};
+}
+
+EmbedReport embedTimed(const TetMesh& cage, PointView<const double> vertices,
+                       const std::vector<std::array<int, 3>>* triangles, const EmbedOptions& options,
+                       Embedding& embedding) {
+  const auto start = std::chrono::steady_clock::now();
+  EmbedReport report;
+  report.status = embedVertices(cage, vertices, triangles, options, embedding, report);
+  report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return report;
 }
 
 }  // namespace
@@ -130,10 +160,11 @@ std::string EmbedReport::describe() const {
   if (!ok()) return status.message;
   char text[512];
   std::snprintf(text, sizeof text,
-                "%zu vertices: %zu inside, %zu outside the cage; the farthest, vertex %zu, by %.3g\n"
+                "%zu vertices: %zu inside, %zu outside the cage; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g\n"
                 "%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
                 "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
-                vertexCount, inside, outside, worstVertex, worstDistance, coincident, overlapping, flatTets,
+                vertexCount, inside, outside, worstVertex, worstPosition.x(), worstPosition.y(), worstPosition.z(),
+                worstDistance, coincident, overlapping, flatTets,
                 restErrorMax, static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
   std::string result = text;
   if (unitsDiffer()) {
@@ -168,7 +199,7 @@ Embedding Embedding::fromTets(const TetMesh& cage, PointView<const double> verti
   for (std::vector<float>& plane : e.weights_) plane.resize(vertices.size() + kPadding);
   for (std::vector<float>& plane : e.closestWeights_) plane.resize(vertices.size() - e.insideCount_ + kPadding);
   for (std::size_t r = 0; r + 1 < e.runs_.size(); ++r) {
-    const TetCorners corners = cornersOf(cage, e.runs_[r].nodes);
+    const TetCorners corners = cornersOf(cage, cage.tets[e.runs_[r].tet]);
     const BarycentricMap map(corners);
     for (std::uint32_t slot = e.runs_[r].firstSlot; slot < e.runs_[r + 1].firstSlot; ++slot) {
       const double* v = vertices[e.slotVertices_[slot]];
@@ -198,7 +229,10 @@ void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& 
   for (const std::int32_t tet : tetOf) ++next[binOf(tet) + 1];
   for (std::size_t bin = 0; bin < 2 * tets; ++bin) {
     const auto tet = static_cast<std::uint32_t>(bin < tets ? bin : bin - tets);
-    if (next[bin + 1] > 0) runs_.push_back({cage.tets[tet], next[bin], tet});
+    if (next[bin + 1] > 0) {
+      const Tet& n = cage.tets[tet];
+      runs_.push_back({{n[0], n[1], n[2], n[3]}, next[bin], tet});
+    }
     next[bin + 1] += next[bin];
     if (bin + 1 != tets) continue;
     insideRunCount_ = runs_.size();
@@ -212,11 +246,7 @@ void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& 
 
 EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                   Embedding& embedding) {
-  const auto start = std::chrono::steady_clock::now();
-  EmbedReport report;
-  report.status = embedVertices(cage, vertices, options, embedding, report);
-  report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  return report;
+  return embedTimed(cage, vertices, nullptr, options, embedding);
 }
 
 EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
@@ -224,6 +254,14 @@ EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const Em
   std::vector<Eigen::Vector3d> copy(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) copy[v] = {vertices[v][0], vertices[v][1], vertices[v][2]};
   return embed(cage, viewOf(std::as_const(copy)), options, embedding);
+}
+
+EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options, Embedding& embedding) {
+  EmbedReport report;
+  report.vertexCount = report.unbound = mesh.vertexCount();
+  report.status = checkTriangleMesh(mesh);
+  if (!report.ok()) return report;
+  return embedTimed(cage, viewOf(mesh.positions), &mesh.triangles, options, embedding);
 }
 
 }  // namespace tetskin

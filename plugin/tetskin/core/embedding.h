@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/kernels/skinning_kernels.h>
 #include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace tetskin {
@@ -20,6 +23,8 @@ enum class OutsideRule {
 
 struct EmbedOptions {
   OutsideRule outside = OutsideRule::Nearest;
+  /// In rest units: a vertex farther than this from every tet is refused, with a message, and nothing is embedded.
+  double maxDistance = std::numeric_limits<double>::infinity();
 };
 
 /// How well a mesh fits its cage. All lengths and boxes are in rest space.
@@ -35,6 +40,8 @@ struct EmbedReport {
   std::size_t flatTets = 0;       ///< tets without volume, never used
   double worstDistance = 0.0;     ///< longest distance from a vertex to its tet
   std::size_t worstVertex = 0;    ///< which vertex that is
+  Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
+  std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
   double worstBarycentric = 0.0;  ///< largest barycentric distance, dimensionless; not above 0 if all are inside
   Box3 meshBox;                   ///< of the vertices
   Box3 cageBox;                   ///< of the nodes
@@ -72,11 +79,7 @@ struct VertexBinding {
 class Embedding {
  public:
   /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes.
-  struct Run {
-    std::array<int, 4> nodes{};
-    std::uint32_t firstSlot = 0;
-    std::uint32_t tet = 0;
-  };
+  using Run = kernels::Run;
   /// Weights come in planes of one float a slot, so that kernels take several vertices at a time; each is followed by
   /// this many zeros, which they may read.
   static constexpr std::size_t kPadding = 16;
@@ -132,10 +135,14 @@ class Embedding {
 /// vertices   vertexCount x 3, rest space; float or double
 /// embedding  written on success only
 /// Cost       about proportional to vertexCount + tetCount; some tens of tested pairs a vertex
-/// Errors     in the report's status: an empty or non-finite mesh, an unusable cage
+/// Errors     in the report's status: an empty or non-finite mesh, an unusable cage, a vertex beyond maxDistance
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                                 Embedding& embedding);
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
+                                Embedding& embedding);
+/// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of the
+/// cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn together.
+[[nodiscard]] EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options,
                                 Embedding& embedding);
 
 }  // namespace tetskin

@@ -24,6 +24,7 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3d> positions;     ///< vertexCount x 3, rest space, the file's own unit
   std::vector<std::array<int, 3>> triangles;  ///< triangleCount x 3 vertex indices, counter-clockwise from outside
   std::vector<Eigen::Vector3f> normals;       ///< authored unit normals, one a vertex; or empty
+  std::vector<Eigen::Vector4f> tangents;      ///< unit tangents, and in w the sign of the bitangent; or empty
   std::vector<Eigen::Vector2f> texcoords;     ///< texture coordinates, one a vertex; or empty
   std::vector<TriangleGroup> groups;          ///< cover all triangles in order; or empty: one group without a name
 

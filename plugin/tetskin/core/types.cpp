@@ -28,6 +28,8 @@ const char* toString(StatusCode code) {
       return "size mismatch";
     case StatusCode::InvalidOption:
       return "invalid option";
+    case StatusCode::OutsideCage:
+      return "outside the cage";
   }
   return "unknown status";
 }

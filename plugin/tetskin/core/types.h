@@ -29,6 +29,7 @@ enum class StatusCode {
   Degenerate,         ///< every tet is flat, or repeats a node
   SizeMismatch,       ///< two arrays that belong together differ in count
   InvalidOption,      ///< an option's value makes no sense
+  OutsideCage,        ///< a vertex lies farther outside the cage than allowed
 };
 
 /// Name of a status code, for messages and logs. Never null.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to quadratic skinning: how the gradient at a node follows from the positions of the nodes around it.
+#pragma once
+
+#include <tetskin/core/tet_mesh.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace tetskin {
+
+/// F = sum over entries of x_node factor^T.
+struct GradientStencil {
+  enum class Kind {
+    Full,   ///< exact for quadratic maps
+    Thin,   ///< exact for affine maps; some second derivatives are not told apart
+    Plain,  ///< the mean of the gradients of the tets around the node, weighted by volume; exact for affine maps
+  };
+  std::vector<std::uint32_t> nodes;
+  std::vector<Eigen::Vector3d> factors;  ///< one a node, 1 / length
+  Kind kind = Kind::Full;
+};
+
+/// Which nodes share an edge, and which tets share a node, over the tets that are not flat.
+class CageNeighbours {
+ public:
+  explicit CageNeighbours(const TetMesh& cage);
+
+  /// The stencil of one node, which must belong to a tet that is not flat. Cost: some fits of 9 unknowns.
+  GradientStencil stencilOf(std::uint32_t node);
+
+ private:
+  void addRing(std::size_t from);
+  GradientStencil plainStencil(std::uint32_t node) const;
+
+  const TetMesh& cage_;
+  std::vector<std::uint32_t> edgeStarts_, edgeEnds_;  ///< by node: the nodes at the other ends of its edges
+  std::vector<std::uint32_t> tetStarts_, tets_;       ///< by node: its tets
+  std::vector<std::uint32_t> found_;                  ///< the node, then its rings
+  std::vector<std::uint32_t> foundFor_;               ///< by node: for which node it was found last, plus 1
+};
+
+}  // namespace tetskin

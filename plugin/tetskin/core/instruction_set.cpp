@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/instruction_set.h>
+#include <tetskin/core/kernels/kernel_tables.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+
+namespace tetskin {
+namespace {
+
+bool available(InstructionSet set) {
+#ifdef TETSKIN_X86_KERNELS
+  switch (set) {
+    case InstructionSet::Baseline:
+      return true;
+    case InstructionSet::Avx2:
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case InstructionSet::Avx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  }
+#endif
+  return set == InstructionSet::Baseline;
+}
+
+std::atomic<InstructionSet>& chosen() {
+  static std::atomic<InstructionSet> set(availableInstructionSets().back());
+  return set;
+}
+
+template <class Scalar>
+const kernels::Table<Scalar>& pick(const kernels::Table<float>& single, const kernels::Table<double>& twice) {
+  if constexpr (std::is_same_v<Scalar, float>) {
+    return single;
+  } else {
+    return twice;
+  }
+}
+
+}  // namespace
+
+const char* toString(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::Baseline:
+      return "baseline";
+    case InstructionSet::Avx2:
+      return "AVX2";
+    case InstructionSet::Avx512:
+      return "AVX-512";
+  }
+  return "unknown instruction set";
+}
+
+std::vector<InstructionSet> availableInstructionSets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : {InstructionSet::Baseline, InstructionSet::Avx2, InstructionSet::Avx512}) {
+    if (available(set)) sets.push_back(set);
+  }
+  return sets;
+}
+
+InstructionSet instructionSet() {
+  return chosen().load(std::memory_order_relaxed);
+}
+
+void setInstructionSet(InstructionSet set) {
+  assert(available(set));
+  chosen().store(set, std::memory_order_relaxed);
+}
+
+template <class Scalar>
+const kernels::Table<Scalar>& kernels::tableInUse() {
+#ifdef TETSKIN_X86_KERNELS
+  if (instructionSet() == InstructionSet::Avx512) return pick<Scalar>(avx512::tableFloat, avx512::tableDouble);
+  if (instructionSet() == InstructionSet::Avx2) return pick<Scalar>(avx2::tableFloat, avx2::tableDouble);
+#endif
+  return pick<Scalar>(baseline::tableFloat, baseline::tableDouble);
+}
+
+template const kernels::Table<float>& kernels::tableInUse();
+template const kernels::Table<double>& kernels::tableInUse();
+
+}  // namespace tetskin

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <vector>
+
+namespace tetskin {
+
+/// The kernels of skinning exist once for each of these; the widest that the processor has is used, without being asked
+/// for. Results differ by rounding only, and which tet carries a vertex does not depend on it.
+enum class InstructionSet {
+  Baseline,  ///< what every processor of the platform has (SSE2 on x86-64)
+  Avx2,      ///< with fused multiply-adds
+  Avx512,    ///< F, DQ, BW and VL
+};
+
+const char* toString(InstructionSet set);
+
+/// Those that this processor and this build have, narrowest first.
+std::vector<InstructionSet> availableInstructionSets();
+
+InstructionSet instructionSet();
+
+/// For tests and measurements: use this one from now on, everywhere. It must be available. Not while others skin.
+void setInstructionSet(InstructionSet set);
+
+}  // namespace tetskin

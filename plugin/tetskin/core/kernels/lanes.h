@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to the kernels: several numbers side by side. Included once for each instruction set, in a namespace of its
+// own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h.
+//
+// With GCC and Clang the compiler's vector types do the work, on every processor; elsewhere lanes are one wide and the
+// same code is plain C++.
+#pragma once
+
+#include <math.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__GNUC__)
+#define TETSKIN_VECTOR_TYPES 1
+#endif
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector) && __has_builtin(__builtin_convertvector)
+#define TETSKIN_SHUFFLES 1
+#endif
+#endif
+
+namespace tetskin::kernels::TETSKIN_KERNELS {
+
+template <class S, int W>
+struct LanesOf {
+#ifdef TETSKIN_VECTOR_TYPES
+  typedef S Type __attribute__((vector_size(W * sizeof(S))));
+#endif
+};
+template <class S>
+struct LanesOf<S, 1> {
+  using Type = S;
+};
+/// W numbers. Arithmetic is lane by lane; a single number beside one stands for W equal ones.
+template <class S, int W>
+using Lanes = typename LanesOf<S, W>::Type;
+
+template <class S, int W>
+S lane(const Lanes<S, W>& v, int i) {
+  if constexpr (W == 1) {
+    return v;
+  } else {
+    return v[i];
+  }
+}
+
+template <class S, int W>
+Lanes<S, W> all(S value) {
+  if constexpr (W == 1) {
+    return value;
+  } else {
+    return Lanes<S, W>{} + value;
+  }
+}
+
+/// W floats from memory at any address, as S.
+template <class S, int W>
+Lanes<S, W> load(const float* from) {
+  if constexpr (W == 1) {
+    return static_cast<S>(*from);
+  } else {
+    Lanes<float, W> v;
+    __builtin_memcpy(&v, from, sizeof v);
+    if constexpr (sizeof(S) == sizeof(float)) {
+      return v;
+    } else {
+      return __builtin_convertvector(v, Lanes<S, W>);
+    }
+  }
+}
+
+template <class S, int W>
+Lanes<S, W> smaller(const Lanes<S, W>& a, const Lanes<S, W>& b) {
+  return a < b ? a : b;
+}
+template <class S, int W>
+Lanes<S, W> larger(const Lanes<S, W>& a, const Lanes<S, W>& b) {
+  return a > b ? a : b;
+}
+
+#ifdef TETSKIN_VECTOR_TYPES
+inline float squareRoot(float x) { return __builtin_sqrtf(x); }
+inline double squareRoot(double x) { return __builtin_sqrt(x); }
+#else
+inline float squareRoot(float x) { return ::sqrtf(x); }
+inline double squareRoot(double x) { return ::sqrt(x); }
+#endif
+
+template <class S, int W>
+Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
+  if constexpr (W == 1) {
+    return squareRoot(v);
+  } else {
+    Lanes<S, W> roots;
+    for (int i = 0; i < W; ++i) roots[i] = squareRoot(v[i]);
+    return roots;
+  }
+}
+
+#ifdef TETSKIN_SHUFFLES
+template <int... I>
+struct Indices {};
+template <int N, int... I>
+struct IndicesUpTo : IndicesUpTo<N - 1, N - 1, I...> {};
+template <int... I>
+struct IndicesUpTo<0, I...> {
+  using Type = Indices<I...>;
+};
+
+/// Numbers [Part * W, Part * W + W) of x0 y0 z0 x1 y1 z1 ...: number g is coordinate g % 3 of point g / 3.
+template <int Part, int W, class V, int... I>
+V interleavedPart(const V& x, const V& y, const V& z, Indices<I...>) {
+  constexpr int kFirst = Part * W;
+  const V xy = __builtin_shufflevector(
+      x, y, ((kFirst + I) % 3 == 2 ? -1 : (kFirst + I) % 3 * W + (kFirst + I) / 3)...);
+  return __builtin_shufflevector(xy, z, ((kFirst + I) % 3 == 2 ? W + (kFirst + I) / 3 : I)...);
+}
+#endif
+
+/// Writes W points side by side: x0 y0 z0 x1 y1 z1 ...
+template <class S, int W>
+void storePoints(const Lanes<S, W> p[3], S* out) {
+#ifdef TETSKIN_SHUFFLES
+  if constexpr (W >= 4) {
+    using All = typename IndicesUpTo<W>::Type;
+    const Lanes<S, W> parts[3] = {interleavedPart<0, W>(p[0], p[1], p[2], All{}),
+                                  interleavedPart<1, W>(p[0], p[1], p[2], All{}),
+                                  interleavedPart<2, W>(p[0], p[1], p[2], All{})};
+    __builtin_memcpy(out, parts, sizeof parts);
+    return;
+  }
+#endif
+  for (int i = 0; i < W; ++i) {
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<S, W>(p[k], i);
+  }
+}
+
+template <class To, class From, int W>
+Lanes<To, W> convert(const Lanes<From, W>& v) {
+  if constexpr (sizeof(To) == sizeof(From)) {
+    return v;
+  } else if constexpr (W == 1) {
+    return static_cast<To>(v);
+  } else {
+    return __builtin_convertvector(v, Lanes<To, W>);
+  }
+}
+
+}  // namespace tetskin::kernels::TETSKIN_KERNELS

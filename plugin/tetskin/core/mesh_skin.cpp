@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/linear_skinning.h>
+#include <tetskin/core/mesh_skin.h>
+
+namespace tetskin {
+namespace {
+
+Status checkAttributes(const TriangleMesh& mesh) {
+  const auto check = [&](std::size_t count, const char* what) -> Status {
+    if (count == 0 || count == mesh.vertexCount()) return {};
+    return {StatusCode::SizeMismatch, "the mesh has " + std::to_string(count) + " " + what + ", but " +
+                                          std::to_string(mesh.vertexCount()) + " vertices"};
+  };
+  if (Status status = check(mesh.normals.size(), "normals"); !status.ok()) return status;
+  return check(mesh.tangents.size(), "tangents");
+}
+
+std::vector<Eigen::Vector3d> directionsOf(const std::vector<Eigen::Vector4f>& tangents) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const Eigen::Vector4f& t : tangents) directions.push_back(t.head<3>().cast<double>());
+  return directions;
+}
+
+/// By vertex, its slot.
+std::vector<std::uint32_t> slotsOf(const Embedding& embedding) {
+  std::vector<std::uint32_t> slots(embedding.vertexCount());
+  for (std::uint32_t s = 0; s < slots.size(); ++s) slots[embedding.slotVertices()[s]] = s;
+  return slots;
+}
+
+Status checkTargets(const SkinOptions& options, std::size_t vertexCount) {
+  const auto check = [&](std::size_t size, const char* what) -> Status {
+    if (size == vertexCount) return {};
+    return {StatusCode::SizeMismatch, "the " + std::string(what) + " holds " + std::to_string(size) +
+                                          " points, but the mesh has " + std::to_string(vertexCount) + " vertices"};
+  };
+  Status status;
+  if (const auto* single = std::get_if<PointView<float>>(&options.target)) status = check(single->size(), "target");
+  if (const auto* twice = std::get_if<PointView<double>>(&options.target)) status = check(twice->size(), "target");
+  if (!status.ok()) return status;
+  if (!options.normalTarget.empty()) status = check(options.normalTarget.size(), "target for normals");
+  if (!status.ok() || options.tangentTarget.empty()) return status;
+  return check(options.tangentTarget.size(), "target for tangents");
+}
+
+template <class Scalar>
+Status checkParts(const SkinBinding<Scalar>& binding, const SkinOptions& options) {
+  const auto missing = [](const char* what) -> Status {
+    return {StatusCode::InvalidOption,
+            std::string("the binding was made without ") + what + "; make it with the same options"};
+  };
+  if (options.interpolation == Interpolation::Quadratic && !binding.quadratic) return missing("quadratic skinning");
+  if (options.normals == Normals::Transformed && !binding.normals) return missing("transformed normals");
+  if (options.normals == Normals::Recomputed && !binding.recomputed) return missing("recomputed normals");
+  if (options.normals == Normals::Recomputed && binding.order != options.order) return missing("this vertex order");
+  return {};
+}
+
+void fill(PointView<float> points, const Eigen::Vector3f& value) {
+  for (std::size_t k = 0; k < points.size(); ++k) std::copy_n(value.data(), 3, points[k]);
+}
+
+}  // namespace
+
+template <class Scalar>
+EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
+                            std::shared_ptr<const SkinBinding<Scalar>>& binding, QuadraticReport* quadratic) {
+  EmbedReport report;
+  report.vertexCount = report.unbound = mesh.vertexCount();
+  report.status = checkAttributes(mesh);
+  if (!report.ok()) return report;
+  auto made = std::make_shared<SkinBinding<Scalar>>();
+  EmbedOptions embedOptions;
+  embedOptions.outside = options.outside;
+  embedOptions.maxDistance = options.maxDistance;
+  report = embed(cage, mesh, embedOptions, made->embedding);
+  if (!report.ok()) return report;
+  if (options.interpolation == Interpolation::Quadratic) made->quadratic.emplace(cage, made->embedding, quadratic);
+  if (options.normals == Normals::Transformed) {
+    made->normals = DirectionFactors::ofNormals(cage, made->embedding, restNormals(mesh));
+    if (!mesh.tangents.empty()) {
+      made->tangents = DirectionFactors::ofTangents(cage, made->embedding, directionsOf(mesh.tangents));
+    }
+  } else if (options.normals == Normals::Recomputed) {
+    const bool sorted = options.order == VertexOrder::Sorted;
+    made->order = options.order;
+    made->recomputed.emplace(mesh, sorted ? slotsOf(made->embedding) : std::vector<std::uint32_t>(),
+                             options.hardEdgeDegrees);
+  }
+  binding = std::move(made);
+  return report;
+}
+
+template <class Scalar>
+EmbedReport MeshSkin<Scalar>::bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options) {
+  std::shared_ptr<const SkinBinding<Scalar>> binding;
+  EmbedReport report = makeSkinBinding(cage, mesh, options, binding);
+  if (!report.ok()) return report;
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
+  for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(p.cast<Scalar>());
+  report.status = bind(std::move(binding), viewOf(std::as_const(nodes)), options);
+  return report;
+}
+
+template <class Scalar>
+Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding, PointView<const Scalar> nodes,
+                              const SkinOptions& options) {
+  if (!binding || binding->embedding.empty()) return {StatusCode::Empty, "there is no embedding to bind with"};
+  const std::size_t vertexCount = binding->embedding.vertexCount();
+  if (nodes.size() != binding->embedding.nodeCount()) {
+    return {StatusCode::SizeMismatch, "there are " + std::to_string(nodes.size()) + " nodes, but the cage has " +
+                                          std::to_string(binding->embedding.nodeCount())};
+  }
+  if (Status status = checkParts(*binding, options); !status.ok()) return status;
+  if (Status status = checkTargets(options, vertexCount); !status.ok()) return status;
+  if (const std::size_t bad = firstNonFinite(nodes); bad < nodes.size()) {
+    return {StatusCode::NonFinite, "node " + std::to_string(bad) + " is not finite; bind before the body explodes"};
+  }
+
+  MeshSkin made;
+  made.options_ = options;
+  made.nodes_ = PackedNodes<Scalar>(nodes.size());
+  if (options.interpolation == Interpolation::Quadratic) made.edges_ = EdgeVectors<Scalar>(*binding->quadratic);
+  if (std::holds_alternative<std::monostate>(options.target)) made.positions_.resize(vertexCount);
+  if (options.normals != Normals::None) {
+    if (options.normalTarget.empty()) made.normals_.resize(vertexCount);
+    // Unit vectors to begin with: see transformDirections.
+    fill(options.normalTarget.empty() ? viewOf(made.normals_) : options.normalTarget, Eigen::Vector3f::UnitY());
+  }
+  if (options.normals == Normals::Transformed && binding->tangents) {
+    if (options.tangentTarget.empty()) made.tangents_.resize(vertexCount);
+    fill(options.tangentTarget.empty() ? viewOf(made.tangents_) : options.tangentTarget, Eigen::Vector3f::UnitX());
+  }
+  if (options.normals == Normals::Recomputed) made.faceVectors_.resize(4 * binding->recomputed->triangleCount());
+  made.binding_ = std::move(binding);
+  *this = std::move(made);
+  const std::size_t updated = update(nodes);
+  assert(updated == nodes.size());
+  (void)updated;
+  return {};
+}
+
+template <class Scalar>
+std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
+  assert(bound() && nodes.size() == nodeCount());
+  if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) return bad;
+  if (options_.interpolation == Interpolation::Quadratic) edges_.update(*binding_->quadratic, nodes_, options_.threads);
+  if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
+    skinTo(*single);
+  } else if (const auto* twice = std::get_if<PointView<double>>(&options_.target)) {
+    skinTo(*twice);
+  } else {
+    skinTo(viewOf(positions_));
+  }
+  return nodeCount();
+}
+
+template <class Scalar>
+template <class Out>
+void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
+  const SkinOutput<Scalar, Out> output{out, options_.order, options_.origin.template cast<Scalar>()};
+  Box3* bounds = options_.bounds ? &bounds_ : nullptr;
+  const Embedding& embedding = binding_->embedding;
+  if (options_.interpolation == Interpolation::Quadratic) {
+    skinQuadratic(embedding, *binding_->quadratic, edges_, nodes_, output, bounds, options_.threads);
+  } else {
+    skinLinear(embedding, nodes_, output, bounds, options_.threads);
+  }
+  if (options_.normals == Normals::Transformed) skinNormals();
+  if (options_.normals == Normals::Recomputed) {
+    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), faceVectors_,
+                     options_.normalTarget.empty() ? viewOf(normals_) : options_.normalTarget, options_.threads);
+  }
+}
+
+template <class Scalar>
+void MeshSkin<Scalar>::skinNormals() {
+  const bool quadratic = options_.interpolation == Interpolation::Quadratic;
+  const auto carry = [&](const DirectionFactors& factors, PointView<float> out) {
+    transformDirections(binding_->embedding, factors, quadratic ? &*binding_->quadratic : nullptr,
+                        quadratic ? &edges_ : nullptr, nodes_, out, options_.order, options_.threads);
+  };
+  carry(*binding_->normals, options_.normalTarget.empty() ? viewOf(normals_) : options_.normalTarget);
+  if (!binding_->tangents) return;
+  carry(*binding_->tangents, options_.tangentTarget.empty() ? viewOf(tangents_) : options_.tangentTarget);
+}
+
+template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,
+                                     std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
+template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,
+                                     std::shared_ptr<const SkinBinding<double>>&, QuadraticReport*);
+template class MeshSkin<float>;
+template class MeshSkin<double>;
+
+}  // namespace tetskin

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/normals.h>
+#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/quadratic_skinning.h>
+#include <tetskin/core/skinning.h>
+#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/types.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace tetskin {
+
+/// How the surface follows the nodes.
+enum class Interpolation {
+  Linear,     ///< barycentric in each tet: continuous, but bent surfaces show the cage's faces
+  Quadratic,  ///< smooth to the eye, an order more accurate, at up to 2.5 times the cost
+};
+
+/// Where the positions go: nowhere else (the skin's own array, the default), or to the caller's buffer of float or
+/// double points, which must hold vertexCount points and outlive the binding.
+using SkinTarget = std::variant<std::monostate, PointView<float>, PointView<double>>;
+
+/// What a scene does not ask for is neither allocated nor computed.
+struct SkinOptions {
+  Interpolation interpolation = Interpolation::Linear;
+  Normals normals = Normals::None;
+  OutsideRule outside = OutsideRule::Nearest;
+  /// A vertex farther than this from every tet is refused: nothing is bound, and the report says which one, and where.
+  double maxDistance = std::numeric_limits<double>::infinity();
+  /// Of positions, normals and tangents.
+  VertexOrder order = VertexOrder::Mesh;
+  /// Angle between rest normals at one position above which recomputed normals keep a hard edge.
+  double hardEdgeDegrees = kHardEdgeDegrees;
+  /// Keep the box of the positions up to date.
+  bool bounds = true;
+  SkinTarget target;
+  /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
+  /// the sign that belongs to them (TriangleMesh::tangents) does not change.
+  PointView<float> normalTarget;
+  PointView<float> tangentTarget;
+  /// World space; subtracted from every position. Near the body, it keeps float positions exact far from the origin.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  /// Lends its threads to updates of large meshes; must outlive the binding.
+  ParallelFor* threads = nullptr;
+};
+
+/// All that skins of one mesh in one cage have in common, whatever body carries them: made once, immutable, shared.
+template <class Scalar>
+struct SkinBinding {
+  Embedding embedding;
+  VertexOrder order = VertexOrder::Mesh;     ///< of `recomputed`
+  std::optional<QuadraticStencils<Scalar>> quadratic;
+  std::optional<DirectionFactors> normals;   ///< of transformed normals
+  std::optional<DirectionFactors> tangents;  ///< likewise, if the mesh has tangents
+  std::optional<NormalTopology> recomputed;  ///< of recomputed normals
+};
+
+/// Embeds the mesh in the cage at rest, with all that the options' interpolation, normals and order need.
+/// Errors in the report's status, as `embed`'s; SizeMismatch if the mesh's normals or tangents are not one a vertex.
+template <class Scalar>
+[[nodiscard]] EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
+                                          std::shared_ptr<const SkinBinding<Scalar>>& binding,
+                                          QuadraticReport* quadratic = nullptr);
+
+/// A render mesh carried by the nodes of a cage, whoever moves them: bind once at rest, update with their positions.
+/// For Bullet's soft bodies there is `SoftBodySkin`, which does just this with their nodes.
+template <class Scalar>
+class MeshSkin {
+ public:
+  /// Embeds the mesh, and updates once with the cage's rest nodes. On an error this skin is left as it was.
+  [[nodiscard]] EmbedReport bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
+  /// Takes a binding made before; `nodes` are the current ones, finite.
+  /// Errors: InvalidOption if it lacks what the options ask for; SizeMismatch for a target, or nodes, of another size.
+  Status bind(std::shared_ptr<const SkinBinding<Scalar>> binding, PointView<const Scalar> nodes,
+              const SkinOptions& options = {});
+
+  /// Computes positions, normals and tangents for these node positions, world space, nodeCount x 3. Allocates nothing.
+  /// Returns the index of the first node that is not finite, and changes nothing then; nodeCount() if all is well.
+  [[nodiscard]] std::size_t update(PointView<const Scalar> nodes);
+
+  bool bound() const { return binding_ != nullptr; }
+  std::size_t nodeCount() const { return nodes_.size(); }
+  /// vertexCount current positions, minus the origin, in the options' order: the skin's own array, empty where the
+  /// target is the caller's.
+  PointView<const Scalar> positions() const { return viewOf(positions_); }
+  /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
+  PointView<const float> normals() const { return viewOf(normals_); }
+  PointView<const float> tangents() const { return viewOf(tangents_); }
+  /// Box of the positions, for culling. An extrapolated vertex may lie outside the cage's own box.
+  const Box3& bounds() const { return bounds_; }
+  const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
+  /// For the updates to come.
+  void setOrigin(const Eigen::Vector3d& origin) { options_.origin = origin; }
+  /// The nodes of the last update; `isAt` tells whether they have moved since.
+  const PackedNodes<Scalar>& nodes() const { return nodes_; }
+
+ private:
+  template <class Out>
+  void skinTo(PointView<Out> out);
+  void skinNormals();
+
+  std::shared_ptr<const SkinBinding<Scalar>> binding_;
+  SkinOptions options_;
+  PackedNodes<Scalar> nodes_;
+  EdgeVectors<Scalar> edges_;
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_;
+  std::vector<Eigen::Vector3f> normals_, tangents_;
+  std::vector<float> faceVectors_;
+  Box3 bounds_;
+};
+
+}  // namespace tetskin

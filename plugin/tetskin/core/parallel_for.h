@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstddef>
+
+namespace tetskin {
+
+/// How an application lends its threads: the library has none of its own. Derive from it, or take the adapters
+/// `BulletParallelFor` (tetskin/bullet/bullet_parallel_for.h) and `ThreadPool` (tetskin/threads/thread_pool.h).
+/// Results have the same bits whatever it does, as work is cut the same way for any number of threads.
+class ParallelFor {
+ public:
+  /// A reference to a callable void(std::size_t), valid as long as the callable is. Never allocates.
+  class Task {
+   public:
+    template <class Callable>
+    explicit Task(Callable& callable)
+        : callable_(&callable), call_([](void* c, std::size_t k) { (*static_cast<Callable*>(c))(k); }) {}
+    void operator()(std::size_t k) const { call_(callable_, k); }
+
+   private:
+    void* callable_;
+    void (*call_)(void*, std::size_t);
+  };
+
+  virtual ~ParallelFor() = default;
+
+  /// Calls task(k) once for every k in [0, count), in any order and on any threads, and returns when all have returned.
+  /// Tasks do not throw, and do not call `run` again.
+  virtual void run(std::size_t count, Task task) = 0;
+};
+
+/// Calls callable(k) for every k in [0, count): on `threads`, or here if that is null or there is just one.
+template <class Callable>
+void runTasks(ParallelFor* threads, std::size_t count, Callable&& callable) {
+  if (threads && count > 1) {
+    threads->run(count, ParallelFor::Task(callable));
+  } else {
+    for (std::size_t k = 0; k < count; ++k) callable(k);
+  }
+}
+
+}  // namespace tetskin

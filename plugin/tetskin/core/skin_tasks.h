@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to skinning: an embedding's runs as pieces of work for kernels, cut alike for any number of threads.
+#pragma once
+
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/kernels/kernel_tables.h>
+#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/skinning.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tetskin::skin_tasks {
+
+/// Handing work to another thread costs some microseconds, in which these many vertices are skinned.
+constexpr std::size_t kSlotsPerTask = 16384;
+constexpr std::size_t kMostTasks = 64;
+
+inline std::size_t taskCount(std::size_t items, std::size_t itemsPerTask = kSlotsPerTask) {
+  return std::clamp<std::size_t>(items / itemsPerTask, 1, kMostTasks);
+}
+
+/// First of `items` items of a task; that of task `tasks` is `items`.
+inline std::size_t firstItem(std::size_t items, std::size_t tasks, std::size_t task) {
+  return items * task / tasks;
+}
+
+/// The first run that begins at this slot or later.
+inline std::size_t runFrom(const Embedding& embedding, std::size_t slot) {
+  const auto& runs = embedding.runs();
+  const auto found = std::partition_point(runs.begin(), runs.end() - 1,
+                                          [slot](const Embedding::Run& run) { return run.firstSlot < slot; });
+  return static_cast<std::size_t>(found - runs.begin());
+}
+
+/// Calls kernel(work, task) for all runs: in pieces that lie inside or outside as a whole where the surface differs.
+/// `work` is the common part of all pieces.
+template <class Scalar, class Kernel>
+void forAllRuns(const Embedding& embedding, const kernels::Work<Scalar>& work, ParallelFor* threads, Kernel&& kernel) {
+  const std::size_t tasks = taskCount(embedding.vertexCount());
+  runTasks(threads, tasks, [&](std::size_t task) {
+    const auto piece = [&](std::size_t first, std::size_t last, kernels::Surface surface) {
+      if (first >= last) return;
+      kernels::Work<Scalar> part = work;
+      part.surface = surface;
+      part.firstRun = first;
+      part.lastRun = last;
+      kernel(part, task);
+    };
+    const std::size_t first = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task));
+    const std::size_t last = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task + 1));
+    if (work.surface == kernels::Surface::Linear) return piece(first, last, work.surface);
+    piece(first, std::min(last, embedding.insideRunCount()), kernels::Surface::Quadratic);
+    piece(std::max(first, embedding.insideRunCount()), last, kernels::Surface::QuadraticOutside);
+  });
+}
+
+/// The part of the work that an embedding and its nodes give.
+template <class Scalar>
+kernels::Work<Scalar> workFor(const Embedding& embedding, const PackedNodes<Scalar>& nodes, VertexOrder order,
+                              std::size_t strideBytes) {
+  assert(nodes.size() == embedding.nodeCount());
+  kernels::Work<Scalar> work;
+  work.runs = embedding.runs().data();
+  work.nodes = nodes.data();
+  for (int k = 0; k < 3; ++k) {
+    work.weights[k] = embedding.weights(k);
+    work.closest[k] = embedding.closestWeights(k);
+  }
+  work.closestBase = static_cast<std::uint32_t>(embedding.insideCount());
+  work.places = {order == VertexOrder::Mesh ? embedding.slotVertices().data() : nullptr, strideBytes};
+  return work;
+}
+
+/// Writes all positions; their box, if asked for.
+template <class Scalar, class Out>
+void skin(const Embedding& embedding, kernels::Work<Scalar> work, const PackedNodes<Scalar>& nodes,
+          const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
+  assert(output.points.size() == embedding.vertexCount());
+  if (embedding.empty()) return;
+  const Eigen::Matrix<Scalar, 3, 1> shift = nodes.mean() - output.origin;
+  constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
+  std::array<kernels::Extent<Scalar>, kMostTasks> extents;
+  extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
+  const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
+  forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
+    kernels::Extent<Scalar>* extent = bounds ? &extents[task] : nullptr;
+    if constexpr (std::is_same_v<Out, float>) {
+      table.positionsFloat(part, shift.data(), output.points.data(), extent);
+    } else {
+      table.positionsDouble(part, shift.data(), output.points.data(), extent);
+    }
+  });
+  if (!bounds) return;
+  *bounds = Box3();
+  for (const kernels::Extent<Scalar>& e : extents) {
+    if (!(e.low[0] <= e.high[0])) continue;
+    bounds->extend(Eigen::Matrix<Scalar, 3, 1>(e.low).template cast<double>());
+    bounds->extend(Eigen::Matrix<Scalar, 3, 1>(e.high).template cast<double>());
+  }
+}
+
+}  // namespace tetskin::skin_tasks

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What linear and quadratic skinning share: the current nodes as the kernels read them, and where the points go.
+#pragma once
+
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
+
+#include <vector>
+
+namespace tetskin {
+
+/// The order in which vertices are written.
+enum class VertexOrder {
+  Mesh,    ///< the mesh's own
+  Sorted,  ///< by tet, `Embedding::slotVertices()`: faster, if the application permutes its mesh once
+};
+
+/// Current node positions side by side, each padded to four scalars, relative to their mean: what the kernels read. A
+/// Bullet node is some 400 bytes; gathering the positions once is cheaper than striding over them for every tet.
+template <class Scalar>
+class PackedNodes {
+ public:
+  using Point = Eigen::Matrix<Scalar, 3, 1>;
+
+  explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount, Node::Zero()) {}
+
+  /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or size(); the
+  /// packed nodes are good for nothing then. Cost O(nodeCount), no allocation.
+  [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
+
+  std::size_t size() const { return nodes_.size(); }
+  /// size() x 4: position minus mean(), and a 0.
+  const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().data(); }
+  const Point& mean() const { return mean_; }
+  /// Whether node i is still where it was packed.
+  bool isAt(std::size_t i, const Scalar* position) const {
+    const Node& n = nodes_[i];
+    return position[0] - mean_[0] == n[0] && position[1] - mean_[1] == n[1] && position[2] - mean_[2] == n[2];
+  }
+
+ private:
+  using Node = Eigen::Matrix<Scalar, 4, 1>;
+  std::vector<Node, Eigen::aligned_allocator<Node>> nodes_;
+  Point mean_ = Point::Zero();
+};
+
+/// Where and how the points of an update are written.
+template <class Scalar, class Out>
+struct SkinOutput {
+  /// vertexCount x 3, caller-owned, any stride. Each point is written once; with VertexOrder::Sorted and points side by
+  /// side, up to 16 points ahead of the one being written are written more than once, never beyond the last.
+  PointView<Out> points;
+  VertexOrder order = VertexOrder::Mesh;
+  /// World space; subtracted from every result before it is rounded to Out: a local origin near the body keeps float
+  /// output exact far from the world's origin.
+  Eigen::Matrix<Scalar, 3, 1> origin = Eigen::Matrix<Scalar, 3, 1>::Zero();
+};
+
+}  // namespace tetskin
