@@ -57,14 +57,63 @@ void attachBullet(State& state, const Bench& bench) {
   for (auto _ : state) btSoftBodyHelpers::interpolateBarycentricWeights(bench.body.get());
 }
 
-void updateLinearOriginal(State& state, const Bench& bench) {
+/// One whole update as an application calls it, into its own buffer of floats.
+void update(State& state, const Bench& bench, const SkinOptions& wished) {
   std::vector<Eigen::Vector3f> out(bench.model.mesh.vertexCount());
-  SkinOptions options;
+  SkinOptions options = wished;
   options.target = viewOf(out);
+  options.bounds = false;
   SoftBodySkin skin;
   require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
   for (auto _ : state) {
     skin.update();
+    benchmark::ClobberMemory();
+  }
+}
+
+void updateLinear(State& state, const Bench& bench) {
+  SkinOptions options;
+  options.order = VertexOrder::Sorted;
+  update(state, bench, options);
+}
+
+void updateLinearOriginal(State& state, const Bench& bench) {
+  update(state, bench, {});
+}
+
+void updateQuadratic(State& state, const Bench& bench) {
+  SkinOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  options.order = VertexOrder::Sorted;
+  update(state, bench, options);
+}
+
+/// The normals alone, in the order of Update/linear.
+void normalsTransformed(State& state, const Bench& bench) {
+  const TetMesh& cage = bench.model.cage;
+  Embedding embedding;
+  require(embed(cage, bench.model.mesh, {}, embedding).status);
+  const auto factors = DirectionFactors::ofNormals(cage, embedding, restNormals(bench.model.mesh));
+  PackedNodes<btScalar> nodes(cage.nodeCount());
+  if (nodes.pack(nodePositions(*bench.body)) < nodes.size()) throw InputError("the body is not finite");
+  std::vector<Eigen::Vector3f> normals(embedding.vertexCount());
+  for (auto _ : state) {
+    transformDirections<btScalar>(embedding, factors, nullptr, nullptr, nodes, viewOf(normals), VertexOrder::Sorted);
+    benchmark::ClobberMemory();
+  }
+}
+
+void normalsRecomputed(State& state, const Bench& bench) {
+  SkinOptions options;
+  options.normals = Normals::Recomputed;
+  options.order = VertexOrder::Sorted;
+  SoftBodySkin skin;
+  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
+  const NormalTopology& topology = *skin.binding()->recomputed;
+  std::vector<float> faceVectors(4 * topology.triangleCount());
+  std::vector<Eigen::Vector3f> normals(bench.model.mesh.vertexCount());
+  for (auto _ : state) {
+    recomputeNormals(topology, skin.positions(), faceVectors, viewOf(normals));
     benchmark::ClobberMemory();
   }
 }
@@ -131,9 +180,13 @@ void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
   };
   add("Attach/tetskin", attachTetskin, benchmark::kMillisecond);
   add("Attach/bullet", attachBullet, benchmark::kMillisecond);
+  add("Update/linear", updateLinear, benchmark::kMicrosecond);
   add("Update/linear_original", updateLinearOriginal, benchmark::kMicrosecond);
+  add("Update/quadratic", updateQuadratic, benchmark::kMicrosecond);
   add("Update/bullet", updateBullet, benchmark::kMicrosecond);
   add("Update/memcpy", updateMemcpy, benchmark::kMicrosecond);
+  add("Normals/transformed", normalsTransformed, benchmark::kMicrosecond);
+  add("Normals/recomputed", normalsRecomputed, benchmark::kMicrosecond);
   add("BuildBody/tetskin", buildBodyTetskin, benchmark::kMillisecond);
   add("BuildBody/bullet", buildBodyBullet, benchmark::kMillisecond);
   add("WriteObj/tetskin", writeObj, benchmark::kMillisecond);

@@ -194,6 +194,21 @@ TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
   EXPECT_GT(lowest(body->body()), -0.03);
 }
 
+TEST(DeformableBody, PartsThatShareNoNodeFallAndRest) {
+  // With its tree of faces, Bullet 3.24 would never come back from the first step.
+  EmptyWorld world;
+  TetMesh cage = cageAbove(0.3);
+  const TetMesh other = cage;
+  const int first = static_cast<int>(cage.nodeCount());
+  for (const Eigen::Vector3d& p : other.nodes) cage.nodes.push_back(p + Eigen::Vector3d(3, 0, 0));
+  for (const Tet& t : other.tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+  const auto body = added(world, cage);
+  step(world, 240);
+  EXPECT_GT(lowest(body->body()), -0.05);
+  EXPECT_LT(lowest(body->body()), 0.1);
+  EXPECT_LT(rmsSpeed(body->body()), 0.05);
+}
+
 TEST(DeformableBody, RefusesMassSpringAndBadOptions) {
   EmptyWorld world;
   SoftBodyOptions options;

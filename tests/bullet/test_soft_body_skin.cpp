@@ -180,7 +180,7 @@ TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
   SkinOptions options;
   options.target = viewOf(tooFew);
   fails(skin.bind(*body, cage, mesh, options), StatusCode::SizeMismatch, "3 points");
-  EXPECT_EQ(skin.bind(*body, std::shared_ptr<const Embedding>()).code, StatusCode::Empty);
+  EXPECT_EQ(skin.bind(*body, std::shared_ptr<const SoftBodyBinding>()).code, StatusCode::Empty);
   const std::unique_ptr<btSoftBody> exploded(makeSoftBody(cage, info));
   exploded->m_nodes[1].m_x.setY(std::numeric_limits<btScalar>::infinity());
   fails(skin.bind(*exploded, cage, mesh), StatusCode::NonFinite, "not finite");

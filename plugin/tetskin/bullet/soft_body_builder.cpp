@@ -96,6 +96,14 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
+/// Bullet would do this in the first step, and build a tree of the faces on the way, which only collisions by faces
+/// need: in quadratic time, and, if the surface has two parts that share no edge, without ever coming to an end (seen
+/// with Bullet 3.24: btSoftBody::initializeFaceTree joins neighbours until one is left).
+void finishWithoutFaceTree(btSoftBody& body) {
+  body.updateConstants();
+  body.m_bUpdateRtCst = false;
+}
+
 }  // namespace
 
 std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
@@ -124,6 +132,7 @@ Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& world
   configure(positive, options, *body);
   appendElements(positive, *body);
   setMasses(positive, options, *body);
+  finishWithoutFaceTree(*body);
   return body.release();
 }
 

@@ -53,6 +53,11 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// rest matrices. Negative tets are reoriented, flat ones refused. Node masses are a quarter of each tet's around the
 /// node, but at least 0.3 of the mean: slivers' nodes would otherwise be too light to be stable.
 ///
+/// The body collides with rigid bodies by its nodes, and has no tree of faces, which Bullet would otherwise build in
+/// the first step: in quadratic time, and without end for a body of several parts. If you ask for collisions by faces
+/// (m_cfg.collisions with VF_DD, SDF_RDF or VF_SS), or pin nodes afterwards with `btSoftBody::setMass`, that tree is
+/// back; pin by `options.pinned`, or set `m_bUpdateRtCst = false` again.
+///
 /// worldInfo  of the world that the body will be added to; must outlive the body
 /// Returns    the body, owned by the caller and in no world yet; null on error
 /// Cost       O(T log T) for T tets

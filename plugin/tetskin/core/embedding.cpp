@@ -92,11 +92,12 @@ void measureFit(const TetMesh& cage, PointView<const double> vertices, const Emb
 
 Status tooFar(const EmbedReport& report, double maxDistance) {
   char text[256];
-  std::snprintf(text, sizeof text,
-                "vertex %zu at (%.6g, %.6g, %.6g) lies %.4g outside the cage, more than the %.4g allowed; enlarge the cage "
-                "or allow more",
-                report.worstVertex, report.worstPosition.x(), report.worstPosition.y(), report.worstPosition.z(),
-                report.worstDistance, maxDistance);
+  std::snprintf(
+      text, sizeof text,
+      "vertex %zu at (%.6g, %.6g, %.6g) lies %.4g outside the cage, more than the %.4g allowed; enlarge the cage "
+      "or allow more",
+      report.worstVertex, report.worstPosition.x(), report.worstPosition.y(), report.worstPosition.z(),
+      report.worstDistance, maxDistance);
   return {StatusCode::OutsideCage, text};
 }
 
@@ -159,13 +160,14 @@ bool EmbedReport::unitsDiffer() const {
 std::string EmbedReport::describe() const {
   if (!ok()) return status.message;
   char text[512];
-  std::snprintf(text, sizeof text,
-                "%zu vertices: %zu inside, %zu outside the cage; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g\n"
-                "%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
-                "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
-                vertexCount, inside, outside, worstVertex, worstPosition.x(), worstPosition.y(), worstPosition.z(),
-                worstDistance, coincident, overlapping, flatTets,
-                restErrorMax, static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
+  std::snprintf(
+      text, sizeof text,
+      "%zu vertices: %zu inside, %zu outside the cage; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g\n"
+      "%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
+      "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
+      vertexCount, inside, outside, worstVertex, worstPosition.x(), worstPosition.y(), worstPosition.z(), worstDistance,
+      coincident, overlapping, flatTets, restErrorMax,
+      static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
   std::string result = text;
   if (unitsDiffer()) {
     std::snprintf(text, sizeof text,

@@ -36,18 +36,18 @@ struct EmbedReport {
   std::size_t unbound = 0;      ///< vertices without a tet: all if status is not ok, otherwise none
   std::size_t overlapping =
       0;  ///< vertices deep (more than kOverlapDepth) in two tets or more: the cage overlaps itself
-  std::size_t coincident = 0;     ///< vertices at the position of an earlier one: embedded once, weights copied
-  std::size_t flatTets = 0;       ///< tets without volume, never used
-  double worstDistance = 0.0;     ///< longest distance from a vertex to its tet
-  std::size_t worstVertex = 0;    ///< which vertex that is
+  std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
+  std::size_t flatTets = 0;     ///< tets without volume, never used
+  double worstDistance = 0.0;   ///< longest distance from a vertex to its tet
+  std::size_t worstVertex = 0;  ///< which vertex that is
   Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
   std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
-  double worstBarycentric = 0.0;  ///< largest barycentric distance, dimensionless; not above 0 if all are inside
-  Box3 meshBox;                   ///< of the vertices
-  Box3 cageBox;                   ///< of the nodes
-  double restErrorMax = 0.0;      ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
-  std::size_t candidates = 0;     ///< pairs of vertex and tet that were tested
-  double milliseconds = 0.0;      ///< wall time of the whole embedding
+  double worstBarycentric = 0.0;       ///< largest barycentric distance, dimensionless; not above 0 if all are inside
+  Box3 meshBox;                        ///< of the vertices
+  Box3 cageBox;                        ///< of the nodes
+  double restErrorMax = 0.0;   ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
+  std::size_t candidates = 0;  ///< pairs of vertex and tet that were tested
+  double milliseconds = 0.0;   ///< wall time of the whole embedding
 
   bool ok() const { return status.ok(); }
   /// Mesh and cage apart from each other, or one more than kUnitRatio times the size of the other: they are most
@@ -140,8 +140,9 @@ class Embedding {
                                 Embedding& embedding);
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
                                 Embedding& embedding);
-/// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of the
-/// cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn together.
+/// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of
+/// the cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn
+/// together.
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options,
                                 Embedding& embedding);
 

@@ -13,7 +13,7 @@ void skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, co
   skin_tasks::skin(embedding, work, nodes, output, bounds, threads);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar, Out)                                                                           \
+#define TETSKIN_INSTANTIATE(Scalar, Out)                                                                        \
   template void skinLinear(const Embedding&, const PackedNodes<Scalar>&, const SkinOutput<Scalar, Out>&, Box3*, \
                            ParallelFor*);
 TETSKIN_INSTANTIATE(float, float)

@@ -56,7 +56,7 @@ struct SkinOptions {
 template <class Scalar>
 struct SkinBinding {
   Embedding embedding;
-  VertexOrder order = VertexOrder::Mesh;     ///< of `recomputed`
+  VertexOrder order = VertexOrder::Mesh;  ///< of `recomputed`
   std::optional<QuadraticStencils<Scalar>> quadratic;
   std::optional<DirectionFactors> normals;   ///< of transformed normals
   std::optional<DirectionFactors> tangents;  ///< likewise, if the mesh has tangents

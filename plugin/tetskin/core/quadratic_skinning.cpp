@@ -49,10 +49,11 @@ std::vector<Edge> occupiedEdges(const Embedding& embedding) {
 
 std::string QuadraticReport::describe() const {
   char text[256];
-  std::snprintf(text, sizeof text,
-                "quadratic: %zu nodes with %.1f neighbours on average, %zu edges; %zu nodes in thin places, %zu without "
-                "a fit; %.1f ms",
-                nodes, meanNeighbours, edges, thinNodes, plainNodes, milliseconds);
+  std::snprintf(
+      text, sizeof text,
+      "quadratic: %zu nodes with %.1f neighbours on average, %zu edges; %zu nodes in thin places, %zu without "
+      "a fit; %.1f ms",
+      nodes, meanNeighbours, edges, thinNodes, plainNodes, milliseconds);
   return text;
 }
 
@@ -163,8 +164,8 @@ template class QuadraticStencils<double>;
 template class EdgeVectors<float>;
 template class EdgeVectors<double>;
 
-#define TETSKIN_INSTANTIATE(Scalar, Out)                                                                              \
-  template void skinQuadratic(const Embedding&, const QuadraticStencils<Scalar>&, const EdgeVectors<Scalar>&,       \
+#define TETSKIN_INSTANTIATE(Scalar, Out)                                                                      \
+  template void skinQuadratic(const Embedding&, const QuadraticStencils<Scalar>&, const EdgeVectors<Scalar>&, \
                               const PackedNodes<Scalar>&, const SkinOutput<Scalar, Out>&, Box3*, ParallelFor*);
 TETSKIN_INSTANTIATE(float, float)
 TETSKIN_INSTANTIATE(float, double)

@@ -47,8 +47,8 @@ class QuadraticStencils {
   /// By gradient, and one more: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
-  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }  ///< 3 an entry, 1 / length
-  const std::vector<std::uint32_t>& edgeNodes() const { return edgeNodes_; }  ///< 2 an edge
+  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry, 1 / length
+  const std::vector<std::uint32_t>& edgeNodes() const { return edgeNodes_; }          ///< 2 an edge
   const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 an edge
   /// 4 an edge: half the rest vector from its first node to its second, and the square of that half's length.
   const std::vector<Scalar>& halfRest() const { return halfRest_; }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <math.h>
+#include <string.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -34,6 +35,29 @@ template <class S>
 struct LanesOf<S, 1> {
   using Type = S;
 };
+#ifndef TETSKIN_VECTOR_TYPES
+/// A padded point where the compiler has no vector types.
+template <class S>
+struct LanesOf<S, 4> {
+  struct Type {
+    S v[4];
+    S operator[](int i) const { return v[i]; }
+    friend Type operator+(Type a, const Type& b) { return a += b; }
+    friend Type operator-(Type a, const Type& b) {
+      for (int i = 0; i < 4; ++i) a.v[i] -= b.v[i];
+      return a;
+    }
+    friend Type operator*(Type a, S b) {
+      for (int i = 0; i < 4; ++i) a.v[i] *= b;
+      return a;
+    }
+    Type& operator+=(const Type& b) {
+      for (int i = 0; i < 4; ++i) v[i] += b.v[i];
+      return *this;
+    }
+  };
+};
+#endif
 /// W numbers. Arithmetic is lane by lane; a single number beside one stands for W equal ones.
 template <class S, int W>
 using Lanes = typename LanesOf<S, W>::Type;
@@ -63,13 +87,25 @@ Lanes<S, W> load(const float* from) {
     return static_cast<S>(*from);
   } else {
     Lanes<float, W> v;
-    __builtin_memcpy(&v, from, sizeof v);
+    ::memcpy(&v, from, sizeof v);
     if constexpr (sizeof(S) == sizeof(float)) {
       return v;
     } else {
       return __builtin_convertvector(v, Lanes<S, W>);
     }
   }
+}
+
+/// A point padded to four scalars.
+template <class S>
+Lanes<S, 4> loadPadded(const S* from) {
+  Lanes<S, 4> v;
+  ::memcpy(&v, from, sizeof v);
+  return v;
+}
+template <class S>
+void storePadded(const Lanes<S, 4>& v, S* to) {
+  ::memcpy(to, &v, sizeof v);
 }
 
 template <class S, int W>
@@ -81,12 +117,33 @@ Lanes<S, W> larger(const Lanes<S, W>& a, const Lanes<S, W>& b) {
   return a > b ? a : b;
 }
 
+/// How many lanes lie between two numbers.
+template <class S, int W>
+int countBetween(const Lanes<S, W>& v, S low, S high) {
+  if constexpr (W == 1) {
+    return v > low && v < high;
+  } else {
+    const auto between = (v > low) & (v < high);  // -1 where it holds
+    int count = 0;
+    for (int i = 0; i < W; ++i) count -= static_cast<int>(between[i]);
+    return count;
+  }
+}
+
 #ifdef TETSKIN_VECTOR_TYPES
-inline float squareRoot(float x) { return __builtin_sqrtf(x); }
-inline double squareRoot(double x) { return __builtin_sqrt(x); }
+inline float squareRoot(float x) {
+  return __builtin_sqrtf(x);
+}
+inline double squareRoot(double x) {
+  return __builtin_sqrt(x);
+}
 #else
-inline float squareRoot(float x) { return ::sqrtf(x); }
-inline double squareRoot(double x) { return ::sqrt(x); }
+inline float squareRoot(float x) {
+  return ::sqrtf(x);
+}
+inline double squareRoot(double x) {
+  return ::sqrt(x);
+}
 #endif
 
 template <class S, int W>
@@ -114,8 +171,7 @@ struct IndicesUpTo<0, I...> {
 template <int Part, int W, class V, int... I>
 V interleavedPart(const V& x, const V& y, const V& z, Indices<I...>) {
   constexpr int kFirst = Part * W;
-  const V xy = __builtin_shufflevector(
-      x, y, ((kFirst + I) % 3 == 2 ? -1 : (kFirst + I) % 3 * W + (kFirst + I) / 3)...);
+  const V xy = __builtin_shufflevector(x, y, ((kFirst + I) % 3 == 2 ? -1 : (kFirst + I) % 3 * W + (kFirst + I) / 3)...);
   return __builtin_shufflevector(xy, z, ((kFirst + I) % 3 == 2 ? W + (kFirst + I) / 3 : I)...);
 }
 #endif
@@ -126,10 +182,12 @@ void storePoints(const Lanes<S, W> p[3], S* out) {
 #ifdef TETSKIN_SHUFFLES
   if constexpr (W >= 4) {
     using All = typename IndicesUpTo<W>::Type;
-    const Lanes<S, W> parts[3] = {interleavedPart<0, W>(p[0], p[1], p[2], All{}),
-                                  interleavedPart<1, W>(p[0], p[1], p[2], All{}),
-                                  interleavedPart<2, W>(p[0], p[1], p[2], All{})};
-    __builtin_memcpy(out, parts, sizeof parts);
+    const Lanes<S, W> first = interleavedPart<0, W>(p[0], p[1], p[2], All{});
+    const Lanes<S, W> second = interleavedPart<1, W>(p[0], p[1], p[2], All{});
+    const Lanes<S, W> third = interleavedPart<2, W>(p[0], p[1], p[2], All{});
+    ::memcpy(out, &first, sizeof first);
+    ::memcpy(out + W, &second, sizeof second);
+    ::memcpy(out + 2 * W, &third, sizeof third);
     return;
   }
 #endif

@@ -39,13 +39,13 @@ struct Work {
   Surface surface = Surface::Linear;
   const Run* runs = nullptr;
   std::size_t firstRun = 0;
-  std::size_t lastRun = 0;                   ///< one past
-  const float* weights[3] = {};              ///< planes, by slot
-  const float* closest[3] = {};              ///< planes, by slot - closestBase; QuadraticOutside only
-  std::uint32_t closestBase = 0;             ///
-  const Scalar* nodes = nullptr;             ///< current positions, 4 scalars a node, relative to some point nearby
-  const Scalar* edges = nullptr;             ///< 4 scalars a cage edge: its vector, and its rest length
-  const std::uint32_t* runEdges = nullptr;   ///< by run: its 6 edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
+  std::size_t lastRun = 0;                  ///< one past
+  const float* weights[3] = {};             ///< planes, by slot
+  const float* closest[3] = {};             ///< planes, by slot - closestBase; QuadraticOutside only
+  std::uint32_t closestBase = 0;            ///
+  const Scalar* nodes = nullptr;            ///< current positions, 4 scalars a node, relative to some point nearby
+  const Scalar* edges = nullptr;            ///< 4 scalars a cage edge: its vector, and its rest length
+  const std::uint32_t* runEdges = nullptr;  ///< by run: its 6 edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
   Places places;
 };
 
@@ -70,9 +70,9 @@ struct GradientWork {
 template <class Scalar>
 struct EdgeWork {
   std::size_t firstEdge = 0, lastEdge = 0;
-  const std::uint32_t* ends = nullptr;       ///< 2 an edge: nodes
-  const std::uint32_t* gradientOf = nullptr; ///< 2 an edge: places of their gradients
-  const Scalar* halfRest = nullptr;          ///< 4 an edge: half the rest vector from its first end to its second,
+  const std::uint32_t* ends = nullptr;        ///< 2 an edge: nodes
+  const std::uint32_t* gradientOf = nullptr;  ///< 2 an edge: places of their gradients
+  const Scalar* halfRest = nullptr;           ///< 4 an edge: half the rest vector from its first end to its second,
                                               ///< and the square of its length
   const Scalar* nodes = nullptr;
   const Scalar* gradients = nullptr;

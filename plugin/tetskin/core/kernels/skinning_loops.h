@@ -60,10 +60,10 @@ struct LinearMap {
 template <class S, int W>
 struct Correction {
   using V = Lanes<S, W>;
-  S slope[3][4];         ///< of b_k
-  S square[3][4];        ///< of b_k b_k
-  S product[3][4];       ///< of b1 b2, b0 b2, b0 b1: the one without k
-  S shortestRest;        ///< of the tet's edges
+  S slope[3][4];    ///< of b_k
+  S square[3][4];   ///< of b_k b_k
+  S product[3][4];  ///< of b1 b2, b0 b2, b0 b1: the one without k
+  S shortestRest;   ///< of the tet's edges
 
   Correction(const Work<S>& work, std::size_t run) {
     const std::uint32_t* ids = work.runEdges + 6 * run;
@@ -219,27 +219,35 @@ struct WideExtent {
   }
 };
 
-/// Writes the first `count` of W points to their places.
+/// Writes those of the first `count` points that `chosen` names, or all of them, to their places.
 template <class T, int W>
-void scatterPoints(const Lanes<T, W> p[3], std::uint32_t slot, int count, const Places& places, T* out) {
+void scatterPoints(const Lanes<T, W> p[3], std::uint32_t slot, int count, const bool* chosen, const Places& places,
+                   T* out) {
   T points[3 * W];
   storePoints<T, W>(p, points);
   for (int i = 0; i < count; ++i) {
+    if (chosen && !chosen[i]) continue;
     const std::uint32_t place = places.of ? places.of[slot + i] : slot + i;
-    char* to = reinterpret_cast<char*>(out) + place * places.stride;
-    __builtin_memcpy(to, points + 3 * i, 3 * sizeof(T));
+    ::memcpy(reinterpret_cast<char*>(out) + place * places.stride, points + 3 * i, 3 * sizeof(T));
   }
 }
 
-template <class S, class T, int W, class TetMap, bool kExtent>
-void positionsOf(const Work<S>& work, const S shift[3], T* out, Extent<S>* extent) {
+/// Points that lie side by side in the order of the slots are written W at a time.
+template <class T>
+bool sideBySide(const Places& places) {
+  return !places.of && places.stride == 3 * sizeof(T);
+}
+
+template <class S, class T, int W, class TetMap, bool kSideBySide, bool kExtent>
+void positionsOf(const Work<S>& given, const S shift[3], T* out, Extent<S>* extent) {
   using V = Lanes<S, W>;
+  const Work<S> work = given;  // a copy, which the compiler knows that no store to `out` can change
+  const S dx[3] = {shift[0], shift[1], shift[2]};
   WideExtent<S, W> wide(kExtent ? *extent : Extent<S>{});
   const std::uint32_t end = work.runs[work.lastRun].firstSlot;
-  const bool sideBySide = !work.places.of && work.places.stride == 3 * sizeof(T);
   for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
     TetMap map(work, r);
-    for (int k = 0; k < 3; ++k) map.map.base[k] += shift[k];
+    for (int k = 0; k < 3; ++k) map.map.base[k] += dx[k];
     const std::uint32_t last = work.runs[r + 1].firstSlot;
     for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
       V x[3];
@@ -249,10 +257,10 @@ void positionsOf(const Work<S>& work, const S shift[3], T* out, Extent<S>* exten
       Lanes<T, W> rounded[3];
       for (int k = 0; k < 3; ++k) rounded[k] = convert<T, S, W>(x[k]);
       // The lanes beyond the run's end spill into places that the next run writes again: cheaper than to hold back.
-      if (sideBySide && slot + W <= end) {
+      if (kSideBySide && slot + W <= end) {
         storePoints<T, W>(rounded, out + 3 * static_cast<std::size_t>(slot));
       } else {
-        scatterPoints<T, W>(rounded, slot, count, work.places, out);
+        scatterPoints<T, W>(rounded, slot, count, nullptr, work.places, out);
       }
     }
   }
@@ -261,11 +269,12 @@ void positionsOf(const Work<S>& work, const S shift[3], T* out, Extent<S>* exten
 
 template <class S, class T, int W, class TetMap>
 void positionsOf(const Work<S>& work, const S shift[3], T* out, Extent<S>* extent) {
-  if (extent) {
-    positionsOf<S, T, W, TetMap, true>(work, shift, out, extent);
-  } else {
-    positionsOf<S, T, W, TetMap, false>(work, shift, out, extent);
+  if (sideBySide<T>(work.places)) {
+    return extent ? positionsOf<S, T, W, TetMap, true, true>(work, shift, out, extent)
+                  : positionsOf<S, T, W, TetMap, true, false>(work, shift, out, extent);
   }
+  return extent ? positionsOf<S, T, W, TetMap, false, true>(work, shift, out, extent)
+                : positionsOf<S, T, W, TetMap, false, false>(work, shift, out, extent);
 }
 
 template <class S, class T, int W>
@@ -337,51 +346,43 @@ struct QuadraticDirections {
 template <class S>
 constexpr S kShortestSquared = S(1e-20);
 
-/// Writes the first `count` lanes that have a direction.
-template <int W>
-void storeDirections(const Lanes<float, W> d[3], const bool good[W], std::uint32_t slot, int count,
-                     const Places& places, float* out) {
-  float points[3 * W];
-  storePoints<float, W>(d, points);
-  for (int i = 0; i < count; ++i) {
-    if (!good[i]) continue;
-    const std::uint32_t place = places.of ? places.of[slot + i] : slot + i;
-    char* to = reinterpret_cast<char*>(out) + place * places.stride;
-    __builtin_memcpy(to, points + 3 * i, 3 * sizeof(float));
-  }
-}
-
-template <class S, int W, class Directions>
-void directionsOf(const Work<S>& work, const DirectionFactors& factors, float* out) {
+template <class S, int W, class Directions, bool kSideBySide>
+void directionsOf(const Work<S>& given, const DirectionFactors& factors, float* out) {
   using V = Lanes<S, W>;
   constexpr S kLargest = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
-  const bool sideBySide = !work.places.of && work.places.stride == 3 * sizeof(float);
+  const Work<S> work = given;
+  const DirectionFactors planes = factors;
   for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
-    const Directions tet(work, factors.kind, r);
+    const Directions tet(work, planes.kind, r);
     const std::uint32_t last = work.runs[r + 1].firstSlot;
     for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
       V m[3], d[3];
-      loadWeights<S, W>(factors.factors, slot, m);
-      tet.sum(work, factors.kind, slot, m, d);
+      loadWeights<S, W>(planes.factors, slot, m);
+      tet.sum(work, planes.kind, slot, m, d);
       const V squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       const V inverse = S(1) / squareRoots<S, W>(squared);
       Lanes<float, W> unit[3];
       for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
       const int count = last - slot < W ? static_cast<int>(last - slot) : W;
-      bool good[W];
-      bool allGood = true;
-      for (int i = 0; i < W; ++i) {
-        const S q = lane<S, W>(squared, i);
-        good[i] = q > kShortestSquared<S> && q < kLargest;
-        allGood = allGood && (good[i] || i >= count);
-      }
-      if (sideBySide && allGood && count == W) {
+      const int good = countBetween<S, W>(squared, kShortestSquared<S>, kLargest);
+      if (kSideBySide && good == W && count == W) {
         storePoints<float, W>(unit, out + 3 * static_cast<std::size_t>(slot));
       } else {
-        storeDirections<W>(unit, good, slot, count, work.places, out);
+        bool chosen[W];
+        for (int i = 0; i < W; ++i) {
+          const S q = lane<S, W>(squared, i);
+          chosen[i] = q > kShortestSquared<S> && q < kLargest;
+        }
+        scatterPoints<float, W>(unit, slot, count, good == W ? nullptr : chosen, work.places, out);
       }
     }
   }
+}
+
+template <class S, int W, class Directions>
+void directionsOf(const Work<S>& work, const DirectionFactors& factors, float* out) {
+  return sideBySide<float>(work.places) ? directionsOf<S, W, Directions, true>(work, factors, out)
+                                        : directionsOf<S, W, Directions, false>(work, factors, out);
 }
 
 template <class S, int W>
@@ -399,23 +400,18 @@ void directions(const Work<S>& work, const DirectionFactors& factors, float* out
 template <class S>
 void gradients(const GradientWork<S>& work) {
   for (std::size_t n = work.firstNode; n < work.lastNode; ++n) {
-    S column[3][4] = {};
+    Lanes<S, 4> column[3] = {};
     for (std::uint32_t e = work.starts[n]; e < work.starts[n + 1]; ++e) {
-      const S* x = work.nodes + 4 * static_cast<std::size_t>(work.neighbours[e]);
+      const Lanes<S, 4> x = loadPadded(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[e]));
       const S* g = work.factors + 3 * static_cast<std::size_t>(e);
-      for (int c = 0; c < 3; ++c) {
-        for (int k = 0; k < 4; ++k) column[c][k] += x[k] * g[c];
-      }
+      for (int c = 0; c < 3; ++c) column[c] += x * g[c];
     }
-    S* out = work.gradients + 12 * n;
-    for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 4; ++k) out[4 * c + k] = column[c][k];
-    }
+    for (int c = 0; c < 3; ++c) storePadded(column[c], work.gradients + 12 * n + 4 * c);
   }
 }
 
 template <class S>
-S squaredLength(const S v[4]) {
+S squaredLength(const Lanes<S, 4>& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
@@ -426,23 +422,19 @@ void edges(const EdgeWork<S>& work) {
   for (std::size_t i = work.firstEdge; i < work.lastEdge; ++i) {
     const S* a = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i]);
     const S* b = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i + 1]);
+    const S* half = work.halfRest + 4 * i;
+    Lanes<S, 4> e = (loadPadded(a) - loadPadded(b)) * half[0];
+    for (int c = 1; c < 3; ++c) e += (loadPadded(a + 4 * c) - loadPadded(b + 4 * c)) * half[c];
     const S* p = work.nodes + 4 * static_cast<std::size_t>(work.ends[2 * i]);
     const S* q = work.nodes + 4 * static_cast<std::size_t>(work.ends[2 * i + 1]);
-    const S* half = work.halfRest + 4 * i;
-    S e[4], along[4];
-    for (int k = 0; k < 4; ++k) {
-      e[k] = (a[k] - b[k]) * half[0] + (a[4 + k] - b[4 + k]) * half[1] + (a[8 + k] - b[8 + k]) * half[2];
-      along[k] = q[k] - p[k];
-    }
-    const S now = squaredLength(along) / 4, limit = now < half[3] ? now : half[3];
-    const S length = squaredLength(e);
-    if (!(length <= limit)) {
-      // Nodes so far apart that the length overflows leave no correction worth having.
-      const S scale = length * 0 == 0 ? squareRoot(limit / length) : S(0);
-      for (int k = 0; k < 3; ++k) e[k] = scale > 0 ? e[k] * scale : S(0);
-    }
+    const S now = squaredLength<S>(loadPadded(q) - loadPadded(p)) / 4;
+    const S limit = now < half[3] ? now : half[3];
+    const S length = squaredLength<S>(e);
+    S scale = 1;
+    // Nodes so far apart that the length overflows leave no correction worth having.
+    if (!(length <= limit)) scale = length * 0 == 0 ? squareRoot(limit / length) : S(0);
     S* out = work.edges + 4 * i;
-    for (int k = 0; k < 3; ++k) out[k] = e[k];
+    for (int k = 0; k < 3; ++k) out[k] = scale > 0 ? e[k] * scale : S(0);
   }
 }
 
