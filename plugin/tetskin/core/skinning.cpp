@@ -7,18 +7,24 @@ namespace tetskin {
 template <class Scalar>
 std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   assert(positions.size() == size());
-  Node sum = Node::Zero();
-  Scalar check = 0;  // stays 0 unless a coordinate is infinite or not a number
+  Point sum = Point::Zero();
+  Scalar* to = nodes_.empty() ? nullptr : nodes_.front().data();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Scalar* p = positions[i];
-    nodes_[i] = {p[0], p[1], p[2], Scalar(0)};
-    sum += nodes_[i];
-    check += p[0] * 0 + p[1] * 0 + p[2] * 0;
+    for (int k = 0; k < 3; ++k) {
+      to[4 * i + static_cast<std::size_t>(k)] = p[k];
+      sum[k] += p[k];
+    }
   }
-  if (!(check == 0)) return firstNonFinite(positions);
+  // One coordinate that is not finite makes the sum so; very large finite ones may, too.
+  if (!sum.allFinite()) {
+    const std::size_t bad = firstNonFinite(positions);
+    if (bad < size()) return bad;
+    sum.setZero();
+  }
   // Differences to a point among the nodes are nearly exact, however far they all are from the origin.
-  const Node mean = sum / static_cast<Scalar>(std::max<std::size_t>(1, size()));
-  mean_ = mean.template head<3>();
+  mean_ = sum / static_cast<Scalar>(std::max<std::size_t>(1, size()));
+  const Node mean(mean_[0], mean_[1], mean_[2], Scalar(0));
   for (Node& node : nodes_) node -= mean;
   return size();
 }

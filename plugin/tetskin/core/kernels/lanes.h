@@ -23,6 +23,18 @@
 #endif
 #endif
 
+// GCC 12 would read a number of several uses from memory again for each of them; unaligned, that is dear.
+#if defined(__GNUC__) && defined(__x86_64__)
+#define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
+#else
+#define TETSKIN_ONE_LOAD(v)
+#endif
+#if defined(__GNUC__)
+#define TETSKIN_NOINLINE __attribute__((noinline))
+#else
+#define TETSKIN_NOINLINE
+#endif
+
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S, int W>
@@ -88,6 +100,7 @@ Lanes<S, W> load(const float* from) {
   } else {
     Lanes<float, W> v;
     ::memcpy(&v, from, sizeof v);
+    TETSKIN_ONE_LOAD(v);
     if constexpr (sizeof(S) == sizeof(float)) {
       return v;
     } else {

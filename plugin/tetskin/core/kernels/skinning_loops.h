@@ -30,65 +30,60 @@ struct Gradient {
 };
 
 template <class S>
-void copyNode(const Work<S>& work, int node, S to[4]) {
-  const S* from = work.nodes + 4 * static_cast<std::size_t>(node);
-  for (int k = 0; k < 4; ++k) to[k] = from[k];
+Lanes<S, 4> nodeAt(const Work<S>& work, int node) {
+  return loadPadded(work.nodes + 4 * static_cast<std::size_t>(node));
 }
 
 /// x(b) of one tet.
-template <class S, int W>
+template <class S>
 struct LinearMap {
-  using V = Lanes<S, W>;
   S base[4];
   S slope[3][4];
 
-  LinearMap(const Work<S>& work, std::size_t run) {
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
     const Run& r = work.runs[run];
-    copyNode(work, r.nodes[3], base);
-    for (int n = 0; n < 3; ++n) {
-      copyNode(work, r.nodes[n], slope[n]);
-      for (int k = 0; k < 4; ++k) slope[n][k] -= base[k];
-    }
+    const Lanes<S, 4> last = nodeAt(work, r.nodes[3]);
+    storePadded<S>(last + shift, base);
+    for (int n = 0; n < 3; ++n) storePadded<S>(nodeAt(work, r.nodes[n]) - last, slope[n]);
   }
 
+  template <class V>
   void positions(const V b[3], V x[3]) const {
     for (int k = 0; k < 3; ++k) x[k] = base[k] + (slope[0][k] * b[0] + slope[1][k] * b[1] + slope[2][k] * b[2]);
   }
 };
 
 /// What the quadratic part adds to it.
-template <class S, int W>
+template <class S>
 struct Correction {
-  using V = Lanes<S, W>;
   S slope[3][4];    ///< of b_k
   S square[3][4];   ///< of b_k b_k
   S product[3][4];  ///< of b1 b2, b0 b2, b0 b1: the one without k
   S shortestRest;   ///< of the tet's edges
 
-  Correction(const Work<S>& work, std::size_t run) {
+  void make(const Work<S>& work, std::size_t run) {
     const std::uint32_t* ids = work.runEdges + 6 * run;
-    const S* e[6];
-    for (int i = 0; i < 6; ++i) e[i] = work.edges + 4 * static_cast<std::size_t>(ids[i]);
-    const S* const to3[3] = {e[2], e[4], e[5]};
-    const S* const opposite[3] = {e[3], e[1], e[0]};  // (1,2) (0,2) (0,1)
+    Lanes<S, 4> e[6];
+    for (int i = 0; i < 6; ++i) e[i] = loadPadded(work.edges + 4 * static_cast<std::size_t>(ids[i]));
+    const Lanes<S, 4> to3[3] = {e[2], e[4], e[5]};
+    const Lanes<S, 4> opposite[3] = {e[3], e[1], e[0]};  // (1,2) (0,2) (0,1)
     for (int n = 0; n < 3; ++n) {
-      const int p = (n + 1) % 3, q = (n + 2) % 3;
-      for (int k = 0; k < 4; ++k) {
-        slope[n][k] = to3[n][k];
-        square[n][k] = -to3[n][k];
-        product[n][k] = opposite[n][k] - to3[p][k] - to3[q][k];
-      }
+      storePadded<S>(to3[n], slope[n]);
+      storePadded<S>(Lanes<S, 4>{} - to3[n], square[n]);
+      storePadded<S>(opposite[n] - to3[(n + 1) % 3] - to3[(n + 2) % 3], product[n]);
     }
     shortestRest = e[0][3];
     for (int i = 1; i < 6; ++i) shortestRest = e[i][3] < shortestRest ? e[i][3] : shortestRest;
   }
 
+  template <class V>
   V at(const V b[3], int k) const {
     return b[0] * (slope[0][k] + square[0][k] * b[0] + product[2][k] * b[1] + product[1][k] * b[2]) +
            b[1] * (slope[1][k] + square[1][k] * b[1] + product[0][k] * b[2]) +
            b[2] * (slope[2][k] + square[2][k] * b[2]);
   }
   /// Derivative by b_n.
+  template <class V>
   V derivative(const V b[3], int n, int k) const {
     const int p = (n + 1) % 3, q = (n + 2) % 3;
     return slope[n][k] + S(2) * square[n][k] * b[n] + product[q][k] * b[p] + product[p][k] * b[q];
@@ -103,9 +98,9 @@ void loadWeights(const float* const planes[3], std::uint32_t slot, Lanes<S, W> b
 /// One tet under each kind of surface: positions, and gradients for normals and tangents, of W slots.
 template <class S, int W>
 struct LinearTet {
-  LinearMap<S, W> map;
+  LinearMap<S> map;
 
-  LinearTet(const Work<S>& work, std::size_t run) : map(work, run) {}
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) { map.make(work, run, shift); }
 
   void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
     Lanes<S, W> b[3];
@@ -116,13 +111,15 @@ struct LinearTet {
 
 template <class S, int W>
 struct QuadraticTet {
-  LinearMap<S, W> map;
-  Correction<S, W> correction;
+  LinearMap<S> map;
+  Correction<S> correction;
 
-  QuadraticTet(const Work<S>& work, std::size_t run) : map(work, run), correction(work, run) {
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
+    map.make(work, run, shift);
+    correction.make(work, run);
     // One polynomial: the slopes of both together.
     for (int n = 0; n < 3; ++n) {
-      for (int k = 0; k < 4; ++k) correction.slope[n][k] += map.slope[n][k];
+      storePadded<S>(loadPadded(correction.slope[n]) + loadPadded(map.slope[n]), correction.slope[n]);
     }
   }
 
@@ -142,10 +139,13 @@ struct QuadraticTet {
 
 template <class S, int W>
 struct QuadraticTetOutside {
-  LinearMap<S, W> map;
-  Correction<S, W> correction;
+  LinearMap<S> map;
+  Correction<S> correction;
 
-  QuadraticTetOutside(const Work<S>& work, std::size_t run) : map(work, run), correction(work, run) {}
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
+    map.make(work, run, shift);
+    correction.make(work, run);
+  }
 
   void closest(const Work<S>& work, std::uint32_t slot, Lanes<S, W> c[3]) const {
     loadWeights<S, W>(work.closest, slot - work.closestBase, c);
@@ -232,35 +232,54 @@ void scatterPoints(const Lanes<T, W> p[3], std::uint32_t slot, int count, const 
   }
 }
 
+/// The same where it is the exception: out of the way, and with its arguments in registers, as their addresses would
+/// have the loop around it store them each time.
+template <class T, int W>
+TETSKIN_NOINLINE void scatterPoints(Lanes<T, W> x, Lanes<T, W> y, Lanes<T, W> z, std::uint32_t slot, int count,
+                                    const bool* chosen, const Places& places, T* out) {
+  const Lanes<T, W> p[3] = {x, y, z};
+  scatterPoints<T, W>(p, slot, count, chosen, places, out);
+}
+
 /// Points that lie side by side in the order of the slots are written W at a time.
 template <class T>
 bool sideBySide(const Places& places) {
   return !places.of && places.stride == 3 * sizeof(T);
 }
 
+/// The polynomials of so many runs are made before their vertices are computed: their loads and the arithmetic on
+/// vertices then overlap, and coefficients are read from memory straight into all lanes.
+constexpr std::size_t kBatch = 16;
+
 template <class S, class T, int W, class TetMap, bool kSideBySide, bool kExtent>
 void positionsOf(const Work<S>& given, const S shift[3], T* out, Extent<S>* extent) {
   using V = Lanes<S, W>;
   const Work<S> work = given;  // a copy, which the compiler knows that no store to `out` can change
-  const S dx[3] = {shift[0], shift[1], shift[2]};
+  const S padded[4] = {shift[0], shift[1], shift[2], S(0)};
   WideExtent<S, W> wide(kExtent ? *extent : Extent<S>{});
   const std::uint32_t end = work.runs[work.lastRun].firstSlot;
-  for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
-    TetMap map(work, r);
-    for (int k = 0; k < 3; ++k) map.map.base[k] += dx[k];
-    const std::uint32_t last = work.runs[r + 1].firstSlot;
-    for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
-      V x[3];
-      map.positions(work, slot, x);
-      const int count = last - slot < W ? static_cast<int>(last - slot) : W;
-      if (kExtent) wide.add(x, count);
-      Lanes<T, W> rounded[3];
-      for (int k = 0; k < 3; ++k) rounded[k] = convert<T, S, W>(x[k]);
-      // The lanes beyond the run's end spill into places that the next run writes again: cheaper than to hold back.
-      if (kSideBySide && slot + W <= end) {
-        storePoints<T, W>(rounded, out + 3 * static_cast<std::size_t>(slot));
-      } else {
-        scatterPoints<T, W>(rounded, slot, count, nullptr, work.places, out);
+  TetMap maps[kBatch];
+  for (std::size_t batch = work.firstRun; batch < work.lastRun; batch += kBatch) {
+    const std::size_t batchEnd = batch + kBatch < work.lastRun ? batch + kBatch : work.lastRun;
+    for (std::size_t r = batch; r < batchEnd; ++r) maps[r - batch].make(work, r, loadPadded(padded));
+    for (std::size_t r = batch; r < batchEnd; ++r) {
+      const TetMap& map = maps[r - batch];
+      const std::uint32_t last = work.runs[r + 1].firstSlot;
+      for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
+        V x[3];
+        map.positions(work, slot, x);
+        const int count = last - slot < W ? static_cast<int>(last - slot) : W;
+        if (kExtent) wide.add(x, count);
+        Lanes<T, W> rounded[3];
+        for (int k = 0; k < 3; ++k) rounded[k] = convert<T, S, W>(x[k]);
+        // The lanes beyond the run's end spill into places that the next run writes again: cheaper than to hold back.
+        if (!kSideBySide) {
+          scatterPoints<T, W>(rounded, slot, count, nullptr, work.places, out);
+        } else if (slot + W <= end) {
+          storePoints<T, W>(rounded, out + 3 * static_cast<std::size_t>(slot));
+        } else {
+          scatterPoints<T, W>(rounded[0], rounded[1], rounded[2], slot, count, nullptr, work.places, out);
+        }
       }
     }
   }
@@ -315,8 +334,9 @@ template <class S, int W>
 struct LinearDirections {
   S vector[3][3];
 
-  LinearDirections(const Work<S>& work, Direction kind, std::size_t run) {
-    const LinearMap<S, W> map(work, run);
+  void make(const Work<S>& work, Direction kind, std::size_t run) {
+    LinearMap<S> map;
+    map.make(work, run, Lanes<S, 4>{});
     S column[3][3];
     for (int n = 0; n < 3; ++n) {
       for (int k = 0; k < 3; ++k) column[n][k] = map.slope[n][k];
@@ -332,7 +352,7 @@ template <class S, int W, class TetMap>
 struct QuadraticDirections {
   TetMap map;
 
-  QuadraticDirections(const Work<S>& work, Direction, std::size_t run) : map(work, run) {}
+  void make(const Work<S>& work, Direction, std::size_t run) { map.make(work, run, Lanes<S, 4>{}); }
   void sum(const Work<S>& work, Direction kind, std::uint32_t slot, const Lanes<S, W> m[3], Lanes<S, W> d[3]) const {
     Gradient<S, W> g;
     map.gradient(work, slot, g);
@@ -352,28 +372,32 @@ void directionsOf(const Work<S>& given, const DirectionFactors& factors, float* 
   constexpr S kLargest = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
   const Work<S> work = given;
   const DirectionFactors planes = factors;
-  for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
-    const Directions tet(work, planes.kind, r);
-    const std::uint32_t last = work.runs[r + 1].firstSlot;
-    for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
-      V m[3], d[3];
-      loadWeights<S, W>(planes.factors, slot, m);
-      tet.sum(work, planes.kind, slot, m, d);
-      const V squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      const V inverse = S(1) / squareRoots<S, W>(squared);
-      Lanes<float, W> unit[3];
-      for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
-      const int count = last - slot < W ? static_cast<int>(last - slot) : W;
-      const int good = countBetween<S, W>(squared, kShortestSquared<S>, kLargest);
-      if (kSideBySide && good == W && count == W) {
-        storePoints<float, W>(unit, out + 3 * static_cast<std::size_t>(slot));
-      } else {
-        bool chosen[W];
-        for (int i = 0; i < W; ++i) {
-          const S q = lane<S, W>(squared, i);
-          chosen[i] = q > kShortestSquared<S> && q < kLargest;
+  Directions tets[kBatch];
+  for (std::size_t batch = work.firstRun; batch < work.lastRun; batch += kBatch) {
+    const std::size_t batchEnd = batch + kBatch < work.lastRun ? batch + kBatch : work.lastRun;
+    for (std::size_t r = batch; r < batchEnd; ++r) tets[r - batch].make(work, planes.kind, r);
+    for (std::size_t r = batch; r < batchEnd; ++r) {
+      const std::uint32_t last = work.runs[r + 1].firstSlot;
+      for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
+        V m[3], d[3];
+        loadWeights<S, W>(planes.factors, slot, m);
+        tets[r - batch].sum(work, planes.kind, slot, m, d);
+        const V squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        const V inverse = S(1) / squareRoots<S, W>(squared);
+        Lanes<float, W> unit[3];
+        for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
+        const int count = last - slot < W ? static_cast<int>(last - slot) : W;
+        const int good = countBetween<S, W>(squared, kShortestSquared<S>, kLargest);
+        if (kSideBySide && good == W && count == W) {
+          storePoints<float, W>(unit, out + 3 * static_cast<std::size_t>(slot));
+        } else {
+          bool chosen[W];
+          for (int i = 0; i < W; ++i) {
+            const S q = lane<S, W>(squared, i);
+            chosen[i] = q > kShortestSquared<S> && q < kLargest;
+          }
+          scatterPoints<float, W>(unit[0], unit[1], unit[2], slot, count, good == W ? nullptr : chosen, work.places, out);
         }
-        scatterPoints<float, W>(unit, slot, count, good == W ? nullptr : chosen, work.places, out);
       }
     }
   }
