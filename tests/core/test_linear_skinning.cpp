@@ -38,7 +38,8 @@ class LinearSkinning : public testing::Test {
     PackedNodes<NodeScalar> packed(nodes.size());
     EXPECT_EQ(packed.pack(viewOf(nodes)), nodes.size());
     Surface surface(embedding.vertexCount());
-    skinLinear(embedding, packed, Output{viewOf(surface), VertexOrder::Mesh, origin}, &bounds);
+    scratch.resize(3 * surface.size());
+    skinLinear(embedding, packed, Output{viewOf(surface), VertexOrder::Mesh, origin, scratch.data()}, &bounds);
     return surface;
   }
 
@@ -53,6 +54,7 @@ class LinearSkinning : public testing::Test {
   std::vector<Eigen::Vector3d> vertices;
   Embedding embedding;
   Box3 bounds;
+  std::vector<NodeScalar> scratch;
 };
 
 using Precisions = testing::Types<std::pair<float, float>, std::pair<float, double>, std::pair<double, float>,
@@ -166,6 +168,7 @@ TYPED_TEST(LinearSkinning, WritesOnlyThePositionsOfAnInterleavedBuffer) {
   ASSERT_EQ(packed.pack(viewOf(nodes)), nodes.size());
   typename TestFixture::Output output;
   output.points = PointView<Out>(buffer[0].position, buffer.size(), sizeof(Vertex));
+  output.scratch = this->scratch.data();
   skinLinear(this->embedding, packed, output);
   for (std::size_t v = 0; v < buffer.size(); ++v) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(buffer[v].position[k], expected[v][k]);
@@ -193,6 +196,7 @@ TYPED_TEST(LinearSkinning, SortedOrderIsThatOfTheSlots) {
     typename TestFixture::Output output;
     output.points = PointView<Out>(points.front().data(), count, step * sizeof(Point));
     output.order = VertexOrder::Sorted;
+    output.scratch = this->scratch.data();
     skinLinear(this->embedding, packed, output, &sortedBounds);
     for (std::size_t slot = 0; slot < count; ++slot) {
       EXPECT_EQ(points[step * slot], expected[this->embedding.slotVertices()[slot]]);

@@ -243,7 +243,11 @@ void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& 
   runs_.push_back({{}, static_cast<std::uint32_t>(tetOf.size()), static_cast<std::uint32_t>(tets)});
 
   slotVertices_.resize(tetOf.size());
-  for (std::uint32_t v = 0; v < tetOf.size(); ++v) slotVertices_[next[binOf(tetOf[v])]++] = v;
+  vertexSlots_.resize(tetOf.size());
+  for (std::uint32_t v = 0; v < tetOf.size(); ++v) {
+    vertexSlots_[v] = next[binOf(tetOf[v])]++;
+    slotVertices_[vertexSlots_[v]] = v;
+  }
 }
 
 EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,

@@ -75,7 +75,7 @@ struct VertexBinding {
 /// For every vertex a tet and three weights: built once, immutable, shared by any number of bodies with the same cage.
 /// Vertices are stored tet by tet, so that a tet's nodes are read once: a *slot* is a place in that order. The slots
 /// [0, insideCount()) are those of the vertices inside, the others those of the vertices outside.
-/// Memory: 16 bytes a vertex, 12 more a vertex outside, 24 bytes an occupied tet.
+/// Memory: 20 bytes a vertex, 12 more a vertex outside, 24 bytes an occupied tet.
 class Embedding {
  public:
   /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes.
@@ -101,6 +101,8 @@ class Embedding {
   const float* closestWeights(int k) const { return closestWeights_[static_cast<std::size_t>(k)].data(); }
   /// vertexCount, by slot: which vertex it is; ascending within a run
   const std::vector<std::uint32_t>& slotVertices() const { return slotVertices_; }
+  /// vertexCount, by vertex: its slot
+  const std::vector<std::uint32_t>& vertexSlots() const { return vertexSlots_; }
 
   /// The same by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
   std::vector<VertexBinding> bindings() const;
@@ -122,6 +124,7 @@ class Embedding {
   std::array<std::vector<float>, 3> weights_;
   std::array<std::vector<float>, 3> closestWeights_;
   std::vector<std::uint32_t> slotVertices_;
+  std::vector<std::uint32_t> vertexSlots_;
 };
 
 /// Finds the tet and the weights of every vertex, exactly as testing all pairs would:

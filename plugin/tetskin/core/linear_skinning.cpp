@@ -8,7 +8,7 @@ namespace tetskin {
 template <class Scalar, class Out>
 void skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const SkinOutput<Scalar, Out>& output,
                 Box3* bounds, ParallelFor* threads) {
-  auto work = skin_tasks::workFor(embedding, nodes, output.order, output.points.strideBytes());
+  auto work = skin_tasks::workFor(embedding, nodes);
   work.surface = kernels::Surface::Linear;
   skin_tasks::skin(embedding, work, nodes, output, bounds, threads);
 }

@@ -57,6 +57,15 @@ Status checkParts(const SkinBinding<Scalar>& binding, const SkinOptions& options
   return {};
 }
 
+/// Whether the kernels write the positions themselves: see SkinOutput::scratch.
+template <class Scalar>
+bool positionsAreDirect(const SkinOptions& options) {
+  if (options.order != VertexOrder::Sorted) return false;
+  if (std::holds_alternative<std::monostate>(options.target)) return true;
+  const auto* target = std::get_if<PointView<Scalar>>(&options.target);
+  return target && target->strideBytes() == 3 * sizeof(Scalar);
+}
+
 void fill(PointView<float> points, const Eigen::Vector3f& value) {
   for (std::size_t k = 0; k < points.size(); ++k) std::copy_n(value.data(), 3, points[k]);
 }
@@ -123,14 +132,20 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
   made.nodes_ = PackedNodes<Scalar>(nodes.size());
   if (options.interpolation == Interpolation::Quadratic) made.edges_ = EdgeVectors<Scalar>(*binding->quadratic);
   if (std::holds_alternative<std::monostate>(options.target)) made.positions_.resize(vertexCount);
+  if (!positionsAreDirect<Scalar>(options)) made.scratch_.resize(3 * vertexCount);
+  // Unit vectors to begin with: see transformDirections.
   if (options.normals != Normals::None) {
     if (options.normalTarget.empty()) made.normals_.resize(vertexCount);
-    // Unit vectors to begin with: see transformDirections.
-    fill(options.normalTarget.empty() ? viewOf(made.normals_) : options.normalTarget, Eigen::Vector3f::UnitY());
+    fill(made.normalsOut(), Eigen::Vector3f::UnitY());
   }
-  if (options.normals == Normals::Transformed && binding->tangents) {
-    if (options.tangentTarget.empty()) made.tangents_.resize(vertexCount);
-    fill(options.tangentTarget.empty() ? viewOf(made.tangents_) : options.tangentTarget, Eigen::Vector3f::UnitX());
+  if (options.normals == Normals::Transformed) {
+    const bool sorted = options.order == VertexOrder::Sorted;
+    if (!sorted || !options.normalTarget.empty()) made.normalScratch_.assign(vertexCount, Eigen::Vector3f::UnitY());
+    if (binding->tangents) {
+      if (options.tangentTarget.empty()) made.tangents_.resize(vertexCount);
+      fill(made.tangentsOut(), Eigen::Vector3f::UnitX());
+      if (!sorted || !options.tangentTarget.empty()) made.tangentScratch_.assign(vertexCount, Eigen::Vector3f::UnitX());
+    }
   }
   if (options.normals == Normals::Recomputed) made.faceVectors_.resize(4 * binding->recomputed->triangleCount());
   made.binding_ = std::move(binding);
@@ -159,7 +174,8 @@ std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
 template <class Scalar>
 template <class Out>
 void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
-  const SkinOutput<Scalar, Out> output{out, options_.order, options_.origin.template cast<Scalar>()};
+  const SkinOutput<Scalar, Out> output{out, options_.order, options_.origin.template cast<Scalar>(),
+                                       scratch_.empty() ? nullptr : scratch_.data()};
   Box3* bounds = options_.bounds ? &bounds_ : nullptr;
   const Embedding& embedding = binding_->embedding;
   if (options_.interpolation == Interpolation::Quadratic) {
@@ -167,23 +183,32 @@ void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
   } else {
     skinLinear(embedding, nodes_, output, bounds, options_.threads);
   }
-  if (options_.normals == Normals::Transformed) skinNormals();
+  if (options_.normals == Normals::Transformed) skinDirections();
   if (options_.normals == Normals::Recomputed) {
-    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), faceVectors_,
-                     options_.normalTarget.empty() ? viewOf(normals_) : options_.normalTarget, options_.threads);
+    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), faceVectors_, normalsOut(), options_.threads);
   }
 }
 
 template <class Scalar>
-void MeshSkin<Scalar>::skinNormals() {
+void MeshSkin<Scalar>::skinDirections() {
   const bool quadratic = options_.interpolation == Interpolation::Quadratic;
-  const auto carry = [&](const DirectionFactors& factors, PointView<float> out) {
+  const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& scratch) {
     transformDirections(binding_->embedding, factors, quadratic ? &*binding_->quadratic : nullptr,
-                        quadratic ? &edges_ : nullptr, nodes_, out, options_.order, options_.threads);
+                        quadratic ? &edges_ : nullptr, nodes_, out, options_.order,
+                        scratch.empty() ? nullptr : scratch.front().data(), options_.threads);
   };
-  carry(*binding_->normals, options_.normalTarget.empty() ? viewOf(normals_) : options_.normalTarget);
-  if (!binding_->tangents) return;
-  carry(*binding_->tangents, options_.tangentTarget.empty() ? viewOf(tangents_) : options_.tangentTarget);
+  carry(*binding_->normals, normalsOut(), normalScratch_);
+  if (binding_->tangents) carry(*binding_->tangents, tangentsOut(), tangentScratch_);
+}
+
+template <class Scalar>
+PointView<float> MeshSkin<Scalar>::normalsOut() {
+  return options_.normalTarget.empty() ? viewOf(normals_) : options_.normalTarget;
+}
+
+template <class Scalar>
+PointView<float> MeshSkin<Scalar>::tangentsOut() {
+  return options_.tangentTarget.empty() ? viewOf(tangents_) : options_.tangentTarget;
 }
 
 template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,

@@ -105,7 +105,9 @@ class MeshSkin {
  private:
   template <class Out>
   void skinTo(PointView<Out> out);
-  void skinNormals();
+  void skinDirections();
+  PointView<float> normalsOut();
+  PointView<float> tangentsOut();
 
   std::shared_ptr<const SkinBinding<Scalar>> binding_;
   SkinOptions options_;
@@ -114,6 +116,8 @@ class MeshSkin {
   std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_;
   std::vector<Eigen::Vector3f> normals_, tangents_;
   std::vector<float> faceVectors_;
+  std::vector<Scalar> scratch_;  ///< of positions, where they are not written directly
+  std::vector<Eigen::Vector3f> normalScratch_, tangentScratch_;
   Box3 bounds_;
 };
 

@@ -128,12 +128,12 @@ DirectionFactors DirectionFactors::ofTangents(const TetMesh& cage, const Embeddi
 template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
                          const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
-                         const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
+                         const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order, float* scratch,
                          ParallelFor* threads) {
   assert(out.size() == embedding.vertexCount());
   assert(!stencils == !edges);
   if (embedding.empty()) return;
-  auto work = skin_tasks::workFor(embedding, nodes, order, out.strideBytes());
+  auto work = skin_tasks::workFor(embedding, nodes);
   work.surface = stencils ? kernels::Surface::Quadratic : kernels::Surface::Linear;
   if (stencils) {
     work.edges = edges->data();
@@ -142,10 +142,14 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   kernels::DirectionFactors planes;
   planes.kind = factors.areNormals() ? kernels::Direction::Normal : kernels::Direction::Tangent;
   for (int k = 0; k < 3; ++k) planes.factors[k] = factors.plane(k);
+  const bool direct = skin_tasks::isDirect<float>(out, order);
+  assert(direct || scratch);
+  float* sorted = direct ? out.data() : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
   skin_tasks::forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {
-    table.directions(part, planes, out.data());
+    table.directions(part, planes, sorted);
   });
+  if (!direct) skin_tasks::place(embedding, sorted, out, order, threads);
 }
 
 NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
@@ -220,7 +224,7 @@ void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> po
 #define TETSKIN_INSTANTIATE(Scalar)                                                                              \
   template void transformDirections(const Embedding&, const DirectionFactors&, const QuadraticStencils<Scalar>*, \
                                     const EdgeVectors<Scalar>*, const PackedNodes<Scalar>&, PointView<float>,    \
-                                    VertexOrder, ParallelFor*);
+                                    VertexOrder, float*, ParallelFor*);
 TETSKIN_INSTANTIATE(float)
 TETSKIN_INSTANTIATE(double)
 #undef TETSKIN_INSTANTIATE

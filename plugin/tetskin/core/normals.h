@@ -57,6 +57,8 @@ class DirectionFactors {
 /// gradient is that of the closest point. A direction that has collapsed to nothing leaves what is there, so the
 /// caller's memory should hold unit vectors to begin with.
 ///
+/// scratch          3 x vertexCount floats of the caller's, which nobody else writes, unit vectors to begin with; not
+///                  needed for `out` side by side in sorted order
 /// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
 /// out              vertexCount x 3, caller-owned, any stride; world space
 /// Cost             O(vertexCount), no allocation
@@ -64,7 +66,7 @@ template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
                          const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
-                         ParallelFor* threads = nullptr);
+                         float* scratch = nullptr, ParallelFor* threads = nullptr);
 
 /// Which triangles make the normal of which vertices: vertices at one position share theirs, unless their rest normals
 /// differ by more than an angle (a hard edge). Immutable, shared like an Embedding.

@@ -152,7 +152,7 @@ void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& 
                    const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
                    const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
   assert(stencils.runEdges().size() + 6 == 6 * embedding.runs().size());
-  auto work = skin_tasks::workFor(embedding, nodes, output.order, output.points.strideBytes());
+  auto work = skin_tasks::workFor(embedding, nodes);
   work.surface = kernels::Surface::Quadratic;
   work.edges = edges.data();
   work.runEdges = stencils.runEdges().data();

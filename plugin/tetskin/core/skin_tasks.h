@@ -59,8 +59,7 @@ void forAllRuns(const Embedding& embedding, const kernels::Work<Scalar>& work, P
 
 /// The part of the work that an embedding and its nodes give.
 template <class Scalar>
-kernels::Work<Scalar> workFor(const Embedding& embedding, const PackedNodes<Scalar>& nodes, VertexOrder order,
-                              std::size_t strideBytes) {
+kernels::Work<Scalar> workFor(const Embedding& embedding, const PackedNodes<Scalar>& nodes) {
   assert(nodes.size() == embedding.nodeCount());
   kernels::Work<Scalar> work;
   work.runs = embedding.runs().data();
@@ -70,13 +69,35 @@ kernels::Work<Scalar> workFor(const Embedding& embedding, const PackedNodes<Scal
     work.closest[k] = embedding.closestWeights(k);
   }
   work.closestBase = static_cast<std::uint32_t>(embedding.insideCount());
-  work.places = {order == VertexOrder::Mesh ? embedding.slotVertices().data() : nullptr, strideBytes};
   return work;
+}
+
+/// Whether kernels can write there themselves.
+template <class Scalar, class Out>
+bool isDirect(PointView<Out> points, VertexOrder order) {
+  return std::is_same_v<Scalar, Out> && order == VertexOrder::Sorted && points.strideBytes() == 3 * sizeof(Out);
+}
+
+/// From the order of the slots to where the points shall be. To read at random and write in order is much the faster
+/// way round: a processor need not wait for what it reads ahead.
+template <class From, class Out>
+void place(const Embedding& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
+           ParallelFor* threads) {
+  const std::uint32_t* slots = order == VertexOrder::Mesh ? embedding.vertexSlots().data() : nullptr;
+  const std::size_t tasks = taskCount(points.size());
+  runTasks(threads, tasks, [&](std::size_t task) {
+    const std::size_t last = firstItem(points.size(), tasks, task + 1);
+    for (std::size_t k = firstItem(points.size(), tasks, task); k < last; ++k) {
+      const From* from = sorted + 3 * (slots ? static_cast<std::size_t>(slots[k]) : k);
+      Out* to = points[k];
+      for (int i = 0; i < 3; ++i) to[i] = static_cast<Out>(from[i]);
+    }
+  });
 }
 
 /// Writes all positions; their box, if asked for.
 template <class Scalar, class Out>
-void skin(const Embedding& embedding, kernels::Work<Scalar> work, const PackedNodes<Scalar>& nodes,
+void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const PackedNodes<Scalar>& nodes,
           const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
   assert(output.points.size() == embedding.vertexCount());
   if (embedding.empty()) return;
@@ -84,15 +105,14 @@ void skin(const Embedding& embedding, kernels::Work<Scalar> work, const PackedNo
   constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
   std::array<kernels::Extent<Scalar>, kMostTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
+  const bool direct = isDirect<Scalar>(output.points, output.order);
+  assert(direct || output.scratch);
+  Scalar* sorted = direct ? reinterpret_cast<Scalar*>(output.points.data()) : output.scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
   forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
-    kernels::Extent<Scalar>* extent = bounds ? &extents[task] : nullptr;
-    if constexpr (std::is_same_v<Out, float>) {
-      table.positionsFloat(part, shift.data(), output.points.data(), extent);
-    } else {
-      table.positionsDouble(part, shift.data(), output.points.data(), extent);
-    }
+    table.positions(part, shift.data(), sorted, bounds ? &extents[task] : nullptr);
   });
+  if (!direct) place(embedding, sorted, output.points, output.order, threads);
   if (!bounds) return;
   *bounds = Box3();
   for (const kernels::Extent<Scalar>& e : extents) {

@@ -50,13 +50,15 @@ class PackedNodes {
 /// Where and how the points of an update are written.
 template <class Scalar, class Out>
 struct SkinOutput {
-  /// vertexCount x 3, caller-owned, any stride. Each point is written once; with VertexOrder::Sorted and points side by
-  /// side, up to 16 points ahead of the one being written are written more than once, never beyond the last.
+  /// vertexCount x 3, caller-owned, any stride; never read. Between and beyond the points nothing is touched.
   PointView<Out> points;
   VertexOrder order = VertexOrder::Mesh;
   /// World space; subtracted from every result before it is rounded to Out: a local origin near the body keeps float
   /// output exact far from the world's origin.
   Eigen::Matrix<Scalar, 3, 1> origin = Eigen::Matrix<Scalar, 3, 1>::Zero();
+  /// 3 x vertexCount scalars of the caller's, overwritten. Not needed for points of Scalar side by side in sorted
+  /// order, which are written directly; all others are put in their places from here.
+  Scalar* scratch = nullptr;
 };
 
 }  // namespace tetskin

@@ -121,14 +121,23 @@ void storePadded(const Lanes<S, 4>& v, S* to) {
   ::memcpy(to, &v, sizeof v);
 }
 
+/// Lanes 0, 1, 2, ...
 template <class S, int W>
-Lanes<S, W> smaller(const Lanes<S, W>& a, const Lanes<S, W>& b) {
-  return a < b ? a : b;
+Lanes<S, W> laneNumbers() {
+  if constexpr (W == 1) {
+    return S(0);
+  } else {
+    Lanes<S, W> v{};
+    for (int i = 0; i < W; ++i) v[i] = static_cast<S>(i);
+    return v;
+  }
 }
-template <class S, int W>
-Lanes<S, W> larger(const Lanes<S, W>& a, const Lanes<S, W>& b) {
-  return a > b ? a : b;
-}
+
+/// A number of lanes as a type, to choose code by.
+template <int W>
+struct Width {
+  static constexpr int value = W;
+};
 
 /// How many lanes lie between two numbers.
 template <class S, int W>
@@ -189,6 +198,16 @@ V interleavedPart(const V& x, const V& y, const V& z, Indices<I...>) {
 }
 #endif
 
+/// The first `count` of W numbers from `v`, the others from `old`.
+template <class S, int W>
+Lanes<S, W> firstOf(const Lanes<S, W>& v, const Lanes<S, W>& old, int count) {
+  if constexpr (W == 1) {
+    return count > 0 ? v : old;
+  } else {
+    return laneNumbers<S, W>() < static_cast<S>(count) ? v : old;
+  }
+}
+
 /// Writes W points side by side: x0 y0 z0 x1 y1 z1 ...
 template <class S, int W>
 void storePoints(const Lanes<S, W> p[3], S* out) {
@@ -205,6 +224,29 @@ void storePoints(const Lanes<S, W> p[3], S* out) {
   }
 #endif
   for (int i = 0; i < W; ++i) {
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<S, W>(p[k], i);
+  }
+}
+
+/// Writes the first `count` of W points side by side, and what is there for the others: memory for W is touched.
+template <class S, int W>
+void storeFirstPoints(const Lanes<S, W> p[3], int count, S* out) {
+#ifdef TETSKIN_SHUFFLES
+  if constexpr (W >= 4) {
+    using All = typename IndicesUpTo<W>::Type;
+    const Lanes<S, W> parts[3] = {interleavedPart<0, W>(p[0], p[1], p[2], All{}),
+                                  interleavedPart<1, W>(p[0], p[1], p[2], All{}),
+                                  interleavedPart<2, W>(p[0], p[1], p[2], All{})};
+    for (int k = 0; k < 3; ++k) {
+      Lanes<S, W> old;
+      ::memcpy(&old, out + k * W, sizeof old);
+      const Lanes<S, W> mixed = firstOf<S, W>(parts[k], old, 3 * count - k * W);
+      ::memcpy(out + k * W, &mixed, sizeof mixed);
+    }
+    return;
+  }
+#endif
+  for (int i = 0; i < count; ++i) {
     for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<S, W>(p[k], i);
   }
 }

@@ -27,12 +27,6 @@ enum class Surface {
   QuadraticOutside,  ///< to first order from the closest point
 };
 
-/// Where one kernel's points go: point k of the slots' order at index places[k], or k itself where that is null.
-struct Places {
-  const std::uint32_t* of = nullptr;
-  std::size_t stride = 0;  ///< bytes between points
-};
-
 /// Some consecutive runs, all inside or all outside, and all that their vertices depend on.
 template <class Scalar>
 struct Work {
@@ -46,7 +40,6 @@ struct Work {
   const Scalar* nodes = nullptr;            ///< current positions, 4 scalars a node, relative to some point nearby
   const Scalar* edges = nullptr;            ///< 4 scalars a cage edge: its vector, and its rest length
   const std::uint32_t* runEdges = nullptr;  ///< by run: its 6 edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
-  Places places;
 };
 
 /// Extremes of the points written, merged into what is there.
@@ -87,12 +80,12 @@ struct DirectionFactors {
   const float* factors[3] = {};  ///< planes, by slot, of the padded length of weights
 };
 
-/// The loops of one instruction set. `positions*` write a point a slot and, given an extent, widen it; `directions`
-/// write unit vectors, and leave a point as it is where there is no direction any more.
+/// The loops of one instruction set. Points are written side by side in the order of the slots: slot s at out + 3 s.
+/// Given an extent, `positions` widens it. `directions` writes unit vectors, and leaves a point as it is where there is
+/// no direction any more.
 template <class Scalar>
 struct Table {
-  void (*positionsFloat)(const Work<Scalar>&, const Scalar shift[3], float* out, Extent<Scalar>*);
-  void (*positionsDouble)(const Work<Scalar>&, const Scalar shift[3], double* out, Extent<Scalar>*);
+  void (*positions)(const Work<Scalar>&, const Scalar shift[3], Scalar* out, Extent<Scalar>*);
   void (*directions)(const Work<Scalar>&, const DirectionFactors&, float* out);
   void (*gradients)(const GradientWork<Scalar>&);
   void (*edges)(const EdgeWork<Scalar>&);

@@ -34,6 +34,12 @@ Lanes<S, 4> nodeAt(const Work<S>& work, int node) {
   return loadPadded(work.nodes + 4 * static_cast<std::size_t>(node));
 }
 
+/// The vector of a cage edge; the fourth number is its rest length.
+template <class S>
+Lanes<S, 4> edgeAt(const Work<S>& work, std::uint32_t edge) {
+  return loadPadded(work.edges + 4 * static_cast<std::size_t>(edge));
+}
+
 /// x(b) of one tet.
 template <class S>
 struct LinearMap {
@@ -53,40 +59,45 @@ struct LinearMap {
   }
 };
 
-/// What the quadratic part adds to it.
+/// The polynomial of the head of this file.
 template <class S>
-struct Correction {
-  S slope[3][4];    ///< of b_k
-  S square[3][4];   ///< of b_k b_k
+struct QuadraticMap {
+  S base[4];
+  S slope[3][4];    ///< of b_k: x_k - x3 + e_k3
+  S bend[3][4];     ///< of -b_k b_k: e_k3
   S product[3][4];  ///< of b1 b2, b0 b2, b0 b1: the one without k
-  S shortestRest;   ///< of the tet's edges
 
-  void make(const Work<S>& work, std::size_t run) {
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
+    const Run& r = work.runs[run];
+    const Lanes<S, 4> last = nodeAt(work, r.nodes[3]);
+    storePadded<S>(last + shift, base);
     const std::uint32_t* ids = work.runEdges + 6 * run;
-    Lanes<S, 4> e[6];
-    for (int i = 0; i < 6; ++i) e[i] = loadPadded(work.edges + 4 * static_cast<std::size_t>(ids[i]));
-    const Lanes<S, 4> to3[3] = {e[2], e[4], e[5]};
-    const Lanes<S, 4> opposite[3] = {e[3], e[1], e[0]};  // (1,2) (0,2) (0,1)
+    const Lanes<S, 4> to3[3] = {edgeAt(work, ids[2]), edgeAt(work, ids[4]), edgeAt(work, ids[5])};
+    const Lanes<S, 4> opposite[3] = {edgeAt(work, ids[3]), edgeAt(work, ids[1]), edgeAt(work, ids[0])};
     for (int n = 0; n < 3; ++n) {
-      storePadded<S>(to3[n], slope[n]);
-      storePadded<S>(Lanes<S, 4>{} - to3[n], square[n]);
+      storePadded<S>(nodeAt(work, r.nodes[n]) - last + to3[n], slope[n]);
+      storePadded<S>(to3[n], bend[n]);
       storePadded<S>(opposite[n] - to3[(n + 1) % 3] - to3[(n + 2) % 3], product[n]);
     }
-    shortestRest = e[0][3];
-    for (int i = 1; i < 6; ++i) shortestRest = e[i][3] < shortestRest ? e[i][3] : shortestRest;
   }
 
+  /// x(b) without its base.
   template <class V>
-  V at(const V b[3], int k) const {
-    return b[0] * (slope[0][k] + square[0][k] * b[0] + product[2][k] * b[1] + product[1][k] * b[2]) +
-           b[1] * (slope[1][k] + square[1][k] * b[1] + product[0][k] * b[2]) +
-           b[2] * (slope[2][k] + square[2][k] * b[2]);
+  V fromBase(const V b[3], int k) const {
+    return b[0] * (slope[0][k] - bend[0][k] * b[0] + product[2][k] * b[1] + product[1][k] * b[2]) +
+           b[1] * (slope[1][k] - bend[1][k] * b[1] + product[0][k] * b[2]) + b[2] * (slope[2][k] - bend[2][k] * b[2]);
   }
   /// Derivative by b_n.
   template <class V>
   V derivative(const V b[3], int n, int k) const {
     const int p = (n + 1) % 3, q = (n + 2) % 3;
-    return slope[n][k] + S(2) * square[n][k] * b[n] + product[q][k] * b[p] + product[p][k] * b[q];
+    return slope[n][k] - S(2) * bend[n][k] * b[n] + product[q][k] * b[p] + product[p][k] * b[q];
+  }
+  template <int W>
+  void gradient(const Lanes<S, W> b[3], Gradient<S, W>& g) const {
+    for (int n = 0; n < 3; ++n) {
+      for (int k = 0; k < 3; ++k) g.column[n][k] = derivative(b, n, k);
+    }
   }
 };
 
@@ -96,12 +107,13 @@ void loadWeights(const float* const planes[3], std::uint32_t slot, Lanes<S, W> b
 }
 
 /// One tet under each kind of surface: positions, and gradients for normals and tangents, of W slots.
-template <class S, int W>
+template <class S>
 struct LinearTet {
   LinearMap<S> map;
 
   void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) { map.make(work, run, shift); }
 
+  template <int W>
   void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
     Lanes<S, W> b[3];
     loadWeights<S, W>(work.weights, slot, b);
@@ -109,90 +121,80 @@ struct LinearTet {
   }
 };
 
-template <class S, int W>
+template <class S>
 struct QuadraticTet {
-  LinearMap<S> map;
-  Correction<S> correction;
+  QuadraticMap<S> map;
 
-  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
-    map.make(work, run, shift);
-    correction.make(work, run);
-    // One polynomial: the slopes of both together.
-    for (int n = 0; n < 3; ++n) {
-      storePadded<S>(loadPadded(correction.slope[n]) + loadPadded(map.slope[n]), correction.slope[n]);
-    }
-  }
+  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) { map.make(work, run, shift); }
 
+  template <int W>
   void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
     Lanes<S, W> b[3];
     loadWeights<S, W>(work.weights, slot, b);
-    for (int k = 0; k < 3; ++k) x[k] = map.base[k] + correction.at(b, k);
+    for (int k = 0; k < 3; ++k) x[k] = map.base[k] + map.fromBase(b, k);
   }
+  template <int W>
   void gradient(const Work<S>& work, std::uint32_t slot, Gradient<S, W>& g) const {
     Lanes<S, W> b[3];
     loadWeights<S, W>(work.weights, slot, b);
-    for (int n = 0; n < 3; ++n) {
-      for (int k = 0; k < 3; ++k) g.column[n][k] = correction.derivative(b, n, k);
-    }
+    map.template gradient<W>(b, g);
   }
 };
 
-template <class S, int W>
+template <class S>
 struct QuadraticTetOutside {
-  LinearMap<S> map;
-  Correction<S> correction;
+  QuadraticMap<S> map;
+  S shortestRest;  ///< of the tet's edges
 
   void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
     map.make(work, run, shift);
-    correction.make(work, run);
+    const std::uint32_t* ids = work.runEdges + 6 * run;
+    shortestRest = edgeAt(work, ids[0])[3];
+    for (int i = 1; i < 6; ++i) {
+      const S rest = edgeAt(work, ids[i])[3];
+      if (rest < shortestRest) shortestRest = rest;
+    }
   }
 
+  template <int W>
   void closest(const Work<S>& work, std::uint32_t slot, Lanes<S, W> c[3]) const {
     loadWeights<S, W>(work.closest, slot - work.closestBase, c);
   }
-  /// The correction and its derivatives are taken at the closest point and continued to first order. A crumpled cage
-  /// would carry it far away: it is never longer than the tet's shortest edge at rest.
+  /// What the quadratic part adds is taken, with its derivatives, at the closest point, and continued to first order. A
+  /// crumpled cage would carry it far away: it is never longer than the tet's shortest edge at rest.
+  template <int W>
   void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
     using V = Lanes<S, W>;
-    V b[3], c[3], d[3];
+    V b[3], c[3], added[3];
     loadWeights<S, W>(work.weights, slot, b);
-    closest(work, slot, c);
+    closest<W>(work, slot, c);
     for (int k = 0; k < 3; ++k) {
-      d[k] = correction.at(c, k);
-      for (int n = 0; n < 3; ++n) d[k] += correction.derivative(c, n, k) * (b[n] - c[n]);
+      V linear = all<S, W>(S(0));
+      added[k] = map.fromBase(c, k);
+      for (int n = 0; n < 3; ++n) {
+        linear += (map.slope[n][k] - map.bend[n][k]) * b[n];
+        added[k] += map.derivative(c, n, k) * (b[n] - c[n]);
+      }
+      added[k] -= linear;
+      x[k] = map.base[k] + linear;
     }
-    map.positions(b, x);
-    const V length = squareRoots<S, W>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const V limit = all<S, W>(correction.shortestRest);
+    const V length = squareRoots<S, W>(added[0] * added[0] + added[1] * added[1] + added[2] * added[2]);
+    const V limit = all<S, W>(shortestRest);
     const V scale = length > limit ? limit / length : all<S, W>(S(1));
     // Nodes so far apart that the length overflows leave no correction worth having.
-    for (int k = 0; k < 3; ++k) x[k] += length * 0 == 0 ? d[k] * scale : all<S, W>(S(0));
+    for (int k = 0; k < 3; ++k) x[k] += length * 0 == 0 ? added[k] * scale : all<S, W>(S(0));
   }
+  template <int W>
   void gradient(const Work<S>& work, std::uint32_t slot, Gradient<S, W>& g) const {
     Lanes<S, W> c[3];
-    closest(work, slot, c);
-    for (int n = 0; n < 3; ++n) {
-      for (int k = 0; k < 3; ++k) g.column[n][k] = map.slope[n][k] + correction.derivative(c, n, k);
-    }
+    closest<W>(work, slot, c);
+    map.template gradient<W>(c, g);
   }
 };
 
-/// Lanes 0, 1, 2, ...
-template <class S, int W>
-Lanes<S, W> laneNumbers() {
-  if constexpr (W == 1) {
-    return S(0);
-  } else {
-    Lanes<S, W> v{};
-    for (int i = 0; i < W; ++i) v[i] = static_cast<S>(i);
-    return v;
-  }
-}
-
 template <class S, int W>
 struct WideExtent {
-  using V = Lanes<S, W>;
-  V low[3], high[3];
+  Lanes<S, W> low[3], high[3];
 
   explicit WideExtent(const Extent<S>& from) {
     for (int k = 0; k < 3; ++k) {
@@ -201,11 +203,11 @@ struct WideExtent {
     }
   }
   /// Of the first `count` lanes only: the others belong to other tets.
-  void add(const V x[3], int count) {
+  void add(const Lanes<S, W> x[3], int count) {
     const auto counted = laneNumbers<S, W>() < static_cast<S>(count);
     for (int k = 0; k < 3; ++k) {
-      low[k] = counted ? smaller<S, W>(x[k], low[k]) : low[k];
-      high[k] = counted ? larger<S, W>(x[k], high[k]) : high[k];
+      low[k] = counted & (x[k] < low[k]) ? x[k] : low[k];
+      high[k] = counted & (x[k] > high[k]) ? x[k] : high[k];
     }
   }
   void mergeInto(Extent<S>& to) const {
@@ -219,92 +221,107 @@ struct WideExtent {
   }
 };
 
-/// Writes those of the first `count` points that `chosen` names, or all of them, to their places.
-template <class T, int W>
-void scatterPoints(const Lanes<T, W> p[3], std::uint32_t slot, int count, const bool* chosen, const Places& places,
-                   T* out) {
-  T points[3 * W];
-  storePoints<T, W>(p, points);
+/// One for each width of blocks.
+template <class S, int W>
+struct WideExtents : WideExtents<S, W == 16  ? 8
+                                    : W == 8 ? 4
+                                             : 1> {
+  using Narrower = WideExtents<S, W == 16 ? 8 : W == 8 ? 4 : 1>;
+  WideExtent<S, W> wide;
+
+  explicit WideExtents(const Extent<S>& from) : Narrower(from), wide(from) {}
+  void mergeInto(Extent<S>& to) const {
+    Narrower::mergeInto(to);
+    wide.mergeInto(to);
+  }
+};
+template <class S>
+struct WideExtents<S, 1> {
+  WideExtent<S, 1> wide;
+
+  explicit WideExtents(const Extent<S>& from) : wide(from) {}
+  void mergeInto(Extent<S>& to) const { wide.mergeInto(to); }
+};
+
+/// Writes those of the first `count` points that are chosen, or all of them. Out of the way, and with its arguments in
+/// registers, as their addresses would have the loop around it store them each time.
+template <class S, int W>
+TETSKIN_NOINLINE void storeOneByOne(Lanes<S, W> x, Lanes<S, W> y, Lanes<S, W> z, const bool* chosen, int count,
+                                    S* out) {
+  const Lanes<S, W> p[3] = {x, y, z};
   for (int i = 0; i < count; ++i) {
     if (chosen && !chosen[i]) continue;
-    const std::uint32_t place = places.of ? places.of[slot + i] : slot + i;
-    ::memcpy(reinterpret_cast<char*>(out) + place * places.stride, points + 3 * i, 3 * sizeof(T));
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<S, W>(p[k], i);
   }
-}
-
-/// The same where it is the exception: out of the way, and with its arguments in registers, as their addresses would
-/// have the loop around it store them each time.
-template <class T, int W>
-TETSKIN_NOINLINE void scatterPoints(Lanes<T, W> x, Lanes<T, W> y, Lanes<T, W> z, std::uint32_t slot, int count,
-                                    const bool* chosen, const Places& places, T* out) {
-  const Lanes<T, W> p[3] = {x, y, z};
-  scatterPoints<T, W>(p, slot, count, chosen, places, out);
-}
-
-/// Points that lie side by side in the order of the slots are written W at a time.
-template <class T>
-bool sideBySide(const Places& places) {
-  return !places.of && places.stride == 3 * sizeof(T);
 }
 
 /// The polynomials of so many runs are made before their vertices are computed: their loads and the arithmetic on
 /// vertices then overlap, and coefficients are read from memory straight into all lanes.
-constexpr std::size_t kBatch = 16;
+constexpr std::size_t kBatch = 8;
 
-template <class S, class T, int W, class TetMap, bool kSideBySide, bool kExtent>
-void positionsOf(const Work<S>& given, const S shift[3], T* out, Extent<S>* extent) {
-  using V = Lanes<S, W>;
+/// Calls block(width, slot, count) for the slots of one run: short runs in one block as narrow as they are, as most
+/// runs of a typical mesh are short; long ones in blocks of the widest registers.
+template <int Widest, class Block>
+void forBlocks(std::uint32_t first, std::uint32_t last, Block&& block) {
+  const std::uint32_t length = last - first;
+  if constexpr (Widest > 4) {
+    if (length <= 4) return block(Width<4>(), first, static_cast<int>(length));
+  }
+  if constexpr (Widest > 8) {
+    if (length <= 8) return block(Width<8>(), first, static_cast<int>(length));
+  }
+  for (std::uint32_t slot = first; slot < last; slot += Widest) {
+    block(Width<Widest>(), slot, last - slot < Widest ? static_cast<int>(last - slot) : Widest);
+  }
+}
+
+template <class S, int Widest, class TetMap, bool kExtent>
+void positionsOf(const Work<S>& given, const S shift[3], S* out, Extent<S>* extent) {
   const Work<S> work = given;  // a copy, which the compiler knows that no store to `out` can change
   const S padded[4] = {shift[0], shift[1], shift[2], S(0)};
-  WideExtent<S, W> wide(kExtent ? *extent : Extent<S>{});
   const std::uint32_t end = work.runs[work.lastRun].firstSlot;
+  WideExtents<S, Widest> extents(kExtent ? *extent : Extent<S>{});
   TetMap maps[kBatch];
   for (std::size_t batch = work.firstRun; batch < work.lastRun; batch += kBatch) {
     const std::size_t batchEnd = batch + kBatch < work.lastRun ? batch + kBatch : work.lastRun;
     for (std::size_t r = batch; r < batchEnd; ++r) maps[r - batch].make(work, r, loadPadded(padded));
     for (std::size_t r = batch; r < batchEnd; ++r) {
       const TetMap& map = maps[r - batch];
-      const std::uint32_t last = work.runs[r + 1].firstSlot;
-      for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
-        V x[3];
-        map.positions(work, slot, x);
-        const int count = last - slot < W ? static_cast<int>(last - slot) : W;
-        if (kExtent) wide.add(x, count);
-        Lanes<T, W> rounded[3];
-        for (int k = 0; k < 3; ++k) rounded[k] = convert<T, S, W>(x[k]);
-        // The lanes beyond the run's end spill into places that the next run writes again: cheaper than to hold back.
-        if (!kSideBySide) {
-          scatterPoints<T, W>(rounded, slot, count, nullptr, work.places, out);
-        } else if (slot + W <= end) {
-          storePoints<T, W>(rounded, out + 3 * static_cast<std::size_t>(slot));
-        } else {
-          scatterPoints<T, W>(rounded[0], rounded[1], rounded[2], slot, count, nullptr, work.places, out);
-        }
-      }
+      forBlocks<Widest>(work.runs[r].firstSlot, work.runs[r + 1].firstSlot,
+                        [&](auto width, std::uint32_t slot, int count) {
+                          constexpr int W = decltype(width)::value;
+                          Lanes<S, W> x[3];
+                          map.template positions<W>(work, slot, x);
+                          if (kExtent) static_cast<WideExtents<S, W>&>(extents).wide.add(x, count);
+                          S* to = out + 3 * static_cast<std::size_t>(slot);
+                          // Lanes beyond the run's end spill into slots that the next run writes again: cheaper than to
+                          // hold back.
+                          if (slot + W <= end) {
+                            storePoints<S, W>(x, to);
+                          } else {
+                            storeOneByOne<S, W>(x[0], x[1], x[2], nullptr, count, to);
+                          }
+                        });
     }
   }
-  if (kExtent) wide.mergeInto(*extent);
+  if (kExtent) extents.mergeInto(*extent);
 }
 
-template <class S, class T, int W, class TetMap>
-void positionsOf(const Work<S>& work, const S shift[3], T* out, Extent<S>* extent) {
-  if (sideBySide<T>(work.places)) {
-    return extent ? positionsOf<S, T, W, TetMap, true, true>(work, shift, out, extent)
-                  : positionsOf<S, T, W, TetMap, true, false>(work, shift, out, extent);
-  }
-  return extent ? positionsOf<S, T, W, TetMap, false, true>(work, shift, out, extent)
-                : positionsOf<S, T, W, TetMap, false, false>(work, shift, out, extent);
+template <class S, int W, class TetMap>
+void positionsOf(const Work<S>& work, const S shift[3], S* out, Extent<S>* extent) {
+  return extent ? positionsOf<S, W, TetMap, true>(work, shift, out, extent)
+                : positionsOf<S, W, TetMap, false>(work, shift, out, extent);
 }
 
-template <class S, class T, int W>
-void positions(const Work<S>& work, const S shift[3], T* out, Extent<S>* extent) {
+template <class S, int W>
+void positions(const Work<S>& work, const S shift[3], S* out, Extent<S>* extent) {
   switch (work.surface) {
     case Surface::Linear:
-      return positionsOf<S, T, W, LinearTet<S, W>>(work, shift, out, extent);
+      return positionsOf<S, W, LinearTet<S>>(work, shift, out, extent);
     case Surface::Quadratic:
-      return positionsOf<S, T, W, QuadraticTet<S, W>>(work, shift, out, extent);
+      return positionsOf<S, W, QuadraticTet<S>>(work, shift, out, extent);
     case Surface::QuadraticOutside:
-      return positionsOf<S, T, W, QuadraticTetOutside<S, W>>(work, shift, out, extent);
+      return positionsOf<S, W, QuadraticTetOutside<S>>(work, shift, out, extent);
   }
 }
 
@@ -330,7 +347,7 @@ void vectorsFor(Direction kind, const V column[3][3], V vector[3][3]) {
 }
 
 /// Those of a linear tet are the same for all its vertices.
-template <class S, int W>
+template <class S>
 struct LinearDirections {
   S vector[3][3];
 
@@ -343,19 +360,21 @@ struct LinearDirections {
     }
     vectorsFor<S>(kind, column, vector);
   }
+  template <int W>
   void sum(const Work<S>&, Direction, std::uint32_t, const Lanes<S, W> m[3], Lanes<S, W> d[3]) const {
     for (int k = 0; k < 3; ++k) d[k] = m[0] * vector[0][k] + m[1] * vector[1][k] + m[2] * vector[2][k];
   }
 };
 
-template <class S, int W, class TetMap>
+template <class S, class TetMap>
 struct QuadraticDirections {
   TetMap map;
 
   void make(const Work<S>& work, Direction, std::size_t run) { map.make(work, run, Lanes<S, 4>{}); }
+  template <int W>
   void sum(const Work<S>& work, Direction kind, std::uint32_t slot, const Lanes<S, W> m[3], Lanes<S, W> d[3]) const {
     Gradient<S, W> g;
-    map.gradient(work, slot, g);
+    map.template gradient<W>(work, slot, g);
     Lanes<S, W> vector[3][3];
     vectorsFor<S>(kind, g.column, vector);
     for (int k = 0; k < 3; ++k) d[k] = m[0] * vector[0][k] + m[1] * vector[1][k] + m[2] * vector[2][k];
@@ -366,58 +385,54 @@ struct QuadraticDirections {
 template <class S>
 constexpr S kShortestSquared = S(1e-20);
 
-template <class S, int W, class Directions, bool kSideBySide>
+template <class S, int Widest, class Directions>
 void directionsOf(const Work<S>& given, const DirectionFactors& factors, float* out) {
-  using V = Lanes<S, W>;
   constexpr S kLargest = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
   const Work<S> work = given;
   const DirectionFactors planes = factors;
+  const std::uint32_t end = work.runs[work.lastRun].firstSlot;
   Directions tets[kBatch];
   for (std::size_t batch = work.firstRun; batch < work.lastRun; batch += kBatch) {
     const std::size_t batchEnd = batch + kBatch < work.lastRun ? batch + kBatch : work.lastRun;
     for (std::size_t r = batch; r < batchEnd; ++r) tets[r - batch].make(work, planes.kind, r);
     for (std::size_t r = batch; r < batchEnd; ++r) {
-      const std::uint32_t last = work.runs[r + 1].firstSlot;
-      for (std::uint32_t slot = work.runs[r].firstSlot; slot < last; slot += W) {
-        V m[3], d[3];
-        loadWeights<S, W>(planes.factors, slot, m);
-        tets[r - batch].sum(work, planes.kind, slot, m, d);
-        const V squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        const V inverse = S(1) / squareRoots<S, W>(squared);
-        Lanes<float, W> unit[3];
-        for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
-        const int count = last - slot < W ? static_cast<int>(last - slot) : W;
-        const int good = countBetween<S, W>(squared, kShortestSquared<S>, kLargest);
-        if (kSideBySide && good == W && count == W) {
-          storePoints<float, W>(unit, out + 3 * static_cast<std::size_t>(slot));
-        } else {
-          bool chosen[W];
-          for (int i = 0; i < W; ++i) {
-            const S q = lane<S, W>(squared, i);
-            chosen[i] = q > kShortestSquared<S> && q < kLargest;
-          }
-          scatterPoints<float, W>(unit[0], unit[1], unit[2], slot, count, good == W ? nullptr : chosen, work.places, out);
-        }
-      }
+      const Directions& tet = tets[r - batch];
+      forBlocks<Widest>(work.runs[r].firstSlot, work.runs[r + 1].firstSlot,
+                        [&](auto width, std::uint32_t slot, int count) {
+                          constexpr int W = decltype(width)::value;
+                          Lanes<S, W> m[3], d[3];
+                          loadWeights<S, W>(planes.factors, slot, m);
+                          tet.template sum<W>(work, planes.kind, slot, m, d);
+                          const Lanes<S, W> squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                          const Lanes<S, W> inverse = S(1) / squareRoots<S, W>(squared);
+                          Lanes<float, W> unit[3];
+                          for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
+                          float* to = out + 3 * static_cast<std::size_t>(slot);
+                          if (slot + W <= end && countBetween<S, W>(squared, kShortestSquared<S>, kLargest) == W) {
+                            // No spilling here: the next run may have to leave what is in its slots.
+                            storeFirstPoints<float, W>(unit, count, to);
+                          } else {
+                            bool chosen[W];
+                            for (int i = 0; i < W; ++i) {
+                              const S q = lane<S, W>(squared, i);
+                              chosen[i] = q > kShortestSquared<S> && q < kLargest;
+                            }
+                            storeOneByOne<float, W>(unit[0], unit[1], unit[2], chosen, count, to);
+                          }
+                        });
     }
   }
-}
-
-template <class S, int W, class Directions>
-void directionsOf(const Work<S>& work, const DirectionFactors& factors, float* out) {
-  return sideBySide<float>(work.places) ? directionsOf<S, W, Directions, true>(work, factors, out)
-                                        : directionsOf<S, W, Directions, false>(work, factors, out);
 }
 
 template <class S, int W>
 void directions(const Work<S>& work, const DirectionFactors& factors, float* out) {
   switch (work.surface) {
     case Surface::Linear:
-      return directionsOf<S, W, LinearDirections<S, W>>(work, factors, out);
+      return directionsOf<S, W, LinearDirections<S>>(work, factors, out);
     case Surface::Quadratic:
-      return directionsOf<S, W, QuadraticDirections<S, W, QuadraticTet<S, W>>>(work, factors, out);
+      return directionsOf<S, W, QuadraticDirections<S, QuadraticTet<S>>>(work, factors, out);
     case Surface::QuadraticOutside:
-      return directionsOf<S, W, QuadraticDirections<S, W, QuadraticTetOutside<S, W>>>(work, factors, out);
+      return directionsOf<S, W, QuadraticDirections<S, QuadraticTetOutside<S>>>(work, factors, out);
   }
 }
 
@@ -464,7 +479,7 @@ void edges(const EdgeWork<S>& work) {
 
 template <class S, int W>
 constexpr Table<S> table() {
-  return {positions<S, float, W>, positions<S, double, W>, directions<S, W>, gradients<S>, edges<S>};
+  return {positions<S, W>, directions<S, W>, gradients<S>, edges<S>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS
