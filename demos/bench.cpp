@@ -174,6 +174,48 @@ void registerBuildCageSizes() {
   }
 }
 
+/// `count` points on a serpent: its vertices, then points within its triangles, in their order.
+std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t count) {
+  std::vector<Eigen::Vector3d> points = mesh.positions;
+  points.reserve(std::max(count, points.size()));
+  for (std::size_t k = 0; points.size() < count; ++k) {
+    const auto& t = mesh.triangles[k % mesh.triangleCount()];
+    const double a = 0.05 + 0.1 * static_cast<double>(k / mesh.triangleCount());  // another line in every round
+    points.push_back(a * mesh.positions[t[0]] + 0.6 * (1.0 - a) * mesh.positions[t[1]] +
+                     0.4 * (1.0 - a) * mesh.positions[t[2]]);
+  }
+  return points;
+}
+
+/// Attaching to a cage of a tenth as many tets. Time per vertex should not depend on the size.
+void attachSize(State& state, std::size_t vertices) {
+  TriangleMesh mesh = makeSerpent({2 * vertices});
+  CageOptions options;
+  options.targetTets = vertices / 10;
+  const TetMesh cage = buildCage(mesh, options);
+  const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
+  mesh = {};
+  for (auto _ : state) {
+    Embedding embedding;
+    require(embed(cage, viewOf(points), {}, embedding).status);
+    benchmark::DoNotOptimize(embedding);
+  }
+  const double count = static_cast<double>(points.size());
+  state.counters["tets"] = static_cast<double>(cage.tetCount());
+  state.counters["vertices"] = count;
+  state.counters["s_per_vertex"] =
+      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void registerAttachSizes() {
+  for (const std::size_t vertices : {10000, 100000, 1000000, 10000000}) {
+    const std::string name = "Attach/vertices:" + std::to_string(vertices);
+    benchmark::RegisterBenchmark(name.c_str(), [vertices](State& state) { attachSize(state, vertices); })
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(static_cast<benchmark::IterationCount>(1 + 3000000 / vertices));
+  }
+}
+
 void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
   const auto add = [&](const char* name, auto function, benchmark::TimeUnit unit) {
     benchmark::RegisterBenchmark(name, [bench, function](State& state) { function(state, *bench); })->Unit(unit);
@@ -206,7 +248,10 @@ int main(int argc, char** argv) {
   addModelOptions(app, options);
   return runDemo(app, argc, argv, [&] {
     registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);
-    if (options.mesh.empty()) registerBuildCageSizes();
+    if (options.mesh.empty()) {
+      registerAttachSizes();
+      registerBuildCageSizes();
+    }
     benchmark::RunSpecifiedBenchmarks();
     return kDone;
   });

@@ -7,6 +7,7 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/tet_geometry.h>
 #include <tetskin/core/tet_search.h>
+#include <tetskin/core/weld.h>
 
 #include <algorithm>
 #include <limits>
@@ -193,6 +194,31 @@ TEST(Embed, MatchesBruteForceAtAnyScale) {
   }
 }
 
+TEST(Embed, MatchesBruteForceAtExtremeScalesFarFromTheOrigin) {
+  const TetMesh unit = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  for (const double scale : {1e-12, 1e12}) {
+    for (const double sizes : {0.0, 1e6}) {
+      const Eigen::Vector3d offset = scale * sizes * Eigen::Vector3d(1.0, -1.0, 0.5);
+      TetMesh cage = unit;
+      cage.nodes = test::scaledAndMoved(unit.nodes, scale, offset);
+      expectBruteForceUnderBothRules(
+          cage, test::scaledAndMoved(test::randomPoints(400, around(unit, 1.2), 33), scale, offset), 400);
+    }
+  }
+}
+
+TEST(Embed, MatchesBruteForceInNeedlesAndSlivers) {
+  for (const Eigen::Vector3d& squeeze : {Eigen::Vector3d(1, 1e-4, 1e-4), Eigen::Vector3d(1, 1, 3e-8)}) {
+    TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+    for (Eigen::Vector3d& p : cage.nodes) p = p.cwiseProduct(squeeze);
+    Points vertices = test::randomPoints(400, around(cage, 1.3), 34);
+    vertices.insert(vertices.end(), cage.nodes.begin(), cage.nodes.end());
+    const Points wide = test::randomPoints(100, kUnitBox, 35);
+    vertices.insert(vertices.end(), wide.begin(), wide.end());
+    expectBruteForceUnderBothRules(cage, vertices);
+  }
+}
+
 TEST(Embed, ScaleChangesNoDecision) {
   const TetMesh unit = test::randomTets(200, 0.4, 21);
   const Points vertices = test::randomPoints(500, around(unit, 1.3), 22);
@@ -234,8 +260,11 @@ TEST(Embed, MatchesBruteForceWithATableForcedToCollide) {
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
     const auto expected = test::bruteForce(cage, vertices, rule);
     for (const std::size_t tableSize : {1, 4, 32}) {
-      const TetSearch search = findTets(searchTets(cage), vertices, rule, tableSize);
-      for (std::size_t v = 0; v < vertices.size(); ++v) ASSERT_EQ(search.hits[v].tet, expected[v].tet);
+      const TetSearch search =
+          findTets(SearchCage(cage), viewOf(vertices), weldCoincident(viewOf(vertices)), rule, tableSize);
+      for (std::size_t v = 0; v < vertices.size(); ++v) {
+        ASSERT_EQ(search.tetOf[v], expected[v].inside ? expected[v].tet : ~expected[v].tet);
+      }
     }
   }
 }

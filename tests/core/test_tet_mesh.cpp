@@ -88,6 +88,20 @@ TEST(TetMesh, UsableAcceptsSurvivableFaults) {
   EXPECT_TRUE(usable(mesh, checkTetMesh(mesh)).ok());
 }
 
+TEST(TetMesh, CheckForUseDecidesAsTheFullCheckDoes) {
+  std::vector<TetMesh> meshes(5, test::latticeCage(1, 1, 1));
+  meshes[1].tets[2][1] = -1;
+  meshes[2].nodes[1].x() = std::numeric_limits<double>::infinity();
+  for (Tet& t : meshes[3].tets) t[3] = t[0];
+  meshes[4].tets.push_back(meshes[4].tets[0]);
+  for (const TetMesh& mesh : meshes) {
+    const Status quick = usable(mesh, checkForUse(mesh)), full = usable(mesh, checkTetMesh(mesh));
+    EXPECT_EQ(quick.code, full.code);
+    EXPECT_EQ(quick.message, full.message);
+  }
+  EXPECT_EQ(checkForUse(meshes[4]).duplicateTets.count, 0u);
+}
+
 TEST(TetMesh, RepairReorientsNegativeTetsAndReportsThem) {
   TetMesh mesh = test::latticeCage(2, 2, 2);
   const double volume = signedTotal(mesh);

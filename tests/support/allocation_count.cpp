@@ -5,29 +5,58 @@
 // is inlined into it.
 #include "support/allocation_count.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
 namespace {
-std::size_t allocations = 0;
+
+std::size_t allocations = 0, bytes = 0, peak = 0;
+
+/// In front of every block; keeps its alignment.
+struct alignas(std::max_align_t) Header {
+  std::size_t size;
+};
+
+void release(void* memory) {
+  if (!memory) return;
+  Header* header = static_cast<Header*>(memory) - 1;
+  bytes -= header->size;
+  std::free(header);
 }
+
+}  // namespace
 
 void* operator new(std::size_t size) {
   ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
+  bytes += size;
+  peak = std::max(peak, bytes);
+  Header* header = static_cast<Header*>(std::malloc(sizeof(Header) + size));
+  if (!header) throw std::bad_alloc();
+  header->size = size;
+  return header + 1;
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 
 namespace tetskin::test {
 
 std::size_t allocationCount() {
   return allocations;
+}
+std::size_t allocatedBytes() {
+  return bytes;
+}
+std::size_t peakBytes() {
+  return peak;
+}
+void resetPeak() {
+  peak = bytes;
 }
 
 }  // namespace tetskin::test

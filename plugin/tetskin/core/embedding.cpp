@@ -5,6 +5,8 @@
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/outside_neighbours.h>
+#include <tetskin/core/search_cage.h>
+#include <tetskin/core/tet_geometry.h>
 #include <tetskin/core/tet_search.h>
 #include <tetskin/core/weld.h>
 
@@ -14,36 +16,27 @@
 namespace tetskin {
 namespace {
 
+using Triangles = std::vector<std::array<int, 3>>;
+
 /// Coordinates beyond this are refused: their squares, which distances need, must stay well inside a double.
 constexpr double kLargestCoordinate = 1e30;
 
-std::vector<Eigen::Vector3d> distinctPoints(PointView<const double> vertices, const std::vector<std::uint32_t>& first,
-                                            std::vector<std::uint32_t>& placeOf) {
-  std::vector<Eigen::Vector3d> points;
-  placeOf.resize(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    if (first[v] == v) {
-      placeOf[v] = static_cast<std::uint32_t>(points.size());
-      points.emplace_back(vertices[v][0], vertices[v][1], vertices[v][2]);
-    } else {
-      placeOf[v] = placeOf[first[v]];
-    }
-  }
-  return points;
-}
-
 /// Everything that can be known before the search. Boxes too, so that they are reported even for a mesh that fails.
-Status checkInputs(const TetMesh& cage, PointView<const double> vertices, EmbedReport& report) {
+Status checkInputs(const TetMesh& cage, PointReader vertices, EmbedReport& report) {
   report.vertexCount = report.unbound = vertices.size();
   if (vertices.empty()) return {StatusCode::Empty, "the mesh has no vertices"};
   if (vertices.size() >= 0xFFFFFFFFu) return {StatusCode::SizeMismatch, "the mesh has more than 2^32 - 2 vertices"};
-  const std::size_t bad = firstNonFinite(vertices);
-  if (bad < vertices.size()) {
-    return {StatusCode::NonFinite,
-            "vertex " + std::to_string(bad) + " of the mesh has a coordinate that is not finite"};
+  Box3 meshBox;
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Eigen::Vector3d vertex = vertices[v];
+    if (!vertex.allFinite()) {
+      return {StatusCode::NonFinite,
+              "vertex " + std::to_string(v) + " of the mesh has a coordinate that is not finite"};
+    }
+    meshBox.extend(vertex);
   }
-  if (Status cageStatus = usable(cage, checkTetMesh(cage)); !cageStatus.ok()) return cageStatus;
-  report.meshBox = boundingBox(vertices);
+  if (Status cageStatus = usable(cage, checkForUse(cage)); !cageStatus.ok()) return cageStatus;
+  report.meshBox = meshBox;
   report.cageBox = boundingBox(cage.nodes);
   const Box3 both = report.meshBox.merged(report.cageBox);
   if (std::max(both.max().maxCoeff(), -both.min().minCoeff()) > kLargestCoordinate) {
@@ -52,42 +45,13 @@ Status checkInputs(const TetMesh& cage, PointView<const double> vertices, EmbedR
   return {};
 }
 
-/// Distance from what skinning at rest gives to the vertex itself, from its float weights.
-double restError(const TetCorners& p, const Embedding& embedding, std::uint32_t slot, const Eigen::Vector3d& vertex) {
-  const Eigen::Vector3d skinned = p[3] + embedding.weights(0)[slot] * (p[0] - p[3]) +
-                                  embedding.weights(1)[slot] * (p[1] - p[3]) +
-                                  embedding.weights(2)[slot] * (p[2] - p[3]);
-  return (skinned - vertex).norm();
-}
-
-/// The extremes of a finished embedding, with the first vertex where there are several.
-void measureFit(const TetMesh& cage, PointView<const double> vertices, const Embedding& embedding,
-                EmbedReport& report) {
-  report.worstBarycentric = -1.0;
-  for (std::size_t r = 0; r + 1 < embedding.runs().size(); ++r) {
-    const Embedding::Run& run = embedding.runs()[r];
-    const TetCorners corners = cornersOf(cage, cage.tets[run.tet]);
-    const BarycentricMap map(corners);
-    for (std::uint32_t slot = run.firstSlot; slot < embedding.runs()[r + 1].firstSlot; ++slot) {
-      const std::size_t v = embedding.slotVertices()[slot];
-      const Eigen::Vector3d vertex(vertices[v][0], vertices[v][1], vertices[v][2]);
-      const Eigen::Vector4d weights = map(vertex);
-      const double error = restError(corners, embedding, slot, vertex);
-      // Weights beyond float's range make the error infinite or NaN.
-      report.restErrorMax = std::max(report.restErrorMax, std::isfinite(error) ? error : HUGE_VAL);
-      report.worstBarycentric = std::max(report.worstBarycentric, barycentricDistance(weights));
-      if (r < embedding.insideRunCount()) continue;
-      const double distance = distanceToTet(vertex, corners, weights);
-      if (distance < report.worstDistance || (distance == report.worstDistance && v > report.worstVertex)) continue;
-      report.worstDistance = distance;
-      report.worstVertex = v;
-    }
-  }
-  const double* worst = vertices[report.worstVertex];
-  report.worstPosition = {worst[0], worst[1], worst[2]};
+void reportFit(const Embedding::Fit& fit, EmbedReport& report) {
+  report.worstDistance = fit.worstDistance;
+  report.worstVertex = fit.worstVertex;
+  report.worstBarycentric = fit.worstBarycentric;
   const double diagonal = report.meshBox.diagonal().norm();
   // One point, or all at one place: compare with the cage instead of dividing by nothing.
-  report.restErrorMax /= diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm();
+  report.restErrorMax = fit.restError / (diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm());
 }
 
 Status tooFar(const EmbedReport& report, double maxDistance) {
@@ -101,27 +65,31 @@ Status tooFar(const EmbedReport& report, double maxDistance) {
   return {StatusCode::OutsideCage, text};
 }
 
+/// The tet of every vertex, by `fromTets`' convention; with what the search has to report.
 /// triangles  of the mesh, or null if they are not known
-Status embedVertices(const TetMesh& cage, PointView<const double> vertices,
-                     const std::vector<std::array<int, 3>>* triangles, const EmbedOptions& options,
+std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, const Triangles* triangles,
+                                 OutsideRule rule, EmbedReport& report) {
+  const std::vector<std::uint32_t> first = weldCoincident(vertices);
+  const SearchCage cage(mesh);
+  TetSearch search = findTets(cage, vertices, first, rule);
+  for (std::size_t v = 0; v < vertices.size(); ++v) report.coincident += first[v] != v;
+  report.flatTets = mesh.tetCount() - cage.size();
+  report.overlapping = search.overlapping;
+  report.candidates = search.candidates;
+  if (triangles && rule == OutsideRule::Nearest) {
+    report.keptWithNeighbours = keepWithNeighbours(mesh, vertices, first, *triangles, search.tetOf);
+  }
+  return std::move(search.tetOf);
+}
+
+Status embedVertices(const TetMesh& cage, PointReader vertices, const Triangles* triangles, const EmbedOptions& options,
                      Embedding& embedding, EmbedReport& report) {
   if (Status status = checkInputs(cage, vertices, report); !status.ok()) return status;
-  std::vector<std::uint32_t> placeOf;
-  const std::vector<std::uint32_t> first = weldCoincident(vertices);
-  const std::vector<Eigen::Vector3d> points = distinctPoints(vertices, first, placeOf);
-  const std::vector<SearchTet> tets = searchTets(cage);
-  const TetSearch search = findTets(tets, points, options.outside);
-
-  std::vector<std::int32_t> tetOf(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const TetHit& hit = search.hits[placeOf[v]];
-    tetOf[v] = hit.barycentric <= 0.0 ? tets[hit.tet].index : ~tets[hit.tet].index;
-  }
-  if (triangles && options.outside == OutsideRule::Nearest) {
-    report.keptWithNeighbours = keepWithNeighbours(cage, vertices, first, *triangles, tetOf);
-  }
-  Embedding made = Embedding::fromTets(cage, vertices, tetOf);
-  measureFit(cage, vertices, made, report);
+  const std::vector<std::int32_t> tetOf = tetsOf(cage, vertices, triangles, options.outside, report);
+  Embedding::Fit fit;
+  Embedding made = Embedding::fromTets(cage, vertices, tetOf, &fit);
+  reportFit(fit, report);
+  report.worstPosition = vertices[report.worstVertex];
   if (!std::isfinite(report.restErrorMax)) {
     return {StatusCode::Degenerate,
             "some vertices are so far from the cage that their weights overflow; are mesh and "
@@ -131,17 +99,12 @@ Status embedVertices(const TetMesh& cage, PointView<const double> vertices,
   report.inside = made.insideCount();
   report.outside = made.vertexCount() - made.insideCount();
   report.unbound = 0;
-  report.coincident = vertices.size() - points.size();
-  report.flatTets = cage.tetCount() - tets.size();
-  report.overlapping = search.overlapping;
-  report.candidates = search.candidates;
   embedding = std::move(made);
   return {};
 }
 
-EmbedReport embedTimed(const TetMesh& cage, PointView<const double> vertices,
-                       const std::vector<std::array<int, 3>>* triangles, const EmbedOptions& options,
-                       Embedding& embedding) {
+EmbedReport timedEmbed(const TetMesh& cage, PointReader vertices, const Triangles* triangles,
+                       const EmbedOptions& options, Embedding& embedding) {
   const auto start = std::chrono::steady_clock::now();
   EmbedReport report;
   report.status = embedVertices(cage, vertices, triangles, options, embedding, report);
@@ -191,8 +154,8 @@ std::vector<VertexBinding> Embedding::bindings() const {
   return result;
 }
 
-Embedding Embedding::fromTets(const TetMesh& cage, PointView<const double> vertices,
-                              const std::vector<std::int32_t>& tetOf) {
+Embedding Embedding::fromTets(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
+                              Fit* fit) {
   assert(vertices.size() == tetOf.size());
   Embedding e;
   e.nodeCount_ = cage.nodeCount();
@@ -200,23 +163,58 @@ Embedding Embedding::fromTets(const TetMesh& cage, PointView<const double> verti
   e.sortByTet(cage, tetOf);
   for (std::vector<float>& plane : e.weights_) plane.resize(vertices.size() + kPadding);
   for (std::vector<float>& plane : e.closestWeights_) plane.resize(vertices.size() - e.insideCount_ + kPadding);
+  Fit unread;
   for (std::size_t r = 0; r + 1 < e.runs_.size(); ++r) {
-    const TetCorners corners = cornersOf(cage, cage.tets[e.runs_[r].tet]);
-    const BarycentricMap map(corners);
-    for (std::uint32_t slot = e.runs_[r].firstSlot; slot < e.runs_[r + 1].firstSlot; ++slot) {
-      const double* v = vertices[e.slotVertices_[slot]];
-      const Eigen::Vector3d point(v[0], v[1], v[2]);
-      const Eigen::Vector4d b = map(point);
-      for (std::size_t k = 0; k < 3; ++k) e.weights_[k][slot] = static_cast<float>(b[static_cast<int>(k)]);
-      if (slot < e.insideCount_) continue;
-      const Eigen::Vector4d c = map(closestPointInTet(point, corners, b));
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double clamped = std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding is a hair off the face
-        e.closestWeights_[k][slot - e.insideCount_] = static_cast<float>(clamped);
-      }
-    }
+    e.bindRun(r, cornersOf(cage, cage.tets[e.runs_[r].tet]), vertices, fit ? *fit : unread);
   }
   return e;
+}
+
+/// Computes the weights of the vertices of one run, and how well they fit.
+void Embedding::bindRun(std::size_t run, const std::array<Eigen::Vector3d, 4>& corners, PointReader vertices,
+                        Fit& fit) {
+  const BarycentricMap map(corners);
+  const double* p3 = corners[3].data();
+  double edges[3][3];  // from the fourth node
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) edges[k][i] = corners[k][i] - p3[i];
+  }
+  double smallestWeight = -fit.worstBarycentric, errorSquared = 0.0;
+  const std::uint32_t last = runs_[run + 1].firstSlot;
+  for (std::uint32_t slot = runs_[run].firstSlot; slot < last; ++slot) {
+    const Eigen::Vector3d vertex = vertices[slotVertices_[slot]];
+    double b[4];
+    map.weightsAt(vertex.x(), vertex.y(), vertex.z(), b[0], b[1], b[2], b[3]);
+    float w[3];
+    for (std::size_t k = 0; k < 3; ++k) weights_[k][slot] = w[k] = static_cast<float>(b[k]);
+    smallestWeight = std::min(std::min(smallestWeight, std::min(b[0], b[1])), std::min(b[2], b[3]));
+    double squared = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double error = p3[i] + w[0] * edges[0][i] + w[1] * edges[1][i] + w[2] * edges[2][i] - vertex[i];
+      squared += error * error;
+    }
+    // Weights beyond float's range make the error infinite or NaN.
+    if (!(squared <= errorSquared)) errorSquared = std::isfinite(squared) ? squared : HUGE_VAL;
+    if (slot >= insideCount_) bindOutside(slot, corners, map, vertex, fit);
+  }
+  fit.worstBarycentric = -smallestWeight;
+  fit.restError = std::max(fit.restError, std::sqrt(errorSquared));
+}
+
+/// What a vertex outside has besides: its closest point.
+void Embedding::bindOutside(std::uint32_t slot, const std::array<Eigen::Vector3d, 4>& corners,
+                            const BarycentricMap& map, const Eigen::Vector3d& vertex, Fit& fit) {
+  const Eigen::Vector3d closest = closestPointInTet(vertex, corners, map(vertex));
+  const Eigen::Vector4d c = map(closest);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double clamped = std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding is a hair off the face
+    closestWeights_[k][slot - insideCount_] = static_cast<float>(clamped);
+  }
+  const double distance = (vertex - closest).norm();
+  const std::size_t v = slotVertices_[slot];
+  if (distance < fit.worstDistance || (distance == fit.worstDistance && v > fit.worstVertex)) return;
+  fit.worstDistance = distance;
+  fit.worstVertex = v;
 }
 
 /// A counting sort with two bins a tet: the vertices inside, and after all of those the ones outside.
@@ -229,6 +227,7 @@ void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& 
   };
   std::vector<std::uint32_t> next(2 * tets + 1, 0);
   for (const std::int32_t tet : tetOf) ++next[binOf(tet) + 1];
+  runs_.reserve(static_cast<std::size_t>(std::count_if(next.begin(), next.end(), [](auto n) { return n > 0; })) + 1);
   for (std::size_t bin = 0; bin < 2 * tets; ++bin) {
     const auto tet = static_cast<std::uint32_t>(bin < tets ? bin : bin - tets);
     if (next[bin + 1] > 0) {
@@ -252,14 +251,12 @@ void Embedding::sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& 
 
 EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                   Embedding& embedding) {
-  return embedTimed(cage, vertices, nullptr, options, embedding);
+  return timedEmbed(cage, vertices, nullptr, options, embedding);
 }
 
 EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
                   Embedding& embedding) {
-  std::vector<Eigen::Vector3d> copy(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) copy[v] = {vertices[v][0], vertices[v][1], vertices[v][2]};
-  return embed(cage, viewOf(std::as_const(copy)), options, embedding);
+  return timedEmbed(cage, vertices, nullptr, options, embedding);
 }
 
 EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options, Embedding& embedding) {
@@ -267,7 +264,7 @@ EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOpti
   report.vertexCount = report.unbound = mesh.vertexCount();
   report.status = checkTriangleMesh(mesh);
   if (!report.ok()) return report;
-  return embedTimed(cage, viewOf(mesh.positions), &mesh.triangles, options, embedding);
+  return timedEmbed(cage, viewOf(mesh.positions), &mesh.triangles, options, embedding);
 }
 
 }  // namespace tetskin

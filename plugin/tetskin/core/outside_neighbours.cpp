@@ -140,13 +140,9 @@ class LocalSearch {
   std::uint32_t round_ = 0;
 };
 
-Eigen::Vector3d pointAt(PointView<const double> points, std::size_t i) {
-  return {points[i][0], points[i][1], points[i][2]};
-}
-
 }  // namespace
 
-std::size_t keepWithNeighbours(const TetMesh& cage, PointView<const double> vertices,
+std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices,
                                const std::vector<std::uint32_t>& first,
                                const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf) {
   assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
@@ -174,7 +170,7 @@ std::size_t keepWithNeighbours(const TetMesh& cage, PointView<const double> vert
   for (; !queue.empty(); queue.pop()) {
     const std::uint32_t place = queue.front(), v = edges.vertices[place];
     const std::int32_t nearest = ~tetOf[v];
-    const Eigen::Vector3d point = pointAt(vertices, v);
+    const Eigen::Vector3d point = vertices[v];
     others.clear();
     double reach = 0.0;
     bool local = false;
@@ -182,7 +178,7 @@ std::size_t keepWithNeighbours(const TetMesh& cage, PointView<const double> vert
       const std::uint32_t other = edges.ends[k];
       if (settled(other)) {
         others.push_back(indexOf(tetOf[other]));
-        reach = std::max(reach, (pointAt(vertices, other) - point).norm());
+        reach = std::max(reach, (vertices[other] - point).norm());
         local = local || shareNode(cage.tets[others.back()], cage.tets[nearest]);
       } else if (state[edges.placeOf[other]] == State::Untouched) {
         state[edges.placeOf[other]] = State::Queued;

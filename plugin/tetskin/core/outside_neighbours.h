@@ -4,6 +4,7 @@
 // Internal to embedding: vertices outside the cage stay with the part of it that carries their neighbours.
 #pragma once
 
+#include <tetskin/core/point_reader.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
@@ -23,7 +24,7 @@ namespace tetskin {
 /// tetOf      by vertex: its tet, or ~tet if it lies outside of it; changed
 /// Returns    the number of vertices that changed their tet
 /// Cost       O(vertexCount + triangleCount) if any vertex is outside
-std::size_t keepWithNeighbours(const TetMesh& cage, PointView<const double> vertices,
+std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices,
                                const std::vector<std::uint32_t>& first,
                                const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf);
 

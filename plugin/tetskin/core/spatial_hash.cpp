@@ -3,45 +3,84 @@
 //
 // This work is based on:
 //   Matthias Müller, "Blazing Fast Neighbor Search with Spatial Hashing", Ten Minute Physics 11, 2022
-//   Matthias Teschner et al., "Optimized Spatial Hashing for Collision Detection of Deformable Objects", VMV 2003
 #include <tetskin/core/spatial_hash.h>
 
 #include <limits>
 
 namespace tetskin {
+namespace {
 
-SpatialHash::SpatialHash(const std::vector<Eigen::Vector3d>& points, double cellSize, std::size_t tableSize)
-    : cellSize_(cellSize), inverseCellSize_(1.0 / cellSize) {
-  assert(cellSize > 0.0 && std::isfinite(inverseCellSize_));
-  assert(points.size() < std::numeric_limits<std::uint32_t>::max());
-  assert(firstNonFinite(viewOf(points)) == points.size());
-  if (tableSize == 0) tableSize = 4 * points.size();
-  std::size_t size = 1;
-  while (size < tableSize) size *= 2;
-  mask_ = size - 1;
+constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 
-  std::vector<std::uint32_t> cellOfPoint(points.size());
-  cellStart_.assign(size + 1, 0);
+SpatialHash::Frame frameOf(const Box3& box) {
+  if (box.isEmpty()) return {Eigen::Vector3d::Zero(), 1.0};
+  const double half = 0.5 * box.sizes().maxCoeff();
+  return {box.center(), half > 0.0 ? 1.0 / half : 1.0};
+}
+
+}  // namespace
+
+SpatialHash::SpatialHash(PointReader points, const Box3& box, double cellSize, const std::vector<std::uint32_t>& first,
+                         std::size_t tableSize)
+    : box_(box), frame_(frameOf(box)), inverseCellSize_(1.0 / cellSize) {
+  assert(cellSize > 0.0 && std::isfinite(inverseCellSize_) && std::isfinite(frame_.scale));
+  assert(points.size() < kNoCell);
+  assert(first.empty() || first.size() == points.size());
+  const std::size_t most = tableSize > 0 ? tableSize : std::max(kCellsPerPoint * points.size(), kFewestCells);
+  chooseTable(std::min<std::size_t>(most, kNoCell));
+  placePoints(points, first);
+  copyCoordinates(points);
+}
+
+void SpatialHash::chooseTable(std::size_t mostCells) {
+  if (box_.isEmpty()) return;
+  const Cell last = cellOf(box_.max());
+  std::array<double, 3> edges;  // as double: their product may be far beyond any integer
+  for (std::size_t k = 0; k < 3; ++k) edges[k] = static_cast<double>(last[k] + 1);
+  while (edges[0] * edges[1] * edges[2] > static_cast<double>(mostCells)) {
+    double& longest = *std::max_element(edges.begin(), edges.end());
+    longest = std::ceil(0.5 * longest);
+  }
+  for (std::size_t k = 0; k < 3; ++k) table_[k] = static_cast<std::uint32_t>(edges[k]);
+}
+
+void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_t>& first) {
+  std::vector<std::uint32_t> cellOfPoint(points.size(), kNoCell);
+  cellStart_.assign(std::size_t{table_[0]} * table_[1] * table_[2] + 1, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Cell cell = cellOf(points[i]);
-    cellOfPoint[i] =
-        static_cast<std::uint32_t>((rowOf(cell.y(), cell.z()) + static_cast<std::size_t>(cell.x())) & mask_);
+    if (!first.empty() && first[i] != i) continue;
+    const Eigen::Vector3d p = points[i];
+    if (!box_.contains(p)) continue;
+    const Cell cell = cellOf(p);
+    cellOfPoint[i] = (wrapped(cell[2], 2) * table_[1] + wrapped(cell[1], 1)) * table_[0] + wrapped(cell[0], 0);
     ++cellStart_[cellOfPoint[i]];
   }
   std::uint32_t sum = 0;
   for (std::uint32_t& start : cellStart_) start = sum += start;  // now one past each cell's last entry
-
-  ids_.resize(points.size());
-  x_.resize(points.size());
-  y_.resize(points.size());
-  z_.resize(points.size());
+  ids_.resize(sum);
   for (std::size_t i = points.size(); i-- > 0;) {  // from the back, so that entries of a cell keep the points' order
-    const std::uint32_t entry = --cellStart_[cellOfPoint[i]];
-    ids_[entry] = static_cast<std::uint32_t>(i);
-    x_[entry] = points[i].x();
-    y_[entry] = points[i].y();
-    z_[entry] = points[i].z();
+    if (cellOfPoint[i] != kNoCell) ids_[--cellStart_[cellOfPoint[i]]] = static_cast<std::uint32_t>(i);
   }
+}
+
+void SpatialHash::copyCoordinates(PointReader points) {
+  for (std::vector<float>* plane : {&x_, &y_, &z_}) plane->resize(ids_.size() + kPadding);
+  for (std::size_t e = 0; e < ids_.size(); ++e) {
+    const Eigen::Vector3d p = (points[ids_[e]] - frame_.centre) * frame_.scale;
+    x_[e] = static_cast<float>(p.x());
+    y_[e] = static_cast<float>(p.y());
+    z_[e] = static_cast<float>(p.z());
+  }
+}
+
+std::size_t SpatialHash::findRanges(const Box3& box, std::vector<Range>& ranges) const {
+  std::size_t entries = 0;
+  ranges.clear();
+  query(box, [&](std::uint32_t first, std::uint32_t last) {
+    ranges.push_back({first, last});
+    entries += last - first;
+  });
+  return entries;
 }
 
 }  // namespace tetskin

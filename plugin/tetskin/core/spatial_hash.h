@@ -2,102 +2,137 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/point_reader.h>
 #include <tetskin/core/types.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tetskin {
 
-/// A hashed grid of points: which points may lie in a box? Built once by a counting sort, as in the tutorial; its
-/// memory is proportional to the points, however far apart they are.
+/// A grid of the points in a box: which of them may lie in a smaller box? Built once by a counting sort, as in the
+/// tutorial. The tutorial's hash scatters neighbouring cells over the table; here the table is a block of cells that
+/// repeats through space, so that neighbours stay neighbours in memory: a row of cells along x is one contiguous range
+/// of entries, and a mesh of millions of vertices, whose order is mostly that of space, is read and written almost
+/// sequentially. If all cells fit the table, no two share a place; otherwise the table's edges are halved, the longest
+/// first, until it is small enough, and cells whole tables apart share one. Memory is so proportional to the points,
+/// however far apart they are. An *entry* is a point in table order.
 ///
-/// Neighbouring cells along x are neighbours in the table, so a row of cells is one contiguous range of entries: a
-/// query reads a few long ranges instead of many short ones. An *entry* is a point in table order.
-///
-/// Example: 4 points and a cell size of 1 make a table of 16 cells; the box [0.2, 2.5] x [0, 0] x [0, 0] is one row of
-/// the cells 0, 1 and 2 and hence one range of entries (two, if the row wraps round the table's end).
+/// Example: 4 points in the box [0, 4] x [0, 1] x [0, 1] and a cell size of 1 make a table of 5 x 2 x 2 cells, folded
+/// to 3 x 2 x 2; the box [0.2, 1.5] x [0, 0] x [0, 0] is the one row of cells 0 and 1 and hence one range of entries.
 class SpatialHash {
  public:
+  /// Where entries have their float coordinates: (p - centre) * scale is within [-1, 1] in the box.
+  struct Frame {
+    Eigen::Vector3d centre;
+    double scale;
+  };
+  /// The entries [first, last).
+  struct Range {
+    std::uint32_t first, last;
+  };
+  /// Entry coordinates are followed by this many zeros, so that kernels may read whole blocks.
+  static constexpr std::size_t kPadding = 8;
+
   /// points     finite, any number
+  /// box        points outside of it are left out
   /// cellSize   edge of a cell, in the points' unit, above 0
-  /// tableSize  cells of the table, rounded up to a power of two; 0 chooses about four cells a point: row queries read
-  ///            whole ranges, and a sparser table has fewer strangers in them
-  SpatialHash(const std::vector<Eigen::Vector3d>& points, double cellSize, std::size_t tableSize = 0);
+  /// first      by point; those that are not their own first are left out, see `weldCoincident`; empty: all are in
+  /// tableSize  most cells of the table; 0 chooses kCellsPerPoint a point, or kFewestCells if that is more
+  SpatialHash(PointReader points, const Box3& box, double cellSize, const std::vector<std::uint32_t>& first = {},
+              std::size_t tableSize = 0);
 
   std::size_t size() const { return ids_.size(); }
-  double cellSize() const { return cellSize_; }
   std::size_t tableSize() const { return cellStart_.size() - 1; }
+  const Frame& frame() const { return frame_; }
 
-  /// By entry: index of the point, and its coordinates.
+  /// By entry: index of the point, and its coordinates in the frame, correctly rounded but for a double's last bits.
   const std::uint32_t* ids() const { return ids_.data(); }
-  const double* x() const { return x_.data(); }
-  const double* y() const { return y_.data(); }
-  const double* z() const { return z_.data(); }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
 
-  /// Calls visit(first, last) for ranges of entries that together hold every point in the box, and others: those in the
-  /// same cells, and those whose cells collide. An entry may come up twice where rows collide. Never visits more than
-  /// about all entries once a row; falls back to one range of all entries where the box has more rows than there are
-  /// points.
+  /// Calls visit(first, last) for disjoint ranges of entries that together hold every point of the hash in the box, and
+  /// others: those in the same cells, and those whose cells share a place with them.
   template <class Visit>
   void query(const Box3& box, Visit&& visit) const;
+  /// Writes these ranges; returns how many entries they have.
+  std::size_t findRanges(const Box3& box, std::vector<Range>& ranges) const;
 
  private:
-  using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
-  Cell cellOf(const Eigen::Vector3d& p) const;
-  std::size_t rowOf(std::int64_t y, std::int64_t z) const;
+  using Cell = std::array<std::int64_t, 3>;
+  /// Places along one edge of the table: `count` from `first`, going round its end.
+  struct Span {
+    std::uint32_t first;
+    std::uint32_t count;
+  };
+  static constexpr std::size_t kCellsPerPoint = 4, kFewestCells = 4096;
 
-  double cellSize_;
+  void chooseTable(std::size_t mostCells);
+  void placePoints(PointReader points, const std::vector<std::uint32_t>& first);
+  void copyCoordinates(PointReader points);
+  Cell cellOf(const Eigen::Vector3d& p) const;
+  std::uint32_t wrapped(std::int64_t cell, int axis) const;
+  Span spanOf(std::int64_t lo, std::int64_t hi, int axis) const;
+  template <class Visit>
+  void visitRow(std::size_t row, const Span& span, Visit&& visit) const;
+
+  Box3 box_;
+  Frame frame_;
   double inverseCellSize_;
-  std::size_t mask_;                      ///< table size - 1
-  std::vector<std::uint32_t> cellStart_;  ///< table size + 1: first entry of each cell
+  std::array<std::uint32_t, 3> table_{1, 1, 1};  ///< cells along each edge of the table
+  std::vector<std::uint32_t> cellStart_;         ///< table size + 1: first entry of each cell
   std::vector<std::uint32_t> ids_;
-  std::vector<double> x_, y_, z_;
+  std::vector<float> x_, y_, z_;
 };
 
-inline std::size_t SpatialHash::rowOf(std::int64_t y, std::int64_t z) const {
-  // Two large odd constants (the 64-bit golden ratio and the multiplier of MMIX's generator) spread neighbouring rows;
-  // the high half of the product is the well-mixed one.
-  const std::uint64_t h =
-      static_cast<std::uint64_t>(y) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(z) * 6364136223846793005u;
-  return static_cast<std::size_t>((h ^ (h >> 29)) * 0xBF58476D1CE4E5B9u >> 32);
-}
-
 inline SpatialHash::Cell SpatialHash::cellOf(const Eigen::Vector3d& p) const {
-  // Far beyond any sensible grid, but its square and its sums still fit 64 bits. Clamping keeps the order of cells, so
-  // a box still covers the cells of the points in it.
+  // Far beyond any sensible grid, but it still fits 64 bits. Every step keeps the order of points, so a box covers the
+  // cells of the points in it.
   constexpr double kFarthest = 1e15;
   Cell cell;
   for (int k = 0; k < 3; ++k) {
-    const double c = std::min(std::max(p[k] * inverseCellSize_, -kFarthest), kFarthest);
-    const auto truncated = static_cast<std::int64_t>(c);
-    cell[k] = truncated - (c < static_cast<double>(truncated));
+    cell[static_cast<std::size_t>(k)] =
+        static_cast<std::int64_t>(std::min((p[k] - box_.min()[k]) * inverseCellSize_, kFarthest));
   }
   return cell;
 }
 
+inline std::uint32_t SpatialHash::wrapped(std::int64_t cell, int axis) const {
+  const std::int64_t size = table_[static_cast<std::size_t>(axis)];
+  return static_cast<std::uint32_t>(cell < size ? cell : cell % size);
+}
+
+inline SpatialHash::Span SpatialHash::spanOf(std::int64_t lo, std::int64_t hi, int axis) const {
+  const std::uint32_t size = table_[static_cast<std::size_t>(axis)];
+  if (hi - lo + 1 >= static_cast<std::int64_t>(size)) return {0, size};
+  return {wrapped(lo, axis), static_cast<std::uint32_t>(hi - lo + 1)};
+}
+
+template <class Visit>
+void SpatialHash::visitRow(std::size_t row, const Span& span, Visit&& visit) const {
+  const auto range = [&](std::size_t first, std::size_t last) {
+    const std::uint32_t begin = cellStart_[row + first], end = cellStart_[row + last];
+    if (begin != end) visit(begin, end);
+  };
+  const std::size_t last = std::size_t{span.first} + span.count;
+  range(span.first, std::min<std::size_t>(last, table_[0]));
+  if (last > table_[0]) range(0, last - table_[0]);
+}
+
 template <class Visit>
 void SpatialHash::query(const Box3& box, Visit&& visit) const {
-  const std::uint32_t all = cellStart_.back();
-  if (box.isEmpty() || all == 0) return;
-  const Cell lo = cellOf(box.min()), hi = cellOf(box.max());
-  const double rows = static_cast<double>(hi.y() - lo.y() + 1) * static_cast<double>(hi.z() - lo.z() + 1);
-  const std::uint64_t length = static_cast<std::uint64_t>(hi.x() - lo.x()) + 1;
-  if (length > mask_ || rows > static_cast<double>(all)) {
-    visit(std::uint32_t{0}, all);
-    return;
-  }
-  for (std::int64_t z = lo.z(); z <= hi.z(); ++z) {
-    for (std::int64_t y = lo.y(); y <= hi.y(); ++y) {
-      const std::size_t first = (rowOf(y, z) + static_cast<std::size_t>(lo.x())) & mask_;
-      const std::size_t last = first + length;  // one past
-      if (last <= mask_ + 1) {
-        if (cellStart_[first] != cellStart_[last]) visit(cellStart_[first], cellStart_[last]);
-      } else {
-        if (cellStart_[first] != all) visit(cellStart_[first], all);
-        const std::uint32_t wrapped = cellStart_[last & mask_];
-        if (wrapped != 0) visit(std::uint32_t{0}, wrapped);
-      }
+  const Box3 inner = box.intersection(box_);
+  if (inner.isEmpty()) return;
+  const Cell lo = cellOf(inner.min()), hi = cellOf(inner.max());
+  const Span x = spanOf(lo[0], hi[0], 0), y = spanOf(lo[1], hi[1], 1), z = spanOf(lo[2], hi[2], 2);
+  for (std::uint32_t k = 0; k < z.count; ++k) {
+    const std::uint32_t atZ = z.first + k < table_[2] ? z.first + k : z.first + k - table_[2];
+    for (std::uint32_t j = 0; j < y.count; ++j) {
+      const std::uint32_t atY = y.first + j < table_[1] ? y.first + j : y.first + j - table_[1];
+      visitRow((std::size_t{atZ} * table_[1] + atY) * table_[0], x, visit);
     }
   }
 }

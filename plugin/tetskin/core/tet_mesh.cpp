@@ -23,9 +23,8 @@ Key sorted(Key key) {
   return key;
 }
 
-bool repeatsNode(const Tet& tet) {
-  const Tet s = sorted(tet);
-  return std::adjacent_find(s.begin(), s.end()) != s.end();
+bool repeatsNode(const Tet& t) {
+  return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
 }
 
 /// Indices of keys, sorted by key and then by index.
@@ -65,7 +64,7 @@ void countDuplicates(const TetMesh& mesh, TetMeshReport& report) {
   report.duplicateTets = {repeats.size(), *std::min_element(repeats.begin(), repeats.end())};
 }
 
-void countNodes(const TetMesh& mesh, TetMeshReport& report) {
+void countUnreferencedNodes(const TetMesh& mesh, TetMeshReport& report) {
   std::vector<char> used(mesh.nodeCount(), 0);
   for (const Tet& tet : mesh.tets) {
     if (!inRange(tet, mesh.nodeCount())) continue;
@@ -73,7 +72,6 @@ void countNodes(const TetMesh& mesh, TetMeshReport& report) {
   }
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
     if (!used[n]) add(report.unreferencedNodes, n);
-    if (!mesh.nodes[n].allFinite()) add(report.nonFiniteNodes, n);
   }
 }
 
@@ -102,11 +100,19 @@ std::string TetMeshReport::describe() const {
   return text;
 }
 
-TetMeshReport checkTetMesh(const TetMesh& mesh) {
+TetMeshReport checkForUse(const TetMesh& mesh) {
   TetMeshReport report;
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    if (!mesh.nodes[n].allFinite()) add(report.nonFiniteNodes, n);
+  }
   countShapes(mesh, report);
+  return report;
+}
+
+TetMeshReport checkTetMesh(const TetMesh& mesh) {
+  TetMeshReport report = checkForUse(mesh);
   countDuplicates(mesh, report);
-  countNodes(mesh, report);
+  countUnreferencedNodes(mesh, report);
   return report;
 }
 

@@ -47,8 +47,12 @@ struct TetMeshReport {
 /// Counts the faults of a mesh. Cost O(T log T) for T tets.
 TetMeshReport checkTetMesh(const TetMesh& mesh);
 
-/// Ok if the mesh can be used: it has tets, all indices exist, all coordinates are finite, at least one tet has a
-/// volume.
+/// The part of `checkTetMesh` that `usable` needs: everything but duplicate tets and unreferenced nodes. Cost O(N + T)
+/// for N nodes, allocates nothing.
+TetMeshReport checkForUse(const TetMesh& mesh);
+
+/// Ok if the mesh can be used, by a report of either check: it has tets, all indices exist, all coordinates are finite,
+/// at least one tet has a volume.
 Status usable(const TetMesh& mesh, const TetMeshReport& report);
 
 /// Reverses the orientation of negative tets by exchanging their last two nodes. Returns the report of the mesh as it

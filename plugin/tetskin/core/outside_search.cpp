@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Searches with growing boxes: a point is settled once its best tet is nearer than the border already searched, because
+// every tet that could be better has then been tested. The result is that of testing all pairs.
+#include <tetskin/core/outside_search.h>
+#include <tetskin/core/spatial_hash.h>
+#include <tetskin/core/tet_filter.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+/// First border around the tets' boxes, over their median side; then grown by a factor: most points outside are near,
+/// and each round costs a look at all tets.
+constexpr double kFirstBorder = 0.2;
+constexpr double kGrowth = 4.0;
+/// First barycentric border; then doubled.
+constexpr double kFirstBarycentricBorder = 0.25;
+/// Points are searched this many at a time, or an eighth of all if that is more: what is known of a point that is not
+/// settled takes many times the memory of its result.
+constexpr std::size_t kSmallestBatch = 65536;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The points still without a tet, and what is known of them so far.
+struct OpenPoints {
+  std::vector<std::uint32_t> ids;
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<double> best;  ///< shortest (barycentric) distance found so far
+
+  std::size_t size() const { return ids.size(); }
+  void add(std::uint32_t id, const Eigen::Vector3d& position, double bestSoFar) {
+    ids.push_back(id);
+    positions.push_back(position);
+    best.push_back(bestSoFar);
+  }
+};
+
+/// Keeps the points whose best exceeds the limit.
+OpenPoints above(const OpenPoints& open, double limit) {
+  OpenPoints rest;
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    if (open.best[k] > limit) rest.add(open.ids[k], open.positions[k], open.best[k]);
+  }
+  return rest;
+}
+
+/// No open point can have its tet farther than this; infinite while one has met no tet at all.
+double farthestBest(const OpenPoints& open) {
+  return open.best.empty() ? 0.0 : *std::max_element(open.best.begin(), open.best.end());
+}
+
+/// A tet that may be the nearest of an open point.
+struct NearTet {
+  std::uint32_t open;
+  int tet;
+  double tie;  ///< distances this much longer are as near
+  double barycentric;
+  double distance;
+};
+
+/// One round of the search for nearest tets: all tets whose boxes, grown by a border, hold the point.
+class NearestRound {
+ public:
+  NearestRound(const SearchCage& cage, OpenPoints& open, double border, double cellSize, std::size_t tableSize)
+      : open_(open),
+        border_(border),
+        hash_(viewOf(std::as_const(open.positions)), grown(cage.box(), border + cage.largestSlack()), cellSize, {},
+              tableSize),
+        widestTie_(kNearestTie * cage.largestSize()),
+        limits_(hash_.size() + SpatialHash::kPadding) {
+    for (std::uint32_t e = 0; e < hash_.size(); ++e)
+      limits_[e] = toLimit(std::min(open.best[hash_.ids()[e]], border) + widestTie_);
+  }
+
+  void test(const SearchTet& tet, std::size_t& candidates) {
+    candidates += hash_.findRanges(grown(tet.box, border_ + tet.slack()), ranges_);
+    if (ranges_.empty()) return;
+    const BarycentricMap map(tet.corners);
+    const double tie = kNearestTie * tetSize(tet.corners);
+    const TetFilter filter = TetFilter::ofDistance(map, hash_.frame());
+    const std::size_t count = filter.select(hash_, ranges_, limits_.data(), passed_);
+    for (std::size_t k = 0; k < count; ++k) decide(tet, map, tie, passed_[k]);
+  }
+
+  const std::vector<NearTet>& near() const { return near_; }
+
+ private:
+  /// A distance in the frame's unit, rounded up.
+  float toLimit(double distance) const { return static_cast<float>(distance * hash_.frame().scale * (1.0 + 0x1p-20)); }
+
+  void decide(const SearchTet& tet, const BarycentricMap& map, double tie, std::uint32_t entry) {
+    const std::uint32_t k = hash_.ids()[entry];
+    const Eigen::Vector3d& v = open_.positions[k];
+    const Eigen::Vector4d weights = map(v);
+    const double distance = distanceToTet(v, tet.corners, weights);
+    if (distance > open_.best[k] + tie) return;
+    near_.push_back({k, tet.index, tie, barycentricDistance(weights), distance});
+    if (distance >= open_.best[k]) return;
+    open_.best[k] = distance;
+    limits_[entry] = std::min(limits_[entry], toLimit(distance + widestTie_));
+  }
+
+  OpenPoints& open_;
+  double border_;
+  SpatialHash hash_;
+  double widestTie_;
+  std::vector<float> limits_;  ///< by entry: the point's best or the border, see `toLimit`
+  std::vector<NearTet> near_;
+  std::vector<SpatialHash::Range> ranges_;  ///< scratch memory, as is the next
+  std::vector<std::uint32_t> passed_;
+};
+
+/// Of the tets tied for nearest, the smallest barycentric distance wins, then the lowest index (tets come in order).
+void settleNearest(const OpenPoints& open, double searched, const std::vector<NearTet>& near, TetSearch& search) {
+  std::vector<double> barycentric(open.size(), kInfinity);
+  for (const NearTet& n : near) {
+    if (open.best[n.open] > searched) continue;
+    if (n.distance > open.best[n.open] + n.tie) continue;
+    if (n.barycentric >= barycentric[n.open]) continue;
+    barycentric[n.open] = n.barycentric;
+    search.tetOf[open.ids[n.open]] = ~n.tet;
+  }
+}
+
+void findNearest(const SearchCage& cage, OpenPoints open, double cellSize, std::size_t tableSize, TetSearch& search) {
+  const double widestTie = kNearestTie * cage.largestSize();
+  const double side = cage.medianSide();
+  double border = kFirstBorder * side;
+  while (open.size() > 0) {
+    NearestRound round(cage, open, border, std::max(cellSize, 0.5 * side + border), tableSize);
+    for (std::size_t i = 0; i < cage.size(); ++i) round.test(cage[i], search.candidates);
+    const double searched = border - widestTie;
+    settleNearest(open, searched, round.near(), search);
+    open = above(open, searched);
+    // If all that is left is far away, go there at once; if it is known to be near, no farther than that.
+    double nearestLeft = kInfinity;
+    for (const Eigen::Vector3d& v : open.positions) nearestLeft = std::min(nearestLeft, cage.box().exteriorDistance(v));
+    border = std::min(std::max(kGrowth * border, nearestLeft), farthestBest(open) + 2.0 * widestTie);
+  }
+}
+
+/// Tests one tet against the open points in the box of the tet scaled by 1 + 4 delta about its centroid, which holds
+/// all points of barycentric distance up to delta: b_i >= -delta means b_i - 1/4 >= -(1 + 4 delta) / 4.
+void testBarycentric(const SearchTet& tet, double delta, const SpatialHash& hash, OpenPoints& open, TetSearch& search) {
+  const BarycentricMap map(tet.corners);
+  const Eigen::Vector3d centroid = (tet.corners[0] + tet.corners[1] + tet.corners[2] + tet.corners[3]) / 4.0;
+  const double scale = 1.0 + 4.0 * delta;
+  const Box3 scaled(centroid + scale * (tet.box.min() - centroid), centroid + scale * (tet.box.max() - centroid));
+  hash.query(grown(scaled, scale * tet.slack()), [&](std::uint32_t first, std::uint32_t last) {
+    search.candidates += last - first;
+    for (; first < last; ++first) {
+      const std::uint32_t k = hash.ids()[first];
+      const double d = barycentricDistance(map(open.positions[k]));
+      std::int32_t& best = search.tetOf[open.ids[k]];
+      if (d > open.best[k] || (d == open.best[k] && tet.index >= ~best)) continue;
+      best = ~tet.index;
+      open.best[k] = d;
+    }
+  });
+}
+
+void findBarycentric(const SearchCage& cage, OpenPoints open, double cellSize, std::size_t tableSize,
+                     TetSearch& search) {
+  for (double delta = kFirstBarycentricBorder; open.size() > 0; delta = std::min(2.0 * delta, farthestBest(open))) {
+    const SpatialHash hash(viewOf(std::as_const(open.positions)), boundingBox(open.positions),
+                           cellSize * (1.0 + 4.0 * delta), {}, tableSize);
+    for (std::size_t i = 0; i < cage.size(); ++i) testBarycentric(cage[i], delta, hash, open, search);
+    open = above(open, delta);
+  }
+}
+
+}  // namespace
+
+void findOutside(const SearchCage& cage, PointReader points, const std::vector<std::uint32_t>& first, OutsideRule rule,
+                 double cellSize, std::size_t tableSize, TetSearch& search) {
+  const std::size_t batch = std::max(kSmallestBatch, points.size() / 8);
+  OpenPoints open;
+  for (std::uint32_t p = 0; p < points.size(); ++p) {
+    if (first[p] == p && search.tetOf[p] == TetSearch::kNone) open.add(p, points[p], kInfinity);
+    if (open.size() < batch && p + 1 < points.size()) continue;
+    if (rule == OutsideRule::Nearest) {
+      findNearest(cage, std::move(open), cellSize, tableSize, search);
+    } else {
+      findBarycentric(cage, std::move(open), cellSize, tableSize, search);
+    }
+    open = {};
+  }
+}
+
+}  // namespace tetskin
