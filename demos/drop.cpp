@@ -21,6 +21,7 @@ using namespace tetskin::scenes;
 
 struct DropOptions {
   ModelOptions model;
+  SkinOptions skin;
   OutputOptions output{"out/drop", "", 240, 1, false};
   bool writeCage = false;
 };
@@ -61,14 +62,11 @@ std::string cagePath(const std::string& folder, int frame) {
 void writeFrame(const DropScene& scene, const DropOptions& options, int frame, ObjSequenceWriter& writer,
                 std::vector<Eigen::Vector3f>& buffer, Totals& totals) {
   const auto start = std::chrono::steady_clock::now();
-  const Box3 bounds = scene.bounds();
-  // float is what Bullet computes and what viewers read, unless the model lies so far out that float cannot hold it.
-  constexpr double kFarOut = 100.0;
-  if (bounds.center().norm() > kFarOut * scene.size()) {
-    require(writer.write(frame, viewOf(scene.surface())));
-  } else {
+  if (fitsFloat(scene.bounds())) {
     for (std::size_t v = 0; v < buffer.size(); ++v) buffer[v] = scene.surface()[v].cast<float>();
-    require(writer.write(frame, viewOf(std::as_const(buffer))));
+    require(writer.write(frame, viewOf(std::as_const(buffer)), scene.normals()));
+  } else {
+    require(writer.write(frame, viewOf(scene.surface()), scene.normals()));
   }
   if (options.writeCage) require(saveTetMesh(scene.currentCage(), cagePath(options.output.out, frame)));
   totals.writeMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -160,9 +158,10 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 
 int run(const DropOptions& options) {
   const Model model = loadModel(options.model);
-  DropScene scene(model.mesh, model.cage, options.model.outside);
+  DropScene scene(model.mesh, model.cage, options.skin);
   requireFit(scene.fit(), options.model);
-  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(options.output.out, model.layout);
+  Result<ObjSequenceWriter> writer =
+      ObjSequenceWriter::create(options.output.out, layoutWith(options.skin.normals, model.layout));
   require(writer.status());
   const std::filesystem::path folder = options.output.out;
   const TriangleMesh obstacles = scene.obstacles();
@@ -190,6 +189,8 @@ int main(int argc, char** argv) {
   DropOptions options;
   CLI::App app("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
   addModelOptions(app, options.model);
+  addInterpolationOption(app, options.skin);
+  addSkinOptions(app, options.skin);
   addOutputOptions(app, options.output);
   app.add_flag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
   return runDemo(app, argc, argv, [&] { return run(options); });
