@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "scenes/frame_writer.h"
 #include "scenes/options.h"
 
 namespace {

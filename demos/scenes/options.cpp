@@ -10,10 +10,15 @@
 #include <fstream>
 #include <new>
 
+#include "scenes/bar.h"
 #include "scenes/serpent.h"
 
 namespace tetskin::scenes {
 namespace {
+
+std::string nameOf(BuiltIn model) {
+  return model == BuiltIn::Bar ? "bar" : "serpent";
+}
 
 /// An option that takes one of some words.
 template <class Choice>
@@ -33,9 +38,6 @@ void addChoice(CLI::App& app, const std::string& name, Choice& choice,
   app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
 }
 
-/// Beyond this many sizes from the origin, float moves vertices visibly.
-constexpr double kFarOut = 100.0;
-
 }  // namespace
 
 void require(const Status& status) {
@@ -43,9 +45,10 @@ void require(const Status& status) {
 }
 
 void addMeshOptions(CLI::App& app, ModelOptions& options) {
-  app.add_option("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a built-in serpent)");
+  app.add_option("--mesh", options.mesh,
+                 "Render mesh, any format assimp reads (default: a built-in " + nameOf(options.builtIn) + ")");
   app.add_option("--tets", options.tets, "Tets of a built cage")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--triangles", options.triangles, "Triangles of the built-in serpent")
+  app.add_option("--triangles", options.triangles, "Triangles of the built-in " + nameOf(options.builtIn))
       ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
       ->capture_default_str();
 }
@@ -86,7 +89,10 @@ void addOutputOptions(CLI::App& app, OutputOptions& options) {
 }
 
 Surface loadSurface(const ModelOptions& options) {
-  if (options.mesh.empty()) return {"serpent", makeSerpent({options.triangles})};
+  if (options.mesh.empty()) {
+    const bool bar = options.builtIn == BuiltIn::Bar;
+    return {nameOf(options.builtIn), bar ? makeBar(options.triangles) : makeSerpent({options.triangles})};
+  }
   Result<TriangleMesh> mesh = loadMesh(options.mesh);
   require(mesh.status());
   return {options.mesh, std::move(mesh).value()};
@@ -131,7 +137,7 @@ void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
 }
 
 void requireFit(const EmbedReport& report, const ModelOptions& options) {
-  const std::string mesh = options.mesh.empty() ? "serpent" : options.mesh;
+  const std::string mesh = options.mesh.empty() ? nameOf(options.builtIn) : options.mesh;
   if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
   if (!report.unitsDiffer()) return;
   char text[256];
@@ -144,10 +150,6 @@ void requireFit(const EmbedReport& report, const ModelOptions& options) {
 
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout) {
   return normals == Normals::None ? layout : layout.withNormals();
-}
-
-bool fitsFloat(const Box3& box) {
-  return box.center().norm() <= kFarOut * box.sizes().maxCoeff();
 }
 
 int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {

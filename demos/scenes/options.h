@@ -29,12 +29,15 @@ struct InputError : std::runtime_error {
 /// Throws an InputError unless the status is ok.
 void require(const Status& status);
 
+enum class BuiltIn { Serpent, Bar };
+
 /// Which mesh, and which cage.
 struct ModelOptions {
-  std::string mesh;               ///< file; empty: the serpent
+  BuiltIn builtIn = BuiltIn::Serpent;
+  std::string mesh;               ///< file; empty: the built-in model
   std::string cage;               ///< file; empty: built from the mesh
   std::size_t tets = 3000;        ///< of a built cage
-  std::size_t triangles = 60000;  ///< of the serpent
+  std::size_t triangles = 60000;  ///< of the built-in model
 };
 
 /// Where the results go.
@@ -80,8 +83,6 @@ void requireFit(const EmbedReport& report, const ModelOptions& options);
 
 /// The layout in which a skin with these normals is written.
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout);
-/// Whether float, which is what viewers read, will do for a surface in this box: not if it lies far out.
-bool fitsFloat(const Box3& box);
 
 /// Parses the command line and runs the demo; turns errors into one line on standard error and an exit status.
 int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
