@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
-#include <tetskin/io/obj_sequence_writer.h>
 #include <tetskin/io/tet_mesh_writer.h>
 
 #include <chrono>
@@ -11,6 +10,7 @@
 #include <filesystem>
 
 #include "scenes/drop_scene.h"
+#include "scenes/frame_writer.h"
 #include "scenes/options.h"
 #include "scenes/progress.h"
 
@@ -21,6 +21,7 @@ using namespace tetskin::scenes;
 
 struct DropOptions {
   ModelOptions model;
+  SkinOptions skin;
   OutputOptions output{"out/drop", "", 240, 1, false};
   bool writeCage = false;
 };
@@ -58,18 +59,9 @@ std::string cagePath(const std::string& folder, int frame) {
   return (std::filesystem::path(folder) / name).string();
 }
 
-void writeFrame(const DropScene& scene, const DropOptions& options, int frame, ObjSequenceWriter& writer,
-                std::vector<Eigen::Vector3f>& buffer, Totals& totals) {
+void writeFrame(const DropScene& scene, const DropOptions& options, int frame, FrameWriter& writer, Totals& totals) {
   const auto start = std::chrono::steady_clock::now();
-  const Box3 bounds = scene.bounds();
-  // float is what Bullet computes and what viewers read, unless the model lies so far out that float cannot hold it.
-  constexpr double kFarOut = 100.0;
-  if (bounds.center().norm() > kFarOut * scene.size()) {
-    require(writer.write(frame, viewOf(scene.surface())));
-  } else {
-    for (std::size_t v = 0; v < buffer.size(); ++v) buffer[v] = scene.surface()[v].cast<float>();
-    require(writer.write(frame, viewOf(std::as_const(buffer))));
-  }
+  writer.write(frame, scene.surface(), scene.bounds(), scene.normals());
   if (options.writeCage) require(saveTetMesh(scene.currentCage(), cagePath(options.output.out, frame)));
   totals.writeMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   ++totals.written;
@@ -82,10 +74,9 @@ void measure(const DropScene& scene, double restExtent, Totals& totals) {
   totals.speeds.push_back(scene.nodeSpeed());
 }
 
-Totals simulate(DropScene& scene, const DropOptions& options, ObjSequenceWriter& writer) {
+Totals simulate(DropScene& scene, const DropOptions& options, FrameWriter& writer) {
   Totals totals;
   const double restExtent = scene.bounds().sizes().maxCoeff();
-  std::vector<Eigen::Vector3f> buffer(scene.surface().size());
   Progress progress("simulating", options.output.frames, options.output.quiet);
   for (int frame = 0; frame < options.output.frames; ++frame) {
     if (frame > 0) {
@@ -96,7 +87,7 @@ Totals simulate(DropScene& scene, const DropOptions& options, ObjSequenceWriter&
     if (totals.finite) measure(scene, restExtent, totals);
     totals.finite = totals.finite && totals.extentMax < kExploded;
     if (!totals.finite) break;
-    if (frame % options.output.every == 0) writeFrame(scene, options, frame, writer, buffer, totals);
+    if (frame % options.output.every == 0) writeFrame(scene, options, frame, writer, totals);
     totals.frames = frame + 1;
     progress.show(frame + 1);
   }
@@ -160,15 +151,14 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 
 int run(const DropOptions& options) {
   const Model model = loadModel(options.model);
-  DropScene scene(model.mesh, model.cage, options.model.outside);
+  DropScene scene(model.mesh, model.cage, options.skin);
   requireFit(scene.fit(), options.model);
-  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(options.output.out, model.layout);
-  require(writer.status());
+  FrameWriter writer(options.output.out, layoutWith(options.skin.normals, model.layout));
   const std::filesystem::path folder = options.output.out;
   const TriangleMesh obstacles = scene.obstacles();
   require(ObjLayout::fromMesh(obstacles).writeTo((folder / "obstacles.obj").string(), viewOf(obstacles.positions)));
 
-  const Totals totals = simulate(scene, options, writer.value());
+  const Totals totals = simulate(scene, options, writer);
   const nlohmann::ordered_json json = summarise(model, scene, options, totals);
   const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
   writeJson(json, path);
@@ -190,6 +180,8 @@ int main(int argc, char** argv) {
   DropOptions options;
   CLI::App app("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
   addModelOptions(app, options.model);
+  addInterpolationOption(app, options.skin);
+  addSkinOptions(app, options.skin);
   addOutputOptions(app, options.output);
   app.add_flag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
   return runDemo(app, argc, argv, [&] { return run(options); });

@@ -3,6 +3,8 @@
 
 compose.py drop  FOLDER PNG FRAME...         moments of the drop demo's sequence in FOLDER, side by side
 compose.py cages MESH.obj PNG CAGE.vtk...    cages around their mesh, side by side
+compose.py turn  CAGE.vtk TURNED.vtk         a cage twisted about its z axis, for tetskin_deform
+compose.py twist MESH.obj PNG MESH.obj       two surfaces that followed it, with their normals, side by side
 """
 import subprocess
 import sys
@@ -20,6 +22,9 @@ INK = (84, 86, 92)
 SUN = np.array((0.30, -1.0, -0.25))  # where its light goes, for the shadows
 FLOOR_HALF_SIDE = 8.0
 
+TWIST = 1.8  # radians a unit of length
+TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle
+
 # Diffuse, ambient and specular colour, each as a part of the first. f3d lights from beside the camera alone: without an
 # ambient part what faces upwards is black.
 MATERIALS = {
@@ -36,12 +41,14 @@ MATERIALS = {
 
 
 def read_obj(path):
-    """Vertices, and the triangles of each (group, material), in order."""
-    vertices, parts, group, material, triangles = [], [], "", "", None
+    """Vertices, and the triangles of each (group, material), in order; vertices have their normals behind them, if any."""
+    vertices, normals, parts, group, material, triangles = [], [], [], "", "", None
     for line in open(path):
         word, _, rest = line.partition(" ")
         if word == "v":
             vertices.append(rest)
+        elif word == "vn":
+            normals.append(rest)
         elif word in ("g", "usemtl"):
             group, material = (rest.strip(), material) if word == "g" else (group, rest.strip())
             triangles = None
@@ -50,7 +57,8 @@ def read_obj(path):
                 triangles = []
                 parts.append((group, material, triangles))
             triangles.append([int(corner.split("/")[0]) - 1 for corner in rest.split()])
-    return np.array([v.split() for v in vertices], float), [(g, m, np.array(t)) for g, m, t in parts]
+    columns = [np.array([point.split() for point in points], float) for points in (vertices, normals) if points]
+    return np.hstack(columns), [(g, m, np.array(t)) for g, m, t in parts]
 
 
 def read_cage(path):
@@ -81,7 +89,9 @@ class Scene:
         self.lines, self.count = [], 0
 
     def add(self, material, vertices, triangles, uv=None):
-        normals = smooth_normals(vertices, triangles)
+        own = vertices[:, 3:]
+        vertices = vertices[:, :3]
+        normals = own if own.size else smooth_normals(vertices, triangles)
         uv = np.zeros((len(vertices), 2)) if uv is None else uv
         self.lines += ["v %.6f %.6f %.6f" % tuple(v) for v in vertices]
         self.lines += ["vn %.4f %.4f %.4f" % tuple(n) for n in normals]
@@ -188,6 +198,28 @@ def cage_panel(mesh, cage):
     return scene.draw(position, focus, 25.5), len(tets)
 
 
+def turn(cage, target):
+    """Writes a cage with its nodes turned about the z axis through their mean, in proportion to z."""
+    nodes, tets = read_cage(cage)
+    centre = nodes.mean(axis=0)
+    x, y, z = (nodes - centre).T
+    angle = TWIST * z
+    turned = centre + np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y, z], axis=1)
+    with open(target, "w") as out:
+        out.write("# vtk DataFile Version 2.0\ntwisted\nASCII\nDATASET UNSTRUCTURED_GRID\n")
+        out.write(f"POINTS {len(turned)} double\n")
+        np.savetxt(out, turned, "%.17g")
+        out.write(f"CELLS {len(tets)} {5 * len(tets)}\n")
+        np.savetxt(out, np.insert(tets, 0, 4, axis=1), "%d")
+        out.write(f"CELL_TYPES {len(tets)}\n" + len(tets) * "10\n")
+
+
+def twist_panel(path):
+    scene = Scene()
+    add_mesh(scene, *read_obj(path))
+    return scene.draw(*TWIST_VIEW)
+
+
 def save(panels, labels, gap, path):
     """The panels side by side, each with its label in a corner, in 256 colours: a quarter of the size."""
     sheet = Image.new("RGB", (len(panels) * (PANEL + gap) - gap, PANEL), "white")
@@ -211,6 +243,10 @@ def main():
         frames = [int(frame) for frame in rest]
         labels = [f"{frame / 60:.1f} s" for frame in frames]
         save([drop_panel(Path(source), frame) for frame in frames], labels, GAP, target)
+    elif what == "turn":
+        turn(source, target)
+    elif what == "twist":
+        save([twist_panel(path) for path in (source, *rest)], ["linear", "quadratic"], GAP, target)
     else:
         panels, tets = zip(*[cage_panel(source, cage) for cage in rest])
         save(panels, [f"{count:,} tets" for count in tets], 0, target)

@@ -33,7 +33,7 @@ void append(TriangleMesh& mesh, const char* name, const std::vector<Eigen::Vecto
 
 }  // namespace
 
-DropScene::DropScene(const TriangleMesh& mesh, const TetMesh& cage, OutsideRule outside) : restCage_(cage) {
+DropScene::DropScene(const TriangleMesh& mesh, const TetMesh& cage, const SkinOptions& skin) : restCage_(cage) {
   const Box3 box = boundingBox(cage.nodes);
   centre_ = box.center();
   scale_ = kSize / box.sizes().maxCoeff();
@@ -46,9 +46,7 @@ DropScene::DropScene(const TriangleMesh& mesh, const TetMesh& cage, OutsideRule 
   require(body.status());
   body_ = std::move(body).value();
 
-  SkinOptions options;
-  options.outside = outside;
-  fit_ = skin_.bind(body_->body(), cage, mesh, options);
+  fit_ = skin_.bind(body_->body(), cage, mesh, skin);
   if (fit_.ok()) readSurface();
 }
 

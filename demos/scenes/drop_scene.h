@@ -25,7 +25,7 @@ class DropScene {
   static constexpr int kSubsteps = 4;
 
   /// Mesh and cage are usable (see `loadModel`). Check `fit()` before stepping.
-  DropScene(const TriangleMesh& mesh, const TetMesh& cage, OutsideRule outside);
+  DropScene(const TriangleMesh& mesh, const TetMesh& cage, const SkinOptions& skin);
 
   const EmbedReport& fit() const { return fit_; }
 
@@ -34,6 +34,8 @@ class DropScene {
 
   /// Current vertices in the model's space, vertexCount; kept until the next step.
   const std::vector<Eigen::Vector3d>& surface() const { return surface_; }
+  /// Its current normals; empty if not asked for.
+  PointView<const float> normals() const { return skin_.normals(); }
   /// Box of the surface, model's space.
   Box3 bounds() const;
   /// The cage as it is now, model's space.

@@ -8,21 +8,34 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <new>
 
+#include "scenes/bar.h"
 #include "scenes/serpent.h"
 
 namespace tetskin::scenes {
 namespace {
 
-TetMesh loadCage(const std::string& path) {
-  Result<TetMesh> cage = loadTetMesh(path);
-  require(cage.status());
-  TetMesh mesh = std::move(cage).value();
-  const TetMeshReport report = repairTetMesh(mesh);
-  if (const Status status = usable(mesh, report); !status.ok()) throw InputError(path + ": " + status.message);
-  return mesh;
+std::string nameOf(BuiltIn model) {
+  return model == BuiltIn::Bar ? "bar" : "serpent";
+}
+
+/// An option that takes one of some words.
+template <class Choice>
+void addChoice(CLI::App& app, const std::string& name, Choice& choice,
+               const std::vector<std::pair<std::string, Choice>>& words, const std::string& description) {
+  std::vector<std::string> known;
+  std::string preset;
+  for (const auto& [word, value] : words) {
+    known.push_back(word);
+    if (value == choice) preset = word;
+  }
+  const auto choose = [&choice, words](const std::string& wanted) {
+    for (const auto& [word, value] : words) {
+      if (word == wanted) choice = value;
+    }
+  };
+  app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
 }
 
 }  // namespace
@@ -32,9 +45,10 @@ void require(const Status& status) {
 }
 
 void addMeshOptions(CLI::App& app, ModelOptions& options) {
-  app.add_option("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a built-in serpent)");
+  app.add_option("--mesh", options.mesh,
+                 "Render mesh, any format assimp reads (default: a built-in " + nameOf(options.builtIn) + ")");
   app.add_option("--tets", options.tets, "Tets of a built cage")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--triangles", options.triangles, "Triangles of the built-in serpent")
+  app.add_option("--triangles", options.triangles, "Triangles of the built-in " + nameOf(options.builtIn))
       ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
       ->capture_default_str();
 }
@@ -42,10 +56,26 @@ void addMeshOptions(CLI::App& app, ModelOptions& options) {
 void addModelOptions(CLI::App& app, ModelOptions& options) {
   addMeshOptions(app, options);
   app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
-  const std::map<std::string, OutsideRule> rules{{"nearest", OutsideRule::Nearest},
-                                                 {"barycentric", OutsideRule::Barycentric}};
-  app.add_option("--outside", options.outside, "Tet of a vertex outside the cage: nearest (default) or barycentric")
-      ->transform(CLI::CheckedTransformer(rules));
+}
+
+void addInterpolationOption(CLI::App& app, SkinOptions& options) {
+  addChoice(app, "--interpolation", options.interpolation,
+            {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},
+            "How the surface follows the cage");
+}
+
+void addSkinOptions(CLI::App& app, SkinOptions& options) {
+  addChoice(app, "--normals", options.normals,
+            {{"none", Normals::None}, {"transformed", Normals::Transformed}, {"recomputed", Normals::Recomputed}},
+            "Current normals of the surface");
+  addChoice(app, "--outside", options.outside,
+            {{"nearest", OutsideRule::Nearest}, {"barycentric", OutsideRule::Barycentric}},
+            "Which tet carries a vertex outside the cage");
+  app.add_option("--max-distance", options.maxDistance,
+                 "Refuse a mesh with a vertex farther than this from the cage, in the mesh's unit")
+      ->check(CLI::Validator(
+          [](const std::string& text) { return std::string(text[0] == '-' ? "a distance must not be negative" : ""); },
+          "LENGTH"));
 }
 
 void addOutputOptions(CLI::App& app, OutputOptions& options) {
@@ -59,10 +89,22 @@ void addOutputOptions(CLI::App& app, OutputOptions& options) {
 }
 
 Surface loadSurface(const ModelOptions& options) {
-  if (options.mesh.empty()) return {"serpent", makeSerpent({options.triangles})};
+  if (options.mesh.empty()) {
+    const bool bar = options.builtIn == BuiltIn::Bar;
+    return {nameOf(options.builtIn), bar ? makeBar(options.triangles) : makeSerpent({options.triangles})};
+  }
   Result<TriangleMesh> mesh = loadMesh(options.mesh);
   require(mesh.status());
   return {options.mesh, std::move(mesh).value()};
+}
+
+TetMesh loadCage(const std::string& path) {
+  Result<TetMesh> cage = loadTetMesh(path);
+  require(cage.status());
+  if (const Status status = usable(cage.value(), checkTetMesh(cage.value())); !status.ok()) {
+    throw InputError(path + ": " + status.message);
+  }
+  return std::move(cage).value();
 }
 
 TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
@@ -84,6 +126,7 @@ Model loadModel(const ModelOptions& options) {
   CageOptions cage;
   cage.targetTets = options.tets;
   model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage);
+  (void)repairTetMesh(model.cage);
   return model;
 }
 
@@ -94,7 +137,7 @@ void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
 }
 
 void requireFit(const EmbedReport& report, const ModelOptions& options) {
-  const std::string mesh = options.mesh.empty() ? "serpent" : options.mesh;
+  const std::string mesh = options.mesh.empty() ? nameOf(options.builtIn) : options.mesh;
   if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
   if (!report.unitsDiffer()) return;
   char text[256];
@@ -103,6 +146,10 @@ void requireFit(const EmbedReport& report, const ModelOptions& options) {
                 report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
   throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text +
                    "; are they in different units? Scale one of them");
+}
+
+ObjLayout layoutWith(Normals normals, const ObjLayout& layout) {
+  return normals == Normals::None ? layout : layout.withNormals();
 }
 
 int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {

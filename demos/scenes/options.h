@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/io/obj_layout.h>
@@ -29,13 +29,15 @@ struct InputError : std::runtime_error {
 /// Throws an InputError unless the status is ok.
 void require(const Status& status);
 
+enum class BuiltIn { Serpent, Bar };
+
 /// Which mesh, and which cage.
 struct ModelOptions {
-  std::string mesh;               ///< file; empty: the serpent
+  BuiltIn builtIn = BuiltIn::Serpent;
+  std::string mesh;               ///< file; empty: the built-in model
   std::string cage;               ///< file; empty: built from the mesh
   std::size_t tets = 3000;        ///< of a built cage
-  std::size_t triangles = 60000;  ///< of the serpent
-  OutsideRule outside = OutsideRule::Nearest;
+  std::size_t triangles = 60000;  ///< of the built-in model
 };
 
 /// Where the results go.
@@ -49,8 +51,12 @@ struct OutputOptions {
 
 /// --mesh, --triangles, --tets.
 void addMeshOptions(CLI::App& app, ModelOptions& options);
-/// Those, --cage and --outside.
+/// Those and --cage.
 void addModelOptions(CLI::App& app, ModelOptions& options);
+/// --interpolation.
+void addInterpolationOption(CLI::App& app, SkinOptions& options);
+/// --normals, --outside, --max-distance.
+void addSkinOptions(CLI::App& app, SkinOptions& options);
 /// The defaults of `options` are the demo's.
 void addOutputOptions(CLI::App& app, OutputOptions& options);
 
@@ -65,12 +71,18 @@ struct Model : Surface {
 
 /// These load, make or write; they throw InputError, with the file and the fault.
 Surface loadSurface(const ModelOptions& options);
+/// A usable cage, its tets as the file has them.
+TetMesh loadCage(const std::string& path);
 TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
+/// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);
 void writeJson(const nlohmann::ordered_json& json, const std::string& path);
 
 /// Throws InputError if mesh and cage cannot belong together: see EmbedReport.
 void requireFit(const EmbedReport& report, const ModelOptions& options);
+
+/// The layout in which a skin with these normals is written.
+ObjLayout layoutWith(Normals normals, const ObjLayout& layout);
 
 /// Parses the command line and runs the demo; turns errors into one line on standard error and an exit status.
 int runDemo(CLI::App& app, int argc, char** argv, const std::function<int()>& run);

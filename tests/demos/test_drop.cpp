@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/types.h>
+#include <tetskin/core/normals.h>
+#include <tetskin/io/mesh_loader.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -110,6 +112,45 @@ TEST_F(Drop, KeepsTheInputsFacesTextureCoordinatesGroupsAndOrder) {
   }
 }
 
+TEST_F(Drop, WritesCurrentUnitNormalsIfAskedFor) {
+  folder.write("box.obj", boxObj());
+  for (const std::string normals : {"transformed", "recomputed"}) {
+    ASSERT_EQ(drop({"--mesh", "box.obj", "--tets", "60", "--frames", "30", "--every", "29", "--interpolation",
+                    "quadratic", "--normals", normals, "--out", normals})
+                  .status,
+              0);
+    const TriangleMesh first = loadMesh(folder.path(normals + "/frame_0000.obj"));
+    const TriangleMesh last = loadMesh(folder.path(normals + "/frame_0029.obj"));
+    ASSERT_EQ(first.normals.size(), 8u);
+    ASSERT_EQ(last.normals.size(), 8u);
+    EXPECT_EQ(last.texcoords.size(), first.texcoords.size());
+    const std::vector<Eigen::Vector3d> expected = restNormals(first);
+    for (int v = 0; v < 8; ++v) {
+      EXPECT_LT((first.normals[v].cast<double>() - expected[v]).norm(), 1e-5);
+      EXPECT_NEAR(last.normals[v].norm(), 1.0, 1e-5);
+    }
+  }
+}
+
+TEST_F(Drop, QuadraticSurfaceFollowsTheSameCage) {
+  for (const std::string kind : {"linear", "quadratic"}) {
+    ASSERT_EQ(drop({"--triangles", "4000", "--tets", "300", "--frames", "40", "--every", "39", "--interpolation", kind,
+                    "--write-cage", "--out", kind})
+                  .status,
+              0);
+  }
+  EXPECT_EQ(folder.read("linear/cage_0039.vtk"), folder.read("quadratic/cage_0039.vtk"));
+  const auto linear = test::objPositions(folder.read("linear/frame_0039.obj"));
+  const auto quadratic = test::objPositions(folder.read("quadratic/frame_0039.obj"));
+  double farthest = 0.0;
+  for (std::size_t v = 0; v < linear.size(); ++v) {
+    farthest =
+        std::max(farthest, (Eigen::Vector3d(linear[v].data()) - Eigen::Vector3d(quadratic[v].data())).norm() / 2.0);
+  }
+  EXPECT_GT(farthest, 1e-4);
+  EXPECT_LT(farthest, 0.1);
+}
+
 TEST_F(Drop, WritesEveryKthFrameAndTheCageBesideIt) {
   folder.write("box.obj", boxObj());
   ASSERT_EQ(
@@ -147,8 +188,8 @@ TEST_F(Drop, QuietPrintsNothing) {
 TEST_F(Drop, HelpListsTheOptions) {
   const CommandResult result = drop({"--help"});
   EXPECT_EQ(result.status, 0);
-  for (const char* option : {"--mesh", "--cage", "--tets", "--outside", "--frames", "--every", "--out", "--json",
-                             "--quiet", "--write-cage"}) {
+  for (const char* option : {"--mesh", "--cage", "--tets", "--outside", "--interpolation", "--normals",
+                             "--max-distance", "--frames", "--every", "--out", "--json", "--quiet", "--write-cage"}) {
     EXPECT_NE(result.out.find(option), std::string::npos) << option;
   }
 }
@@ -234,7 +275,10 @@ TEST_F(Drop, RefusesUnknownOptionsAndSenselessValues) {
   expectRefused({"--every", "-1"}, {"--every"});
   expectRefused({"--tets", "0"}, {"--tets"});
   expectRefused({"--tets", "many"}, {"--tets"});
-  expectRefused({"--outside", "somewhere"}, {"--outside"});
+  expectRefused({"--outside", "somewhere"}, {"--outside", "nearest"});
+  expectRefused({"--interpolation", "cubic"}, {"--interpolation", "quadratic"});
+  expectRefused({"--normals", "bumpy"}, {"--normals", "transformed"});
+  expectRefused({"--max-distance", "-1"}, {"--max-distance", "negative"});
 }
 
 TEST(Hello, RunsWithoutAnyFile) {

@@ -6,6 +6,7 @@
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/obj_layout.h>
 
+#include <cmath>
 #include <filesystem>
 
 namespace tetskin {
@@ -159,6 +160,64 @@ TEST(ObjLayoutFor, NoticesThatTheFileHasChanged) {
   folder.write("m.obj", kBody + "v 1 1 1\n");
   expectError(objLayoutFor(path, mesh).status(), StatusCode::SizeMismatch,
               {path, "has 4 vertices", "load the mesh again"});
+}
+
+const std::vector<Eigen::Vector3f> kNormals = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+
+/// A text written with kMoved and kNormals.
+std::string rewrittenWithNormals(const std::string& text) {
+  const TempFolder folder;
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  EXPECT_TRUE(layout.ok()) << layout.status().message;
+  std::vector<char> buffer;
+  return std::string(layout.value().withNormals().format(viewOf(kMoved), buffer, viewOf(kNormals)));
+}
+
+TEST(ObjLayout, WritesCurrentNormalsInPlaceOfAuthoredOnes) {
+  EXPECT_EQ(rewrittenWithNormals("# made by hand\nv 0 0 0\n v 1 0 0 0.5 0.5 0.5 # red\nvt 0 0\nvn 0 0 1\nv\t0 1 0\n"
+                                 "g wing left\nf 1/1/1 2/1/1  3/1/1 # 4/5/6\nf 1//1 2//1 3//1\nf 1 2 3\nl 1/1 2/1\n"),
+            "# made by hand\nv 1 2 3\nvn 0 0 1\n v 0.5 -0.25 1e-07 0.5 0.5 0.5 # red\nvn 0 1 0\nvt 0 0\n"
+            "v\t4 5 6\nvn -1 0 0\n"
+            "g wing left\nf 1/1/1 2/1/2  3/1/3 # 4/5/6\nf 1//1 2//2 3//3\nf 1//1 2//2 3//3\nl 1/1 2/1\n");
+}
+
+TEST(ObjLayout, CountsNormalsBackwardsWhereVerticesAre) {
+  EXPECT_EQ(rewrittenWithNormals("v 0 0 0\r\nv 1 0 0\r\nvn 0 0 1\r\nf -1//-1 -2//-1 \\\r\n 3//-1\r\nv 0 1 0"),
+            "v 1 2 3\r\nvn 0 0 1\nv 0.5 -0.25 1e-07\r\nvn 0 1 0\nf -1//-1 -2//-2 \\\r\n 3//3\r\n"
+            "v 4 5 6\nvn -1 0 0\n");
+}
+
+TEST(ObjLayout, NormalsReadBackAndLibrariesStayNamed) {
+  const TempFolder folder;
+  folder.write("skin.mtl", "newmtl skin\n");
+  const std::string text = "v 0 0 0\nv 1 0 0\nmtllib skin.mtl\nv 0 1 0\nf 1 2 3\n";
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  ASSERT_TRUE(layout.ok());
+  std::filesystem::create_directories(folder.path("out"));
+  const std::string path = folder.path("out/m.obj");
+  ASSERT_TRUE(layout.value().withNormals().writeTo(path, viewOf(kMoved), viewOf(kNormals)).ok());
+  EXPECT_NE(TempFolder::read(path).find("\nmtllib ../skin.mtl\n"), std::string::npos);
+  const TriangleMesh back = loadMesh(path);
+  ASSERT_EQ(back.normals.size(), 3u);
+  for (int v = 0; v < 3; ++v) EXPECT_EQ(back.normals[v], kNormals[v]);
+  for (int v = 0; v < 3; ++v) EXPECT_EQ(back.positions[v].cast<float>(), kMoved[v]);
+}
+
+TEST(ObjLayout, RefusesNormalsThatDoNotBelong) {
+  const TempFolder folder;
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kBody));
+  ASSERT_TRUE(layout.ok());
+  const ObjLayout withNormals = layout.value().withNormals();
+  EXPECT_FALSE(layout.value().hasNormals());
+  EXPECT_TRUE(withNormals.hasNormals());
+  const std::string path = folder.path("out.obj");
+  const std::vector<Eigen::Vector3f> two(2, Eigen::Vector3f::UnitX()), bad(3, Eigen::Vector3f::Constant(NAN));
+  expectError(layout.value().writeTo(path, viewOf(kMoved), viewOf(kNormals)), StatusCode::SizeMismatch,
+              {path, "withNormals"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved)), StatusCode::SizeMismatch, {path, "0 normals", "3 vertices"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(two)), StatusCode::SizeMismatch, {path, "2 normals"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(bad)), StatusCode::NonFinite, {path, "vertex 0"});
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(ObjLayout, FormatsTwiceWithoutAllocating) {

@@ -103,6 +103,22 @@ TEST(ObjSequenceWriter, NamesMaterialLibrariesFromItsFolder) {
   EXPECT_EQ(TempFolder::read(writer.value().framePath(0)).substr(0, 22), "mtllib ../../skin.mtl\n");
 }
 
+TEST(ObjSequenceWriter, WritesCurrentNormals) {
+  const TempFolder folder;
+  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kModel));
+  ASSERT_TRUE(layout.ok());
+  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(folder.path("out"), layout.value().withNormals());
+  ASSERT_TRUE(writer.ok());
+  const std::vector<Eigen::Vector3f> normals(4, Eigen::Vector3f(0.6f, 0, -0.8f));
+  ASSERT_TRUE(writer.value().write(0, viewOf(kDoubles), viewOf(normals)).ok());
+  const TriangleMesh frame = loadMesh(writer.value().framePath(0));
+  EXPECT_EQ(frame.positions, kDoubles);
+  EXPECT_EQ(frame.texcoords.size(), 4u);
+  ASSERT_EQ(frame.normals.size(), 4u);
+  for (const Eigen::Vector3f& n : frame.normals) EXPECT_TRUE(n.isApprox(normals[0], 1e-6f));
+  expectError(writer.value().write(1, viewOf(kDoubles)), StatusCode::SizeMismatch, {"frame_0001.obj", "0 normals"});
+}
+
 TEST(ObjSequenceWriter, RefusesAnotherNumberOfPositions) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);

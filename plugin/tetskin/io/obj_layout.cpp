@@ -26,6 +26,14 @@ std::string_view withoutNormal(std::string_view corner) {
   return corner.substr(0, end == first + 1 ? first : end);
 }
 
+/// A corner without a normal, with the normal of its vertex's number: "1/2" is "1/2/1", "1" is "1//1".
+void appendWithNormal(std::string_view corner, std::string& text) {
+  const std::size_t slash = corner.find('/');
+  text += corner;
+  text += slash == corner.npos ? "//" : "/";
+  text += corner.substr(0, slash);
+}
+
 std::string folderOf(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? std::string(".") : folder.string();
@@ -157,6 +165,47 @@ ObjLayout ObjLayout::fromMesh(const TriangleMesh& mesh) {
   return layout;
 }
 
+/// A normal's number is that of its vertex, counted from the front or, as its line follows the vertex's at once, from
+/// behind.
+ObjLayout ObjLayout::withNormals() const {
+  assert(!hasNormals());
+  ObjLayout result;
+  result.sourceFolder_ = sourceFolder_;
+  result.libraries_ = libraries_;
+  std::string& text = result.text_;
+  auto library = result.libraries_.begin();
+  io::ObjScanner scanner(text_);
+  for (io::ObjStatement statement; scanner.next(statement);) {
+    const auto start = static_cast<std::size_t>(statement.text.data() - text_.data());
+    for (; library != result.libraries_.end() && library->offset < start + statement.text.size(); ++library) {
+      library->offset += text.size() - start;
+    }
+    if (statement.keyword == "f") {
+      result.addFaceWithNormals(statement);
+      continue;
+    }
+    if (statement.keyword == "v") result.gaps_.push_back(gaps_[result.gaps_.size()] + text.size() - start);
+    text += statement.text;
+    if (statement.keyword != "v") continue;
+    text += text.back() == '\n' ? "vn " : "\nvn ";
+    result.normalGaps_.push_back(text.size());
+    text += '\n';
+  }
+  return result;
+}
+
+void ObjLayout::addFaceWithNormals(const io::ObjStatement& statement) {
+  const std::string_view text = statement.text;
+  const char* copied = text.data();
+  io::ObjWords words(statement.rest);
+  for (std::string_view corner = words.next(); !corner.empty(); corner = words.next()) {
+    text_.append(copied, corner.data());
+    appendWithNormal(corner, text_);
+    copied = corner.data() + corner.size();
+  }
+  text_.append(copied, text.data() + text.size());
+}
+
 ObjLayout ObjLayout::inFolder(const std::string& folder) const {
   ObjLayout result = *this;
   std::error_code error;
@@ -169,64 +218,103 @@ ObjLayout ObjLayout::inFolder(const std::string& folder) const {
     result.text_.replace(library.offset, library.name.size(), name);
     const std::size_t grown = name.size() - library.name.size();  // wraps around where it shrinks, and back when added
     for (std::size_t& gap : result.gaps_) gap += gap > library.offset ? grown : 0;
+    for (std::size_t& gap : result.normalGaps_) gap += gap > library.offset ? grown : 0;
   }
   result.libraries_.clear();
   return result;
 }
 
+namespace {
+
 template <class Scalar>
-std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vector<char>& buffer) const {
-  assert(positions.size() == vertexCount());
+char* formatPoint(char* out, const Scalar* point) {
+  out = io::formatNumber(out, point[0]);
+  *out++ = ' ';
+  out = io::formatNumber(out, point[1]);
+  *out++ = ' ';
+  return io::formatNumber(out, point[2]);
+}
+
+}  // namespace
+
+template <class Scalar>
+std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vector<char>& buffer,
+                                   PointView<const float> normals) const {
+  assert(positions.size() == vertexCount() && normals.size() == normalGaps_.size());
   constexpr std::size_t kPointRoom = 3 * io::kNumberRoom + 2;
-  buffer.resize(std::max(buffer.size(), text_.size() + vertexCount() * kPointRoom));
+  buffer.resize(std::max(buffer.size(), text_.size() + (gaps_.size() + normalGaps_.size()) * kPointRoom));
   char* out = buffer.data();
-  std::size_t copied = 0;
+  const char* copied = text_.data();
+  const auto copyTo = [&](std::size_t gap) {
+    out = std::copy(copied, text_.data() + gap, out);
+    copied = text_.data() + gap;
+  };
   for (std::size_t v = 0; v < vertexCount(); ++v) {
-    out = std::copy(text_.data() + copied, text_.data() + gaps_[v], out);
-    copied = gaps_[v];
-    const Scalar* position = positions[v];
-    out = io::formatNumber(out, position[0]);
-    *out++ = ' ';
-    out = io::formatNumber(out, position[1]);
-    *out++ = ' ';
-    out = io::formatNumber(out, position[2]);
+    copyTo(gaps_[v]);
+    out = formatPoint(out, positions[v]);
+    if (normals.empty()) continue;
+    copyTo(normalGaps_[v]);
+    out = formatPoint(out, normals[v]);
   }
-  out = std::copy(text_.data() + copied, text_.data() + text_.size(), out);
+  copyTo(text_.size());
   return {buffer.data(), static_cast<std::size_t>(out - buffer.data())};
 }
 
+namespace {
+
+Status checkCount(const std::string& path, std::size_t count, std::size_t wanted, const char* what) {
+  if (count == wanted) return {};
+  return io::fileError(StatusCode::SizeMismatch, path, 0,
+                       "cannot be written from " + std::to_string(count) + " " + what + "s, as the mesh has " +
+                           std::to_string(wanted) + " vertices; pass one " + what + " a vertex");
+}
+
 template <class Scalar>
-Status ObjLayout::checkPositions(const std::string& path, PointView<const Scalar> positions) const {
-  if (positions.size() != vertexCount()) {
-    return io::fileError(StatusCode::SizeMismatch, path, 0,
-                         "cannot be written from " + std::to_string(positions.size()) + " positions, as the mesh has " +
-                             std::to_string(vertexCount()) + " vertices; pass one position a vertex");
-  }
-  const std::size_t bad = firstNonFinite(positions);
-  if (bad == positions.size()) return {};
+Status checkFinite(const std::string& path, PointView<const Scalar> points, const char* what) {
+  const std::size_t bad = firstNonFinite(points);
+  if (bad == points.size()) return {};
   return io::fileError(StatusCode::NonFinite, path, 0,
-                       "cannot be written, as vertex " + std::to_string(bad) +
-                           " has a coordinate that is not finite; check whether the simulation has exploded");
+                       "cannot be written, as vertex " + std::to_string(bad) + " has a " + what +
+                           " that is not finite; check whether the simulation has exploded");
+}
+
+}  // namespace
+
+template <class Scalar>
+Status ObjLayout::checkPoints(const std::string& path, PointView<const Scalar> positions,
+                              PointView<const float> normals) const {
+  if (!hasNormals() && !normals.empty()) {
+    return io::fileError(StatusCode::SizeMismatch, path, 0,
+                         "cannot be written with normals, as its layout has none; make it by ObjLayout::withNormals");
+  }
+  Status status = checkCount(path, positions.size(), vertexCount(), "position");
+  if (status.ok() && hasNormals()) status = checkCount(path, normals.size(), vertexCount(), "normal");
+  if (status.ok()) status = checkFinite(path, positions, "coordinate");
+  if (status.ok()) status = checkFinite(path, normals, "normal");
+  return status;
 }
 
 namespace {
 
 template <class Scalar>
-Status writeLayout(const ObjLayout& layout, const std::string& path, PointView<const Scalar> positions) {
-  Status status = layout.checkPositions(path, positions);
+Status writeLayout(const ObjLayout& layout, const std::string& path, PointView<const Scalar> positions,
+                   PointView<const float> normals) {
+  Status status = layout.checkPoints(path, positions, normals);
   if (!status.ok()) return status;
   std::vector<char> buffer;
-  return io::writeFile(path, layout.inFolder(folderOf(path)).format(positions, buffer));
+  return io::writeFile(path, layout.inFolder(folderOf(path)).format(positions, buffer, normals));
 }
 
 }  // namespace
 
-Status ObjLayout::writeTo(const std::string& path, PointView<const float> positions) const {
-  return writeLayout(*this, path, positions);
+Status ObjLayout::writeTo(const std::string& path, PointView<const float> positions,
+                          PointView<const float> normals) const {
+  return writeLayout(*this, path, positions, normals);
 }
 
-Status ObjLayout::writeTo(const std::string& path, PointView<const double> positions) const {
-  return writeLayout(*this, path, positions);
+Status ObjLayout::writeTo(const std::string& path, PointView<const double> positions,
+                          PointView<const float> normals) const {
+  return writeLayout(*this, path, positions, normals);
 }
 
 Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh) {
@@ -240,9 +328,9 @@ Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& 
   return layout;
 }
 
-template std::string_view ObjLayout::format(PointView<const float>, std::vector<char>&) const;
-template std::string_view ObjLayout::format(PointView<const double>, std::vector<char>&) const;
-template Status ObjLayout::checkPositions(const std::string&, PointView<const float>) const;
-template Status ObjLayout::checkPositions(const std::string&, PointView<const double>) const;
+template std::string_view ObjLayout::format(PointView<const float>, std::vector<char>&, PointView<const float>) const;
+template std::string_view ObjLayout::format(PointView<const double>, std::vector<char>&, PointView<const float>) const;
+template Status ObjLayout::checkPoints(const std::string&, PointView<const float>, PointView<const float>) const;
+template Status ObjLayout::checkPoints(const std::string&, PointView<const double>, PointView<const float>) const;
 
 }  // namespace tetskin

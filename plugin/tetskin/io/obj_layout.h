@@ -20,7 +20,8 @@ struct ObjStatement;
 /// What is kept: everything an OBJ file has, byte for byte (order, polygons, texture coordinates, groups, materials,
 /// comments, vertex colours behind the coordinates), except
 /// - normals: `vn` lines and the faces' references to them are left out. Authored normals belong to the rest shape and
-///   would be wrong on a deformed one; without any, every viewer makes its own;
+///   would be wrong on a deformed one; without any, every viewer makes its own, and current ones go in by
+///   `withNormals`;
 /// - a byte order mark, on which some readers stumble.
 class ObjLayout {
  public:
@@ -33,6 +34,13 @@ class ObjLayout {
   static ObjLayout fromMesh(const TriangleMesh& mesh);
 
   std::size_t vertexCount() const { return gaps_.size(); }
+  /// Whether files of this layout have normals.
+  bool hasNormals() const { return !normalGaps_.empty(); }
+
+  /// The same layout with a `vn` line behind every `v` line, and faces that name them: "1" becomes "1//1", "1/2"
+  /// becomes "1/2/1". So there is one normal a vertex of the file: where authored normals differ between the corners at
+  /// one vertex, as at an edge whose vertices are not doubled, the corners share the current one.
+  ObjLayout withNormals() const;
 
   /// The same layout for a file in `folder`: material libraries (`mtllib`) that lie beside the source file are named by
   /// their path from that folder, others are kept as they are.
@@ -41,18 +49,21 @@ class ObjLayout {
   /// The whole file with these positions, in `buffer`, whose memory is reused: nothing is allocated if it has served
   /// the same layout before. Every number is the shortest that reads back as the same float, or double.
   /// positions  vertexCount x 3, finite; the count is asserted
+  /// normals    likewise if the layout has normals, otherwise none
   template <class Scalar>
-  std::string_view format(PointView<const Scalar> positions, std::vector<char>& buffer) const;
+  std::string_view format(PointView<const Scalar> positions, std::vector<char>& buffer,
+                          PointView<const float> normals = {}) const;
 
   /// Writes one file, complete or not at all, whose `mtllib` lines fit its folder.
   /// Cost: formats about 30 million numbers a second.
   /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
-  Status writeTo(const std::string& path, PointView<const float> positions) const;
-  Status writeTo(const std::string& path, PointView<const double> positions) const;
+  Status writeTo(const std::string& path, PointView<const float> positions, PointView<const float> normals = {}) const;
+  Status writeTo(const std::string& path, PointView<const double> positions, PointView<const float> normals = {}) const;
 
-  /// Ok if these positions can be written at `path`: the first two errors above.
+  /// Ok if these can be written at `path`: the first two errors above.
   template <class Scalar>
-  Status checkPositions(const std::string& path, PointView<const Scalar> positions) const;
+  Status checkPoints(const std::string& path, PointView<const Scalar> positions,
+                     PointView<const float> normals = {}) const;
 
  private:
   struct Library {
@@ -64,10 +75,12 @@ class ObjLayout {
   void addFace(const io::ObjStatement& statement);
   void addLibraries(const io::ObjStatement& statement);
   bool addLibrary(std::string_view name, std::size_t offset);
+  void addFaceWithNormals(const io::ObjStatement& statement);
 
   std::string text_;
-  std::vector<std::size_t> gaps_;   ///< vertexCount offsets in text_, ascending: where each position goes
-  std::vector<Library> libraries_;  ///< the material libraries found beside the source
+  std::vector<std::size_t> gaps_;        ///< vertexCount offsets in text_, ascending: where each position goes
+  std::vector<std::size_t> normalGaps_;  ///< likewise for the normals, each after its position's; or empty
+  std::vector<Library> libraries_;       ///< the material libraries found beside the source
   std::string sourceFolder_;
 };
 

@@ -43,19 +43,19 @@ std::string ObjSequenceWriter::framePath(int frame) const {
 }
 
 template <class Scalar>
-Status ObjSequenceWriter::writeFrame(int frame, PointView<const Scalar> positions) {
+Status ObjSequenceWriter::writeFrame(int frame, PointView<const Scalar> positions, PointView<const float> normals) {
   const std::string path = framePath(frame);
-  Status status = layout_.checkPositions(path, positions);
+  Status status = layout_.checkPoints(path, positions, normals);
   if (!status.ok()) return status;
-  return io::writeFile(path, layout_.format(positions, buffer_));
+  return io::writeFile(path, layout_.format(positions, buffer_, normals));
 }
 
-Status ObjSequenceWriter::write(int frame, PointView<const float> positions) {
-  return writeFrame(frame, positions);
+Status ObjSequenceWriter::write(int frame, PointView<const float> positions, PointView<const float> normals) {
+  return writeFrame(frame, positions, normals);
 }
 
-Status ObjSequenceWriter::write(int frame, PointView<const double> positions) {
-  return writeFrame(frame, positions);
+Status ObjSequenceWriter::write(int frame, PointView<const double> positions, PointView<const float> normals) {
+  return writeFrame(frame, positions, normals);
 }
 
 }  // namespace tetskin

@@ -21,18 +21,19 @@ class ObjSequenceWriter {
   static Result<ObjSequenceWriter> create(const std::string& directory, const ObjLayout& layout,
                                           std::string baseName = "frame_");
 
-  /// Writes one frame, complete or not at all. `frame` must not be negative.
+  /// Writes one frame, complete or not at all. `frame` must not be negative. Normals, one a vertex, if the layout was
+  /// made for them (`ObjLayout::withNormals`), otherwise none.
   /// Cost: the buffer for the text, about the size of a file, is allocated by the first frame only.
   /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
-  Status write(int frame, PointView<const float> positions);
-  Status write(int frame, PointView<const double> positions);
+  Status write(int frame, PointView<const float> positions, PointView<const float> normals = {});
+  Status write(int frame, PointView<const double> positions, PointView<const float> normals = {});
 
   /// Where a frame goes.
   std::string framePath(int frame) const;
 
  private:
   template <class Scalar>
-  Status writeFrame(int frame, PointView<const Scalar> positions);
+  Status writeFrame(int frame, PointView<const Scalar> positions, PointView<const float> normals);
 
   std::string directory_;
   std::string baseName_;

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
+#include <tetskin/io/atomic_file.h>
+#include <tetskin/io/file_text.h>
+#include <tetskin/io/number_text.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "scenes/frame_writer.h"
+#include "scenes/options.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+
+struct DeformCommand {
+  ModelOptions model;
+  SkinOptions skin;
+  std::string deformed;
+  std::string output;
+  std::string embedding;
+  std::string json;
+  bool quiet = false;
+};
+
+/// The nodes of the deformed cage. Its tets only tell whether it is the same cage: their order and orientation may
+/// differ, as simulators change them.
+TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
+  Result<TetMesh> deformed = loadTetMesh(command.deformed);
+  require(deformed.status());
+  const auto demand = [&](std::size_t count, std::size_t wanted, const char* what) {
+    if (count == wanted) return;
+    throw InputError(command.deformed + ": has " + std::to_string(count) + " " + what + ", but the rest cage " +
+                     command.model.cage + " has " + std::to_string(wanted) +
+                     "; export both from one simulation, with its nodes in the same order");
+  };
+  demand(deformed.value().nodeCount(), rest.nodeCount(), "nodes");
+  demand(deformed.value().tetCount(), rest.tetCount(), "tets");
+  return std::move(deformed).value();
+}
+
+/// vertex,tet,b0,b1,b2,b3,inside: numbers from 0 and weights of the nodes in the order of the cage's file, as the
+/// shortest texts that read back as the same floats.
+std::string embeddingText(const Embedding& embedding) {
+  std::string text = "vertex,tet,b0,b1,b2,b3,inside\n";
+  std::size_t vertex = 0;
+  for (const VertexBinding& binding : embedding.bindings()) {
+    io::appendNumber(text, vertex++);
+    text += ',';
+    io::appendNumber(text, binding.tet);
+    for (const float weight : binding.weights) {
+      text += ',';
+      io::appendNumber(text, weight);
+    }
+    text += binding.inside ? ",1\n" : ",0\n";
+  }
+  return text;
+}
+
+void writeSurface(const MeshSkin<double>& skin, const ObjLayout& layout, const std::string& path) {
+  const PointView<const double> positions = skin.positions();
+  if (!fitsFloat(skin.bounds())) return require(layout.writeTo(path, positions, skin.normals()));
+  std::vector<Eigen::Vector3f> rounded(positions.size());
+  for (std::size_t v = 0; v < rounded.size(); ++v) {
+    rounded[v] = Eigen::Map<const Eigen::Vector3d>(positions[v]).cast<float>();
+  }
+  require(layout.writeTo(path, viewOf(std::as_const(rounded)), skin.normals()));
+}
+
+nlohmann::ordered_json summarise(const Model& model, const DeformCommand& command, const EmbedReport& fit,
+                                 const QuadraticReport& quadratic, double updateUs) {
+  nlohmann::ordered_json json;
+  json["model"] = model.name;
+  json["vertices"] = model.mesh.vertexCount();
+  json["triangles"] = model.mesh.triangleCount();
+  json["nodes"] = model.cage.nodeCount();
+  json["tets"] = model.cage.tetCount();
+  json["inside"] = fit.inside;
+  json["outside"] = fit.outside;
+  json["worst_distance"] = fit.worstDistance;
+  json["worst_vertex"] = fit.worstVertex;
+  json["rest_error_max"] = fit.restErrorMax;
+  if (command.skin.interpolation == Interpolation::Quadratic) {
+    json["thin_nodes"] = quadratic.thinNodes;
+    json["plain_nodes"] = quadratic.plainNodes;
+  }
+  json["attach_ms"] = fit.milliseconds;
+  json["update_us"] = updateUs;
+  json["out"] = command.output;
+  return json;
+}
+
+int run(const DeformCommand& command) {
+  if (io::lowerExtension(command.output) != ".obj") {
+    throw InputError(command.output + ": is of a format that is not written; use .obj");
+  }
+  Model model;
+  static_cast<Surface&>(model) = loadSurface(command.model);
+  Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
+  require(layout.status());
+  model.cage = loadCage(command.model.cage);
+  const TetMesh deformed = loadDeformed(command, model.cage);
+
+  std::shared_ptr<const SkinBinding<double>> binding;
+  QuadraticReport quadratic;
+  const EmbedReport fit = makeSkinBinding(model.cage, model.mesh, command.skin, binding, &quadratic);
+  requireFit(fit, command.model);
+  MeshSkin<double> skin;
+  const auto start = std::chrono::steady_clock::now();
+  require(skin.bind(binding, viewOf(deformed.nodes), command.skin));
+  const double updateUs = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+
+  writeSurface(skin, layoutWith(command.skin.normals, layout.value()), command.output);
+  if (!command.embedding.empty()) require(io::writeFile(command.embedding, embeddingText(binding->embedding)));
+  if (!command.json.empty()) writeJson(summarise(model, command, fit, quadratic, updateUs), command.json);
+  if (command.quiet) return kDone;
+  std::printf("%s", fit.describe().c_str());
+  if (binding->quadratic) std::printf("%s\n", quadratic.describe().c_str());
+  std::printf("%s\n", command.output.c_str());
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  DeformCommand command;
+  CLI::App app("Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.");
+  app.add_option("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads")->required();
+  app.add_option("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh")->required();
+  app.add_option("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order")
+      ->required();
+  app.add_option("-o,--output", command.output, "Deformed mesh to write: .obj")->required();
+  addInterpolationOption(app, command.skin);
+  addSkinOptions(app, command.skin);
+  app.add_option("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
+  app.add_option("--json", command.json, "File of the summary");
+  app.add_flag("--quiet", command.quiet, "Print nothing but errors");
+  return runDemo(app, argc, argv, [&] { return run(command); });
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/bar.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/serpent.h"
+#include "scenes/serpent_tube.h"
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfLength = 2.0, kHalfWidth = 0.46;
+constexpr double kCapDepth = 0.25;  ///< over which each end is rounded off
+constexpr double kCapShare = 0.13;  ///< of the rings, for each end
+constexpr double kRidgeHeight = 0.035;
+constexpr int kRidges = 16, kColumnsPerRidge = 6;
+constexpr double kSlenderness = 1.35;
+
+/// Distance of the outline from the axis, over half the width: a rounded square.
+double outline(double theta) {
+  return std::pow(std::pow(std::cos(theta), 4.0) + std::pow(std::sin(theta), 4.0), -0.25);
+}
+
+}  // namespace
+
+TriangleMesh makeBar(std::size_t triangles) {
+  const std::size_t wish = std::clamp(triangles, kMinSerpentTriangles, kMaxSerpentTriangles);
+  const TubeGrid grid = tubeGrid(static_cast<double>(wish), kSlenderness);
+  const double ridge = grid.columns >= kColumnsPerRidge * kRidges ? kRidgeHeight : 0.0;
+  TriangleMesh mesh;
+  appendTube(mesh, grid, [&](int ring, int column) -> Eigen::Vector3d {
+    const double t = static_cast<double>(ring) / (grid.rings + 1);
+    const double end = std::min({t / kCapShare, (1.0 - t) / kCapShare, 1.0});  // 0 at a pole, 1 between the caps
+    const double inwards = kCapDepth * (1.0 - std::cos(0.5 * kPi * end));
+    const double middle = std::clamp((t - kCapShare) / (1.0 - 2.0 * kCapShare), 0.0, 1.0);
+    const double between = (2.0 * middle - 1.0) * (kHalfLength - kCapDepth);
+    const double x = end < 1.0 ? (t < 0.5 ? inwards - kHalfLength : kHalfLength - inwards) : between;
+    const double theta = 2.0 * kPi * column / grid.columns;
+    const double radius =
+        kHalfWidth * std::sin(0.5 * kPi * end) * outline(theta) * (1.0 + ridge * std::cos(kRidges * theta));
+    return {x, radius * std::cos(theta), radius * std::sin(theta)};
+  });
+  mesh.groups.push_back({"bar", "", 0, mesh.triangleCount()});
+  return mesh;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/twist.h"
+
+#include <algorithm>
+
+namespace tetskin::scenes {
+
+using Eigen::Vector3d;
+
+double Twist::angleAt(const Vector3d& p) const {
+  return turn * std::clamp((p[axis] - from) / (to - from), 0.0, 1.0);
+}
+
+Vector3d Twist::point(const Vector3d& p) const {
+  return centre + Eigen::AngleAxisd(angleAt(p), Vector3d::Unit(axis)) * (p - centre);
+}
+
+/// The gradient of the map is R (I + rate (a x r) a^T), with R the turn, a the axis and r = p - centre. Its determinant
+/// is 1, so the normal goes with R (I - rate a (a x r)^T).
+Vector3d Twist::normal(const Vector3d& p, const Vector3d& n) const {
+  const double rate = turn / (to - from);
+  const Vector3d a = Vector3d::Unit(axis);
+  const Vector3d sheared = n - rate * n.dot(a.cross(p - centre)) * a;
+  return (Eigen::AngleAxisd(angleAt(p), a) * sheared).normalized();
+}
+
+}  // namespace tetskin::scenes

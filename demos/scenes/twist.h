@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+
+namespace tetskin::scenes {
+
+/// Turns the cross-sections of a body about a coordinate axis, evenly from none at `from` to `turn` at `to`; as much as
+/// these beyond them. Smooth between them, hence a yardstick for interpolations.
+struct Twist {
+  Eigen::Vector3d centre;       ///< on the axis
+  int axis = 0;                 ///< 0, 1 or 2: x, y or z
+  double from = 0.0, to = 1.0;  ///< coordinates on the axis
+  double turn = 0.0;            ///< radians
+
+  double angleAt(const Eigen::Vector3d& p) const;
+  Eigen::Vector3d point(const Eigen::Vector3d& p) const;
+  /// The unit normal at point(p) of a surface with normal n at p, for p between `from` and `to`.
+  Eigen::Vector3d normal(const Eigen::Vector3d& p, const Eigen::Vector3d& n) const;
+};
+
+}  // namespace tetskin::scenes

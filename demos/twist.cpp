@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A bar held at both ends in Bullet's deformable world, twisted a full turn and released; a linear and a quadratic
+// surface on the same coarse cage, side by side, and the errors of both.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "scenes/frame_writer.h"
+#include "scenes/options.h"
+#include "scenes/progress.h"
+#include "scenes/serpent_spine.h"
+#include "scenes/twist_scene.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+
+constexpr double kFullTurn = 6.28318530717958647692;
+/// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
+constexpr double kExploded = 20.0;
+
+struct TwistOptions {
+  ModelOptions model;
+  SkinOptions skin;
+  OutputOptions output{"out/twist", "", 240, 1, false};
+};
+
+/// When what happens, in frames. Twice as fast, and the twist gathers at the moved end: see kDamping of the scene.
+constexpr int kTurned = 120, kReleased = 150;
+
+double turnAt(int frame) {
+  return kFullTurn * smoothStep(0.0, kTurned, frame);
+}
+
+/// How far a surface is from the exact image of the mesh under a map that its cage's nodes follow exactly.
+struct Accuracy {
+  double rms = 0.0, max = 0.0;  ///< in diagonals of the mesh's box
+  double normalDegrees = 0.0;   ///< mean angle of the transformed normals to the exact ones
+};
+
+/// Without Bullet, whose body finds its own shape: the nodes are set to a full turn from end to end.
+Accuracy measure(const Model& model, SkinOptions options, Interpolation interpolation) {
+  const Twist twist = twistOf(boundingBox(model.cage.nodes), kFullTurn);
+  options.interpolation = interpolation;
+  options.normals = Normals::Transformed;
+  MeshSkin<double> skin;
+  require(skin.bind(model.cage, model.mesh, options).status);
+  std::vector<Eigen::Vector3d> nodes;
+  for (const Eigen::Vector3d& p : model.cage.nodes) nodes.push_back(twist.point(p));
+  if (skin.update(viewOf(std::as_const(nodes))) < nodes.size()) throw InputError("the cage's nodes are not finite");
+
+  const std::vector<Eigen::Vector3d> normals = restNormals(model.mesh);
+  const double diagonal = boundingBox(model.mesh.positions).diagonal().norm();
+  const auto count = static_cast<double>(model.mesh.vertexCount());
+  Accuracy result;
+  for (std::size_t v = 0; v < model.mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d& rest = model.mesh.positions[v];
+    const Eigen::Map<const Eigen::Vector3d> position(skin.positions()[v]);
+    const double distance = (position - twist.point(rest)).norm() / diagonal;
+    result.rms += distance * distance / count;
+    result.max = std::max(result.max, distance);
+    const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3f>(skin.normals()[v]).cast<double>();
+    const double cosine = std::clamp(normal.dot(twist.normal(rest, normals[v])), -1.0, 1.0);
+    result.normalDegrees += 360.0 / kFullTurn * std::acos(cosine) / count;
+  }
+  result.rms = std::sqrt(result.rms);
+  return result;
+}
+
+/// Two copies of a mesh in one, as the groups `linear` and `quadratic`, the second beside the first.
+class SideBySide {
+ public:
+  explicit SideBySide(const TriangleMesh& mesh) {
+    const Eigen::Vector3d sides = boundingBox(mesh.positions).sizes();
+    int longest = 0;
+    sides.maxCoeff(&longest);
+    const int beside = (longest + 1) % 3, deep = (longest + 2) % 3;
+    offset_[beside] = -kGap * std::hypot(sides[beside], sides[deep]);
+    for (const char* name : {"linear", "quadratic"}) append(mesh, name);
+  }
+
+  ObjLayout layout() const { return ObjLayout::fromMesh(mesh_); }
+
+  void write(const TwistScene& scene, int frame, FrameWriter& writer) {
+    surface_ = scene.linear();
+    for (const Eigen::Vector3d& p : scene.quadratic()) surface_.push_back(p + offset_);
+    normals_.clear();
+    for (const PointView<const float>& half : {scene.linearNormals(), scene.quadraticNormals()}) {
+      for (std::size_t v = 0; v < half.size(); ++v) normals_.emplace_back(half[v]);
+    }
+    writer.write(frame, surface_, boundingBox(surface_), viewOf(std::as_const(normals_)));
+  }
+
+ private:
+  static constexpr double kGap = 1.1;  ///< of the centres, over the widest that a turned section can be
+
+  void append(const TriangleMesh& mesh, const char* name) {
+    const int first = static_cast<int>(mesh_.vertexCount());
+    mesh_.groups.push_back({name, "", mesh_.triangleCount(), mesh.triangleCount()});
+    mesh_.positions.insert(mesh_.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    mesh_.texcoords.insert(mesh_.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
+    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
+  TriangleMesh mesh_;
+  std::vector<Eigen::Vector3d> surface_;
+  std::vector<Eigen::Vector3f> normals_;
+};
+
+/// What is measured on the way.
+struct Totals {
+  int frames = 0;
+  int written = 0;
+  double simulationMs = 0.0, linearUs = 0.0, quadraticUs = 0.0;
+  double extentMax = 1.0;
+  double nodesOffTwist = 0.0;                     ///< at the last frame before the release
+  double differenceRms = 0.0, differenceMax = 0;  ///< of the two surfaces, likewise, in box diagonals
+  bool finite = true;
+};
+
+void compareSurfaces(const TwistScene& scene, double diagonal, Totals& totals) {
+  totals.nodesOffTwist = scene.nodesOffTwist();
+  double squared = 0.0, farthest = 0.0;
+  for (std::size_t v = 0; v < scene.linear().size(); ++v) {
+    const double distance = (scene.linear()[v] - scene.quadratic()[v]).norm() / diagonal;
+    squared += distance * distance;
+    farthest = std::max(farthest, distance);
+  }
+  totals.differenceRms = std::sqrt(squared / static_cast<double>(scene.linear().size()));
+  totals.differenceMax = farthest;
+}
+
+Totals simulate(TwistScene& scene, const Model& model, const TwistOptions& options, FrameWriter& writer,
+                SideBySide& pair) {
+  Totals totals;
+  const Box3 rest = boundingBox(model.mesh.positions);
+  Progress progress("twisting", options.output.frames, options.output.quiet);
+  for (int frame = 0; frame < options.output.frames; ++frame) {
+    if (frame == kReleased) scene.release();
+    if (frame > 0) {
+      totals.finite = scene.step(turnAt(frame));
+      totals.simulationMs += scene.simulationMs();
+      totals.linearUs += scene.linearUs();
+      totals.quadraticUs += scene.quadraticUs();
+    }
+    const double extent = boundingBox(scene.linear()).sizes().maxCoeff() / rest.sizes().maxCoeff();
+    totals.extentMax = std::max(totals.extentMax, extent);
+    totals.finite = totals.finite && totals.extentMax < kExploded;
+    if (!totals.finite) break;
+    if (frame < kReleased) compareSurfaces(scene, rest.diagonal().norm(), totals);
+    if (frame % options.output.every == 0) {
+      pair.write(scene, frame, writer);
+      ++totals.written;
+    }
+    totals.frames = frame + 1;
+    progress.show(frame + 1);
+  }
+  return totals;
+}
+
+nlohmann::ordered_json summarise(const Model& model, const TwistScene& scene, const TwistOptions& options,
+                                 const Accuracy& linear, const Accuracy& quadratic, const Totals& totals) {
+  const double steps = std::max(1, totals.frames - 1);
+  nlohmann::ordered_json json;
+  json["model"] = model.name;
+  json["vertices"] = model.mesh.vertexCount();
+  json["triangles"] = model.mesh.triangleCount();
+  json["nodes"] = model.cage.nodeCount();
+  json["tets"] = model.cage.tetCount();
+  json["inside"] = scene.fit().inside;
+  json["outside"] = scene.fit().outside;
+  json["error_linear_rms"] = linear.rms;
+  json["error_quadratic_rms"] = quadratic.rms;
+  json["error_linear_max"] = linear.max;
+  json["error_quadratic_max"] = quadratic.max;
+  json["normal_error_linear_deg"] = linear.normalDegrees;
+  json["normal_error_quadratic_deg"] = quadratic.normalDegrees;
+  json["frames"] = totals.frames;
+  json["frames_written"] = totals.written;
+  json["frame_turned"] = kTurned;
+  json["frame_released"] = kReleased;
+  json["nodes_off_twist_rms"] = totals.nodesOffTwist;
+  json["difference_rms"] = totals.differenceRms;
+  json["difference_max"] = totals.differenceMax;
+  json["simulation_ms_per_frame"] = totals.simulationMs / steps;
+  json["skin_linear_us_per_frame"] = totals.linearUs / steps;
+  json["skin_quadratic_us_per_frame"] = totals.quadraticUs / steps;
+  json["extent_max"] = totals.extentMax;
+  json["finite"] = totals.finite;
+  json["out"] = options.output.out;
+  return json;
+}
+
+void printTable(const nlohmann::ordered_json& json, const std::string& summaryPath) {
+  const auto number = [&](const std::string& key) { return json.at(key).get<double>(); };
+  const auto both = [&](const char* what, const char* format, const std::string& key, const char* end,
+                        const char* unit) {
+    std::printf("  %-26s", what);
+    for (const char* kind : {"linear", "quadratic"}) std::printf(format, number(key + kind + end));
+    std::printf("  %s\n", unit);
+  };
+  const auto one = [&](const char* what, const char* format, const char* key, const char* unit) {
+    std::printf("  %-26s", what);
+    std::printf(format, number(key));
+    std::printf("  %s\n", unit);
+  };
+  std::printf("\n%s: %.0f vertices, %.0f tets\n", json.at("model").get<std::string>().c_str(), number("vertices"),
+              number("tets"));
+  std::printf("  %-26s%11s%11s\n", "", "linear", "quadratic");
+  both("error, RMS", "%11.2e", "error_", "_rms", "box diagonals, with the nodes set to a full turn");
+  both("error, largest", "%11.2e", "error_", "_max", "box diagonals");
+  both("error of normals, mean", "%11.2f", "normal_error_", "_deg", "degrees");
+  both("update", "%11.1f", "skin_", "_us_per_frame", "us a frame");
+  one("apart, RMS", "%22.2e", "difference_rms", "box diagonals, when Bullet has turned the end");
+  one("nodes off an even twist", "%22.2e", "nodes_off_twist_rms", "box diagonals, likewise");
+  one("simulation", "%22.2f", "simulation_ms_per_frame", "ms a frame");
+  std::printf("  %s/frame_0000.obj ... %s\n", json.at("out").get<std::string>().c_str(), summaryPath.c_str());
+}
+
+int run(const TwistOptions& options) {
+  const Model model = loadModel(options.model);
+  TwistScene scene(model, options.skin);
+  requireFit(scene.fit(), options.model);
+  const Accuracy linear = measure(model, options.skin, Interpolation::Linear);
+  const Accuracy quadratic = measure(model, options.skin, Interpolation::Quadratic);
+  SideBySide pair(model.mesh);
+  FrameWriter writer(options.output.out, layoutWith(options.skin.normals, pair.layout()));
+
+  const Totals totals = simulate(scene, model, options, writer, pair);
+  const nlohmann::ordered_json json = summarise(model, scene, options, linear, quadratic, totals);
+  const std::filesystem::path folder = options.output.out;
+  const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
+  writeJson(json, path);
+  if (!options.output.quiet) printTable(json, path);
+  if (totals.finite) return kDone;
+  std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", totals.frames - 1);
+  return kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  TwistOptions options;
+  options.model.builtIn = BuiltIn::Bar;
+  options.model.tets = 600;
+  options.skin.normals = Normals::Transformed;
+  CLI::App app(
+      "A body held at both ends of its longest side is twisted a full turn and released, in Bullet's deformable "
+      "world. One cage carries a linear and a quadratic surface; the errors of both are printed.");
+  addModelOptions(app, options.model);
+  addSkinOptions(app, options.skin);
+  addOutputOptions(app, options.output);
+  return runDemo(app, argc, argv, [&] { return run(options); });
+}
