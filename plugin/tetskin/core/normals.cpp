@@ -27,6 +27,7 @@ bool normalise(Eigen::Matrix<Scalar, 3, 1>& sum) {
     if (!(size > Scalar(0) && std::isfinite(size))) return false;
     sum /= size;
     squared = sum.squaredNorm();
+    if (!std::isfinite(squared)) return false;  // the largest coordinate may not tell of another that is NaN
   }
   sum /= std::sqrt(squared);
   return true;
