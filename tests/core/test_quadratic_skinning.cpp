@@ -271,6 +271,27 @@ TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
   }
 }
 
+/// Offsets across the layer that are not all alike almost tell second derivatives apart: they must not be trusted.
+TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
+  for (const double jitter : {0.1, 0.25}) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      for (const TetMesh& even : {test::latticeCage(6, 1, 6, 0.25), test::plainLatticeCage(6, 1, 6, 0.25)}) {
+        const TetMesh cage = test::jittered(even, 0.25 * jitter, seed);
+        const std::vector<int> tets = allTets(cage);
+        CarriedPoints<double> points(cage, test::pointsIn(cage, tets, 61), tets);
+        EXPECT_GT(points.report.thinNodes, 0u);
+        for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
+          points.move(map(cage.nodes));
+          const Points expected = map(points.rest);
+          EXPECT_LE(distances(points.quadratic(), expected).rms, distances(points.linear(), expected).rms) << map.name;
+          EXPECT_LE(distances(points.quadratic(), expected).longest, distances(points.linear(), expected).longest)
+              << map.name;
+        }
+      }
+    }
+  }
+}
+
 TEST(QuadraticReport, CountsNodesEdgesAndNeighbours) {
   const TetMesh cage = test::singleTet();
   CarriedPoints<double> points(cage, {{0.1, 0.2, 0.3}});
