@@ -138,6 +138,22 @@ class Crumpled : public testing::TestWithParam<Case> {
   }
 
   template <class Scalar>
+  static void expectEdgeVectorsAreShort(const TetMesh& cage) {
+    CarriedPoints<Scalar> points(cage, vertices());
+    points.move(GetParam().crumpling.apply(cage.nodes, GetParam().size));
+    const std::vector<std::uint32_t>& ends = points.stencils.edgeNodes();
+    for (std::size_t e = 0; e < points.stencils.edgeCount(); ++e) {
+      using Vector = Eigen::Matrix<Scalar, 3, 1>;
+      const auto now = [&](std::uint32_t n) -> Vector { return Eigen::Map<const Vector>(points.nodes.data() + 4 * n); };
+      const std::uint32_t a = ends[2 * e], b = ends[2 * e + 1];
+      const double current = static_cast<double>((now(a) - now(b)).stableNorm());
+      const double rest = (cage.nodes[a] - cage.nodes[b]).norm();
+      const double length = static_cast<double>(Eigen::Map<const Vector>(points.edges.data() + 4 * e).stableNorm());
+      EXPECT_LE(length, 0.500001 * std::min(current, rest) + 1e-15 * rest) << "edge " << e;
+    }
+  }
+
+  template <class Scalar>
   static void expectNormalsStayUnitVectors(const TetMesh& cage, Interpolation interpolation, Normals normals) {
     const double size = GetParam().size;
     TriangleMesh mesh = test::sphere(12, 0.52 * size, Eigen::Vector3d::Constant(0.5 * size));
@@ -167,6 +183,13 @@ TEST_P(Crumpled, SurfaceStaysWithTheNodes) {
   for (const TetMesh& cage : cages()) {
     expectTheSurfaceStaysWithTheNodes<float>(cage);
     expectTheSurfaceStaysWithTheNodes<double>(cage);
+  }
+}
+
+TEST_P(Crumpled, NoEdgeVectorIsLongerThanHalfItsEdgeAtRestOrNow) {
+  for (const TetMesh& cage : cages()) {
+    expectEdgeVectorsAreShort<float>(cage);
+    expectEdgeVectorsAreShort<double>(cage);
   }
 }
 

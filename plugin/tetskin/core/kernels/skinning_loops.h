@@ -432,7 +432,7 @@ void edges(const EdgeWork<S>& work) {
     const S length = squaredLength<S>(e);
     S scale = 1;
     // Nodes so far apart that the length overflows leave no correction worth having.
-    if (!(length <= limit)) scale = length * 0 == 0 ? squareRoot(limit / length) : S(0);
+    if (!(length <= limit)) scale = length * 0 == 0 ? squareRoot(limit) / squareRoot(length) : S(0);
     S* out = work.edges + 4 * i;
     for (int k = 0; k < 3; ++k) out[k] = scale > 0 ? e[k] * scale : S(0);
   }
