@@ -87,11 +87,16 @@ std::vector<Case> cases() {
 
 class Crumpled : public testing::TestWithParam<Case> {
  protected:
-  /// Lattices of the three kinds and a thin one, of the case's size.
+  /// Lattices of each kind and a thin one, of the case's size.
   static std::vector<TetMesh> cages() {
     std::vector<TetMesh> all;
-    for (const test::LatticeKind& kind : test::latticeKinds()) all.push_back(kind.make(4));
-    all.push_back(test::latticeCage(4, 1, 4, 0.25));
+    for (const test::LatticeKind& kind : test::latticeKinds()) {
+      // The unit has little to do with the lattice: two of them in the other ones.
+      if (GetParam().size == 1.0 || kind.name == "Mirrored" || kind.name == "BodyCentredJittered") {
+        all.push_back(kind.make(4));
+      }
+    }
+    if (GetParam().size == 1.0) all.push_back(test::latticeCage(4, 1, 4, 0.25));
     for (TetMesh& cage : all) {
       for (Eigen::Vector3d& p : cage.nodes) p *= GetParam().size;
     }
@@ -194,7 +199,7 @@ TEST_P(Crumpled, NoEdgeVectorIsLongerThanHalfItsEdgeAtRestOrNow) {
 }
 
 TEST_P(Crumpled, NormalsStayUnitVectors) {
-  const TetMesh cage = cages()[2];
+  const TetMesh cage = cages().front();
   for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
     for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
       expectNormalsStayUnitVectors<float>(cage, interpolation, normals);
