@@ -25,10 +25,36 @@ TEST(EmbedReport, ReportNamesTheWorstVertex) {
   EXPECT_EQ(report.outside, 3u);
   EXPECT_EQ(report.worstVertex, 2u);
   EXPECT_DOUBLE_EQ(report.worstDistance, 2.0);
+  EXPECT_EQ(report.worstPosition, vertices[2]);
   EXPECT_GE(report.worstBarycentric, 4.0);
   EXPECT_GT(report.milliseconds, 0.0);
   EXPECT_FALSE(report.unitsDiffer());
-  EXPECT_NE(report.describe().find("vertex 2"), std::string::npos);
+  EXPECT_NE(report.describe().find("vertex 2 at (0.5, 0.5, -2)"), std::string::npos) << report.describe();
+}
+
+TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
+  const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  const Points vertices{{0.5, 0.5, 0.5}, {0.25, 1.5, 0.75}, {0.5, 0.5, -1.25}, {1.125, 0.5, 0.5}};
+  for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
+    Embedding embedding;
+    const EmbedReport refused = embed(cage, viewOf(vertices), {rule, 1.0}, embedding);
+    EXPECT_EQ(refused.status.code, StatusCode::OutsideCage);
+    for (const char* mentions : {"vertex 2", "(0.5, 0.5, -1.25)", "1.25 outside", "than the 1 allowed"}) {
+      EXPECT_NE(refused.status.message.find(mentions), std::string::npos) << refused.status.message;
+    }
+    EXPECT_EQ(refused.worstVertex, 2u);
+    EXPECT_EQ(refused.worstPosition, vertices[2]);
+    EXPECT_EQ(refused.unbound, 4u);
+    EXPECT_EQ(refused.inside + refused.outside, 0u);
+    EXPECT_TRUE(embedding.empty());
+    const EmbedReport accepted = embed(cage, viewOf(vertices), {rule, 1.25}, embedding);
+    EXPECT_TRUE(accepted.ok()) << accepted.status.message;
+    EXPECT_EQ(accepted.outside, 3u);
+    EXPECT_EQ(accepted.unbound, 0u);
+    // None at all outside.
+    EXPECT_TRUE(embed(cage, viewOf(Points{vertices[0]}), {rule, 0.0}, embedding).ok());
+    EXPECT_EQ(embed(cage, viewOf(vertices), {rule, 0.0}, embedding).status.code, StatusCode::OutsideCage);
+  }
 }
 
 TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <random>
 
 namespace tetskin::test {
@@ -12,8 +14,10 @@ double uniform(std::mt19937& generator) {
   return static_cast<double>(generator()) / 4294967296.0;  // the same on every standard library
 }
 
-TetMesh lattice(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs) {
+TetMesh lattice(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs,
+                bool mirrored = true) {
   TetMesh mesh;
+  const int odd = mirrored ? 2 : 1;
   const int nx = static_cast<int>(xs.size()), ny = static_cast<int>(ys.size());
   for (const double z : zs) {
     for (const double y : ys) {
@@ -26,7 +30,7 @@ TetMesh lattice(const std::vector<double>& xs, const std::vector<double>& ys, co
     for (int j = 0; j + 1 < ny; ++j) {
       for (int i = 0; i + 1 < nx; ++i) {
         for (const auto& order : kOrders) {
-          std::array<int, 3> corner{i % 2, j % 2, k % 2};  // mirrored in odd cubes
+          std::array<int, 3> corner{i % odd, j % odd, k % odd};  // mirrored in odd cubes
           Tet tet{};
           for (int n = 0; n < 4; ++n) {
             if (n > 0) corner[order[n - 1]] ^= 1;
@@ -55,6 +59,122 @@ TetMesh singleTet() {
 
 TetMesh latticeCage(int nx, int ny, int nz, double edge) {
   return lattice(steps(nx, edge), steps(ny, edge), steps(nz, edge));
+}
+
+TetMesh plainLatticeCage(int nx, int ny, int nz, double edge) {
+  return lattice(steps(nx, edge), steps(ny, edge), steps(nz, edge), false);
+}
+
+TetMesh bodyCentredCage(int nx, int ny, int nz, double edge) {
+  TetMesh mesh;
+  const auto cornerAt = [&](int i, int j, int k) { return i + (nx + 1) * (j + (ny + 1) * k); };
+  const auto centreAt = [&](int i, int j, int k) { return (nx + 1) * (ny + 1) * (nz + 1) + i + nx * (j + ny * k); };
+  for (int k = 0; k <= nz; ++k) {
+    for (int j = 0; j <= ny; ++j) {
+      for (int i = 0; i <= nx; ++i) mesh.nodes.emplace_back(edge * i, edge * j, edge * k);
+    }
+  }
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      for (int i = 0; i < nx; ++i) mesh.nodes.emplace_back(edge * (i + 0.5), edge * (j + 0.5), edge * (k + 0.5));
+    }
+  }
+  const std::array<int, 3> cubes{nx, ny, nz};
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      for (int i = 0; i < nx; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+          for (int side = 0; side < 2; ++side) {
+            // The face of this cube across `axis`, its corners in a circle.
+            const int p = (axis + 1) % 3, q = (axis + 2) % 3;
+            std::array<int, 4> around{};
+            for (int c = 0; c < 4; ++c) {
+              std::array<int, 3> at{i, j, k};
+              at[axis] += side;
+              at[p] += c == 1 || c == 2;
+              at[q] += c >= 2;
+              around[c] = cornerAt(at[0], at[1], at[2]);
+            }
+            std::array<int, 3> next{i, j, k};
+            next[axis] += side == 0 ? -1 : 1;
+            const int centre = centreAt(i, j, k);
+            if (next[axis] < 0 || next[axis] >= cubes[axis]) {  // on the outside: half an octahedron, cut in two
+              mesh.tets.push_back({centre, around[0], around[1], around[2]});
+              mesh.tets.push_back({centre, around[0], around[2], around[3]});
+            } else if (side == 1) {
+              const int other = centreAt(next[0], next[1], next[2]);
+              for (int c = 0; c < 4; ++c) mesh.tets.push_back({centre, other, around[c], around[(c + 1) % 4]});
+            }
+          }
+        }
+      }
+    }
+  }
+  static_cast<void>(repairTetMesh(mesh));
+  return mesh;
+}
+
+TetMesh jittered(TetMesh cage, double amount, unsigned seed) {
+  std::mt19937 generator(seed);
+  for (Eigen::Vector3d& p : cage.nodes) {
+    const Eigen::Vector3d u(uniform(generator), uniform(generator), uniform(generator));
+    p += amount * (2.0 * u - Eigen::Vector3d::Ones());
+  }
+  static_cast<void>(repairTetMesh(cage));
+  return cage;
+}
+
+const std::vector<LatticeKind>& latticeKinds() {
+  const auto kind = [](const char* name, TetMesh (*make)(int, int, int, double), double jitter) -> LatticeKind {
+    return {name, [make, jitter](int across) {
+              const double edge = 1.0 / across;
+              return jittered(make(across, across, across, edge), jitter * edge, 7 + static_cast<unsigned>(across));
+            }};
+  };
+  static const std::vector<LatticeKind> kinds{
+      kind("Plain", plainLatticeCage, 0.0),        kind("Mirrored", latticeCage, 0.0),
+      kind("BodyCentred", bodyCentredCage, 0.0),   kind("PlainJittered", plainLatticeCage, 0.25),
+      kind("MirroredJittered", latticeCage, 0.25), kind("BodyCentredJittered", bodyCentredCage, 0.25),
+  };
+  return kinds;
+}
+
+void PrintTo(const LatticeKind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
+std::vector<int> boundaryTets(const TetMesh& cage) {
+  std::vector<bool> onBoundary(cage.nodeCount(), false);
+  for (const auto& face : boundaryFaces(cage)) {
+    for (const int n : face) onBoundary[n] = true;
+  }
+  std::vector<int> tets;
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    const Tet& tet = cage.tets[t];
+    if (std::any_of(tet.begin(), tet.end(), [&](int n) { return onBoundary[n]; })) tets.push_back(static_cast<int>(t));
+  }
+  return tets;
+}
+
+std::vector<Eigen::Vector3d> pointsIn(const TetMesh& cage, const std::vector<int>& tets, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<Eigen::Vector3d> points;
+  for (const int t : tets) {
+    Eigen::Vector4d b;
+    for (int k = 0; k < 4; ++k) b[k] = -std::log(1.0 - uniform(generator));
+    b /= b.sum();
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) p += b[k] * cage.nodes[cage.tets[t][k]];
+    points.push_back(p);
+  }
+  return points;
+}
+
+std::vector<int> someOf(const std::vector<int>& values, std::size_t count, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<int> chosen(count);
+  for (int& c : chosen) c = values[static_cast<std::size_t>(uniform(generator) * static_cast<double>(values.size()))];
+  return chosen;
 }
 
 TetMesh randomTets(std::size_t count, double size, unsigned seed) {

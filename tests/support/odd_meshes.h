@@ -8,6 +8,9 @@
 #include <tetskin/core/triangle_mesh.h>
 
 #include <cstddef>
+#include <functional>
+#include <iosfwd>
+#include <string>
 #include <vector>
 
 namespace tetskin::test {
@@ -17,6 +20,33 @@ TetMesh singleTet();
 
 /// nx x ny x nz cubes of the given edge from the origin, six tets each, mirrored in alternate cubes; all positive.
 TetMesh latticeCage(int nx, int ny, int nz, double edge = 1.0);
+
+/// The same, with the same diagonal in all cubes.
+TetMesh plainLatticeCage(int nx, int ny, int nz, double edge = 1.0);
+
+/// nx x ny x nz cubes with a node in the middle of each: tets join the middles of neighbouring cubes with the edges of
+/// the face between them; all positive.
+TetMesh bodyCentredCage(int nx, int ny, int nz, double edge = 1.0);
+
+/// The cage with every coordinate moved by up to `amount`, reproducible; all positive.
+TetMesh jittered(TetMesh cage, double amount, unsigned seed);
+
+/// The three lattices over the unit cube, and the same jittered by a quarter of their cubes' edges.
+struct LatticeKind {
+  std::string name;
+  std::function<TetMesh(int)> make;  ///< so many cubes along each axis
+};
+const std::vector<LatticeKind>& latticeKinds();
+void PrintTo(const LatticeKind& kind, std::ostream* out);  ///< for GoogleTest
+
+/// Indices of the tets with a node on the boundary.
+std::vector<int> boundaryTets(const TetMesh& cage);
+
+/// One point uniform in each of these tets, reproducible.
+std::vector<Eigen::Vector3d> pointsIn(const TetMesh& cage, const std::vector<int>& tets, unsigned seed);
+
+/// `count` of these, at random, reproducible.
+std::vector<int> someOf(const std::vector<int>& values, std::size_t count, unsigned seed);
 
 /// Independent positive tets of edges up to `size` in the unit cube: they overlap at random.
 TetMesh randomTets(std::size_t count, double size, unsigned seed);

@@ -83,6 +83,7 @@ UpdateStatus SoftBodySkin::update() {
   const std::size_t bad = skin_.update(nodePositions(*body_));
   if (bad < skin_.nodeCount()) {
     firstBadNode_ = bad;
+    moved_ = true;  // there are no good nodes to compare with
     return UpdateStatus::NonFinite;
   }
   moved_ = false;

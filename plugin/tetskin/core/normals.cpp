@@ -27,6 +27,7 @@ bool normalise(Eigen::Matrix<Scalar, 3, 1>& sum) {
     if (!(size > Scalar(0) && std::isfinite(size))) return false;
     sum /= size;
     squared = sum.squaredNorm();
+    if (!std::isfinite(squared)) return false;  // the largest coordinate may not tell of another that is NaN
   }
   sum /= std::sqrt(squared);
   return true;
@@ -143,7 +144,12 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   planes.kind = factors.areNormals() ? kernels::Direction::Normal : kernels::Direction::Tangent;
   for (int k = 0; k < 3; ++k) planes.factors[k] = factors.plane(k);
   const bool direct = skin_tasks::isDirect<float>(out, order);
-  assert(direct || scratch);
+  std::vector<float> ownScratch;
+  if (!direct && !scratch) {
+    ownScratch.resize(3 * out.size());
+    scratch = ownScratch.data();
+    skin_tasks::collect(embedding, out, order, scratch);
+  }
   float* sorted = direct ? out.data() : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
   skin_tasks::forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {

@@ -57,10 +57,10 @@ class DirectionFactors {
 /// gradient is that of the closest point. A direction that has collapsed to nothing leaves what is there, so the
 /// caller's memory should hold unit vectors to begin with.
 ///
-/// scratch          3 x vertexCount floats of the caller's, which nobody else writes, unit vectors to begin with; not
-///                  needed for `out` side by side in sorted order
 /// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
 /// out              vertexCount x 3, caller-owned, any stride; world space
+/// scratch          3 x vertexCount floats of the caller's, unit vectors to begin with, which nobody else writes; not
+///                  needed for `out` side by side in sorted order; without it, some is allocated, and `out` is read
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,

@@ -142,8 +142,7 @@ class LocalSearch {
 
 }  // namespace
 
-std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices,
-                               const std::vector<std::uint32_t>& first,
+std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
                                const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf) {
   assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
   if (std::all_of(tetOf.begin(), tetOf.end(), [](std::int32_t tet) { return tet >= 0; })) return 0;

@@ -24,8 +24,7 @@ namespace tetskin {
 /// tetOf      by vertex: its tet, or ~tet if it lies outside of it; changed
 /// Returns    the number of vertices that changed their tet
 /// Cost       O(vertexCount + triangleCount) if any vertex is outside
-std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices,
-                               const std::vector<std::uint32_t>& first,
+std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
                                const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf);
 
 }  // namespace tetskin

@@ -81,10 +81,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
   }
   for (const Edge& edge : edges) {
     const Eigen::Vector3d half = 0.5 * (cage.nodes[edge[1]] - cage.nodes[edge[0]]);
-    for (const std::uint32_t node : edge) {
-      edgeNodes_.push_back(node);
-      edgeGradients_.push_back(gradientOf[node]);
-    }
+    for (const std::uint32_t node : edge) edgeGradients_.push_back(gradientOf[node]);
     for (int k = 0; k < 3; ++k) halfRest_.push_back(static_cast<Scalar>(half[k]));
     halfRest_.push_back(static_cast<Scalar>(half.squaredNorm()));
     restLengths_.push_back(static_cast<Scalar>(2.0 * half.norm()));
@@ -132,10 +129,8 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
   });
 
   kernels::EdgeWork<Scalar> edges;
-  edges.ends = stencils.edgeNodes().data();
   edges.gradientOf = stencils.edgeGradients().data();
   edges.halfRest = stencils.halfRest().data();
-  edges.nodes = nodes.data();
   edges.gradients = gradients_.data();
   edges.edges = edges_.data();
   tasks = taskCount(stencils.edgeCount(), kEdgesPerTask);

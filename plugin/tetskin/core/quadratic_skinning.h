@@ -48,7 +48,6 @@ class QuadraticStencils {
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
   const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry, 1 / length
-  const std::vector<std::uint32_t>& edgeNodes() const { return edgeNodes_; }          ///< 2 an edge
   const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 an edge
   /// 4 an edge: half the rest vector from its first node to its second, and the square of that half's length.
   const std::vector<Scalar>& halfRest() const { return halfRest_; }
@@ -60,7 +59,6 @@ class QuadraticStencils {
   std::vector<std::uint32_t> starts_ = {0};
   std::vector<std::uint32_t> entryNodes_;
   std::vector<Scalar> entryFactors_;
-  std::vector<std::uint32_t> edgeNodes_;
   std::vector<std::uint32_t> edgeGradients_;
   std::vector<Scalar> halfRest_;
   std::vector<Scalar> restLengths_;
@@ -74,8 +72,8 @@ class EdgeVectors {
   EdgeVectors() = default;
   explicit EdgeVectors(const QuadraticStencils<Scalar>& stencils);
 
-  /// Computes them for the current nodes. No vector is longer than half the shorter of its edge's current and rest
-  /// lengths. Cost O(nodes x neighbours + edges), no allocation.
+  /// Computes them for the current nodes. No vector is longer than half its edge's rest length. Cost O(nodes x
+  /// neighbours + edges), no allocation.
   void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
               ParallelFor* threads = nullptr);
 

@@ -95,6 +95,15 @@ void place(const Embedding& embedding, const From* sorted, PointView<Out> points
   });
 }
 
+/// The way back.
+template <class From>
+void collect(const Embedding& embedding, PointView<From> points, VertexOrder order, From* sorted) {
+  for (std::size_t slot = 0; slot < points.size(); ++slot) {
+    const std::size_t k = order == VertexOrder::Mesh ? embedding.slotVertices()[slot] : slot;
+    std::copy_n(points[k], 3, sorted + 3 * slot);
+  }
+}
+
 /// Writes all positions; their box, if asked for.
 template <class Scalar, class Out>
 void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const PackedNodes<Scalar>& nodes,
@@ -106,8 +115,9 @@ void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const P
   std::array<kernels::Extent<Scalar>, kMostTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
   const bool direct = isDirect<Scalar>(output.points, output.order);
-  assert(direct || output.scratch);
-  Scalar* sorted = direct ? reinterpret_cast<Scalar*>(output.points.data()) : output.scratch;
+  std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : 3 * output.points.size());
+  Scalar* scratch = output.scratch ? output.scratch : ownScratch.data();
+  Scalar* sorted = direct ? reinterpret_cast<Scalar*>(output.points.data()) : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
   forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
     table.positions(part, shift.data(), sorted, bounds ? &extents[task] : nullptr);

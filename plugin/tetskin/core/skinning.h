@@ -56,8 +56,8 @@ struct SkinOutput {
   /// World space; subtracted from every result before it is rounded to Out: a local origin near the body keeps float
   /// output exact far from the world's origin.
   Eigen::Matrix<Scalar, 3, 1> origin = Eigen::Matrix<Scalar, 3, 1>::Zero();
-  /// 3 x vertexCount scalars of the caller's, overwritten. Not needed for points of Scalar side by side in sorted
-  /// order, which are written directly; all others are put in their places from here.
+  /// 3 x vertexCount scalars of the caller's, overwritten. Points of Scalar side by side in sorted order are written
+  /// directly and need none; all others are put in their places from here. Without it, some is allocated each time.
   Scalar* scratch = nullptr;
 };
 

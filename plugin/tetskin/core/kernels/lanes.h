@@ -8,6 +8,9 @@
 // same code is plain C++.
 #pragma once
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 #include <math.h>
 #include <string.h>
 
@@ -198,14 +201,32 @@ V interleavedPart(const V& x, const V& y, const V& z, Indices<I...>) {
 }
 #endif
 
-/// The first `count` of W numbers from `v`, the others from `old`.
-template <class S, int W>
-Lanes<S, W> firstOf(const Lanes<S, W>& v, const Lanes<S, W>& old, int count) {
-  if constexpr (W == 1) {
-    return count > 0 ? v : old;
+/// Writes the first `count` of W numbers, none for a count below 0. With masked stores nothing else is touched;
+/// without, what is there is written back.
+template <int W>
+void storeFirst(const Lanes<float, W>& v, int count, float* out) {
+#if defined(__AVX512VL__)
+  const unsigned mask = count <= 0 ? 0u : count >= W ? (1u << W) - 1u : (1u << count) - 1u;
+  if constexpr (W == 16) {
+    _mm512_mask_storeu_ps(out, static_cast<__mmask16>(mask), v);
+  } else if constexpr (W == 8) {
+    _mm256_mask_storeu_ps(out, static_cast<__mmask8>(mask), v);
   } else {
-    return laneNumbers<S, W>() < static_cast<S>(count) ? v : old;
+    _mm_mask_storeu_ps(out, static_cast<__mmask8>(mask), v);
   }
+#elif defined(__AVX2__)
+  const auto mask = laneNumbers<float, W>() < static_cast<float>(count);
+  if constexpr (W == 8) {
+    _mm256_maskstore_ps(out, reinterpret_cast<__m256i>(mask), v);
+  } else {
+    _mm_maskstore_ps(out, reinterpret_cast<__m128i>(mask), v);
+  }
+#else
+  Lanes<float, W> old;
+  ::memcpy(&old, out, sizeof old);
+  old = laneNumbers<float, W>() < static_cast<float>(count) ? v : old;
+  ::memcpy(out, &old, sizeof old);
+#endif
 }
 
 /// Writes W points side by side: x0 y0 z0 x1 y1 z1 ...
@@ -228,26 +249,20 @@ void storePoints(const Lanes<S, W> p[3], S* out) {
   }
 }
 
-/// Writes the first `count` of W points side by side, and what is there for the others: memory for W is touched.
-template <class S, int W>
-void storeFirstPoints(const Lanes<S, W> p[3], int count, S* out) {
+/// Writes the first `count` of W points side by side. Memory for W points must be there.
+template <int W>
+void storeFirstPoints(const Lanes<float, W> p[3], int count, float* out) {
 #ifdef TETSKIN_SHUFFLES
   if constexpr (W >= 4) {
     using All = typename IndicesUpTo<W>::Type;
-    const Lanes<S, W> parts[3] = {interleavedPart<0, W>(p[0], p[1], p[2], All{}),
-                                  interleavedPart<1, W>(p[0], p[1], p[2], All{}),
-                                  interleavedPart<2, W>(p[0], p[1], p[2], All{})};
-    for (int k = 0; k < 3; ++k) {
-      Lanes<S, W> old;
-      ::memcpy(&old, out + k * W, sizeof old);
-      const Lanes<S, W> mixed = firstOf<S, W>(parts[k], old, 3 * count - k * W);
-      ::memcpy(out + k * W, &mixed, sizeof mixed);
-    }
+    storeFirst<W>(interleavedPart<0, W>(p[0], p[1], p[2], All{}), 3 * count, out);
+    storeFirst<W>(interleavedPart<1, W>(p[0], p[1], p[2], All{}), 3 * count - W, out + W);
+    storeFirst<W>(interleavedPart<2, W>(p[0], p[1], p[2], All{}), 3 * count - 2 * W, out + 2 * W);
     return;
   }
 #endif
   for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<S, W>(p[k], i);
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = lane<float, W>(p[k], i);
   }
 }
 

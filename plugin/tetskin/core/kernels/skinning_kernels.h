@@ -63,11 +63,9 @@ struct GradientWork {
 template <class Scalar>
 struct EdgeWork {
   std::size_t firstEdge = 0, lastEdge = 0;
-  const std::uint32_t* ends = nullptr;        ///< 2 an edge: nodes
   const std::uint32_t* gradientOf = nullptr;  ///< 2 an edge: places of their gradients
   const Scalar* halfRest = nullptr;           ///< 4 an edge: half the rest vector from its first end to its second,
                                               ///< and the square of its length
-  const Scalar* nodes = nullptr;
   const Scalar* gradients = nullptr;
   Scalar* edges = nullptr;  ///< 4 an edge; the fourth is not touched
 };

@@ -410,7 +410,7 @@ void directionsOf(const Work<S>& given, const DirectionFactors& factors, float* 
                           float* to = out + 3 * static_cast<std::size_t>(slot);
                           if (slot + W <= end && countBetween<S, W>(squared, kShortestSquared<S>, kLargest) == W) {
                             // No spilling here: the next run may have to leave what is in its slots.
-                            storeFirstPoints<float, W>(unit, count, to);
+                            storeFirstPoints<W>(unit, count, to);
                           } else {
                             bool chosen[W];
                             for (int i = 0; i < W; ++i) {
@@ -436,16 +436,27 @@ void directions(const Work<S>& work, const DirectionFactors& factors, float* out
   }
 }
 
+/// Adds one neighbour's part: its position times its factor's three coordinates.
 template <class S>
-void gradients(const GradientWork<S>& work) {
+void addNeighbour(const GradientWork<S>& work, std::uint32_t entry, Lanes<S, 4> column[3]) {
+  const Lanes<S, 4> x = loadPadded(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[entry]));
+  const S* g = work.factors + 3 * static_cast<std::size_t>(entry);
+  for (int c = 0; c < 3; ++c) column[c] += x * g[c];
+}
+
+template <class S>
+void gradients(const GradientWork<S>& given) {
+  const GradientWork<S> work = given;
   for (std::size_t n = work.firstNode; n < work.lastNode; ++n) {
-    Lanes<S, 4> column[3] = {};
-    for (std::uint32_t e = work.starts[n]; e < work.starts[n + 1]; ++e) {
-      const Lanes<S, 4> x = loadPadded(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[e]));
-      const S* g = work.factors + 3 * static_cast<std::size_t>(e);
-      for (int c = 0; c < 3; ++c) column[c] += x * g[c];
+    // Two sums, as an addition has to wait for the one before.
+    Lanes<S, 4> even[3] = {}, odd[3] = {};
+    std::uint32_t e = work.starts[n];
+    for (; e + 1 < work.starts[n + 1]; e += 2) {
+      addNeighbour(work, e, even);
+      addNeighbour(work, e + 1, odd);
     }
-    for (int c = 0; c < 3; ++c) storePadded(column[c], work.gradients + 12 * n + 4 * c);
+    if (e < work.starts[n + 1]) addNeighbour(work, e, even);
+    for (int c = 0; c < 3; ++c) storePadded<S>(even[c] + odd[c], work.gradients + 12 * n + 4 * c);
   }
 }
 
@@ -454,26 +465,29 @@ S squaredLength(const Lanes<S, 4>& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-/// e = (F_i - F_j) (X_j - X_i) / 2, no longer than half the shorter of the edge's current and rest lengths: on a
-/// crumpled cage the gradients mean nothing any more, and must not throw the surface out of it.
+/// e = (F_i - F_j) (X_j - X_i) / 2, no longer than half the edge's rest length: on a crumpled cage the gradients mean
+/// nothing any more, and must not throw the surface out of it.
 template <class S>
-void edges(const EdgeWork<S>& work) {
+void edges(const EdgeWork<S>& given) {
+  const EdgeWork<S> work = given;
   for (std::size_t i = work.firstEdge; i < work.lastEdge; ++i) {
     const S* a = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i]);
     const S* b = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i + 1]);
     const S* half = work.halfRest + 4 * i;
     Lanes<S, 4> e = (loadPadded(a) - loadPadded(b)) * half[0];
     for (int c = 1; c < 3; ++c) e += (loadPadded(a + 4 * c) - loadPadded(b + 4 * c)) * half[c];
-    const S* p = work.nodes + 4 * static_cast<std::size_t>(work.ends[2 * i]);
-    const S* q = work.nodes + 4 * static_cast<std::size_t>(work.ends[2 * i + 1]);
-    const S now = squaredLength<S>(loadPadded(q) - loadPadded(p)) / 4;
-    const S limit = now < half[3] ? now : half[3];
-    const S length = squaredLength<S>(e);
-    S scale = 1;
-    // Nodes so far apart that the length overflows leave no correction worth having.
-    if (!(length <= limit)) scale = length * 0 == 0 ? squareRoot(limit / length) : S(0);
+    const S length = squaredLength<S>(e), limit = half[3];
+    if (!(length <= limit)) {
+      // Nodes so far apart that the length overflows leave no vector worth having.
+      if (length * 0 == 0) {
+        e = e * (squareRoot(limit) / squareRoot(length));
+      } else {
+        e = Lanes<S, 4>{};
+      }
+    }
+    // The fourth number is the rest length, which stays.
     S* out = work.edges + 4 * i;
-    for (int k = 0; k < 3; ++k) out[k] = scale > 0 ? e[k] * scale : S(0);
+    for (int k = 0; k < 3; ++k) out[k] = e[k];
   }
 }
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+#include "support/smooth_maps.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/gradient_fit.h>
+
+#include <algorithm>
+
+namespace tetskin {
+namespace {
+
+using Kind = GradientStencil::Kind;
+
+Eigen::Matrix3d gradientOf(const GradientStencil& stencil, const std::vector<Eigen::Vector3d>& nodes) {
+  Eigen::Matrix3d f = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < stencil.nodes.size(); ++k) {
+    f += nodes[stencil.nodes[k]] * stencil.factors[k].transpose();
+  }
+  return f;
+}
+
+/// Every stencil of the cage is of this kind, and gives the gradient of these maps to rounding.
+void expectExact(const TetMesh& cage, Kind kind, double secondDerivatives, double tolerance = 1e-12) {
+  CageNeighbours neighbours(cage);
+  const test::SmoothMap map = test::quadraticMap(61, secondDerivatives);
+  const std::vector<Eigen::Vector3d> nodes = map(cage.nodes);
+  for (std::uint32_t n = 0; n < cage.nodeCount(); ++n) {
+    const GradientStencil stencil = neighbours.stencilOf(n);
+    EXPECT_EQ(stencil.kind, kind) << "node " << n;
+    EXPECT_LT((gradientOf(stencil, nodes) - map.gradient(cage.nodes[n])).norm(), tolerance) << "node " << n;
+  }
+}
+
+TEST(GradientFit, IsExactForQuadraticMapsOnEveryLattice) {
+  for (const test::LatticeKind& kind : test::latticeKinds()) {
+    SCOPED_TRACE(kind.name);
+    expectExact(kind.make(3), Kind::Full, 0.5);
+  }
+  // Two cubes across are enough: three nodes in a row.
+  expectExact(test::latticeCage(2, 2, 2, 0.5), Kind::Full, 0.5);
+}
+
+TEST(GradientFit, DoesNotDependOnTheUnit) {
+  for (const double size : {1e-6, 1e6}) {
+    const TetMesh cage = test::jittered(test::bodyCentredCage(3, 3, 3), 0.2, 62);
+    TetMesh scaled = cage;
+    for (Eigen::Vector3d& p : scaled.nodes) p *= size;
+    CageNeighbours neighbours(scaled);
+    const test::SmoothMap map = test::quadraticMap(61, 0.5);
+    std::vector<Eigen::Vector3d> nodes = map(cage.nodes);
+    for (Eigen::Vector3d& p : nodes) p *= size;
+    for (std::uint32_t n = 0; n < cage.nodeCount(); ++n) {
+      const GradientStencil stencil = neighbours.stencilOf(n);
+      EXPECT_EQ(stencil.kind, Kind::Full);
+      EXPECT_LT((gradientOf(stencil, nodes) - map.gradient(cage.nodes[n])).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(GradientFit, IsExactForAffineMapsWhereTheCageIsThin) {
+  expectExact(test::singleTet(), Kind::Thin, 0.0);
+  expectExact(test::latticeCage(5, 1, 5), Kind::Thin, 0.0);
+  expectExact(test::latticeCage(1, 1, 1), Kind::Thin, 0.0);
+}
+
+TEST(GradientFit, TakesTheMeanOfTheTetsWhereTheNodesLieInAPlane) {
+  TetMesh sliver = test::singleTet();
+  sliver.nodes[3] = {0.3, 0.3, 1e-4};
+  expectExact(sliver, Kind::Plain, 0.0, 1e-10);
+  // Two of different volume: the weights are theirs.
+  TetMesh two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-2, 0, 0}, {0.3, 0.3, 1e-4}}, {{0, 1, 2, 4}, {0, 2, 3, 4}}};
+  expectExact(two, Kind::Plain, 0.0, 1e-10);
+}
+
+TEST(GradientFit, PassesByANodeAtTheVeryPlaceOfTheFirst) {
+  // A crack: half of the tets around the middle node have a twin of it.
+  TetMesh cage = test::latticeCage(4, 4, 4);
+  const int middle = 2 + 5 * (2 + 5 * 2), twin = static_cast<int>(cage.nodeCount());
+  cage.nodes.push_back(cage.nodes[middle]);
+  for (Tet& tet : cage.tets) {
+    double x = 0.0;
+    for (const int n : tet) x += 0.25 * cage.nodes[n].x();
+    if (x > 2.0) std::replace(tet.begin(), tet.end(), middle, twin);
+  }
+  expectExact(cage, Kind::Full, 0.2);
+}
+
+TEST(GradientFit, FlatTetsDoNotTieTogetherWhatIsFarApart) {
+  TetMesh cage = test::singleTet();
+  const TetMesh lattice = test::latticeCage(3, 3, 3);
+  for (const Eigen::Vector3d& p : lattice.nodes) cage.nodes.push_back(p + Eigen::Vector3d(100, 0, 0));
+  for (Tet tet : lattice.tets) {
+    for (int& n : tet) n += 4;
+    cage.tets.push_back(tet);
+  }
+  cage.tets.push_back({0, 1, 5, 6});  // in a line
+  for (const std::uint32_t n : {0u, 1u}) {
+    const GradientStencil stencil = CageNeighbours(cage).stencilOf(n);
+    EXPECT_EQ(stencil.nodes.size(), 4u);
+    EXPECT_LT(*std::max_element(stencil.nodes.begin(), stencil.nodes.end()), 4u);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+#include "support/smooth_maps.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/mesh_skin.h>
+
+#include <limits>
+#include <memory>
+
+namespace tetskin {
+namespace {
+
+using Nodes = std::vector<Eigen::Vector3f>;
+
+class MeshSkins : public testing::Test {
+ protected:
+  MeshSkins() {
+    mesh.tangents.assign(mesh.vertexCount(), {0.6f, 0.0f, 0.8f, -1.0f});
+    const test::SmoothMap twist = test::smoothMaps(Eigen::Vector3d::Constant(0.5))[0];
+    for (const Eigen::Vector3d& p : cage.nodes) {
+      rest.push_back(p.cast<float>());
+      twisted.push_back(twist.at(p).cast<float>());
+    }
+  }
+
+  static SkinOptions everything(Normals normals) {
+    SkinOptions options;
+    options.interpolation = Interpolation::Quadratic;
+    options.normals = normals;
+    return options;
+  }
+  static PointView<const float> view(const Nodes& nodes) { return viewOf(nodes); }
+  void update(MeshSkin<float>& skin, const Nodes& nodes) { ASSERT_EQ(skin.update(view(nodes)), nodes.size()); }
+  static Eigen::Vector3f at(PointView<const float> points, std::size_t v) {
+    return Eigen::Map<const Eigen::Vector3f>(points[v]);
+  }
+
+  TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+  TriangleMesh mesh = test::sphere(20, 0.52, Eigen::Vector3d::Constant(0.5));
+  Nodes rest, twisted;
+};
+
+TEST_F(MeshSkins, AreAtRestRightAfterBind) {
+  MeshSkin<float> skin;
+  EXPECT_FALSE(skin.bound());
+  ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Transformed)).ok());
+  EXPECT_TRUE(skin.bound());
+  const std::vector<Eigen::Vector3d> normals = restNormals(mesh);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_LT((at(skin.positions(), v).cast<double>() - mesh.positions[v]).norm(), 1e-6);
+    EXPECT_LT((at(skin.normals(), v).cast<double>() - normals[v]).norm(), 4e-6);
+    EXPECT_LT((at(skin.tangents(), v) - mesh.tangents[v].head<3>()).norm(), 4e-6f);
+  }
+}
+
+TEST_F(MeshSkins, NothingIsMadeThatIsNotAskedFor) {
+  SkinOptions options;
+  options.bounds = false;
+  MeshSkin<float> skin;
+  ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
+  EXPECT_TRUE(skin.normals().empty());
+  EXPECT_TRUE(skin.tangents().empty());
+  EXPECT_TRUE(skin.bounds().isEmpty());
+  EXPECT_FALSE(skin.binding()->quadratic);
+  EXPECT_FALSE(skin.binding()->normals);
+  EXPECT_FALSE(skin.binding()->tangents);
+  EXPECT_FALSE(skin.binding()->recomputed);
+  ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Recomputed)).ok());
+  EXPECT_FALSE(skin.binding()->normals);
+  EXPECT_TRUE(skin.tangents().empty());
+  mesh.tangents.clear();
+  ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Transformed)).ok());
+  EXPECT_FALSE(skin.binding()->tangents);
+  EXPECT_TRUE(skin.tangents().empty());
+}
+
+TEST_F(MeshSkins, SortedOrderIsTheMeshsPermutedToTheLastBit) {
+  for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
+    SkinOptions options = everything(normals);
+    MeshSkin<float> expected, sorted;
+    ASSERT_TRUE(expected.bind(cage, mesh, options).ok());
+    options.order = VertexOrder::Sorted;
+    ASSERT_TRUE(sorted.bind(cage, mesh, options).ok());
+    update(expected, twisted);
+    update(sorted, twisted);
+    const auto& slotVertices = sorted.binding()->embedding.slotVertices();
+    for (std::size_t slot = 0; slot < mesh.vertexCount(); ++slot) {
+      EXPECT_EQ(at(sorted.positions(), slot), at(expected.positions(), slotVertices[slot]));
+      EXPECT_EQ(at(sorted.normals(), slot), at(expected.normals(), slotVertices[slot]));
+      if (normals == Normals::Recomputed) continue;
+      EXPECT_EQ(at(sorted.tangents(), slot), at(expected.tangents(), slotVertices[slot]));
+    }
+    EXPECT_EQ(sorted.bounds().min(), expected.bounds().min());
+    EXPECT_EQ(sorted.bounds().max(), expected.bounds().max());
+  }
+}
+
+TEST_F(MeshSkins, WriteIntoTheCallersInterleavedBuffer) {
+  struct Vertex {
+    float before;
+    float position[3];
+    float normal[3];
+    float between;
+    float tangent[4];  // the sign is the caller's
+  };
+  const Vertex untouched{1, {}, {}, 2, {0, 0, 0, 3}};
+  for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
+    for (const VertexOrder order : {VertexOrder::Mesh, VertexOrder::Sorted}) {
+      std::vector<Vertex> buffer(mesh.vertexCount(), untouched);
+      SkinOptions options = everything(normals);
+      options.order = order;
+      MeshSkin<float> own, into;
+      ASSERT_TRUE(own.bind(cage, mesh, options).ok());
+      options.target = PointView<float>(buffer[0].position, buffer.size(), sizeof(Vertex));
+      options.normalTarget = PointView<float>(buffer[0].normal, buffer.size(), sizeof(Vertex));
+      options.tangentTarget = PointView<float>(buffer[0].tangent, buffer.size(), sizeof(Vertex));
+      ASSERT_TRUE(into.bind(cage, mesh, options).ok());
+      EXPECT_TRUE(into.positions().empty());
+      EXPECT_TRUE(into.normals().empty());
+      EXPECT_TRUE(into.tangents().empty());
+      update(own, twisted);
+      update(into, twisted);
+      for (std::size_t v = 0; v < buffer.size(); ++v) {
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_EQ(buffer[v].position[k], own.positions()[v][k]);
+          EXPECT_EQ(buffer[v].normal[k], own.normals()[v][k]);
+          EXPECT_EQ(buffer[v].tangent[k], normals == Normals::Transformed ? own.tangents()[v][k] : 0.0f);
+        }
+        EXPECT_EQ(buffer[v].before, 1.0f);
+        EXPECT_EQ(buffer[v].between, 2.0f);
+        EXPECT_EQ(buffer[v].tangent[3], 3.0f);
+      }
+    }
+  }
+}
+
+TEST_F(MeshSkins, WriteDoublesFromFloatNodesAndTheOtherWayRound) {
+  std::vector<Eigen::Vector3d> doubles(mesh.vertexCount());
+  std::vector<Eigen::Vector3f> floats(mesh.vertexCount());
+  SkinOptions options = everything(Normals::Recomputed);
+  MeshSkin<float> own, single;
+  ASSERT_TRUE(own.bind(cage, mesh, options).ok());
+  options.target = viewOf(doubles);
+  ASSERT_TRUE(single.bind(cage, mesh, options).ok());
+  options.target = viewOf(floats);
+  MeshSkin<double> twice;
+  ASSERT_TRUE(twice.bind(cage, mesh, options).ok());
+  std::vector<Eigen::Vector3d> nodes;
+  for (const Eigen::Vector3f& p : twisted) nodes.push_back(p.cast<double>());
+  update(own, twisted);
+  update(single, twisted);
+  ASSERT_EQ(twice.update(viewOf(std::as_const(nodes))), nodes.size());
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_LT((doubles[v] - at(own.positions(), v).cast<double>()).norm(), 1e-6);
+    EXPECT_LT((doubles[v] - floats[v].cast<double>()).norm(), 1e-6);
+    EXPECT_LT((at(single.normals(), v) - at(own.normals(), v)).norm(), 1e-4f);
+    EXPECT_LT((at(twice.normals(), v) - at(own.normals(), v)).norm(), 1e-4f);
+  }
+}
+
+TEST_F(MeshSkins, BoundsAreThoseOfThePositions) {
+  SkinOptions options = everything(Normals::None);
+  options.origin = Eigen::Vector3d(3, -2, 1);
+  MeshSkin<float> skin;
+  ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
+  update(skin, twisted);
+  const Box3 box = boundingBox(skin.positions());
+  EXPECT_LT((skin.bounds().min() - box.min()).norm(), 2e-6);
+  EXPECT_LT((skin.bounds().max() - box.max()).norm(), 2e-6);
+  EXPECT_LT(skin.bounds().max().x(), -1.0);
+  skin.setOrigin({0, 0, 0});
+  update(skin, twisted);
+  EXPECT_LT((skin.bounds().min() - box.min() - Eigen::Vector3d(3, -2, 1)).norm(), 2e-6);
+}
+
+TEST_F(MeshSkins, ANodeThatIsNotFiniteChangesNothing) {
+  for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
+    MeshSkin<float> skin;
+    ASSERT_TRUE(skin.bind(cage, mesh, everything(normals)).ok());
+    update(skin, twisted);
+    std::vector<Eigen::Vector3f> before;
+    for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+      before.push_back(at(skin.positions(), v));
+      before.push_back(at(skin.normals(), v));
+    }
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
+      Nodes broken = rest;
+      broken[70].z() = bad;
+      broken[90].x() = bad;
+      EXPECT_EQ(skin.update(view(broken)), 70u);
+      for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+        EXPECT_EQ(at(skin.positions(), v), before[2 * v]);
+        EXPECT_EQ(at(skin.normals(), v), before[2 * v + 1]);
+      }
+    }
+    update(skin, rest);
+    EXPECT_LT((at(skin.positions(), 9).cast<double>() - mesh.positions[9]).norm(), 1e-6);
+  }
+}
+
+TEST_F(MeshSkins, ShareABinding) {
+  const SkinOptions options = everything(Normals::Transformed);
+  std::shared_ptr<const SkinBinding<float>> binding;
+  QuadraticReport quadratic;
+  ASSERT_TRUE(makeSkinBinding(cage, mesh, options, binding, &quadratic).ok());
+  EXPECT_GT(quadratic.edges, 0u);
+  MeshSkin<float> one, other;
+  ASSERT_TRUE(one.bind(binding, view(rest), options).ok());
+  ASSERT_TRUE(other.bind(binding, view(twisted), options).ok());
+  EXPECT_EQ(one.binding(), other.binding());
+  EXPECT_LT((at(one.positions(), 5).cast<double>() - mesh.positions[5]).norm(), 1e-6);
+  EXPECT_GT((at(other.positions(), 5).cast<double>() - mesh.positions[5]).norm(), 0.01);
+  update(one, twisted);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_EQ(at(one.positions(), v), at(other.positions(), v));
+    EXPECT_EQ(at(one.normals(), v), at(other.normals(), v));
+  }
+}
+
+TEST_F(MeshSkins, RefuseABindingThatLacksWhatTheOptionsAskFor) {
+  std::shared_ptr<const SkinBinding<float>> binding;
+  ASSERT_TRUE(makeSkinBinding(cage, mesh, {}, binding).ok());
+  MeshSkin<float> skin;
+  const auto refuses = [&](const SkinOptions& options, StatusCode code, const char* mentions) {
+    const Status status = skin.bind(binding, view(rest), options);
+    EXPECT_EQ(status.code, code);
+    EXPECT_NE(status.message.find(mentions), std::string::npos) << status.message;
+    EXPECT_FALSE(skin.bound());
+  };
+  SkinOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  refuses(options, StatusCode::InvalidOption, "quadratic");
+  options = {};
+  options.normals = Normals::Transformed;
+  refuses(options, StatusCode::InvalidOption, "transformed normals");
+  options.normals = Normals::Recomputed;
+  refuses(options, StatusCode::InvalidOption, "recomputed normals");
+  ASSERT_TRUE(makeSkinBinding(cage, mesh, options, binding).ok());
+  options.order = VertexOrder::Sorted;
+  refuses(options, StatusCode::InvalidOption, "order");
+  std::vector<Eigen::Vector3f> tooFew(7);
+  options = {};
+  options.target = viewOf(tooFew);
+  refuses(options, StatusCode::SizeMismatch, "7 points");
+  options = {};
+  options.normalTarget = viewOf(tooFew);
+  refuses(options, StatusCode::SizeMismatch, "target for normals");
+  options = {};
+  options.tangentTarget = viewOf(tooFew);
+  refuses(options, StatusCode::SizeMismatch, "target for tangents");
+  binding = nullptr;
+  refuses({}, StatusCode::Empty, "no embedding");
+}
+
+TEST_F(MeshSkins, RefuseNodesThatDoNotFitTheBinding) {
+  MeshSkin<float> skin;
+  ASSERT_TRUE(skin.bind(cage, mesh).ok());
+  const auto binding = skin.binding();
+  Nodes nodes = rest;
+  nodes[3].y() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(skin.bind(binding, view(nodes)).code, StatusCode::NonFinite);
+  nodes.resize(100);
+  EXPECT_EQ(skin.bind(binding, view(nodes)).code, StatusCode::SizeMismatch);
+  EXPECT_EQ(skin.binding(), binding);
+  update(skin, twisted);  // and goes on as before
+}
+
+TEST_F(MeshSkins, RefuseAMeshWithTooFewNormalsOrTangents) {
+  const auto refuses = [&](const char* mentions) {
+    MeshSkin<float> skin;
+    const EmbedReport report = skin.bind(cage, mesh);
+    EXPECT_EQ(report.status.code, StatusCode::SizeMismatch);
+    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    EXPECT_EQ(report.unbound, mesh.vertexCount());
+    EXPECT_FALSE(skin.bound());
+  };
+  mesh.tangents.pop_back();
+  refuses("tangents");
+  mesh.normals.resize(4);
+  refuses("4 normals");
+}
+
+TEST_F(MeshSkins, RefuseAVertexTooFarOutsideAndStayAsTheyWere) {
+  MeshSkin<float> skin;
+  ASSERT_TRUE(skin.bind(cage, mesh).ok());
+  const auto binding = skin.binding();
+  mesh.positions[12] = {0.5, 0.5, 1.75};
+  SkinOptions options;
+  options.maxDistance = 0.5;
+  const EmbedReport report = skin.bind(cage, mesh, options);
+  EXPECT_EQ(report.status.code, StatusCode::OutsideCage);
+  EXPECT_NE(report.status.message.find("vertex 12"), std::string::npos) << report.status.message;
+  EXPECT_EQ(skin.binding(), binding);
+  options.maxDistance = 0.751;
+  EXPECT_TRUE(skin.bind(cage, mesh, options).ok());
+}
+
+}  // namespace
+}  // namespace tetskin
