@@ -34,8 +34,10 @@
 #endif
 #if defined(__GNUC__)
 #define TETSKIN_NOINLINE __attribute__((noinline))
+#define TETSKIN_INLINE __attribute__((always_inline)) inline
 #else
 #define TETSKIN_NOINLINE
+#define TETSKIN_INLINE inline
 #endif
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
@@ -142,16 +144,31 @@ struct Width {
   static constexpr int value = W;
 };
 
-/// How many lanes lie between two numbers.
+/// Cross product of two padded points: with r turning x y z into y z x, it is r(a r(b) - r(a) b).
+template <class S>
+Lanes<S, 4> crossPadded(const Lanes<S, 4>& a, const Lanes<S, 4>& b) {
+#ifdef TETSKIN_SHUFFLES
+  const Lanes<S, 4> turned =
+      a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
+#else
+  const S c[4] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], S(0)};
+  return loadPadded(c);
+#endif
+}
+
+/// Whether all lanes lie between two numbers.
 template <class S, int W>
-int countBetween(const Lanes<S, W>& v, S low, S high) {
+bool allBetween(const Lanes<S, W>& v, S low, S high) {
   if constexpr (W == 1) {
     return v > low && v < high;
   } else {
-    const auto between = (v > low) & (v < high);  // -1 where it holds
-    int count = 0;
-    for (int i = 0; i < W; ++i) count -= static_cast<int>(between[i]);
-    return count;
+    const auto between = (v > low) & (v < high);  // all bits set where it holds
+    std::uint64_t words[sizeof between / sizeof(std::uint64_t)];
+    ::memcpy(words, &between, sizeof between);
+    std::uint64_t both = words[0];
+    for (std::size_t k = 1; k < sizeof between / sizeof(std::uint64_t); ++k) both &= words[k];
+    return both == ~std::uint64_t{0};
   }
 }
 
@@ -204,7 +221,7 @@ V interleavedPart(const V& x, const V& y, const V& z, Indices<I...>) {
 /// Writes the first `count` of W numbers, none for a count below 0. With masked stores nothing else is touched;
 /// without, what is there is written back.
 template <int W>
-void storeFirst(const Lanes<float, W>& v, int count, float* out) {
+TETSKIN_INLINE void storeFirst(const Lanes<float, W>& v, int count, float* out) {
 #if defined(__AVX512VL__)
   const unsigned mask = count <= 0 ? 0u : count >= W ? (1u << W) - 1u : (1u << count) - 1u;
   if constexpr (W == 16) {
@@ -251,7 +268,7 @@ void storePoints(const Lanes<S, W> p[3], S* out) {
 
 /// Writes the first `count` of W points side by side. Memory for W points must be there.
 template <int W>
-void storeFirstPoints(const Lanes<float, W> p[3], int count, float* out) {
+TETSKIN_INLINE void storeFirstPoints(const Lanes<float, W> p[3], int count, float* out) {
 #ifdef TETSKIN_SHUFFLES
   if constexpr (W >= 4) {
     using All = typename IndicesUpTo<W>::Type;

@@ -349,16 +349,17 @@ void vectorsFor(Direction kind, const V column[3][3], V vector[3][3]) {
 /// Those of a linear tet are the same for all its vertices.
 template <class S>
 struct LinearDirections {
-  S vector[3][3];
+  S vector[3][4];
 
   void make(const Work<S>& work, Direction kind, std::size_t run) {
-    LinearMap<S> map;
-    map.make(work, run, Lanes<S, 4>{});
-    S column[3][3];
+    const Run& r = work.runs[run];
+    const Lanes<S, 4> last = nodeAt(work, r.nodes[3]);
+    Lanes<S, 4> column[3];
+    for (int n = 0; n < 3; ++n) column[n] = nodeAt(work, r.nodes[n]) - last;
     for (int n = 0; n < 3; ++n) {
-      for (int k = 0; k < 3; ++k) column[n][k] = map.slope[n][k];
+      const bool isNormal = kind == Direction::Normal;
+      storePadded<S>(isNormal ? crossPadded<S>(column[(n + 1) % 3], column[(n + 2) % 3]) : column[n], vector[n]);
     }
-    vectorsFor<S>(kind, column, vector);
   }
   template <int W>
   void sum(const Work<S>&, Direction, std::uint32_t, const Lanes<S, W> m[3], Lanes<S, W> d[3]) const {
@@ -408,7 +409,7 @@ void directionsOf(const Work<S>& given, const DirectionFactors& factors, float* 
                           Lanes<float, W> unit[3];
                           for (int k = 0; k < 3; ++k) unit[k] = convert<float, S, W>(d[k] * inverse);
                           float* to = out + 3 * static_cast<std::size_t>(slot);
-                          if (slot + W <= end && countBetween<S, W>(squared, kShortestSquared<S>, kLargest) == W) {
+                          if (slot + W <= end && allBetween<S, W>(squared, kShortestSquared<S>, kLargest)) {
                             // No spilling here: the next run may have to leave what is in its slots.
                             storeFirstPoints<W>(unit, count, to);
                           } else {
