@@ -8,7 +8,7 @@ function(tetskin_test_configuration name)
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
       ${nested_options}
       --build-options ${ARGN} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
-      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${nested_parallel})
   set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel})
 endfunction()
 
