@@ -33,6 +33,9 @@ bool normalise(Eigen::Matrix<Scalar, 3, 1>& sum) {
   return true;
 }
 
+/// Squares between this and its inverse are far from the ends of float's range.
+constexpr float kOrdinary = 1e-30f;
+
 /// Vertices that share a normal, as lists: those at one position whose rest normals are within an angle of each other.
 std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, double hardEdgeDegrees, std::size_t& groupCount) {
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
@@ -218,7 +221,12 @@ void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> po
         sum += Eigen::Map<const Padded>(faceVectors.data() + 4 * static_cast<std::size_t>(topology.corners()[k]));
       }
       Eigen::Vector3f normal(sum[0], sum[1], sum[2]);
-      if (!normalise(normal)) continue;
+      const float squared = normal.squaredNorm();
+      if (squared > kOrdinary && squared < 1.0f / kOrdinary) {
+        normal *= 1.0f / std::sqrt(squared);
+      } else if (!normalise(normal)) {
+        continue;
+      }
       for (std::uint32_t k = topology.groupPlaces()[g]; k < topology.groupPlaces()[g + 1]; ++k) {
         float* target = out[topology.places()[k]];
         for (int i = 0; i < 3; ++i) target[i] = normal[i];
