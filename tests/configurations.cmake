@@ -17,7 +17,8 @@ tetskin_test_configuration(double_precision
 tetskin_test_configuration(sanitized
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DTETSKIN_SANITIZE=address,undefined)
 tetskin_test_configuration(optional_parts_off
-  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF
+  -DTETSKIN_DEMOS=OFF)
 
 # A project that uses the library, through the installed package and as a subdirectory; both run what they have built.
 function(tetskin_test_consumer name)

@@ -339,6 +339,47 @@ TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
   fails(skin.bind(*exploded, cage, mesh), StatusCode::NonFinite, "not finite");
 }
 
+TEST_F(Skin, PreviousPositionsAreThoseOfTheUpdateBefore) {
+  SkinOptions options;
+  options.previousPositions = true;
+  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+  const auto still = [&] { return skin.previousPositions().data() == skin.positions().data(); };
+  const auto motion = [&](std::size_t v) -> double { return skin.positions()[v][1] - skin.previousPositions()[v][1]; };
+  EXPECT_TRUE(still());
+  body->translate(btVector3(0, 1, 0));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(motion(9), 1.0, 8 * kRounding);
+  body->translate(btVector3(0, 2, 0));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(motion(9), 2.0, 8 * kRounding);
+
+  body->setActivationState(ISLAND_SLEEPING);
+  ASSERT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_TRUE(still());
+  body->setActivationState(ACTIVE_TAG);
+  body->translate(btVector3(0, 3, 0));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(motion(9), 3.0, 16 * kRounding);
+
+  skin.setVisible(false);
+  body->translate(btVector3(0, 4, 0));
+  ASSERT_EQ(skin.update(), UpdateStatus::Hidden);
+  EXPECT_TRUE(still());
+  skin.setVisible(true);
+  EXPECT_TRUE(still());
+  EXPECT_NEAR(static_cast<double>(skin.positions()[9][1]), mesh.positions[9].y() + 10.0, 16 * kRounding);
+
+  const btScalar good = body->m_nodes[20].m_x.x();
+  body->translate(btVector3(0, 1, 0));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
+  ASSERT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_TRUE(still());
+  body->m_nodes[20].m_x.setX(good);
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(motion(9), 0.0, 16 * kRounding);
+}
+
 TEST_F(Skin, EveryUpdateStatusHasAName) {
   EXPECT_STREQ(toString(UpdateStatus::Updated), "updated");
   EXPECT_STREQ(toString(UpdateStatus::Asleep), "asleep");

@@ -9,6 +9,7 @@
 #ifdef WITH_ALL_PARTS
 #include <tetskin/cage/cage_builder.h>
 #include <tetskin/io/mesh_loader.h>
+#include <tetskin/threads/thread_pool.h>
 #endif
 
 int main() {
@@ -24,8 +25,13 @@ int main() {
 #endif
   btSoftBodyWorldInfo worldInfo;
   const std::unique_ptr<btSoftBody> body(tetskin::makeSoftBody(cage, worldInfo));
+  tetskin::SkinOptions options;
+#ifdef WITH_ALL_PARTS
+  tetskin::ThreadPool pool;
+  options.threads = &pool;
+#endif
   tetskin::SoftBodySkin skin;
-  const tetskin::EmbedReport fit = skin.bind(*body, cage, mesh);
+  const tetskin::EmbedReport fit = skin.bind(*body, cage, mesh, options);
   std::printf("%s", fit.describe().c_str());
   body->translate(btVector3(0, 5, 0));
   const bool moved = skin.update() == tetskin::UpdateStatus::Updated && skin.bounds().min().y() > 5;

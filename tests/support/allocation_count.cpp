@@ -5,14 +5,14 @@
 // is inlined into it.
 #include "support/allocation_count.h"
 
-#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
 namespace {
 
-std::size_t allocations = 0, bytes = 0, peak = 0;
+std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
 
 /// In front of every block; keeps its alignment.
 struct alignas(std::max_align_t) Header {
@@ -30,8 +30,10 @@ void release(void* memory) {
 
 void* operator new(std::size_t size) {
   ++allocations;
-  bytes += size;
-  peak = std::max(peak, bytes);
+  const std::size_t now = bytes += size;
+  std::size_t most = peak;
+  while (now > most && !peak.compare_exchange_weak(most, now)) {
+  }
   Header* header = static_cast<Header*>(std::malloc(sizeof(Header) + size));
   if (!header) throw std::bad_alloc();
   header->size = size;
@@ -56,7 +58,7 @@ std::size_t peakBytes() {
   return peak;
 }
 void resetPeak() {
-  peak = bytes;
+  peak = bytes.load();
 }
 
 }  // namespace tetskin::test

@@ -77,6 +77,7 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
 
 UpdateStatus SoftBodySkin::update() {
   if (!skin_.bound()) return UpdateStatus::Unbound;
+  skin_.hold();  // unless it is updated
   if (!visible_) return UpdateStatus::Hidden;
   if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return UpdateStatus::TopologyChanged;
   if (!body_->isActive() && !moved_ && sampledNodesUnmoved()) return UpdateStatus::Asleep;
@@ -95,6 +96,7 @@ void SoftBodySkin::setVisible(bool visible) {
   visible_ = visible;
   moved_ = true;  // whatever has happened meanwhile
   if (visible) (void)update();
+  skin_.hold();  // what happened meanwhile is no motion
 }
 
 void SoftBodySkin::setOrigin(const btVector3& origin) {

@@ -72,6 +72,10 @@ class SoftBodySkin {
   /// vertexCount current positions, world space minus origin, in the options' order: the skin's own array. Empty where
   /// the target is the caller's.
   PointView<const btScalar> positions() const { return skin_.positions(); }
+  /// Of the update before, if asked for: see MeshSkin. The current ones after bind, after any update that was skipped
+  /// (a sleeping body has no motion) and when shown again; on frames without a call of `update`, nothing has moved
+  /// either.
+  PointView<const btScalar> previousPositions() const { return skin_.previousPositions(); }
   /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
   PointView<const float> normals() const { return skin_.normals(); }
   PointView<const float> tangents() const { return skin_.tangents(); }

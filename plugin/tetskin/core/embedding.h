@@ -110,6 +110,21 @@ class Embedding {
   /// The same by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
   std::vector<VertexBinding> bindings() const;
 
+  /// All of it as bytes, the same on every machine, so that an application may embed once and keep the result with its
+  /// models. About 16 bytes a vertex, 12 more a vertex outside, 8 an occupied tet. Must not be empty.
+  /// cage  the one it was made with: a hash of its rest nodes and tets goes with the bytes
+  /// Cost  O(vertexCount + nodeCount + tetCount)
+  std::vector<unsigned char> save(const TetMesh& cage) const;
+  /// What `save` wrote, equal to the bit. Never crashes, whatever the bytes. Which mesh it was made for the embedding
+  /// does not know: compare vertexCount() with the mesh's, and keep the two together.
+  /// bytes   `count` of them, read here only
+  /// cage    the one it was saved with: every node in its place to the bit
+  /// Cost    that of `save`
+  /// Errors  UnsupportedFormat: bytes of something else, or of another version; Malformed: too few, too many or
+  /// damaged;
+  ///         CageMismatch: of another cage
+  static Result<Embedding> load(const unsigned char* bytes, std::size_t count, const TetMesh& cage);
+
   /// How closely the weights of an embedding reproduce the vertices; see EmbedReport.
   struct Fit {
     double worstDistance = 0.0;      ///< rest space
@@ -127,6 +142,8 @@ class Embedding {
                             Fit* fit = nullptr);
 
  private:
+  bool runsAreSound() const;
+  bool orderVertices();
   void sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf);
   void bindRun(std::size_t run, const std::array<Eigen::Vector3d, 4>& corners, PointReader vertices, Fit& fit);
   void bindOutside(std::uint32_t slot, const std::array<Eigen::Vector3d, 4>& corners, const BarycentricMap& map,

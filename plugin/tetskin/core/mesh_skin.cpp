@@ -30,6 +30,10 @@ std::vector<std::uint32_t> slotsOf(const Embedding& embedding) {
 }
 
 Status checkTargets(const SkinOptions& options, std::size_t vertexCount) {
+  if (options.previousPositions && !std::holds_alternative<std::monostate>(options.target)) {
+    return {StatusCode::InvalidOption,
+            "previous positions are kept of the skin's own array only; leave out the target, or keep them yourself"};
+  }
   const auto check = [&](std::size_t size, const char* what) -> Status {
     if (size == vertexCount) return {};
     return {StatusCode::SizeMismatch, "the " + std::string(what) + " holds " + std::to_string(size) +
@@ -132,6 +136,7 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
   made.nodes_ = PackedNodes<Scalar>(nodes.size());
   if (options.interpolation == Interpolation::Quadratic) made.edges_ = EdgeVectors<Scalar>(*binding->quadratic);
   if (std::holds_alternative<std::monostate>(options.target)) made.positions_.resize(vertexCount);
+  if (options.previousPositions) made.previous_.resize(vertexCount);
   if (!positionsAreDirect<Scalar>(options)) made.scratch_.resize(3 * vertexCount);
   // Unit vectors to begin with: see transformDirections.
   if (options.normals != Normals::None) {
@@ -153,12 +158,14 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
   const std::size_t updated = update(nodes);
   assert(updated == nodes.size());
   (void)updated;
+  hold();
   return {};
 }
 
 template <class Scalar>
 std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
   assert(bound() && nodes.size() == nodeCount());
+  held_ = true;
   if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) return bad;
   if (options_.interpolation == Interpolation::Quadratic) edges_.update(*binding_->quadratic, nodes_, options_.threads);
   if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
@@ -166,7 +173,9 @@ std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
   } else if (const auto* twice = std::get_if<PointView<double>>(&options_.target)) {
     skinTo(*twice);
   } else {
+    if (options_.previousPositions) positions_.swap(previous_);
     skinTo(viewOf(positions_));
+    held_ = false;
   }
   return nodeCount();
 }

@@ -41,6 +41,8 @@ struct SkinOptions {
   double hardEdgeDegrees = kHardEdgeDegrees;
   /// Keep the box of the positions up to date.
   bool bounds = true;
+  /// Keep the positions of the update before, for motion vectors. Of the skin's own array only: not with `target`.
+  bool previousPositions = false;
   SkinTarget target;
   /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
   /// the sign that belongs to them (TriangleMesh::tangents) does not change.
@@ -78,7 +80,8 @@ class MeshSkin {
   /// Embeds the mesh, and updates once with the cage's rest nodes. On an error this skin is left as it was.
   [[nodiscard]] EmbedReport bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// Takes a binding made before; `nodes` are the current ones, finite.
-  /// Errors: InvalidOption if it lacks what the options ask for; SizeMismatch for a target, or nodes, of another size.
+  /// Errors: InvalidOption if it lacks what the options ask for, or they do not go together; SizeMismatch for a target,
+  /// or nodes, of another size.
   Status bind(std::shared_ptr<const SkinBinding<Scalar>> binding, PointView<const Scalar> nodes,
               const SkinOptions& options = {});
 
@@ -91,6 +94,15 @@ class MeshSkin {
   /// vertexCount current positions, minus the origin, in the options' order: the skin's own array, empty where the
   /// target is the caller's.
   PointView<const Scalar> positions() const { return viewOf(positions_); }
+  /// vertexCount positions of the update before, minus its origin, in the same order; empty if not asked for. The
+  /// current ones after bind, after `hold`, and where an update failed. With this option the two arrays change places
+  /// at every update, so ask for both views after it. Costs 3 scalars a vertex, and no time.
+  PointView<const Scalar> previousPositions() const {
+    return options_.previousPositions && held_ ? viewOf(positions_) : viewOf(previous_);
+  }
+  /// Nothing has moved since the last update, or is to count as motion: the previous positions are the current ones
+  /// until the next update. Free.
+  void hold() { held_ = true; }
   /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
   PointView<const float> normals() const { return viewOf(normals_); }
   PointView<const float> tangents() const { return viewOf(tangents_); }
@@ -113,7 +125,8 @@ class MeshSkin {
   SkinOptions options_;
   PackedNodes<Scalar> nodes_;
   EdgeVectors<Scalar> edges_;
-  std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_;
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_, previous_;
+  bool held_ = true;  ///< previous_ is not to be shown
   std::vector<Eigen::Vector3f> normals_, tangents_;
   std::vector<float> faceVectors_;
   std::vector<Scalar> scratch_;  ///< of positions, where they are not written directly

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 namespace tetskin {
 
@@ -14,7 +15,8 @@ class ParallelFor {
   /// A reference to a callable void(std::size_t), valid as long as the callable is. Never allocates.
   class Task {
    public:
-    template <class Callable>
+    /// Not for a task itself, which is copied.
+    template <class Callable, class = std::enable_if_t<!std::is_same_v<std::remove_cv_t<Callable>, Task>>>
     explicit Task(Callable& callable)
         : callable_(&callable), call_([](void* c, std::size_t k) { (*static_cast<Callable*>(c))(k); }) {}
     void operator()(std::size_t k) const { call_(callable_, k); }

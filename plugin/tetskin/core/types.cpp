@@ -30,6 +30,8 @@ const char* toString(StatusCode code) {
       return "invalid option";
     case StatusCode::OutsideCage:
       return "outside the cage";
+    case StatusCode::CageMismatch:
+      return "of another cage";
   }
   return "unknown status";
 }

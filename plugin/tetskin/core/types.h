@@ -30,6 +30,7 @@ enum class StatusCode {
   SizeMismatch,       ///< two arrays that belong together differ in count
   InvalidOption,      ///< an option's value makes no sense
   OutsideCage,        ///< a vertex lies farther outside the cage than allowed
+  CageMismatch,       ///< the data belongs to another cage
 };
 
 /// Name of a status code, for messages and logs. Never null.

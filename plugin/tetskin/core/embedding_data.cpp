@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// An embedding as bytes, little-endian on every machine:
+//
+//   bytes               what
+//   8                   "tetskemb"
+//   8                   version
+//   8                   hash of the cage, see hashOf
+//   6 x 8               nodeCount, tetCount, vertexCount, insideCount, number of runs, insideRunCount
+//   8 a run             tet, first slot
+//   4 a vertex          by slot: which vertex it is
+//   12 a vertex         by slot: weights of nodes 0, 1, 2, one plane after the other
+//   12 a vertex outside closest weights, likewise
+//   8                   hash of all that precedes
+#include <tetskin/core/embedding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace tetskin {
+namespace {
+
+constexpr char kMagic[] = "tetskemb";
+constexpr std::uint64_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 9 * 8;
+constexpr std::size_t kHashBytes = 8;
+
+/// Every step is one-to-one in the hash so far and in the word, so a change of one word never goes unnoticed.
+class Hash {
+ public:
+  void add(std::uint64_t word) {
+    value_ = (value_ ^ word) * 0x9E3779B97F4A7C15u;
+    value_ ^= value_ >> 32;
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xCBF29CE484222325u;
+};
+
+/// Of the nodes' places and the tets' nodes, in their order. 0 and -0 are the same place.
+std::uint64_t hashOf(const TetMesh& cage) {
+  Hash hash;
+  hash.add(cage.nodeCount());
+  for (const Eigen::Vector3d& node : cage.nodes) {
+    for (const double x : {node.x(), node.y(), node.z()}) {
+      const double place = x == 0.0 ? 0.0 : x;
+      std::uint64_t bits;
+      std::memcpy(&bits, &place, sizeof bits);
+      hash.add(bits);
+    }
+  }
+  for (const Tet& tet : cage.tets) {
+    for (const int node : tet) hash.add(static_cast<std::uint32_t>(node));
+  }
+  return hash.value();
+}
+
+std::uint64_t read(const unsigned char* from, std::size_t bytes) {
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < bytes; ++k) value |= static_cast<std::uint64_t>(from[k]) << (8 * k);
+  return value;
+}
+
+/// Of bytes, in words of eight; the last one is filled up with zeros.
+std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
+  Hash hash;
+  std::size_t k = 0;
+  for (; k + 8 <= count; k += 8) hash.add(read(bytes + k, 8));
+  if (k < count) hash.add(read(bytes + k, count - k));
+  hash.add(count);
+  return hash.value();
+}
+
+class Writer {
+ public:
+  explicit Writer(std::size_t size) { bytes_.reserve(size); }
+
+  void u64(std::uint64_t value) { put(value, 8); }
+  void u32(std::uint32_t value) { put(value, 4); }
+  void plane(const float* values, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      std::uint32_t bits;
+      std::memcpy(&bits, values + k, sizeof bits);
+      u32(bits);
+    }
+  }
+  const std::vector<unsigned char>& bytes() const { return bytes_; }
+  std::vector<unsigned char> take() { return std::move(bytes_); }
+
+ private:
+  void put(std::uint64_t value, int count) {
+    for (int k = 0; k < count; ++k) bytes_.push_back(static_cast<unsigned char>(value >> (8 * k)));
+  }
+  std::vector<unsigned char> bytes_;
+};
+
+/// Reads what is known to be there.
+class Reader {
+ public:
+  explicit Reader(const unsigned char* at) : at_(at) {}
+
+  std::uint64_t u64() { return take(8); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
+  /// Returns whether all values are finite.
+  bool plane(float* values, std::size_t count) {
+    bool finite = true;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t bits = u32();
+      std::memcpy(values + k, &bits, sizeof bits);
+      finite &= std::isfinite(values[k]);
+    }
+    return finite;
+  }
+
+ private:
+  std::uint64_t take(std::size_t count) {
+    const unsigned char* from = at_;
+    at_ += count;
+    return read(from, count);
+  }
+  const unsigned char* at_;
+};
+
+struct Header {
+  std::uint64_t cageHash = 0;
+  std::uint64_t nodeCount = 0, tetCount = 0, vertexCount = 0, insideCount = 0, runCount = 0, insideRunCount = 0;
+
+  /// Of everything. The counts must have passed `plausible`: then nothing overflows.
+  std::uint64_t bytes() const {
+    return kHeaderBytes + 8 * runCount + 16 * vertexCount + 12 * (vertexCount - insideCount) + kHashBytes;
+  }
+  bool plausible() const {
+    return vertexCount > 0 && vertexCount < 0xFFFFFFFFu && insideCount <= vertexCount && runCount <= vertexCount &&
+           insideRunCount <= runCount;
+  }
+};
+
+Status damaged(const std::string& how) {
+  return {StatusCode::Malformed, "the saved embedding " + how + "; embed again"};
+}
+
+/// Up to the counts, which then belong to as many bytes as there are.
+Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
+  const std::size_t tagBytes = sizeof kMagic - 1;
+  if (count < tagBytes || std::memcmp(bytes, kMagic, tagBytes) != 0) {
+    return {StatusCode::UnsupportedFormat, "these bytes are no embedding that tetskin has saved"};
+  }
+  if (count < kHeaderBytes + kHashBytes) return damaged("ends within its header");
+  Reader reader(bytes + tagBytes);
+  if (const std::uint64_t version = reader.u64(); version != kVersion) {
+    return {StatusCode::UnsupportedFormat, "the saved embedding is of version " + std::to_string(version) +
+                                               ", but this library reads version " + std::to_string(kVersion) +
+                                               " alone; embed again"};
+  }
+  header.cageHash = reader.u64();
+  for (std::uint64_t* value : {&header.nodeCount, &header.tetCount, &header.vertexCount, &header.insideCount,
+                               &header.runCount, &header.insideRunCount}) {
+    *value = reader.u64();
+  }
+  if (!header.plausible()) return damaged("has counts that do not go together");
+  if (header.bytes() != count) {
+    return damaged("should have " + std::to_string(header.bytes()) + " bytes, but has " + std::to_string(count));
+  }
+  if (Reader(bytes + count - kHashBytes).u64() != hashOf(bytes, count - kHashBytes)) return damaged("is damaged");
+  return {};
+}
+
+Status checkCage(const Header& header, const TetMesh& cage) {
+  if (header.nodeCount != cage.nodeCount() || header.tetCount != cage.tetCount()) {
+    return {StatusCode::CageMismatch, "the embedding was saved with a cage of " + std::to_string(header.nodeCount) +
+                                          " nodes and " + std::to_string(header.tetCount) + " tets, this one has " +
+                                          std::to_string(cage.nodeCount()) + " and " + std::to_string(cage.tetCount()) +
+                                          "; embed again"};
+  }
+  if (header.cageHash != hashOf(cage)) {
+    return {StatusCode::CageMismatch,
+            "the embedding was saved with a cage whose rest nodes or tets differ from this one's; embed again"};
+  }
+  return usable(cage, checkForUse(cage));
+}
+
+}  // namespace
+
+std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
+  assert(!empty() && cage.nodeCount() == nodeCount_ && cage.tetCount() == tetCount_);
+  const std::size_t outside = vertexCount() - insideCount_;
+  const Header header{hashOf(cage), nodeCount_,       tetCount_,      vertexCount(),
+                      insideCount_, runs_.size() - 1, insideRunCount_};
+  Writer writer(header.bytes());
+  writer.u64(read(reinterpret_cast<const unsigned char*>(kMagic), sizeof kMagic - 1));
+  for (const std::uint64_t value : {kVersion, header.cageHash, header.nodeCount, header.tetCount, header.vertexCount,
+                                    header.insideCount, header.runCount, header.insideRunCount}) {
+    writer.u64(value);
+  }
+  for (std::size_t r = 0; r < header.runCount; ++r) {
+    writer.u32(runs_[r].tet);
+    writer.u32(runs_[r].firstSlot);
+  }
+  for (const std::uint32_t vertex : slotVertices_) writer.u32(vertex);
+  for (int k = 0; k < 3; ++k) writer.plane(weights(k), vertexCount());
+  for (int k = 0; k < 3; ++k) writer.plane(closestWeights(k), outside);
+  writer.u64(hashOf(writer.bytes().data(), writer.bytes().size()));
+  return writer.take();
+}
+
+Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count, const TetMesh& cage) {
+  Header header;
+  if (Status status = readHeader(bytes, count, header); !status.ok()) return status;
+  if (Status status = checkCage(header, cage); !status.ok()) return status;
+  Embedding e;
+  e.nodeCount_ = cage.nodeCount();
+  e.tetCount_ = cage.tetCount();
+  e.insideCount_ = header.insideCount;
+  e.insideRunCount_ = header.insideRunCount;
+  Reader reader(bytes + kHeaderBytes);
+  e.runs_.resize(header.runCount + 1);
+  for (std::size_t r = 0; r < header.runCount; ++r) {
+    Run& run = e.runs_[r];
+    run.tet = reader.u32();
+    run.firstSlot = reader.u32();
+    if (run.tet >= cage.tetCount()) return damaged("names a tet that does not exist");
+    std::copy_n(cage.tets[run.tet].begin(), 4, run.nodes);
+  }
+  e.runs_.back() = {{}, static_cast<std::uint32_t>(header.vertexCount), static_cast<std::uint32_t>(e.tetCount_)};
+  e.slotVertices_.resize(header.vertexCount);
+  for (std::uint32_t& vertex : e.slotVertices_) vertex = reader.u32();
+  bool finite = true;
+  for (std::vector<float>& plane : e.weights_) {
+    plane.resize(header.vertexCount + kPadding);
+    finite &= reader.plane(plane.data(), header.vertexCount);
+  }
+  const std::size_t outside = header.vertexCount - header.insideCount;
+  for (std::vector<float>& plane : e.closestWeights_) {
+    plane.resize(outside + kPadding);
+    finite &= reader.plane(plane.data(), outside);
+  }
+  if (!finite) return damaged("has weights that are not finite");
+  if (!e.runsAreSound()) return damaged("has runs out of order");
+  if (!e.orderVertices()) return damaged("has vertices twice, or out of order");
+  return e;
+}
+
+/// Whether the runs are as `runs()` promises.
+bool Embedding::runsAreSound() const {
+  if (runs_.front().firstSlot != 0 || runs_[insideRunCount_].firstSlot != insideCount_) return false;
+  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
+    if (runs_[r].firstSlot >= runs_[r + 1].firstSlot) return false;
+    if (r + 1 != insideRunCount_ && runs_[r].tet >= runs_[r + 1].tet) return false;
+  }
+  return true;
+}
+
+/// Makes vertexSlots from slotVertices. Returns whether these are a permutation, and ascending in every run.
+bool Embedding::orderVertices() {
+  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  vertexSlots_.assign(slotVertices_.size(), kNone);
+  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
+    for (std::uint32_t slot = runs_[r].firstSlot; slot < runs_[r + 1].firstSlot; ++slot) {
+      const std::uint32_t vertex = slotVertices_[slot];
+      if (vertex >= vertexSlots_.size() || vertexSlots_[vertex] != kNone) return false;
+      if (slot > runs_[r].firstSlot && vertex <= slotVertices_[slot - 1]) return false;
+      vertexSlots_[vertex] = slot;
+    }
+  }
+  return true;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/embedding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+
+namespace tetskin {
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+bool sameFloats(const float* a, const float* b, std::size_t count) {
+  return std::memcmp(a, b, count * sizeof(float)) == 0;
+}
+
+/// Whether two embeddings are equal to the bit, padding included.
+bool same(const Embedding& a, const Embedding& b) {
+  if (a.vertexCount() != b.vertexCount() || a.insideCount() != b.insideCount() || a.nodeCount() != b.nodeCount() ||
+      a.tetCount() != b.tetCount() || a.insideRunCount() != b.insideRunCount()) {
+    return false;
+  }
+  const auto sameRun = [](const Embedding::Run& x, const Embedding::Run& y) {
+    return std::equal(x.nodes, x.nodes + 4, y.nodes) && x.firstSlot == y.firstSlot && x.tet == y.tet;
+  };
+  if (!std::equal(a.runs().begin(), a.runs().end(), b.runs().begin(), b.runs().end(), sameRun)) return false;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t outside = a.vertexCount() - a.insideCount();
+    if (!sameFloats(a.weights(k), b.weights(k), a.vertexCount() + Embedding::kPadding)) return false;
+    if (!sameFloats(a.closestWeights(k), b.closestWeights(k), outside + Embedding::kPadding)) return false;
+  }
+  return a.slotVertices() == b.slotVertices() && a.vertexSlots() == b.vertexSlots();
+}
+
+class SavedEmbedding : public testing::Test {
+ protected:
+  SavedEmbedding() { embedAround(1.2, 60); }
+
+  void embedAround(double factor, std::size_t count) {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * factor), centre = Eigen::Vector3d::Constant(0.5);
+    const auto vertices = test::randomPoints(count, {centre - half, centre + half}, 6);
+    EXPECT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+    bytes = embedding.save(cage);
+  }
+
+  static Result<Embedding> load(const Bytes& from, const TetMesh& with) {
+    return Embedding::load(from.data(), from.size(), with);
+  }
+  void refused(const Bytes& from, const TetMesh& with, StatusCode code, const char* mentions) const {
+    const Result<Embedding> loaded = load(from, with);
+    EXPECT_EQ(loaded.status().code, code) << loaded.status().message;
+    EXPECT_NE(loaded.status().message.find(mentions), std::string::npos) << loaded.status().message;
+    EXPECT_TRUE(loaded.value().empty());
+  }
+
+  TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  Embedding embedding;
+  Bytes bytes;
+};
+
+TEST_F(SavedEmbedding, IsTheSameToTheBit) {
+  for (const double factor : {0.9, 1.2, 3.0}) {
+    embedAround(factor, 3000);
+    const Result<Embedding> loaded = load(bytes, cage);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message;
+    EXPECT_TRUE(same(loaded.value(), embedding));
+    EXPECT_EQ(loaded.value().save(cage), bytes);
+  }
+}
+
+TEST_F(SavedEmbedding, AllVerticesInsideOrOutside) {
+  embedAround(0.9, 500);
+  ASSERT_EQ(embedding.insideCount(), 500u);
+  EXPECT_TRUE(same(load(bytes, cage).value(), embedding));
+  const std::vector<Eigen::Vector3d> outside{{2, 2, 2}, {-1, 0, 0}, {0.5, 0.5, 7}};
+  ASSERT_TRUE(embed(cage, viewOf(outside), {}, embedding).ok());
+  ASSERT_EQ(embedding.insideCount(), 0u);
+  bytes = embedding.save(cage);
+  EXPECT_TRUE(same(load(bytes, cage).value(), embedding));
+}
+
+TEST_F(SavedEmbedding, FormatOfVersion1DoesNotChange) {
+  cage = test::singleTet();
+  const std::vector<Eigen::Vector3d> vertices{{0.25, 0.25, 0.25}, {0.0, 0.0, -1.0}};
+  ASSERT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+  bytes = embedding.save(cage);
+  ASSERT_EQ(bytes.size(), 72u + 2 * 8 + 2 * 16 + 12 + 8);
+  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 8), "tetskemb");
+  EXPECT_EQ(bytes[8], 1);
+  EXPECT_EQ(bytes[24], 4);                              // nodes
+  EXPECT_EQ(bytes[32], 1);                              // tets
+  EXPECT_EQ(bytes[40], 2);                              // vertices
+  EXPECT_EQ(bytes[48], 1);                              // of them inside
+  const unsigned char quarter[4] = {0, 0, 0x80, 0x3e};  // 0.25f, little-endian
+  EXPECT_EQ(std::memcmp(&bytes[72 + 2 * 8 + 2 * 4], quarter, 4), 0);
+}
+
+TEST_F(SavedEmbedding, EveryDamagedByteIsNoticed) {
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    for (const int bits : {0x01, 0x80, 0xFF}) {
+      Bytes bad = bytes;
+      bad[k] = static_cast<unsigned char>(bad[k] ^ bits);
+      EXPECT_FALSE(load(bad, cage).ok()) << "byte " << k;
+    }
+  }
+}
+
+TEST_F(SavedEmbedding, EveryOtherLengthIsNoticed) {
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    EXPECT_FALSE(load(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)), cage).ok());
+  }
+  Bytes longer = bytes;
+  longer.push_back(0);
+  refused(longer, cage, StatusCode::Malformed, "should have");
+  bytes.resize(bytes.size() / 2);
+  refused(bytes, cage, StatusCode::Malformed, "should have");
+  bytes.resize(20);
+  refused(bytes, cage, StatusCode::Malformed, "header");
+  refused({}, cage, StatusCode::UnsupportedFormat, "no embedding");
+}
+
+TEST_F(SavedEmbedding, OtherFormatsAndVersionsAreRefused) {
+  Bytes other = bytes;
+  other[8] = 2;
+  refused(other, cage, StatusCode::UnsupportedFormat, "version 2");
+  other = bytes;
+  other[0] = 'X';
+  refused(other, cage, StatusCode::UnsupportedFormat, "no embedding");
+}
+
+TEST_F(SavedEmbedding, DamageIsCalledDamage) {
+  bytes[bytes.size() / 2] ^= 4;
+  refused(bytes, cage, StatusCode::Malformed, "damaged");
+}
+
+TEST_F(SavedEmbedding, AnyOtherCageIsRefused) {
+  TetMesh moved = cage;
+  moved.nodes[13].y() = std::nextafter(moved.nodes[13].y(), 9.0);
+  refused(bytes, moved, StatusCode::CageMismatch, "rest nodes or tets");
+  TetMesh turned = cage;
+  std::swap(turned.tets[5][0], turned.tets[5][1]);
+  refused(bytes, turned, StatusCode::CageMismatch, "rest nodes or tets");
+  TetMesh reordered = cage;
+  std::swap(reordered.tets[5], reordered.tets[6]);
+  refused(bytes, reordered, StatusCode::CageMismatch, "rest nodes or tets");
+  TetMesh fewer = cage;
+  fewer.tets.pop_back();
+  refused(bytes, fewer, StatusCode::CageMismatch, "48 tets");
+  refused(bytes, TetMesh{}, StatusCode::CageMismatch, "nodes");
+}
+
+TEST_F(SavedEmbedding, MinusZeroIsTheSamePlace) {
+  ASSERT_EQ(cage.nodes[0], Eigen::Vector3d::Zero());
+  cage.nodes[0].x() = -0.0;
+  EXPECT_TRUE(load(bytes, cage).ok());
+}
+
+/// With the checksum as it should be, so that what lies behind it is tested.
+void seal(Bytes& bytes) {
+  const auto mix = [](std::uint64_t hash, std::uint64_t word) {
+    hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+    return hash ^ (hash >> 32);
+  };
+  const std::size_t count = bytes.size() - 8;
+  std::uint64_t hash = 0xCBF29CE484222325u;
+  for (std::size_t k = 0; k < count; k += 8) {
+    std::uint64_t word = 0;
+    for (std::size_t i = k; i < std::min(k + 8, count); ++i) word |= std::uint64_t{bytes[i]} << (8 * (i - k));
+    hash = mix(hash, word);
+  }
+  hash = mix(hash, count);
+  for (int i = 0; i < 8; ++i) bytes[count + static_cast<std::size_t>(i)] = static_cast<unsigned char>(hash >> (8 * i));
+}
+
+TEST_F(SavedEmbedding, SealIsTheChecksum) {
+  Bytes again = bytes;
+  seal(again);
+  EXPECT_EQ(again, bytes);
+}
+
+TEST_F(SavedEmbedding, ForgeriesAreRefusedOrSound) {
+  // What is loaded must be fit to use: a permutation, runs in order, existing tets.
+  std::mt19937 random(7);
+  int loadedOnes = 0;
+  for (int round = 0; round < 20000; ++round) {
+    Bytes forged = bytes;
+    const std::size_t changes = 1 + random() % 3;
+    for (std::size_t c = 0; c < changes; ++c) {
+      const std::size_t at = 24 + random() % (forged.size() - 32);
+      forged[at] = static_cast<unsigned char>(random() % 4 == 0 ? random() : random() % 8);
+    }
+    seal(forged);
+    const Result<Embedding> loaded = load(forged, cage);
+    if (!loaded.ok()) continue;
+    ++loadedOnes;
+    const Embedding& e = loaded.value();
+    std::vector<std::uint32_t> vertices = e.slotVertices();
+    std::sort(vertices.begin(), vertices.end());
+    for (std::uint32_t v = 0; v < vertices.size(); ++v) ASSERT_EQ(vertices[v], v);
+    ASSERT_EQ(e.runs().back().firstSlot, e.vertexCount());
+    for (const VertexBinding& binding : e.bindings()) ASSERT_LT(static_cast<std::size_t>(binding.tet), e.tetCount());
+  }
+  EXPECT_GT(loadedOnes, 1000);  // those with other weights
+}
+
+TEST_F(SavedEmbedding, HugeCountsAreRefused) {
+  for (std::size_t field = 24; field < 72; field += 8) {
+    for (const int width : {4, 5, 8}) {
+      Bytes forged = bytes;
+      std::fill_n(forged.begin() + static_cast<std::ptrdiff_t>(field), width, static_cast<unsigned char>(0xFF));
+      seal(forged);
+      EXPECT_FALSE(load(forged, cage).ok());
+    }
+  }
+}
+
+TEST_F(SavedEmbedding, RandomBytesAreRefused) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 2000; ++round) {
+    Bytes noise(random() % 400);
+    for (unsigned char& byte : noise) byte = static_cast<unsigned char>(random());
+    if (round % 2 == 0) std::copy_n(bytes.begin(), std::min<std::size_t>(noise.size(), 24), noise.begin());
+    EXPECT_FALSE(load(noise, cage).ok());
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

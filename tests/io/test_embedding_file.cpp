@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/embedding_file.h>
+#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_mesh_writer.h>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+
+class EmbeddingFile : public testing::Test {
+ protected:
+  EmbeddingFile() {
+    const auto vertices = test::randomPoints(500, {Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(1.1)}, 1);
+    EXPECT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+  }
+
+  TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  Embedding embedding;
+  test::TempFolder folder;
+};
+
+TEST_F(EmbeddingFile, IsTheSameAfterSavingAndLoading) {
+  const std::string path = folder.path("dragon.tetskin");
+  ASSERT_TRUE(saveEmbedding(embedding, cage, path).ok());
+  const Result<Embedding> loaded = loadEmbedding(path, cage);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message;
+  EXPECT_EQ(loaded.value().save(cage), embedding.save(cage));
+}
+
+TEST_F(EmbeddingFile, FitsACageThatWasSavedAndLoaded) {
+  for (const char* name : {"cage.vtk", "cage.ele", "cage.msh"}) {
+    ASSERT_TRUE(saveTetMesh(cage, folder.path(name)).ok());
+    ASSERT_TRUE(saveEmbedding(embedding, cage, folder.path("saved")).ok());
+    const Result<TetMesh> again = loadTetMesh(folder.path(name));
+    ASSERT_TRUE(again.ok()) << again.status().message;
+    EXPECT_TRUE(loadEmbedding(folder.path("saved"), again.value()).ok()) << name;
+  }
+}
+
+TEST_F(EmbeddingFile, FaultsNameTheFile) {
+  const std::string path = folder.path("saved");
+  expectError(loadEmbedding(path, cage).status(), StatusCode::FileNotFound, {path});
+  expectError(saveEmbedding(embedding, cage, folder.path("no/such/folder")), StatusCode::FileNotWritable, {"folder"});
+  ASSERT_TRUE(saveEmbedding(embedding, cage, path).ok());
+  expectError(loadEmbedding(path, test::latticeCage(2, 2, 2)).status(), StatusCode::CageMismatch, {path, "64 nodes"});
+  std::string bytes = test::TempFolder::read(path);
+  bytes[100] = static_cast<char>(bytes[100] ^ 1);
+  expectError(loadEmbedding(folder.write("bad", bytes), cage).status(), StatusCode::Malformed, {"bad", "damaged"});
+  expectError(loadEmbedding(folder.write("other", "v 0 0 0\n"), cage).status(), StatusCode::UnsupportedFormat,
+              {"other"});
+}
+
+}  // namespace
+}  // namespace tetskin
