@@ -124,13 +124,14 @@ EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const
 }
 
 template <class Scalar>
-Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options, Embedding embedding,
-                       std::shared_ptr<const SkinBinding<Scalar>>& binding, QuadraticReport* quadratic) {
+Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
+                       const Embedding& embedding, std::shared_ptr<const SkinBinding<Scalar>>& binding,
+                       QuadraticReport* quadratic) {
   if (Status status = checkAttributes(mesh); !status.ok()) return status;
   if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
   if (Status status = checkEmbedded(cage, mesh, embedding); !status.ok()) return status;
   auto made = std::make_shared<SkinBinding<Scalar>>();
-  made->embedding = std::move(embedding);
+  made->embedding = embedding;
   addParts(cage, mesh, options, *made, quadratic);
   binding = std::move(made);
   return {};
@@ -255,9 +256,9 @@ template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const 
                                      std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
 template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,
                                      std::shared_ptr<const SkinBinding<double>>&, QuadraticReport*);
-template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, Embedding,
+template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, const Embedding&,
                                 std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
-template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, Embedding,
+template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, const Embedding&,
                                 std::shared_ptr<const SkinBinding<double>>&, QuadraticReport*);
 template class MeshSkin<float>;
 template class MeshSkin<double>;
