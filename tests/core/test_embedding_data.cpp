@@ -19,7 +19,7 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 bool sameFloats(const float* a, const float* b, std::size_t count) {
-  return std::memcmp(a, b, count * sizeof(float)) == 0;
+  return count == 0 || std::memcmp(a, b, count * sizeof(float)) == 0;
 }
 
 /// Whether two embeddings are equal to the bit, padding included.
