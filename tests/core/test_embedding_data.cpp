@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh_skin.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 bool sameFloats(const float* a, const float* b, std::size_t count) {
-  return std::memcmp(a, b, count * sizeof(float)) == 0;
+  return count == 0 || std::memcmp(a, b, count * sizeof(float)) == 0;
 }
 
 /// Whether two embeddings are equal to the bit, padding included.
@@ -160,6 +161,46 @@ TEST_F(SavedEmbedding, MinusZeroIsTheSamePlace) {
   ASSERT_EQ(cage.nodes[0], Eigen::Vector3d::Zero());
   cage.nodes[0].x() = -0.0;
   EXPECT_TRUE(load(bytes, cage).ok());
+}
+
+TEST_F(SavedEmbedding, CarriesASkinAsTheOriginalDoes) {
+  const TriangleMesh mesh = test::sphere(20, 0.53, Eigen::Vector3d::Constant(0.5));
+  for (const Normals normals : {Normals::None, Normals::Transformed, Normals::Recomputed}) {
+    SkinOptions options;
+    options.interpolation = Interpolation::Quadratic;
+    options.normals = normals;
+    MeshSkin<float> original, again;
+    ASSERT_TRUE(original.bind(cage, mesh, options).ok());
+    const Bytes saved = original.binding()->embedding.save(cage);
+    std::shared_ptr<const SkinBinding<float>> binding;
+    ASSERT_TRUE(makeSkinBinding(cage, mesh, options, load(saved, cage).value(), binding).ok());
+    std::vector<Eigen::Vector3f> nodes;
+    for (const Eigen::Vector3d& p : cage.nodes) nodes.emplace_back(p.x(), p.y() + p.x() * p.z(), p.z());
+    ASSERT_TRUE(again.bind(binding, viewOf(std::as_const(nodes)), options).ok());
+    ASSERT_EQ(original.update(viewOf(std::as_const(nodes))), nodes.size());
+    ASSERT_EQ(again.positions().size(), original.positions().size());
+    EXPECT_TRUE(sameFloats(again.positions().data(), original.positions().data(), 3 * mesh.vertexCount()));
+    ASSERT_EQ(again.normals().size(), original.normals().size());
+    EXPECT_TRUE(sameFloats(again.normals().data(), original.normals().data(), 3 * again.normals().size()));
+  }
+}
+
+TEST_F(SavedEmbedding, OfAnotherMeshOrCageCarriesNoSkin) {
+  std::shared_ptr<const SkinBinding<float>> binding;
+  const auto refuses = [&](const TetMesh& with, const TriangleMesh& mesh, const char* mentions) {
+    const Status status = makeSkinBinding(with, mesh, SkinOptions(), embedding, binding);
+    EXPECT_EQ(status.code, StatusCode::SizeMismatch);
+    EXPECT_NE(status.message.find(mentions), std::string::npos) << status.message;
+    EXPECT_EQ(binding, nullptr);
+  };
+  TriangleMesh mesh;
+  mesh.positions.assign(60, Eigen::Vector3d::Zero());
+  refuses(test::singleTet(), mesh, "4 nodes");
+  TetMesh fewer = cage;
+  fewer.tets.pop_back();
+  refuses(fewer, mesh, "47 tets");
+  mesh.positions.pop_back();
+  refuses(cage, mesh, "59 vertices");
 }
 
 /// With the checksum as it should be, so that what lies behind it is tested.

@@ -74,6 +74,35 @@ void fill(PointView<float> points, const Eigen::Vector3f& value) {
   for (std::size_t k = 0; k < points.size(); ++k) std::copy_n(value.data(), 3, points[k]);
 }
 
+/// What the options ask for beyond the embedding that is there.
+template <class Scalar>
+void addParts(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options, SkinBinding<Scalar>& made,
+              QuadraticReport* quadratic) {
+  if (options.interpolation == Interpolation::Quadratic) made.quadratic.emplace(cage, made.embedding, quadratic);
+  if (options.normals == Normals::Transformed) {
+    made.normals = DirectionFactors::ofNormals(cage, made.embedding, restNormals(mesh));
+    if (!mesh.tangents.empty()) {
+      made.tangents = DirectionFactors::ofTangents(cage, made.embedding, directionsOf(mesh.tangents));
+    }
+  } else if (options.normals == Normals::Recomputed) {
+    const bool sorted = options.order == VertexOrder::Sorted;
+    made.order = options.order;
+    made.recomputed.emplace(mesh, sorted ? slotsOf(made.embedding) : std::vector<std::uint32_t>(),
+                            options.hardEdgeDegrees);
+  }
+}
+
+Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedding& embedding) {
+  const auto check = [](std::size_t count, std::size_t embedded, const char* what) -> Status {
+    if (count == embedded) return {};
+    return {StatusCode::SizeMismatch, "there are " + std::to_string(count) + " " + what + ", but " +
+                                          std::to_string(embedded) + " when the embedding was made; embed again"};
+  };
+  if (Status s = check(mesh.vertexCount(), embedding.vertexCount(), "vertices"); !s.ok()) return s;
+  if (Status s = check(cage.nodeCount(), embedding.nodeCount(), "nodes"); !s.ok()) return s;
+  return check(cage.tetCount(), embedding.tetCount(), "tets");
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -89,20 +118,23 @@ EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const
   embedOptions.maxDistance = options.maxDistance;
   report = embed(cage, mesh, embedOptions, made->embedding);
   if (!report.ok()) return report;
-  if (options.interpolation == Interpolation::Quadratic) made->quadratic.emplace(cage, made->embedding, quadratic);
-  if (options.normals == Normals::Transformed) {
-    made->normals = DirectionFactors::ofNormals(cage, made->embedding, restNormals(mesh));
-    if (!mesh.tangents.empty()) {
-      made->tangents = DirectionFactors::ofTangents(cage, made->embedding, directionsOf(mesh.tangents));
-    }
-  } else if (options.normals == Normals::Recomputed) {
-    const bool sorted = options.order == VertexOrder::Sorted;
-    made->order = options.order;
-    made->recomputed.emplace(mesh, sorted ? slotsOf(made->embedding) : std::vector<std::uint32_t>(),
-                             options.hardEdgeDegrees);
-  }
+  addParts(cage, mesh, options, *made, quadratic);
   binding = std::move(made);
   return report;
+}
+
+template <class Scalar>
+Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
+                       const Embedding& embedding, std::shared_ptr<const SkinBinding<Scalar>>& binding,
+                       QuadraticReport* quadratic) {
+  if (Status status = checkAttributes(mesh); !status.ok()) return status;
+  if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
+  if (Status status = checkEmbedded(cage, mesh, embedding); !status.ok()) return status;
+  auto made = std::make_shared<SkinBinding<Scalar>>();
+  made->embedding = embedding;
+  addParts(cage, mesh, options, *made, quadratic);
+  binding = std::move(made);
+  return {};
 }
 
 template <class Scalar>
@@ -224,6 +256,10 @@ template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const 
                                      std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
 template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,
                                      std::shared_ptr<const SkinBinding<double>>&, QuadraticReport*);
+template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, const Embedding&,
+                                std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
+template Status makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&, const Embedding&,
+                                std::shared_ptr<const SkinBinding<double>>&, QuadraticReport*);
 template class MeshSkin<float>;
 template class MeshSkin<double>;
 

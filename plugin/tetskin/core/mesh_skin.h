@@ -71,6 +71,13 @@ template <class Scalar>
 [[nodiscard]] EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
                                           std::shared_ptr<const SkinBinding<Scalar>>& binding,
                                           QuadraticReport* quadratic = nullptr);
+/// The same with a copy of an embedding made before, such as a loaded one; the options' rule for vertices outside, and
+/// how far they may be, were its maker's to choose. Errors: SizeMismatch if mesh or cage differ in count from what was
+/// embedded; those of the mesh as above.
+template <class Scalar>
+Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
+                       const Embedding& embedding, std::shared_ptr<const SkinBinding<Scalar>>& binding,
+                       QuadraticReport* quadratic = nullptr);
 
 /// A render mesh carried by the nodes of a cage, whoever moves them: bind once at rest, update with their positions.
 /// For Bullet's soft bodies there is `SoftBodySkin`, which does just this with their nodes.
