@@ -18,6 +18,7 @@ Status checkAttributes(const TriangleMesh& mesh) {
 
 std::vector<Eigen::Vector3d> directionsOf(const std::vector<Eigen::Vector4f>& tangents) {
   std::vector<Eigen::Vector3d> directions;
+  directions.reserve(tangents.size());
   for (const Eigen::Vector4f& t : tangents) directions.push_back(t.head<3>().cast<double>());
   return directions;
 }
@@ -143,6 +144,7 @@ EmbedReport MeshSkin<Scalar>::bind(const TetMesh& cage, const TriangleMesh& mesh
   EmbedReport report = makeSkinBinding(cage, mesh, options, binding);
   if (!report.ok()) return report;
   std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
+  nodes.reserve(cage.nodeCount());
   for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(p.cast<Scalar>());
   report.status = bind(std::move(binding), viewOf(std::as_const(nodes)), options);
   return report;

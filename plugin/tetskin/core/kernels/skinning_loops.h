@@ -206,8 +206,8 @@ struct WideExtent {
   void add(const Lanes<S, W> x[3], int count) {
     const auto counted = laneNumbers<S, W>() < static_cast<S>(count);
     for (int k = 0; k < 3; ++k) {
-      low[k] = counted & (x[k] < low[k]) ? x[k] : low[k];
-      high[k] = counted & (x[k] > high[k]) ? x[k] : high[k];
+      low[k] = (counted & (x[k] < low[k])) ? x[k] : low[k];
+      high[k] = (counted & (x[k] > high[k])) ? x[k] : high[k];
     }
   }
   void mergeInto(Extent<S>& to) const {
