@@ -337,7 +337,6 @@ int run(const CrowdOptions& options) {
 int main(int argc, char** argv) {
   CrowdOptions options;
   options.model.tets = 200;
-  options.model.triangles = 10000;
   CLI::App app(
       "Many bodies in Bullet's deformable world share one binding, nine of ten of them asleep or hidden. Prints what "
       "their skins cost a frame, with cold caches and apart from Bullet, and what each part that is left out saves.");
