@@ -2,16 +2,27 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace tetskin {
 namespace {
-
-/// A teleport moves all nodes, so a few tell.
-constexpr std::size_t kSampledNodes = 8;
 
 Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {
   if (static_cast<std::size_t>(body.m_nodes.size()) == nodeCount) return {};
   return {StatusCode::SizeMismatch, "the body has " + std::to_string(body.m_nodes.size()) + " nodes, but the cage " +
                                         std::to_string(nodeCount) + "; bind with the cage that the body was made of"};
+}
+
+/// The tet whose nodes lie closest together in memory, on the fewest pages.
+const int* closestNumbered(const Embedding& embedding) {
+  const auto span = [](const Embedding::Run& run) {
+    const auto [low, high] = std::minmax_element(std::begin(run.nodes), std::end(run.nodes));
+    return *high - *low;
+  };
+  const auto& runs = embedding.runs();  // the last one only closes the list
+  return std::min_element(runs.begin(), runs.end() - 1, [&](const auto& a, const auto& b) { return span(a) < span(b); })
+      ->nodes;
 }
 
 }  // namespace
@@ -72,6 +83,9 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   nodeCount_ = body.m_nodes.size();
   tetCount_ = body.m_tetras.size();
   moved_ = false;
+  const int* tet = closestNumbered(skin_.binding()->embedding);
+  for (std::size_t k = 0; k < samples_.size(); ++k) samples_[k].node = tet[k];
+  sample();
   return {};
 }
 
@@ -79,8 +93,9 @@ UpdateStatus SoftBodySkin::update() {
   if (!skin_.bound()) return UpdateStatus::Unbound;
   skin_.hold();  // unless it is updated
   if (!visible_) return UpdateStatus::Hidden;
-  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return UpdateStatus::TopologyChanged;
-  if (!body_->isActive() && !moved_ && sampledNodesUnmoved()) return UpdateStatus::Asleep;
+  if (body_->m_nodes.size() != nodeCount_) return UpdateStatus::TopologyChanged;
+  if (!body_->isActive() && !moved_ && samplesUnmoved()) return UpdateStatus::Asleep;
+  if (body_->m_tetras.size() != tetCount_) return UpdateStatus::TopologyChanged;
   const std::size_t bad = skin_.update(nodePositions(*body_));
   if (bad < skin_.nodeCount()) {
     firstBadNode_ = bad;
@@ -88,6 +103,7 @@ UpdateStatus SoftBodySkin::update() {
     return UpdateStatus::NonFinite;
   }
   moved_ = false;
+  sample();
   return UpdateStatus::Updated;
 }
 
@@ -104,13 +120,20 @@ void SoftBodySkin::setOrigin(const btVector3& origin) {
   moved_ = true;
 }
 
-bool SoftBodySkin::sampledNodesUnmoved() const {
+void SoftBodySkin::sample() {
   const PointView<const btScalar> now = nodePositions(*body_);
-  const std::size_t step = std::max<std::size_t>(1, now.size() / kSampledNodes);
-  for (std::size_t i = 0; i < now.size(); i += step) {
-    if (!skin_.nodes().isAt(i, now[i])) return false;
+  for (Sample& s : samples_) std::copy_n(now[static_cast<std::size_t>(s.node)], 3, s.position);
+}
+
+/// An affine map that leaves the corners of a tet in place leaves everything in place.
+bool SoftBodySkin::samplesUnmoved() const {
+  const PointView<const btScalar> now = nodePositions(*body_);
+  bool unmoved = true;
+  for (const Sample& s : samples_) {
+    const btScalar* p = now[static_cast<std::size_t>(s.node)];
+    unmoved &= (p[0] == s.position[0]) & (p[1] == s.position[1]) & (p[2] == s.position[2]);  // no branches: in parallel
   }
-  return true;
+  return unmoved;
 }
 
 }  // namespace tetskin

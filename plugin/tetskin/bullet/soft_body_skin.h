@@ -5,6 +5,7 @@
 #include <tetskin/bullet/soft_body_adapter.h>
 #include <tetskin/core/mesh_skin.h>
 
+#include <array>
 #include <memory>
 
 namespace tetskin {
@@ -62,8 +63,9 @@ class SoftBodySkin {
   /// sleeping body costs a look at a few of its nodes, a hidden skin nothing.
   UpdateStatus update();
 
-  /// A sleeping body is looked at in a few nodes only, which a teleport of the whole body moves. After moving others by
-  /// hand, say so: the next update will not skip.
+  /// A sleeping body is looked at in the four nodes of one tet only, one of which at least moves in every teleport,
+  /// turn, stretch or other affine motion of the whole body. After moving other nodes by hand, say so: the next update
+  /// will not skip.
   void markMoved() { moved_ = true; }
   /// A skin that is not visible is not updated; shown again, it is at once. Visible to begin with.
   void setVisible(bool visible);
@@ -91,13 +93,22 @@ class SoftBodySkin {
   void setOrigin(const btVector3& origin);
 
  private:
-  bool sampledNodesUnmoved() const;
+  /// A node of the last update.
+  struct Sample {
+    int node = 0;
+    btScalar position[3] = {};
+  };
 
+  void sample();
+  bool samplesUnmoved() const;
+
+  // What a sleeping or hidden body needs comes first and side by side: its cost is that of fetching it from memory.
   const btSoftBody* body_ = nullptr;
   int nodeCount_ = 0;
   int tetCount_ = 0;
   bool visible_ = true;
   bool moved_ = false;
+  std::array<Sample, 4> samples_;
   std::size_t firstBadNode_ = 0;
   MeshSkin<btScalar> skin_;
   QuadraticReport quadraticReport_;

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Hundreds of bodies share one binding, most of them asleep or hidden: what every part of a skin's work costs, and what
+// leaving it out saves. Skins are timed apart from Bullet's step, each pass with cold caches, the variants in turn.
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <deque>
+
+#include "scenes/crowd_scene.h"
+#include "scenes/options.h"
+#include "scenes/progress.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+using Clock = std::chrono::steady_clock;
+
+/// Simulated before anything is measured: sleeping bodies must stay asleep, and where they are.
+constexpr int kSimulatedFrames = 2;
+
+struct CrowdOptions {
+  ModelOptions model;
+  std::size_t bodies = 500;
+  int frames = 15;
+  std::string json;
+  bool quiet = false;
+};
+
+/// A check that did not hold: exit status 1.
+struct CheckFailed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One skin for every body of a crowd.
+struct Skins {
+  Crowd* crowd = nullptr;
+  std::vector<SoftBodySkin> all;
+  double bindMs = 0.0;
+  std::size_t bytes = 0;  ///< of the skins and their bindings
+
+  std::size_t update() {
+    std::size_t updated = 0;
+    for (SoftBodySkin& skin : all) updated += skin.update() == UpdateStatus::Updated;
+    return updated;
+  }
+};
+
+/// All that a scene may leave out is left out.
+SkinOptions leastOptions() {
+  SkinOptions options;
+  options.order = VertexOrder::Sorted;
+  options.bounds = false;
+  return options;
+}
+
+/// bindingEach  for every body a binding of its own; otherwise they share the first one's
+Skins bindAll(Crowd& crowd, const Model& model, const SkinOptions& options, bool bindingEach = false) {
+  const std::size_t before = heapBytes();
+  const auto start = Clock::now();
+  Skins skins;
+  skins.crowd = &crowd;
+  skins.all.resize(crowd.size());
+  for (std::size_t i = 0; i < crowd.size(); ++i) {
+    if (i == 0 || bindingEach) {
+      require(skins.all[i].bind(crowd.body(i), model.cage, model.mesh, options).status);
+    } else {
+      require(skins.all[i].bind(crowd.body(i), skins.all[0].binding(), options));
+    }
+  }
+  skins.bindMs = microsecondsSince(start) / 1000.0;
+  skins.bytes = heapBytes() - before;
+  return skins;
+}
+
+/// What is timed, and what came out.
+struct Variant {
+  std::string name;
+  Skins* skins;
+  bool asleep = false;  ///< nine of ten bodies
+  bool hidden = false;  ///< the skins of as many
+  bool everySubstep = false;
+  bool stepped = true;  ///< false: the frame had no substep
+  std::vector<double> microseconds = {};
+  std::size_t updates = 0;  ///< in one frame
+};
+
+/// Brings bodies and skins into the variant's state, and does all that is to be done once: the last update of a body
+/// that fell asleep, the update of a skin that is shown again.
+void prepare(Variant& variant) {
+  variant.skins->crowd->setAsleep(variant.asleep);
+  for (std::size_t i = 0; i < variant.skins->all.size(); ++i) {
+    variant.skins->all[i].setVisible(Crowd::alwaysAwake(i) || !variant.hidden);
+  }
+  (void)variant.skins->update();
+}
+
+void timeOnce(Variant& variant, CacheEviction& caches) {
+  prepare(variant);
+  const int substeps = variant.stepped ? Crowd::kSubsteps : variant.skins->crowd->stepNothing();
+  variant.updates = 0;
+  double total = 0.0;
+  for (int k = 0; k < (variant.everySubstep ? substeps : 1); ++k) {
+    caches.evict();
+    const auto start = Clock::now();
+    if (substeps > 0) variant.updates += variant.skins->update();
+    total += microsecondsSince(start);
+  }
+  variant.microseconds.push_back(total);
+}
+
+/// How many updates a frame of the variant should take.
+std::size_t expectedUpdates(const Variant& variant) {
+  const std::size_t bodies = variant.skins->all.size();
+  if (!variant.stepped) return 0;
+  return (variant.asleep || variant.hidden ? Crowd::awakeAmong(bodies) : bodies) *
+         (variant.everySubstep ? Crowd::kSubsteps : 1);
+}
+
+/// A line of the table: a measured variant under the name of what it leaves out, and the one that does not.
+struct Row {
+  const char* name;
+  const char* measured;
+  const char* against;  ///< name of another row, or null
+};
+
+constexpr Row kRows[] = {
+    {"all awake, every substep", "every substep", nullptr},
+    {"all awake, once a step", "once a step", "all awake, every substep"},
+    {"sleeping bodies skipped", "asleep", "all awake, once a step"},
+    {"hidden skins skipped", "hidden", "all awake, once a step"},
+    {"no substep, no update", "no substep", "all awake, once a step"},
+    {"a binding each", "binding each", nullptr},
+    {"one binding for all", "once a step", "a binding each"},
+    {"awake bodies alone", "alone", nullptr},
+    {"normals recomputed", "recomputed", nullptr},
+    {"normals transformed", "transformed", "normals recomputed"},
+    {"normals none", "alone", "normals transformed"},
+    {"quadratic", "quadratic", nullptr},
+    {"linear", "alone", "quadratic"},
+    {"mesh order", "mesh order", nullptr},
+    {"sorted order", "alone", "mesh order"},
+    {"bounds on", "bounds", nullptr},
+    {"bounds off", "alone", "bounds on"},
+};
+
+class Measurement {
+ public:
+  explicit Measurement(const CrowdOptions& options) : options_(options), model_(loadModel(options.model)) {
+    requireFit(checkFit(), options.model);
+    scaleToCrowd(model_.cage, model_.mesh);
+    crowd_ = std::make_unique<Crowd>(model_.cage, options.bodies);
+    alone_ = std::make_unique<Crowd>(model_.cage, Crowd::awakeAmong(options.bodies));
+  }
+
+  nlohmann::ordered_json run() {
+    addVariants();
+    simulate();
+    Progress progress("measuring", options_.frames, options_.quiet);
+    for (int frame = 0; frame < options_.frames; ++frame) {
+      for (Variant& variant : variants_) {
+        timeOnce(variant, caches_);
+        if (variant.updates != expectedUpdates(variant)) {
+          throw CheckFailed(variant.name + ": " + std::to_string(variant.updates) + " updates in a frame instead of " +
+                            std::to_string(expectedUpdates(variant)));
+        }
+      }
+      progress.show(frame + 1);
+    }
+    return summarise();
+  }
+
+ private:
+  EmbedReport checkFit() const {
+    Embedding embedding;
+    return embed(model_.cage, model_.mesh, {}, embedding);
+  }
+
+  Skins* add(Crowd& crowd, const SkinOptions& skin, bool bindingEach = false) {
+    skins_.push_back(bindAll(crowd, model_, skin, bindingEach));
+    return &skins_.back();
+  }
+
+  void addVariants() {
+    const SkinOptions least = leastOptions();
+    Skins* everybody = add(*crowd_, least);
+    variants_.push_back({"asleep", everybody, true});
+    variants_.push_back({"alone", add(*alone_, least)});
+    variants_.push_back({"every substep", everybody, false, false, true});
+    variants_.push_back({"once a step", everybody});
+    variants_.push_back({"hidden", everybody, false, true});
+    variants_.push_back({"no substep", everybody, false, false, false, false});
+    variants_.push_back({"binding each", add(*crowd_, least, true)});
+    const auto aloneWith = [&](const char* name, const auto& change) {
+      SkinOptions skin = least;
+      change(skin);
+      variants_.push_back({name, add(*alone_, skin)});
+    };
+    aloneWith("recomputed", [](SkinOptions& skin) { skin.normals = Normals::Recomputed; });
+    aloneWith("transformed", [](SkinOptions& skin) { skin.normals = Normals::Transformed; });
+    aloneWith("quadratic", [](SkinOptions& skin) { skin.interpolation = Interpolation::Quadratic; });
+    aloneWith("mesh order", [](SkinOptions& skin) { skin.order = VertexOrder::Mesh; });
+    aloneWith("bounds", [](SkinOptions& skin) { skin.bounds = true; });
+  }
+
+  /// Bullet's own cost, and the proof that sleep is Bullet's: its steps leave sleeping bodies asleep and in place.
+  void simulate() {
+    Skins& everybody = *variants_.front().skins;
+    crowd_->setAsleep(true);
+    (void)everybody.update();
+    const std::size_t awake = Crowd::awakeAmong(crowd_->size());
+    const auto start = Clock::now();
+    for (int frame = 0; frame < kSimulatedFrames; ++frame) {
+      if (crowd_->step() == 0) throw CheckFailed("Bullet made no substep in a frame");
+    }
+    simulationMs_ = microsecondsSince(start) / 1000.0 / kSimulatedFrames;
+    if (crowd_->asleepCount() != crowd_->size() - awake || everybody.update() != awake) {
+      throw CheckFailed("bodies that were put to sleep did not stay so");
+    }
+    if (crowd_->stepNothing() != 0) throw CheckFailed("Bullet made a substep though no time passed");
+  }
+
+  const Variant& measured(const std::string& name) const {
+    return *std::find_if(variants_.begin(), variants_.end(), [&](const Variant& v) { return v.name == name; });
+  }
+
+  /// Of frames next to each other, so that a slow moment of the machine counts for both.
+  double asleepOverheadPercent() const {
+    std::vector<double> ratios;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(options_.frames); ++k) {
+      ratios.push_back(measured("asleep").microseconds[k] / measured("alone").microseconds[k]);
+    }
+    return 100.0 * (median(ratios) - 1.0);
+  }
+
+  nlohmann::ordered_json rowJson(const Row& row) const {
+    const Variant& variant = measured(row.measured);
+    const double microseconds = median(variant.microseconds);
+    nlohmann::ordered_json json;
+    json["variant"] = row.name;
+    json["bodies"] = variant.skins->all.size();
+    json["bodies_updated"] = variant.updates / (variant.everySubstep ? Crowd::kSubsteps : 1);
+    json["updates"] = variant.updates;
+    json["us_per_frame"] = microseconds;
+    json["compared_with"] = row.against ? nlohmann::ordered_json(row.against) : nullptr;
+    json["saved_percent"] = nullptr;
+    if (row.against) {
+      const Row& against = *std::find_if(std::begin(kRows), std::end(kRows),
+                                         [&](const Row& r) { return std::string(r.name) == row.against; });
+      json["saved_percent"] = 100.0 * (1.0 - microseconds / median(measured(against.measured).microseconds));
+    }
+    json["bytes"] = variant.skins->bytes;
+    json["bind_ms"] = variant.skins->bindMs;
+    return json;
+  }
+
+  nlohmann::ordered_json summarise() const {
+    nlohmann::ordered_json json;
+    json["model"] = model_.name;
+    json["vertices"] = model_.mesh.vertexCount();
+    json["triangles"] = model_.mesh.triangleCount();
+    json["nodes"] = model_.cage.nodeCount();
+    json["tets"] = model_.cage.tetCount();
+    json["bodies"] = crowd_->size();
+    json["asleep"] = crowd_->size() - alone_->size();
+    json["substeps"] = Crowd::kSubsteps;
+    json["frames"] = options_.frames;
+    json["evicted_bytes"] = caches_.bytes();
+    json["simulation_ms_per_frame"] = simulationMs_;
+    json["asleep_overhead_percent"] = asleepOverheadPercent();
+    for (const Row& row : kRows) json["rows"].push_back(rowJson(row));
+    return json;
+  }
+
+  const CrowdOptions& options_;
+  Model model_;
+  std::unique_ptr<Crowd> crowd_, alone_;
+  std::deque<Skins> skins_;  // gone before the bodies
+  std::vector<Variant> variants_;
+  CacheEviction caches_;
+  double simulationMs_ = 0.0;
+};
+
+void printTable(const nlohmann::ordered_json& json) {
+  const auto count = [](const nlohmann::ordered_json& of, const char* key) { return of.at(key).get<std::size_t>(); };
+  std::printf("\n%s: %zu vertices, %zu tets; %zu bodies, %zu of them asleep or hidden where skipped\n",
+              json.at("model").get<std::string>().c_str(), count(json, "vertices"), count(json, "tets"),
+              count(json, "bodies"), count(json, "asleep"));
+  std::printf("  %-26s%8s%13s%9s%11s%11s  %s\n", "", "updates", "us a frame", "saved", "memory MB", "bind ms",
+              "compared with");
+  for (const auto& row : json.at("rows")) {
+    std::printf("  %-26s%8zu%13.1f", row.at("variant").get<std::string>().c_str(), count(row, "updates"),
+                row.at("us_per_frame").get<double>());
+    if (row.at("compared_with").is_null()) {
+      std::printf("%9s", "");
+    } else {
+      std::printf("%7.1f %%", row.at("saved_percent").get<double>());
+    }
+    std::printf("%11.1f%11.1f", static_cast<double>(count(row, "bytes")) / 1e6, row.at("bind_ms").get<double>());
+    if (!row.at("compared_with").is_null()) std::printf("  %s", row.at("compared_with").get<std::string>().c_str());
+    std::printf("\n");
+  }
+  std::printf("  %-26s%+21.1f %%  over the %zu awake bodies alone\n", "sleeping bodies cost",
+              json.at("asleep_overhead_percent").get<double>(), count(json, "bodies") - count(json, "asleep"));
+  std::printf("  %-26s%21.1f ms a frame, most bodies asleep\n", "Bullet's step",
+              json.at("simulation_ms_per_frame").get<double>());
+}
+
+int run(const CrowdOptions& options) {
+  try {
+    const nlohmann::ordered_json json = Measurement(options).run();
+    if (!options.json.empty()) writeJson(json, options.json);
+    if (!options.quiet) printTable(json);
+    return kDone;
+  } catch (const CheckFailed& failure) {
+    std::fprintf(stderr, "tetskin_crowd: %s\n", failure.what());
+    return kRunFailed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CrowdOptions options;
+  options.model.tets = 200;
+  CLI::App app(
+      "Many bodies in Bullet's deformable world share one binding, nine of ten of them asleep or hidden. Prints what "
+      "their skins cost a frame, with cold caches and apart from Bullet, and what each part that is left out saves.");
+  addModelOptions(app, options.model);
+  app.add_option("--bodies", options.bodies, "Bodies")->check(CLI::Range(1, 100000))->capture_default_str();
+  app.add_option("--frames", options.frames, "Timed frames of every variant; the median counts")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--json", options.json, "File of the results");
+  app.add_flag("--quiet", options.quiet, "Print nothing but errors");
+  return runDemo(app, argc, argv, [&] { return run(options); });
+}
