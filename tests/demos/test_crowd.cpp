@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "command.h"
+#include "scenes/crowd_scene.h"
+#include "scenes/options.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+TEST(Crowd, SleepersStayAsleepAndInPlaceWhileTheOthersFall) {
+  scenes::ModelOptions options;
+  options.builtIn = scenes::BuiltIn::Bar;
+  options.triangles = 2000;
+  options.tets = 100;
+  scenes::Model model = scenes::loadModel(options);
+  scenes::scaleToCrowd(model.cage, model.mesh);
+  EXPECT_NEAR(boundingBox(model.cage.nodes).sizes().maxCoeff(), scenes::Crowd::kSize, 1e-9);
+  scenes::Crowd crowd(model.cage, 21);
+  EXPECT_EQ(crowd.asleepCount(), 0u);
+  crowd.setAsleep(true);
+  EXPECT_EQ(crowd.asleepCount(), 21 - scenes::Crowd::awakeAmong(21));
+  std::vector<btScalar> heights;
+  for (std::size_t i = 0; i < crowd.size(); ++i) heights.push_back(crowd.body(i).m_nodes[0].m_x.y());
+  EXPECT_EQ(crowd.stepNothing(), 0);
+  for (int frame = 0; frame < 5; ++frame) EXPECT_EQ(crowd.step(), scenes::Crowd::kSubsteps);
+  for (std::size_t i = 0; i < crowd.size(); ++i) {
+    const btScalar height = crowd.body(i).m_nodes[0].m_x.y();
+    if (scenes::Crowd::alwaysAwake(i)) {
+      EXPECT_LT(height, heights[i] - btScalar(0.02)) << i;
+    } else {
+      EXPECT_EQ(height, heights[i]) << i;
+    }
+  }
+  crowd.setAsleep(false);
+  EXPECT_EQ(crowd.asleepCount(), 0u);
+}
+
+class CrowdCommand : public testing::Test {
+ protected:
+  CommandResult crowd(const std::vector<std::string>& arguments) const { return folder.run(TETSKIN_CROWD, arguments); }
+
+  CommandFolder folder;
+};
+
+TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
+  const CommandResult result = crowd({"--bodies", "40", "--triangles", "4000", "--frames", "3", "--json", "c.json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("c.json");
+  EXPECT_EQ(json["bodies"], 40);
+  EXPECT_EQ(json["asleep"], 36);
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_NEAR(json["tets"].get<double>(), 200, 20);
+  EXPECT_GT(json["simulation_ms_per_frame"], 0.0);
+  EXPECT_TRUE(json["asleep_overhead_percent"].is_number());
+  std::map<std::string, nlohmann::json> rows;
+  for (const auto& row : json["rows"]) {
+    rows[row["variant"]] = row;
+    EXPECT_NE(result.out.find(row["variant"].get<std::string>()), std::string::npos) << result.out;
+    EXPECT_GE(row["us_per_frame"], 0.0);
+    EXPECT_EQ(row["compared_with"].is_null(), row["saved_percent"].is_null());
+    EXPECT_TRUE(row["compared_with"].is_null() || rows.count(row["compared_with"])) << row;
+  }
+  const auto count = [&](const char* row, const char* key) { return rows.at(row).at(key).get<int>(); };
+  EXPECT_EQ(count("all awake, every substep", "updates"), 160);
+  EXPECT_EQ(count("all awake, every substep", "bodies_updated"), 40);
+  EXPECT_EQ(count("all awake, once a step", "updates"), 40);
+  EXPECT_EQ(count("sleeping bodies skipped", "bodies_updated"), 4);
+  EXPECT_EQ(count("hidden skins skipped", "bodies_updated"), 4);
+  EXPECT_EQ(count("no substep, no update", "bodies_updated"), 0);
+  EXPECT_EQ(count("awake bodies alone", "bodies"), 4);
+  EXPECT_EQ(count("one binding for all", "bodies"), 40);
+  for (const char* name : {"normals recomputed", "normals transformed", "normals none", "quadratic", "linear",
+                           "bounds on", "bounds off", "mesh order", "sorted order"}) {
+    EXPECT_EQ(count(name, "bodies_updated"), 4) << name;
+  }
+  // Generous: other work may be going on.
+  EXPECT_GT(rows.at("no substep, no update").at("saved_percent"), 90.0);
+  EXPECT_GT(rows.at("sleeping bodies skipped").at("saved_percent"), 50.0);
+  EXPECT_GT(rows.at("hidden skins skipped").at("saved_percent"), 50.0);
+  if (scenes::heapBytes() > 0) {
+    EXPECT_LT(2 * count("one binding for all", "bytes"), count("a binding each", "bytes"));
+    EXPECT_LT(count("normals none", "bytes"), count("normals transformed", "bytes"));
+    EXPECT_LT(count("linear", "bytes"), count("quadratic", "bytes"));
+  }
+}
+
+TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
+  folder.write("box.obj",
+               "v 0 0 0\nv 900 0 0\nv 900 400 0\nv 0 400 0\nv 0 0 300\nv 900 0 300\nv 900 400 300\nv 0 400 300\n"
+               "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const CommandResult result =
+      crowd({"--mesh", "box.obj", "--tets", "60", "--bodies", "1", "--frames", "1", "--json", "c.json", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(result.out.empty()) << result.out;
+  EXPECT_TRUE(result.err.empty()) << result.err;
+  EXPECT_EQ(folder.json("c.json")["asleep"], 0);
+  EXPECT_EQ(folder.json("c.json")["vertices"], 8);
+}
+
+TEST_F(CrowdCommand, RefusesBadInput) {
+  const auto expectRefused = [&](const std::vector<std::string>& arguments, const std::string& word) {
+    const CommandResult result = crowd(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+  };
+  expectRefused({"--mesh", "nowhere.obj"}, "nowhere.obj");
+  expectRefused({"--bodies", "0"}, "--bodies");
+  expectRefused({"--frames", "none"}, "--frames");
+  expectRefused({"--bodies", "2", "--triangles", "2000", "--frames", "1", "--json", "no/where.json"}, "no/where.json");
+}
+
+}  // namespace
+}  // namespace tetskin
