@@ -11,6 +11,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "scenes/options.h"
@@ -24,10 +25,11 @@ using benchmark::State;
 
 /// A body made of the model's cage, with Bullet's own render nodes at the model's vertices.
 struct Bench {
-  explicit Bench(Model made) : model(std::move(made)) {
+  explicit Bench(Model made, bool renderNodes = true) : model(std::move(made)) {
     Result<btSoftBody*> result = makeSoftBody(model.cage, worldInfo);
     require(result.status());
     body.reset(result.value());
+    if (!renderNodes) return;
     btSoftBody::RenderNode node;
     node.m_uv1.setZero();
     node.m_normal.setZero();
@@ -135,6 +137,28 @@ void updateMemcpy(State& state, const Bench& bench) {
   }
 }
 
+void triad(std::size_t count, const float* __restrict b, const float* __restrict c, float* __restrict sums,
+           float* __restrict differences) {
+  constexpr float s = 0.5f;
+  for (std::size_t i = 0; i < count; ++i) {
+    sums[i] = b[i] + s * c[i];
+    differences[i] = b[i] - s * c[i];
+  }
+}
+
+/// What a perfect Update/linear could not beat: b[i] + s * c[i], with the bytes of an update in sorted order. 12 bytes
+/// a vertex are read, half from either array, and 12 written. Plain C++ for SSE2: with millions of vertices memory is
+/// the limit, not arithmetic, and an update is predicted to take as long.
+void updateTriad(State& state, const Bench& bench) {
+  const std::size_t half = 3 * bench.model.mesh.vertexCount() / 2;
+  const std::vector<float> b(half, 1.0f), c(half, 2.0f);
+  std::vector<float> sums(half), differences(half);
+  for (auto _ : state) {
+    triad(half, b.data(), c.data(), sums.data(), differences.data());
+    benchmark::ClobberMemory();
+  }
+}
+
 void buildBodyTetskin(State& state, Bench& bench) {
   for (auto _ : state) delete makeSoftBody(bench.model.cage, bench.worldInfo).value();
 }
@@ -151,6 +175,7 @@ void writeObj(State& state, const Bench& bench) {
   std::vector<Eigen::Vector3f> positions;
   for (const Eigen::Vector3d& p : bench.model.mesh.positions) positions.push_back(p.cast<float>());
   for (auto _ : state) require(bench.model.layout.writeTo(path.string(), viewOf(std::as_const(positions))));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(std::filesystem::file_size(path)));
   std::filesystem::remove(path);
 }
 
@@ -187,12 +212,16 @@ std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t coun
   return points;
 }
 
+TetMesh cageOf(const TriangleMesh& mesh, std::size_t tets) {
+  CageOptions options;
+  options.targetTets = tets;
+  return buildCage(mesh, options);
+}
+
 /// Attaching to a cage of a tenth as many tets. Time per vertex should not depend on the size.
 void attachSize(State& state, std::size_t vertices) {
   TriangleMesh mesh = makeSerpent({2 * vertices});
-  CageOptions options;
-  options.targetTets = vertices / 10;
-  const TetMesh cage = buildCage(mesh, options);
+  const TetMesh cage = cageOf(mesh, vertices / 10);
   const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
   mesh = {};
   for (auto _ : state) {
@@ -214,6 +243,59 @@ void registerAttachSizes() {
         ->Unit(benchmark::kMillisecond)
         ->Iterations(static_cast<benchmark::IterationCount>(1 + 3000000 / vertices));
   }
+}
+
+/// A bench of so many points, made when a case first asks for it.
+std::function<const Bench&()> benchOfPoints(std::size_t vertices, std::size_t tets) {
+  return [vertices, tets, made = std::make_shared<std::unique_ptr<Bench>>()]() -> const Bench& {
+    if (!*made) {
+      Model model;
+      model.mesh = makeSerpent({std::min(vertices * 5 / 3, kMaxSerpentTriangles)});
+      model.cage = cageOf(model.mesh, tets);
+      model.mesh.positions = pointsOn(model.mesh, vertices);
+      model.mesh.triangles.clear();
+      model.mesh.normals.clear();
+      *made = std::make_unique<Bench>(std::move(model), false);
+    }
+    return **made;
+  };
+}
+
+/// Updates of more vertices than the caches hold. Each should grow in proportion, and Update/linear come near the
+/// triad.
+void registerUpdateSizes(std::size_t tets) {
+  for (const std::size_t vertices : {300000, 3000000}) {
+    const auto bench = benchOfPoints(vertices, tets);
+    const auto add = [&](const char* name, auto function) {
+      const std::string full = std::string(name) + "/vertices:" + std::to_string(vertices);
+      benchmark::RegisterBenchmark(full.c_str(), [bench, function](State& state) {
+        function(state, bench());
+      })->Unit(benchmark::kMicrosecond);
+    };
+    add("Update/linear", updateLinear);
+    add("Update/linear_original", updateLinearOriginal);
+    add("Update/quadratic", updateQuadratic);
+    add("Update/memcpy", updateMemcpy);
+    add("Update/triad", updateTriad);
+  }
+}
+
+/// Ours sorts the edges, so 300,000 tets are predicted to take 15 times as long as 24,000; Bullet's goes through all
+/// links for every new one, and is left out where it would take minutes.
+void registerBuildBodySizes() {
+  const auto add = [](const char* name, std::size_t tets, auto function) {
+    const std::string full = std::string(name) + "/tets:" + std::to_string(tets);
+    benchmark::RegisterBenchmark(full.c_str(), [tets, function](State& state) {
+      Model model;
+      model.cage = cageOf(makeSerpent(), tets);
+      Bench bench(std::move(model), false);
+      function(state, bench);
+      state.counters["tets"] = static_cast<double>(bench.model.cage.tetCount());
+    })->Unit(benchmark::kMillisecond);
+  };
+  add("BuildBody/tetskin", 24000, buildBodyTetskin);
+  add("BuildBody/bullet", 24000, buildBodyBullet);
+  add("BuildBody/tetskin", 300000, buildBodyTetskin);
 }
 
 void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
@@ -249,6 +331,8 @@ int main(int argc, char** argv) {
   return runDemo(app, argc, argv, [&] {
     registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);
     if (options.mesh.empty()) {
+      registerUpdateSizes(options.tets);
+      registerBuildBodySizes();
       registerAttachSizes();
       registerBuildCageSizes();
     }
