@@ -81,10 +81,6 @@ TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
                            "bounds on", "bounds off", "mesh order", "sorted order"}) {
     EXPECT_EQ(count(name, "bodies_updated"), 4) << name;
   }
-  // Generous: other work may be going on.
-  EXPECT_GT(rows.at("no substep, no update").at("saved_percent"), 90.0);
-  EXPECT_GT(rows.at("sleeping bodies skipped").at("saved_percent"), 50.0);
-  EXPECT_GT(rows.at("hidden skins skipped").at("saved_percent"), 50.0);
   if (scenes::heapBytes() > 0) {
     EXPECT_LT(2 * count("one binding for all", "bytes"), count("a binding each", "bytes"));
     EXPECT_LT(count("normals none", "bytes"), count("normals transformed", "bytes"));
