@@ -118,7 +118,7 @@ class MeshSkin {
   const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
   /// For the updates to come.
   void setOrigin(const Eigen::Vector3d& origin) { options_.origin = origin; }
-  /// The nodes of the last update; `isAt` tells whether they have moved since.
+  /// The nodes of the last update.
   const PackedNodes<Scalar>& nodes() const { return nodes_; }
 
  private:

@@ -35,11 +35,6 @@ class PackedNodes {
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().data(); }
   const Point& mean() const { return mean_; }
-  /// Whether node i is still where it was packed.
-  bool isAt(std::size_t i, const Scalar* position) const {
-    const Node& n = nodes_[i];
-    return position[0] - mean_[0] == n[0] && position[1] - mean_[1] == n[1] && position[2] - mean_[2] == n[2];
-  }
 
  private:
   using Node = Eigen::Matrix<Scalar, 4, 1>;
