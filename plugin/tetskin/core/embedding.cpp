@@ -132,6 +132,11 @@ std::string EmbedReport::describe() const {
       coincident, overlapping, flatTets, restErrorMax,
       static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
   std::string result = text;
+  if (keptWithNeighbours > 0) {
+    std::snprintf(text, sizeof text, "%zu vertices outside kept from another part of the cage, nearer than their own\n",
+                  keptWithNeighbours);
+    result += text;
+  }
   if (unitsDiffer()) {
     std::snprintf(text, sizeof text,
                   "mesh and cage do not fit: their boxes have diagonals of %.4g and %.4g and %s; different units?\n",

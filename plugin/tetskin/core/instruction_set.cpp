@@ -11,18 +11,23 @@ namespace tetskin {
 namespace {
 
 bool available(InstructionSet set) {
-#ifdef TETSKIN_X86_KERNELS
   switch (set) {
+    case InstructionSet::Plain:
+      return true;
+#ifdef TETSKIN_VECTOR_KERNELS
     case InstructionSet::Baseline:
       return true;
+#endif
+#ifdef TETSKIN_X86_KERNELS
     case InstructionSet::Avx2:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case InstructionSet::Avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
              __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
-  }
 #endif
-  return set == InstructionSet::Baseline;
+    default:
+      return false;
+  }
 }
 
 std::atomic<InstructionSet>& chosen() {
@@ -43,6 +48,8 @@ const kernels::Table<Scalar>& pick(const kernels::Table<float>& single, const ke
 
 const char* toString(InstructionSet set) {
   switch (set) {
+    case InstructionSet::Plain:
+      return "plain";
     case InstructionSet::Baseline:
       return "baseline";
     case InstructionSet::Avx2:
@@ -55,7 +62,8 @@ const char* toString(InstructionSet set) {
 
 std::vector<InstructionSet> availableInstructionSets() {
   std::vector<InstructionSet> sets;
-  for (const InstructionSet set : {InstructionSet::Baseline, InstructionSet::Avx2, InstructionSet::Avx512}) {
+  for (const InstructionSet set :
+       {InstructionSet::Plain, InstructionSet::Baseline, InstructionSet::Avx2, InstructionSet::Avx512}) {
     if (available(set)) sets.push_back(set);
   }
   return sets;
@@ -76,7 +84,10 @@ const kernels::Table<Scalar>& kernels::tableInUse() {
   if (instructionSet() == InstructionSet::Avx512) return pick<Scalar>(avx512::tableFloat, avx512::tableDouble);
   if (instructionSet() == InstructionSet::Avx2) return pick<Scalar>(avx2::tableFloat, avx2::tableDouble);
 #endif
-  return pick<Scalar>(baseline::tableFloat, baseline::tableDouble);
+#ifdef TETSKIN_VECTOR_KERNELS
+  if (instructionSet() == InstructionSet::Baseline) return pick<Scalar>(baseline::tableFloat, baseline::tableDouble);
+#endif
+  return pick<Scalar>(plain::tableFloat, plain::tableDouble);
 }
 
 template const kernels::Table<float>& kernels::tableInUse();

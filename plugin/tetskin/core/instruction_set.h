@@ -9,7 +9,8 @@ namespace tetskin {
 /// The kernels of skinning exist once for each of these; the widest that the processor has is used, without being asked
 /// for. Results differ by rounding only, and which tet carries a vertex does not depend on it.
 enum class InstructionSet {
-  Baseline,  ///< what every processor of the platform has (SSE2 on x86-64)
+  Plain,     ///< C++ and nothing else, a vertex at a time: for compilers without vector types
+  Baseline,  ///< what every processor of the platform has (SSE2 on x86-64), through the compiler's vector types
   Avx2,      ///< with fused multiply-adds
   Avx512,    ///< F, DQ, BW and VL
 };

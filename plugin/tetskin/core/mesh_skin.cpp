@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/linear_skinning.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/skin_tasks.h>
 
 namespace tetskin {
 namespace {
@@ -60,15 +61,6 @@ Status checkParts(const SkinBinding<Scalar>& binding, const SkinOptions& options
   if (options.normals == Normals::Recomputed && !binding.recomputed) return missing("recomputed normals");
   if (options.normals == Normals::Recomputed && binding.order != options.order) return missing("this vertex order");
   return {};
-}
-
-/// Whether the kernels write the positions themselves: see SkinOutput::scratch.
-template <class Scalar>
-bool positionsAreDirect(const SkinOptions& options) {
-  if (options.order != VertexOrder::Sorted) return false;
-  if (std::holds_alternative<std::monostate>(options.target)) return true;
-  const auto* target = std::get_if<PointView<Scalar>>(&options.target);
-  return target && target->strideBytes() == 3 * sizeof(Scalar);
 }
 
 void fill(PointView<float> points, const Eigen::Vector3f& value) {
@@ -168,32 +160,49 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
   MeshSkin made;
   made.options_ = options;
   made.nodes_ = PackedNodes<Scalar>(nodes.size());
-  if (options.interpolation == Interpolation::Quadratic) made.edges_ = EdgeVectors<Scalar>(*binding->quadratic);
-  if (std::holds_alternative<std::monostate>(options.target)) made.positions_.resize(vertexCount);
-  if (options.previousPositions) made.previous_.resize(vertexCount);
-  if (!positionsAreDirect<Scalar>(options)) made.scratch_.resize(3 * vertexCount);
-  // Unit vectors to begin with: see transformDirections.
-  if (options.normals != Normals::None) {
-    if (options.normalTarget.empty()) made.normals_.resize(vertexCount);
-    fill(made.normalsOut(), Eigen::Vector3f::UnitY());
-  }
-  if (options.normals == Normals::Transformed) {
-    const bool sorted = options.order == VertexOrder::Sorted;
-    if (!sorted || !options.normalTarget.empty()) made.normalScratch_.assign(vertexCount, Eigen::Vector3f::UnitY());
-    if (binding->tangents) {
-      if (options.tangentTarget.empty()) made.tangents_.resize(vertexCount);
-      fill(made.tangentsOut(), Eigen::Vector3f::UnitX());
-      if (!sorted || !options.tangentTarget.empty()) made.tangentScratch_.assign(vertexCount, Eigen::Vector3f::UnitX());
-    }
-  }
-  if (options.normals == Normals::Recomputed) made.faceVectors_.resize(4 * binding->recomputed->triangleCount());
   made.binding_ = std::move(binding);
+  made.prepareArrays(vertexCount);
   *this = std::move(made);
   const std::size_t updated = update(nodes);
   assert(updated == nodes.size());
   (void)updated;
   hold();
   return {};
+}
+
+/// Allocates what the options ask for, and nothing else.
+template <class Scalar>
+void MeshSkin<Scalar>::prepareArrays(std::size_t vertexCount) {
+  const auto direct = [&](auto points) { return skin_tasks::isDirect<Scalar>(points, options_.order); };
+  bool positionsDirect = false;
+  if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
+    positionsDirect = direct(*single);
+  } else if (const auto* twice = std::get_if<PointView<double>>(&options_.target)) {
+    positionsDirect = direct(*twice);
+  } else {
+    positions_.resize(vertexCount);
+    positionsDirect = direct(viewOf(positions_));
+  }
+  if (!positionsDirect) scratch_.resize(3 * vertexCount);
+  if (options_.previousPositions) previous_.resize(vertexCount);
+  if (options_.interpolation == Interpolation::Quadratic) edges_ = EdgeVectors<Scalar>(*binding_->quadratic);
+
+  if (options_.normals == Normals::None) return;
+  if (options_.normalTarget.empty()) normals_.resize(vertexCount);
+  fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors to begin with: see transformDirections
+  if (options_.normals == Normals::Recomputed) {
+    faceVectors_.resize(4 * binding_->recomputed->triangleCount());
+    return;
+  }
+  const auto scratchFor = [&](PointView<float> out, const Eigen::Vector3f& unit,
+                              std::vector<Eigen::Vector3f>& scratch) {
+    if (!skin_tasks::isDirect<float>(out, options_.order)) scratch.assign(vertexCount, unit);
+  };
+  scratchFor(normalsOut(), Eigen::Vector3f::UnitY(), normalScratch_);
+  if (!binding_->tangents) return;
+  if (options_.tangentTarget.empty()) tangents_.resize(vertexCount);
+  fill(tangentsOut(), Eigen::Vector3f::UnitX());
+  scratchFor(tangentsOut(), Eigen::Vector3f::UnitX(), tangentScratch_);
 }
 
 template <class Scalar>

@@ -21,7 +21,7 @@ namespace tetskin {
 /// How the surface follows the nodes.
 enum class Interpolation {
   Linear,     ///< barycentric in each tet: continuous, but bent surfaces show the cage's faces
-  Quadratic,  ///< smooth to the eye, an order more accurate, at up to 2.5 times the cost
+  Quadratic,  ///< smooth to the eye, an order more accurate, at three to four times the cost
 };
 
 /// Where the positions go: nowhere else (the skin's own array, the default), or to the caller's buffer of float or
@@ -118,8 +118,6 @@ class MeshSkin {
   const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
   /// For the updates to come.
   void setOrigin(const Eigen::Vector3d& origin) { options_.origin = origin; }
-  /// The nodes of the last update.
-  const PackedNodes<Scalar>& nodes() const { return nodes_; }
 
  private:
   template <class Out>
@@ -127,6 +125,7 @@ class MeshSkin {
   void skinDirections();
   PointView<float> normalsOut();
   PointView<float> tangentsOut();
+  void prepareArrays(std::size_t vertexCount);
 
   std::shared_ptr<const SkinBinding<Scalar>> binding_;
   SkinOptions options_;

@@ -143,7 +143,7 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
     work.edges = edges->data();
     work.runEdges = stencils->runEdges().data();
   }
-  kernels::DirectionFactors planes;
+  kernels::DirectionPlanes planes;
   planes.kind = factors.areNormals() ? kernels::Direction::Normal : kernels::Direction::Tangent;
   for (int k = 0; k < 3; ++k) planes.factors[k] = factors.plane(k);
   const bool direct = skin_tasks::isDirect<float>(out, order);

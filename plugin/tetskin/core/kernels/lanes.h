@@ -4,8 +4,8 @@
 // Internal to the kernels: several numbers side by side. Included once for each instruction set, in a namespace of its
 // own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h.
 //
-// With GCC and Clang the compiler's vector types do the work, on every processor; elsewhere lanes are one wide and the
-// same code is plain C++.
+// With GCC and Clang the compiler's vector types do the work, on every processor. Without them, or with
+// TETSKIN_PLAIN_LANES, the same code is plain C++: lanes are one wide, and only padded points are four numbers.
 #pragma once
 
 #if defined(__AVX2__)
@@ -17,10 +17,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(TETSKIN_PLAIN_LANES)
 #define TETSKIN_VECTOR_TYPES 1
 #endif
-#if defined(__has_builtin)
+#if defined(TETSKIN_VECTOR_TYPES) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector) && __has_builtin(__builtin_convertvector)
 #define TETSKIN_SHUFFLES 1
 #endif
@@ -137,12 +137,6 @@ Lanes<S, W> laneNumbers() {
     return v;
   }
 }
-
-/// A number of lanes as a type, to choose code by.
-template <int W>
-struct Width {
-  static constexpr int value = W;
-};
 
 /// Cross product of two padded points: with r turning x y z into y z x, it is r(a r(b) - r(a) b).
 template <class S>

@@ -36,7 +36,7 @@ struct Work {
   std::size_t lastRun = 0;                  ///< one past
   const float* weights[3] = {};             ///< planes, by slot
   const float* closest[3] = {};             ///< planes, by slot - closestBase; QuadraticOutside only
-  std::uint32_t closestBase = 0;            ///
+  std::uint32_t closestBase = 0;            ///< the first slot outside
   const Scalar* nodes = nullptr;            ///< current positions, 4 scalars a node, relative to some point nearby
   const Scalar* edges = nullptr;            ///< 4 scalars a cage edge: its vector, and its rest length
   const std::uint32_t* runEdges = nullptr;  ///< by run: its 6 edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
@@ -73,7 +73,7 @@ struct EdgeWork {
 /// Directions carried by the map's gradient. Normals: the sum of factor k times the cross product of the other two
 /// columns; tangents: the sum of factor k times column k.
 enum class Direction { Normal, Tangent };
-struct DirectionFactors {
+struct DirectionPlanes {
   Direction kind = Direction::Normal;
   const float* factors[3] = {};  ///< planes, by slot, of the padded length of weights
 };
@@ -84,11 +84,15 @@ struct DirectionFactors {
 template <class Scalar>
 struct Table {
   void (*positions)(const Work<Scalar>&, const Scalar shift[3], Scalar* out, Extent<Scalar>*);
-  void (*directions)(const Work<Scalar>&, const DirectionFactors&, float* out);
+  void (*directions)(const Work<Scalar>&, const DirectionPlanes&, float* out);
   void (*gradients)(const GradientWork<Scalar>&);
   void (*edges)(const EdgeWork<Scalar>&);
 };
 
+namespace plain {
+extern const Table<float> tableFloat;
+extern const Table<double> tableDouble;
+}  // namespace plain
 namespace baseline {
 extern const Table<float> tableFloat;
 extern const Table<double> tableDouble;
