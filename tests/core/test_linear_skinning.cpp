@@ -38,7 +38,7 @@ class LinearSkinning : public testing::Test {
     PackedNodes<NodeScalar> packed(nodes.size());
     EXPECT_EQ(packed.pack(viewOf(nodes)), nodes.size());
     Surface surface(embedding.vertexCount());
-    scratch.resize(3 * surface.size());
+    scratch.resize(scratchSize(surface.size()));
     skinLinear(embedding, packed, Output{viewOf(surface), VertexOrder::Mesh, origin, scratch.data()}, &bounds);
     return surface;
   }

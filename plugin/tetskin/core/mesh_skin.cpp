@@ -36,6 +36,10 @@ Status checkTargets(const SkinOptions& options, std::size_t vertexCount) {
     return {StatusCode::InvalidOption,
             "previous positions are kept of the skin's own array only; leave out the target, or keep them yourself"};
   }
+  if (options.skipStill && (options.bounds || options.previousPositions)) {
+    return {StatusCode::InvalidOption,
+            "bounds and previous positions need all positions; leave them out, or do not skip what is still"};
+  }
   const auto check = [&](std::size_t size, const char* what) -> Status {
     if (size == vertexCount) return {};
     return {StatusCode::SizeMismatch, "the " + std::string(what) + " holds " + std::to_string(size) +
@@ -183,9 +187,10 @@ void MeshSkin<Scalar>::prepareArrays(std::size_t vertexCount) {
     positions_.resize(vertexCount);
     positionsDirect = direct(viewOf(positions_));
   }
-  if (!positionsDirect) scratch_.resize(3 * vertexCount);
+  if (!positionsDirect) scratch_.resize(scratchSize(vertexCount));
   if (options_.previousPositions) previous_.resize(vertexCount);
   if (options_.interpolation == Interpolation::Quadratic) edges_ = EdgeVectors<Scalar>(*binding_->quadratic);
+  if (options_.skipStill) moved_ = MovedParts<Scalar>(binding_->embedding, stencils());
 
   if (options_.normals == Normals::None) return;
   if (options_.normalTarget.empty()) normals_.resize(vertexCount);
@@ -196,7 +201,7 @@ void MeshSkin<Scalar>::prepareArrays(std::size_t vertexCount) {
   }
   const auto scratchFor = [&](PointView<float> out, const Eigen::Vector3f& unit,
                               std::vector<Eigen::Vector3f>& scratch) {
-    if (!skin_tasks::isDirect<float>(out, options_.order)) scratch.assign(vertexCount, unit);
+    if (!skin_tasks::isDirect<float>(out, options_.order)) scratch.assign(vertexCount + 1, unit);
   };
   scratchFor(normalsOut(), Eigen::Vector3f::UnitY(), normalScratch_);
   if (!binding_->tangents) return;
@@ -210,7 +215,8 @@ std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
   assert(bound() && nodes.size() == nodeCount());
   held_ = true;
   if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) return bad;
-  if (options_.interpolation == Interpolation::Quadratic) edges_.update(*binding_->quadratic, nodes_, options_.threads);
+  if (options_.skipStill && !moved_.update(binding_->embedding, stencils(), nodes)) return nodeCount();
+  if (stencils()) edges_.update(*stencils(), nodes_, options_.threads, moved_.gradients());
   if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
     skinTo(*single);
   } else if (const auto* twice = std::get_if<PointView<double>>(&options_.target)) {
@@ -227,11 +233,11 @@ template <class Scalar>
 template <class Out>
 void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
   const SkinOutput<Scalar, Out> output{out, options_.order, options_.origin.template cast<Scalar>(),
-                                       scratch_.empty() ? nullptr : scratch_.data()};
+                                       scratch_.empty() ? nullptr : scratch_.data(), moved_.runs()};
   Box3* bounds = options_.bounds ? &bounds_ : nullptr;
   const Embedding& embedding = binding_->embedding;
-  if (options_.interpolation == Interpolation::Quadratic) {
-    skinQuadratic(embedding, *binding_->quadratic, edges_, nodes_, output, bounds, options_.threads);
+  if (stencils()) {
+    skinQuadratic(embedding, *stencils(), edges_, nodes_, output, bounds, options_.threads);
   } else {
     skinLinear(embedding, nodes_, output, bounds, options_.threads);
   }
@@ -243,14 +249,19 @@ void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
 
 template <class Scalar>
 void MeshSkin<Scalar>::skinDirections() {
-  const bool quadratic = options_.interpolation == Interpolation::Quadratic;
   const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& scratch) {
-    transformDirections(binding_->embedding, factors, quadratic ? &*binding_->quadratic : nullptr,
-                        quadratic ? &edges_ : nullptr, nodes_, out, options_.order,
-                        scratch.empty() ? nullptr : scratch.front().data(), options_.threads);
+    transformDirections(binding_->embedding, factors, stencils(), stencils() ? &edges_ : nullptr, nodes_, out,
+                        options_.order, scratch.empty() ? nullptr : scratch.front().data(), options_.threads,
+                        moved_.runs());
   };
   carry(*binding_->normals, normalsOut(), normalScratch_);
   if (binding_->tangents) carry(*binding_->tangents, tangentsOut(), tangentScratch_);
+}
+
+/// Those of a quadratic surface; null for a linear one.
+template <class Scalar>
+const QuadraticStencils<Scalar>* MeshSkin<Scalar>::stencils() const {
+  return options_.interpolation == Interpolation::Quadratic ? &*binding_->quadratic : nullptr;
 }
 
 template <class Scalar>

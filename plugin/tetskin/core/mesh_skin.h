@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/moved_parts.h>
 #include <tetskin/core/normals.h>
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/quadratic_skinning.h>
@@ -43,6 +44,10 @@ struct SkinOptions {
   bool bounds = true;
   /// Keep the positions of the update before, for motion vectors. Of the skin's own array only: not with `target`.
   bool previousPositions = false;
+  /// Leave out the parts of the mesh whose nodes have not moved since the last update, such as those around pinned
+  /// nodes; recomputed normals only if none has. The targets must then keep what was last written to them. Pays where
+  /// much of a body stays in place to the last bit. Not with `bounds` or `previousPositions`, which need all positions.
+  bool skipStill = false;
   SkinTarget target;
   /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
   /// the sign that belongs to them (TriangleMesh::tangents) does not change.
@@ -117,12 +122,16 @@ class MeshSkin {
   const Box3& bounds() const { return bounds_; }
   const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
   /// For the updates to come.
-  void setOrigin(const Eigen::Vector3d& origin) { options_.origin = origin; }
+  void setOrigin(const Eigen::Vector3d& origin) {
+    options_.origin = origin;
+    moved_.forget();
+  }
 
  private:
   template <class Out>
   void skinTo(PointView<Out> out);
   void skinDirections();
+  const QuadraticStencils<Scalar>* stencils() const;
   PointView<float> normalsOut();
   PointView<float> tangentsOut();
   void prepareArrays(std::size_t vertexCount);
@@ -131,6 +140,7 @@ class MeshSkin {
   SkinOptions options_;
   PackedNodes<Scalar> nodes_;
   EdgeVectors<Scalar> edges_;
+  MovedParts<Scalar> moved_;  ///< with skipStill
   std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_, previous_;
   bool held_ = true;  ///< previous_ is not to be shown
   std::vector<Eigen::Vector3f> normals_, tangents_;

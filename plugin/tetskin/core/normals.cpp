@@ -133,7 +133,7 @@ template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
                          const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order, float* scratch,
-                         ParallelFor* threads) {
+                         ParallelFor* threads, const std::uint8_t* movedRuns) {
   assert(out.size() == embedding.vertexCount());
   assert(!stencils == !edges);
   if (embedding.empty()) return;
@@ -149,13 +149,13 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   const bool direct = skin_tasks::isDirect<float>(out, order);
   std::vector<float> ownScratch;
   if (!direct && !scratch) {
-    ownScratch.resize(3 * out.size());
+    ownScratch.resize(scratchSize(out.size()));
     scratch = ownScratch.data();
     skin_tasks::collect(embedding, out, order, scratch);
   }
   float* sorted = direct ? out.data() : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
-  skin_tasks::forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {
+  skin_tasks::forAllRuns(embedding, work, movedRuns, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {
     table.directions(part, planes, sorted);
   });
   if (!direct) skin_tasks::place(embedding, sorted, out, order, threads);
@@ -238,7 +238,7 @@ void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> po
 #define TETSKIN_INSTANTIATE(Scalar)                                                                              \
   template void transformDirections(const Embedding&, const DirectionFactors&, const QuadraticStencils<Scalar>*, \
                                     const EdgeVectors<Scalar>*, const PackedNodes<Scalar>&, PointView<float>,    \
-                                    VertexOrder, float*, ParallelFor*);
+                                    VertexOrder, float*, ParallelFor*, const std::uint8_t*);
 TETSKIN_INSTANTIATE(float)
 TETSKIN_INSTANTIATE(double)
 #undef TETSKIN_INSTANTIATE

@@ -59,14 +59,17 @@ class DirectionFactors {
 ///
 /// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
 /// out              vertexCount x 3, caller-owned, any stride; world space
-/// scratch          3 x vertexCount floats of the caller's, unit vectors to begin with, which nobody else writes; not
+/// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
+/// writes; not
 ///                  needed for `out` side by side in sorted order; without it, some is allocated, and `out` is read
+/// movedRuns        as in SkinOutput
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
                          const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
-                         float* scratch = nullptr, ParallelFor* threads = nullptr);
+                         float* scratch = nullptr, ParallelFor* threads = nullptr,
+                         const std::uint8_t* movedRuns = nullptr);
 
 /// Which triangles make the normal of which vertices: vertices at one position share theirs, unless their rest normals
 /// differ by more than an angle (a hard edge). Immutable, shared like an Embedding.

@@ -109,7 +109,7 @@ EdgeVectors<Scalar>::EdgeVectors(const QuadraticStencils<Scalar>& stencils)
 
 template <class Scalar>
 void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
-                                 ParallelFor* threads) {
+                                 ParallelFor* threads, const std::uint8_t* movedGradients) {
   using namespace skin_tasks;
   assert(edges_.size() == 4 * stencils.edgeCount());
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
@@ -123,9 +123,13 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
   std::size_t tasks = taskCount(stencils.gradientCount(), kGradientsPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {
     kernels::GradientWork<Scalar> part = gradients;
-    part.firstNode = firstItem(stencils.gradientCount(), tasks, task);
-    part.lastNode = firstItem(stencils.gradientCount(), tasks, task + 1);
-    table.gradients(part);
+    const std::size_t first = firstItem(stencils.gradientCount(), tasks, task);
+    const std::size_t last = firstItem(stencils.gradientCount(), tasks, task + 1);
+    forMarked(movedGradients, first, last, [&](std::size_t begin, std::size_t end) {
+      part.firstNode = begin;
+      part.lastNode = end;
+      table.gradients(part);
+    });
   });
 
   kernels::EdgeWork<Scalar> edges;

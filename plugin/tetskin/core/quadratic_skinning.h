@@ -74,8 +74,9 @@ class EdgeVectors {
 
   /// Computes them for the current nodes. No vector is longer than half its edge's rest length. Cost O(nodes x
   /// neighbours + edges), no allocation.
+  /// movedGradients  by gradient: 0 where it stays as it is; null: all are computed
   void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
-              ParallelFor* threads = nullptr);
+              ParallelFor* threads = nullptr, const std::uint8_t* movedGradients = nullptr);
 
   /// 4 an edge: its vector, and its rest length
   const Scalar* data() const { return edges_.data(); }

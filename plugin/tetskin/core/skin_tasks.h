@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 namespace tetskin::skin_tasks {
 
@@ -35,19 +36,37 @@ inline std::size_t runFrom(const Embedding& embedding, std::size_t slot) {
   return static_cast<std::size_t>(found - runs.begin());
 }
 
-/// Calls kernel(work, task) for all runs: in pieces that lie inside or outside as a whole where the surface differs.
-/// `work` is the common part of all pieces.
+/// Calls piece(begin, end) for every stretch of items in [first, last) that are marked; for all in one if there are no
+/// marks.
+template <class Piece>
+void forMarked(const std::uint8_t* marks, std::size_t first, std::size_t last, Piece&& piece) {
+  while (first < last) {
+    if (marks)
+      first =
+          static_cast<std::size_t>(std::find_if(marks + first, marks + last, [](auto m) { return m != 0; }) - marks);
+    const std::size_t end =
+        marks ? static_cast<std::size_t>(std::find(marks + first, marks + last, std::uint8_t{0}) - marks) : last;
+    if (first < end) piece(first, end);
+    first = end;
+  }
+}
+
+/// Calls kernel(work, task) for all runs that have moved: in pieces that lie inside or outside as a whole where the
+/// surface differs. `work` is the common part of all pieces.
+/// movedRuns  see MovedParts; null: all
 template <class Scalar, class Kernel>
-void forAllRuns(const Embedding& embedding, const kernels::Work<Scalar>& work, ParallelFor* threads, Kernel&& kernel) {
+void forAllRuns(const Embedding& embedding, const kernels::Work<Scalar>& work, const std::uint8_t* movedRuns,
+                ParallelFor* threads, Kernel&& kernel) {
   const std::size_t tasks = taskCount(embedding.vertexCount());
   runTasks(threads, tasks, [&](std::size_t task) {
     const auto piece = [&](std::size_t first, std::size_t last, kernels::Surface surface) {
-      if (first >= last) return;
       kernels::Work<Scalar> part = work;
       part.surface = surface;
-      part.firstRun = first;
-      part.lastRun = last;
-      kernel(part, task);
+      forMarked(movedRuns, first, last, [&](std::size_t begin, std::size_t end) {
+        part.firstRun = begin;
+        part.lastRun = end;
+        kernel(part, task);
+      });
     };
     const std::size_t first = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task));
     const std::size_t last = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task + 1));
@@ -78,16 +97,31 @@ bool isDirect(PointView<Out> points, VertexOrder order) {
   return std::is_same_v<Scalar, Out> && order == VertexOrder::Sorted && points.strideBytes() == 3 * sizeof(Out);
 }
 
-/// From the order of the slots to where the points shall be. To read at random and write in order is much the faster
-/// way round: a processor need not wait for what it reads ahead.
+/// To points of the same type side by side. Each is moved with the scalar behind it, which the next one overwrites: one
+/// load and one store, where three scalars would take two of each. So `sorted` has a scalar more, the points have not.
+template <class Scalar>
+void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
+                  Scalar* points) {
+  for (std::size_t k = first; k + 1 < last; ++k) {
+    std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 4 * sizeof(Scalar));
+  }
+  const std::size_t k = last - 1;
+  std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 3 * sizeof(Scalar));
+}
+
+/// From the order of the slots, in `scratchSize` scalars, to where the points shall be. To read at random and write in
+/// order is much the faster way round: a processor need not wait for what it reads ahead.
 template <class From, class Out>
 void place(const Embedding& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
            ParallelFor* threads) {
   const std::uint32_t* slots = order == VertexOrder::Mesh ? embedding.vertexSlots().data() : nullptr;
   const std::size_t tasks = taskCount(points.size());
   runTasks(threads, tasks, [&](std::size_t task) {
-    const std::size_t last = firstItem(points.size(), tasks, task + 1);
-    for (std::size_t k = firstItem(points.size(), tasks, task); k < last; ++k) {
+    const std::size_t first = firstItem(points.size(), tasks, task), last = firstItem(points.size(), tasks, task + 1);
+    if constexpr (std::is_same_v<From, Out>) {
+      if (slots && points.strideBytes() == 3 * sizeof(Out)) return placeTightly(slots, sorted, first, last, points[0]);
+    }
+    for (std::size_t k = first; k < last; ++k) {
       const From* from = sorted + 3 * (slots ? static_cast<std::size_t>(slots[k]) : k);
       Out* to = points[k];
       for (int i = 0; i < 3; ++i) to[i] = static_cast<Out>(from[i]);
@@ -115,11 +149,12 @@ void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const P
   std::array<kernels::Extent<Scalar>, kMostTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
   const bool direct = isDirect<Scalar>(output.points, output.order);
-  std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : 3 * output.points.size());
+  assert(!output.movedRuns || (!bounds && (direct || output.scratch)));
+  std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : scratchSize(output.points.size()));
   Scalar* scratch = output.scratch ? output.scratch : ownScratch.data();
   Scalar* sorted = direct ? reinterpret_cast<Scalar*>(output.points.data()) : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
-  forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
+  forAllRuns(embedding, work, output.movedRuns, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
     table.positions(part, shift.data(), sorted, bounds ? &extents[task] : nullptr);
   });
   if (!direct) place(embedding, sorted, output.points, output.order, threads);

@@ -42,6 +42,11 @@ class PackedNodes {
   Point mean_ = Point::Zero();
 };
 
+/// Scalars of scratch memory for so many vertices.
+constexpr std::size_t scratchSize(std::size_t vertexCount) {
+  return 3 * vertexCount + 1;
+}
+
 /// Where and how the points of an update are written.
 template <class Scalar, class Out>
 struct SkinOutput {
@@ -51,9 +56,13 @@ struct SkinOutput {
   /// World space; subtracted from every result before it is rounded to Out: a local origin near the body keeps float
   /// output exact far from the world's origin.
   Eigen::Matrix<Scalar, 3, 1> origin = Eigen::Matrix<Scalar, 3, 1>::Zero();
-  /// 3 x vertexCount scalars of the caller's, overwritten. Points of Scalar side by side in sorted order are written
-  /// directly and need none; all others are put in their places from here. Without it, some is allocated each time.
+  /// scratchSize(vertexCount) scalars of the caller's, overwritten. Points of Scalar side by side in sorted order are
+  /// written directly and need none; all others are put in their places from here. Without it, some is allocated each
+  /// time.
   Scalar* scratch = nullptr;
+  /// By run of the embedding: 0 leaves its points as they are, in the points if they are written directly, otherwise in
+  /// the scratch, which must then be the one of the update before. Null: all are written. Not with bounds.
+  const std::uint8_t* movedRuns = nullptr;
 };
 
 }  // namespace tetskin
