@@ -46,18 +46,14 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// One skin for every body of a crowd.
+/// A skin for each of some bodies.
 struct Skins {
-  Crowd* crowd = nullptr;
   std::vector<SoftBodySkin> all;
+  std::vector<SoftBodySkin*> pointers;  ///< to all of them
   double bindMs = 0.0;
   std::size_t bytes = 0;  ///< of the skins and their bindings
 
-  std::size_t update() {
-    std::size_t updated = 0;
-    for (SoftBodySkin& skin : all) updated += skin.update() == UpdateStatus::Updated;
-    return updated;
-  }
+  std::size_t update() { return SoftBodySkin::updateAll(pointers.data(), pointers.size()); }
 };
 
 /// All that a scene may leave out is left out.
@@ -69,17 +65,18 @@ SkinOptions leastOptions() {
 }
 
 /// bindingEach  for every body a binding of its own; otherwise they share the first one's
-Skins bindAll(Crowd& crowd, const Model& model, const SkinOptions& options, bool bindingEach = false) {
+Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const SkinOptions& options,
+              bool bindingEach) {
   const std::size_t before = heapBytes();
   const auto start = Clock::now();
   Skins skins;
-  skins.crowd = &crowd;
-  skins.all.resize(crowd.size());
-  for (std::size_t i = 0; i < crowd.size(); ++i) {
+  skins.all.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    skins.pointers.push_back(&skins.all[i]);
     if (i == 0 || bindingEach) {
-      require(skins.all[i].bind(crowd.body(i), model.cage, model.mesh, options).status);
+      require(skins.all[i].bind(*bodies[i], model.cage, model.mesh, options).status);
     } else {
-      require(skins.all[i].bind(crowd.body(i), skins.all[0].binding(), options));
+      require(skins.all[i].bind(*bodies[i], skins.all[0].binding(), options));
     }
   }
   skins.bindMs = microsecondsSince(start) / 1000.0;
@@ -94,24 +91,26 @@ struct Variant {
   bool asleep = false;  ///< nine of ten bodies
   bool hidden = false;  ///< the skins of as many
   bool everySubstep = false;
-  bool stepped = true;  ///< false: the frame had no substep
+  bool stepped = true;     ///< false: the frame had no substep
+  bool halfStill = false;  ///< one half of every body has not moved
   std::vector<double> microseconds = {};
   std::size_t updates = 0;  ///< in one frame
 };
 
 /// Brings bodies and skins into the variant's state, and does all that is to be done once: the last update of a body
 /// that fell asleep, the update of a skin that is shown again.
-void prepare(Variant& variant) {
-  variant.skins->crowd->setAsleep(variant.asleep);
+void prepare(Variant& variant, Crowd& crowd) {
+  crowd.setAsleep(variant.asleep);
   for (std::size_t i = 0; i < variant.skins->all.size(); ++i) {
     variant.skins->all[i].setVisible(Crowd::alwaysAwake(i) || !variant.hidden);
   }
   (void)variant.skins->update();
 }
 
-void timeOnce(Variant& variant, CacheEviction& caches) {
-  prepare(variant);
-  const int substeps = variant.stepped ? Crowd::kSubsteps : variant.skins->crowd->stepNothing();
+void timeOnce(Variant& variant, Crowd& crowd, CacheEviction& caches) {
+  prepare(variant, crowd);
+  if (variant.halfStill) crowd.moveHalf();
+  const int substeps = variant.stepped ? Crowd::kSubsteps : crowd.stepNothing();
   variant.updates = 0;
   double total = 0.0;
   for (int k = 0; k < (variant.everySubstep ? substeps : 1); ++k) {
@@ -156,6 +155,10 @@ constexpr Row kRows[] = {
     {"sorted order", "alone", "mesh order"},
     {"bounds on", "bounds", nullptr},
     {"bounds off", "alone", "bounds on"},
+    {"previous positions on", "previous", nullptr},
+    {"previous positions off", "alone", "previous positions on"},
+    {"half still, all computed", "half still", nullptr},
+    {"half still, skipped", "half skipped", "half still, all computed"},
 };
 
 class Measurement {
@@ -164,7 +167,10 @@ class Measurement {
     requireFit(checkFit(), options.model);
     scaleToCrowd(model_.cage, model_.mesh);
     crowd_ = std::make_unique<Crowd>(model_.cage, options.bodies);
-    alone_ = std::make_unique<Crowd>(model_.cage, Crowd::awakeAmong(options.bodies));
+    for (std::size_t i = 0; i < crowd_->size(); ++i) {
+      everybody_.push_back(&crowd_->body(i));
+      if (Crowd::alwaysAwake(i)) awake_.push_back(&crowd_->body(i));
+    }
   }
 
   nlohmann::ordered_json run() {
@@ -173,7 +179,7 @@ class Measurement {
     Progress progress("measuring", options_.frames, options_.quiet);
     for (int frame = 0; frame < options_.frames; ++frame) {
       for (Variant& variant : variants_) {
-        timeOnce(variant, caches_);
+        timeOnce(variant, *crowd_, caches_);
         if (variant.updates != expectedUpdates(variant)) {
           throw CheckFailed(variant.name + ": " + std::to_string(variant.updates) + " updates in a frame instead of " +
                             std::to_string(expectedUpdates(variant)));
@@ -190,31 +196,36 @@ class Measurement {
     return embed(model_.cage, model_.mesh, {}, embedding);
   }
 
-  Skins* add(Crowd& crowd, const SkinOptions& skin, bool bindingEach = false) {
-    skins_.push_back(bindAll(crowd, model_, skin, bindingEach));
+  Skins* add(const std::vector<btSoftBody*>& bodies, const SkinOptions& skin, bool bindingEach = false) {
+    skins_.push_back(bindAll(bodies, model_, skin, bindingEach));
     return &skins_.back();
   }
 
   void addVariants() {
     const SkinOptions least = leastOptions();
-    Skins* everybody = add(*crowd_, least);
+    Skins* everybody = add(everybody_, least);
+    variants_.push_back({"alone", add(awake_, least)});
     variants_.push_back({"asleep", everybody, true});
-    variants_.push_back({"alone", add(*alone_, least)});
     variants_.push_back({"every substep", everybody, false, false, true});
     variants_.push_back({"once a step", everybody});
     variants_.push_back({"hidden", everybody, false, true});
     variants_.push_back({"no substep", everybody, false, false, false, false});
-    variants_.push_back({"binding each", add(*crowd_, least, true)});
+    variants_.push_back({"binding each", add(everybody_, least, true)});
     const auto aloneWith = [&](const char* name, const auto& change) {
       SkinOptions skin = least;
       change(skin);
-      variants_.push_back({name, add(*alone_, skin)});
+      variants_.push_back({name, add(awake_, skin)});
     };
     aloneWith("recomputed", [](SkinOptions& skin) { skin.normals = Normals::Recomputed; });
     aloneWith("transformed", [](SkinOptions& skin) { skin.normals = Normals::Transformed; });
     aloneWith("quadratic", [](SkinOptions& skin) { skin.interpolation = Interpolation::Quadratic; });
     aloneWith("mesh order", [](SkinOptions& skin) { skin.order = VertexOrder::Mesh; });
     aloneWith("bounds", [](SkinOptions& skin) { skin.bounds = true; });
+    aloneWith("previous", [](SkinOptions& skin) { skin.previousPositions = true; });
+    aloneWith("half still", [](SkinOptions&) {});
+    variants_.back().halfStill = true;
+    aloneWith("half skipped", [](SkinOptions& skin) { skin.skipStill = true; });
+    variants_.back().halfStill = true;
   }
 
   /// Bullet's own cost, and the proof that sleep is Bullet's: its steps leave sleeping bodies asleep and in place.
@@ -276,7 +287,7 @@ class Measurement {
     json["nodes"] = model_.cage.nodeCount();
     json["tets"] = model_.cage.tetCount();
     json["bodies"] = crowd_->size();
-    json["asleep"] = crowd_->size() - alone_->size();
+    json["asleep"] = everybody_.size() - awake_.size();
     json["substeps"] = Crowd::kSubsteps;
     json["frames"] = options_.frames;
     json["evicted_bytes"] = caches_.bytes();
@@ -288,8 +299,9 @@ class Measurement {
 
   const CrowdOptions& options_;
   Model model_;
-  std::unique_ptr<Crowd> crowd_, alone_;
-  std::deque<Skins> skins_;  // gone before the bodies
+  std::unique_ptr<Crowd> crowd_;
+  std::vector<btSoftBody*> everybody_, awake_;  ///< the always awake ones
+  std::deque<Skins> skins_;                     // gone before the bodies
   std::vector<Variant> variants_;
   CacheEviction caches_;
   double simulationMs_ = 0.0;

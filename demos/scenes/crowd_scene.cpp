@@ -39,6 +39,17 @@ Crowd::Crowd(const TetMesh& cage, std::size_t bodies) {
     body.value()->body().translate(toBullet(kSpacing * kSize * where));
     bodies_.push_back(std::move(body).value());
   }
+  const double middle = boundingBox(cage.nodes).center().x();
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    if (cage.nodes[n].x() > middle) half_.push_back(static_cast<int>(n));
+  }
+}
+
+void Crowd::moveHalf() {
+  for (const auto& added : bodies_) {
+    for (const int n : half_) added->body().m_nodes[n].m_x += btVector3(0, nudge_, 0);
+  }
+  nudge_ = -nudge_;
 }
 
 void Crowd::setAsleep(bool asleep) {

@@ -37,8 +37,12 @@ class Crowd {
   int step();
   /// A frame in which no time passes; returns the number of substeps: 0.
   int stepNothing();
+  /// Moves the nodes in one half of every body a little, back at the next call; the other half stays.
+  void moveHalf();
 
  private:
+  std::vector<int> half_;  ///< nodes above the middle of the cage's x
+  btScalar nudge_ = btScalar(0.01 * kSize);
   DeformableWorld world_;
   std::vector<std::unique_ptr<DeformableBody>> bodies_;
 };

@@ -77,14 +77,16 @@ TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
   EXPECT_EQ(count("no substep, no update", "bodies_updated"), 0);
   EXPECT_EQ(count("awake bodies alone", "bodies"), 4);
   EXPECT_EQ(count("one binding for all", "bodies"), 40);
-  for (const char* name : {"normals recomputed", "normals transformed", "normals none", "quadratic", "linear",
-                           "bounds on", "bounds off", "mesh order", "sorted order"}) {
+  for (const char* name :
+       {"normals recomputed", "normals transformed", "normals none", "quadratic", "linear", "bounds on", "bounds off",
+        "mesh order", "sorted order", "previous positions on", "half still, all computed", "half still, skipped"}) {
     EXPECT_EQ(count(name, "bodies_updated"), 4) << name;
   }
   if (scenes::heapBytes() > 0) {
     EXPECT_LT(2 * count("one binding for all", "bytes"), count("a binding each", "bytes"));
     EXPECT_LT(count("normals none", "bytes"), count("normals transformed", "bytes"));
     EXPECT_LT(count("linear", "bytes"), count("quadratic", "bytes"));
+    EXPECT_LT(count("previous positions off", "bytes"), count("previous positions on", "bytes"));
   }
 }
 

@@ -63,7 +63,13 @@ class SoftBodySkin {
   /// sleeping body costs a look at a few of its nodes, a hidden skin nothing.
   UpdateStatus update();
 
-  /// A sleeping body is looked at in the four nodes of one tet only, one of which at least moves in every teleport,
+  /// `update` for several skins in turn, which asks memory early for what the next ones will read: with many sleeping
+  /// bodies, waiting for that is most of the cost. Returns how many were updated.
+  /// skins     `count` of them, not null, of any bodies
+  /// statuses  if given, receives as many: what `update` did
+  static std::size_t updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses = nullptr);
+
+  /// A sleeping body is looked at in four nodes only, not in one plane, one of which at least moves in every teleport,
   /// turn, stretch or other affine motion of the whole body. After moving other nodes by hand, say so: the next update
   /// will not skip.
   void markMoved() { moved_ = true; }
@@ -99,8 +105,14 @@ class SoftBodySkin {
     btScalar position[3] = {};
   };
 
+  UpdateStatus decide();
+  static void decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses);
+  UpdateStatus compute();
   void sample();
   bool samplesUnmoved() const;
+  void fetch() const;
+  void fetchBody() const;
+  void fetchNodes() const;
 
   // What a sleeping or hidden body needs comes first and side by side: its cost is that of fetching it from memory.
   const btSoftBody* body_ = nullptr;

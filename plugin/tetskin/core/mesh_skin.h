@@ -136,13 +136,14 @@ class MeshSkin {
   PointView<float> tangentsOut();
   void prepareArrays(std::size_t vertexCount);
 
+  // What a skin that is skipped needs comes first: see SoftBodySkin.
   std::shared_ptr<const SkinBinding<Scalar>> binding_;
+  bool held_ = true;  ///< previous_ is not to be shown
   SkinOptions options_;
   PackedNodes<Scalar> nodes_;
   EdgeVectors<Scalar> edges_;
   MovedParts<Scalar> moved_;  ///< with skipStill
   std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_, previous_;
-  bool held_ = true;  ///< previous_ is not to be shown
   std::vector<Eigen::Vector3f> normals_, tangents_;
   std::vector<float> faceVectors_;
   std::vector<Scalar> scratch_;  ///< of positions, where they are not written directly
