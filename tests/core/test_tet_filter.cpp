@@ -3,6 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/instruction_set.h>
 #include <tetskin/core/tet_filter.h>
 
 #include <algorithm>
@@ -50,6 +51,22 @@ std::set<std::uint32_t> selected(const TetFilter& filter, const SpatialHash& has
   return points;
 }
 
+/// With the kernels of each instruction set.
+class TetFilters : public testing::TestWithParam<InstructionSet> {
+ protected:
+  TetFilters() { setInstructionSet(GetParam()); }
+  ~TetFilters() override { setInstructionSet(before_); }
+
+ private:
+  InstructionSet before_ = instructionSet();
+};
+
+INSTANTIATE_TEST_SUITE_P(All, TetFilters, testing::ValuesIn(availableInstructionSets()), [](const auto& test) {
+  std::string name = toString(test.param);
+  name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+  return name;
+});
+
 /// Every point that the double decision puts in the tet passes; and, within a box of the tet's own, few others.
 void expectNothingLost(const TetCorners& p, const Box3& frame) {
   if (isFlat(p)) return;
@@ -85,7 +102,7 @@ Box3 boxOf(const TetCorners& p, double border) {
   return {box.min() - b, box.max() + b};
 }
 
-TEST(TetFilter, LosesNothingAtAnyScaleAndOffset) {
+TEST_P(TetFilters, LosesNothingAtAnyScaleAndOffset) {
   for (const TetCorners& unit : oddTets()) {
     for (const double scale : {1e-12, 1e-3, 1.0, 1e12}) {
       for (const double offset : {0.0, 1e3, -1e6}) {
@@ -97,7 +114,7 @@ TEST(TetFilter, LosesNothingAtAnyScaleAndOffset) {
   }
 }
 
-TEST(TetFilter, LosesNothingInABoxManyTimesItsSize) {
+TEST_P(TetFilters, LosesNothingInABoxManyTimesItsSize) {
   for (const TetCorners& p : oddTets()) {
     for (const double border : {1e3, 1e6, 1e12, 1e29}) {
       expectNothingLost(p, boxOf(p, border));
@@ -107,7 +124,7 @@ TEST(TetFilter, LosesNothingInABoxManyTimesItsSize) {
   }
 }
 
-TEST(TetFilter, LetsFewStrangersPass) {
+TEST_P(TetFilters, LetsFewStrangersPass) {
   const TetCorners p = oddTets()[0];
   const Points points = test::randomPoints(20000, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 53);
   const BarycentricMap map(p);
@@ -118,7 +135,7 @@ TEST(TetFilter, LetsFewStrangersPass) {
   EXPECT_LE(passed.size(), static_cast<std::size_t>(inside) + 10);
 }
 
-TEST(TetFilter, SelectsOnlyWithinTheRanges) {
+TEST_P(TetFilters, SelectsOnlyWithinTheRanges) {
   const TetCorners p = oddTets()[0];
   const Points points(11, Eigen::Vector3d::Constant(0.2));
   const SpatialHash hash(viewOf(points), boxOf(p, 0.1), 1.0);

@@ -49,9 +49,9 @@ void reportFit(const Embedding::Fit& fit, EmbedReport& report) {
   report.worstDistance = fit.worstDistance;
   report.worstVertex = fit.worstVertex;
   report.worstBarycentric = fit.worstBarycentric;
-  const double diagonal = report.meshBox.diagonal().norm();
+  const double diagonal = report.meshBox.diagonal().norm(), restError = std::sqrt(fit.restErrorSquared);
   // One point, or all at one place: compare with the cage instead of dividing by nothing.
-  report.restErrorMax = fit.restError / (diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm());
+  report.restErrorMax = restError / (diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm());
 }
 
 Status tooFar(const EmbedReport& report, double maxDistance) {
@@ -159,6 +159,43 @@ std::vector<VertexBinding> Embedding::bindings() const {
   return result;
 }
 
+namespace {
+
+/// Some vertices of one tet, coordinate by coordinate, so that loops take several at a time.
+struct VertexBlock {
+  static constexpr std::size_t kSize = 16;
+  double x[kSize], y[kSize], z[kSize];
+  double smallest[kSize];  ///< weight
+  double error[kSize];     ///< squared distance of what the rounded weights give
+
+  void set(std::size_t k, const Eigen::Vector3d& vertex) {
+    x[k] = vertex.x();
+    y[k] = vertex.y();
+    z[k] = vertex.z();
+  }
+  void weigh(const BarycentricMap& map, std::size_t count, const std::array<float*, 3>& weights) {
+    for (std::size_t k = 0; k < count; ++k) {
+      double b[4];
+      map.weightsAt(x[k], y[k], z[k], b[0], b[1], b[2], b[3]);
+      for (std::size_t i = 0; i < 3; ++i) weights[i][k] = static_cast<float>(b[i]);
+      const double low = b[0] < b[1] ? b[0] : b[1], high = b[2] < b[3] ? b[2] : b[3];
+      smallest[k] = low < high ? low : high;
+    }
+  }
+  void measure(const TetCorners& p, std::size_t count, const std::array<float*, 3>& weights) {
+    const Eigen::Vector3d edges[3] = {p[0] - p[3], p[1] - p[3], p[2] - p[3]};
+    for (std::size_t k = 0; k < count; ++k) {
+      const double b0 = weights[0][k], b1 = weights[1][k], b2 = weights[2][k];
+      const double dx = p[3].x() + b0 * edges[0].x() + b1 * edges[1].x() + b2 * edges[2].x() - x[k];
+      const double dy = p[3].y() + b0 * edges[0].y() + b1 * edges[1].y() + b2 * edges[2].y() - y[k];
+      const double dz = p[3].z() + b0 * edges[0].z() + b1 * edges[1].z() + b2 * edges[2].z() - z[k];
+      error[k] = dx * dx + dy * dy + dz * dz;
+    }
+  }
+};
+
+}  // namespace
+
 Embedding Embedding::fromTets(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
                               Fit* fit) {
   assert(vertices.size() == tetOf.size());
@@ -179,31 +216,23 @@ Embedding Embedding::fromTets(const TetMesh& cage, PointReader vertices, const s
 void Embedding::bindRun(std::size_t run, const std::array<Eigen::Vector3d, 4>& corners, PointReader vertices,
                         Fit& fit) {
   const BarycentricMap map(corners);
-  const double* p3 = corners[3].data();
-  double edges[3][3];  // from the fourth node
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) edges[k][i] = corners[k][i] - p3[i];
-  }
-  double smallestWeight = -fit.worstBarycentric, errorSquared = 0.0;
+  VertexBlock block;
   const std::uint32_t last = runs_[run + 1].firstSlot;
-  for (std::uint32_t slot = runs_[run].firstSlot; slot < last; ++slot) {
-    const Eigen::Vector3d vertex = vertices[slotVertices_[slot]];
-    double b[4];
-    map.weightsAt(vertex.x(), vertex.y(), vertex.z(), b[0], b[1], b[2], b[3]);
-    float w[3];
-    for (std::size_t k = 0; k < 3; ++k) weights_[k][slot] = w[k] = static_cast<float>(b[k]);
-    smallestWeight = std::min(std::min(smallestWeight, std::min(b[0], b[1])), std::min(b[2], b[3]));
-    double squared = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const double error = p3[i] + w[0] * edges[0][i] + w[1] * edges[1][i] + w[2] * edges[2][i] - vertex[i];
-      squared += error * error;
+  for (std::uint32_t slot = runs_[run].firstSlot; slot < last; slot += VertexBlock::kSize) {
+    const std::size_t count = std::min<std::size_t>(last - slot, VertexBlock::kSize);
+    for (std::size_t k = 0; k < count; ++k) block.set(k, vertices[slotVertices_[slot + k]]);
+    block.weigh(map, count, {&weights_[0][slot], &weights_[1][slot], &weights_[2][slot]});
+    block.measure(corners, count, {&weights_[0][slot], &weights_[1][slot], &weights_[2][slot]});
+    for (std::size_t k = 0; k < count; ++k) {
+      fit.worstBarycentric = std::max(fit.worstBarycentric, -block.smallest[k]);
+      // Weights beyond float's range make the error infinite or NaN.
+      const double error = block.error[k] < HUGE_VAL ? block.error[k] : HUGE_VAL;
+      fit.restErrorSquared = std::max(fit.restErrorSquared, error);
     }
-    // Weights beyond float's range make the error infinite or NaN.
-    if (!(squared <= errorSquared)) errorSquared = std::isfinite(squared) ? squared : HUGE_VAL;
-    if (slot >= insideCount_) bindOutside(slot, corners, map, vertex, fit);
+    for (std::uint32_t s = std::max<std::uint32_t>(slot, insideCount_); s < slot + count; ++s) {
+      bindOutside(s, corners, map, vertices[slotVertices_[s]], fit);
+    }
   }
-  fit.worstBarycentric = -smallestWeight;
-  fit.restError = std::max(fit.restError, std::sqrt(errorSquared));
 }
 
 /// What a vertex outside has besides: its closest point.

@@ -129,7 +129,7 @@ class Embedding {
     double worstDistance = 0.0;      ///< rest space
     std::size_t worstVertex = 0;     ///< the first, if there are several
     double worstBarycentric = -1.0;  ///< dimensionless
-    double restError = 0.0;          ///< rest space; infinite where weights overflow a float
+    double restErrorSquared = 0.0;   ///< rest space; infinite where weights overflow a float
   };
 
   /// Sorts vertices by tet and computes their weights.

@@ -90,6 +90,17 @@ const kernels::Table<Scalar>& kernels::tableInUse() {
   return pick<Scalar>(plain::tableFloat, plain::tableDouble);
 }
 
+kernels::SelectEntries kernels::selectInUse() {
+#ifdef TETSKIN_X86_KERNELS
+  if (instructionSet() == InstructionSet::Avx512) return avx512::select;
+  if (instructionSet() == InstructionSet::Avx2) return avx2::select;
+#endif
+#ifdef TETSKIN_VECTOR_KERNELS
+  if (instructionSet() == InstructionSet::Baseline) return baseline::select;
+#endif
+  return plain::select;
+}
+
 template const kernels::Table<float>& kernels::tableInUse();
 template const kernels::Table<double>& kernels::tableInUse();
 

@@ -34,25 +34,23 @@ struct OutsideEdges {
       placeOf[v] = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(v);
     }
-    std::vector<std::array<std::uint32_t, 2>> pairs;
+    std::vector<std::array<std::uint32_t, 2>> pairs;  // of each edge twice, once from either triangle
     for (const auto& t : triangles) {
       for (int k = 0; k < 3; ++k) {
+        if (tetOf[static_cast<std::size_t>(t[k])] >= 0) continue;
         const std::uint32_t a = first[static_cast<std::size_t>(t[k])];
-        if (placeOf[a] == kInside) continue;
         for (int step = 1; step <= 2; ++step) {
           const std::uint32_t b = first[static_cast<std::size_t>(t[(k + step) % 3])];
           if (b != a) pairs.push_back({placeOf[a], b});
         }
       }
     }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     starts.assign(vertices.size() + 1, 0);
-    for (const auto& [place, end] : pairs) {
-      ++starts[place + 1];
-      ends.push_back(end);
-    }
-    for (std::size_t k = 0; k < vertices.size(); ++k) starts[k + 1] += starts[k];
+    for (const auto& pair : pairs) ++starts[pair[0]];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : starts) start = sum += start;  // now one past each vertex's last
+    ends.resize(pairs.size());
+    for (std::size_t k = pairs.size(); k-- > 0;) ends[--starts[pairs[k][0]]] = pairs[k][1];
   }
 };
 

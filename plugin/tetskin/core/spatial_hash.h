@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/kernels/search_kernels.h>
 #include <tetskin/core/point_reader.h>
 #include <tetskin/core/types.h>
 
@@ -29,12 +30,9 @@ class SpatialHash {
     Eigen::Vector3d centre;
     double scale;
   };
-  /// The entries [first, last).
-  struct Range {
-    std::uint32_t first, last;
-  };
+  using Range = kernels::EntryRange;
   /// Entry coordinates are followed by this many zeros, so that kernels may read whole blocks.
-  static constexpr std::size_t kPadding = 8;
+  static constexpr std::size_t kPadding = kernels::kMostLanes;
 
   /// points     finite, any number
   /// box        points outside of it are left out

@@ -5,6 +5,7 @@
 // What is left is decided in double.
 #pragma once
 
+#include <tetskin/core/kernels/search_kernels.h>
 #include <tetskin/core/spatial_hash.h>
 #include <tetskin/core/tet_geometry.h>
 
@@ -31,9 +32,8 @@ class TetFilter {
   /// Distances are weights over these gradient lengths.
   TetFilter(const BarycentricMap& map, const SpatialHash::Frame& frame, const Eigen::Vector4d& lengths);
 
-  /// The bound of plane i at a point of the frame is normal . point + constant.
-  float normal_[4][3];
-  float constant_[4];
+  /// The planes only: the bound of plane i at a point of the frame is normal . point + constant.
+  kernels::FilterWork planes_;
 };
 
 }  // namespace tetskin

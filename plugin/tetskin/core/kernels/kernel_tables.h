@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to skinning: the kernels for this processor.
+// Internal: the kernels for this processor, those of `instructionSet()`.
 #pragma once
 
+#include <tetskin/core/kernels/search_kernels.h>
 #include <tetskin/core/kernels/skinning_kernels.h>
 
 namespace tetskin::kernels {
 
-/// Those of `instructionSet()`.
 template <class Scalar>
 const Table<Scalar>& tableInUse();
+SelectEntries selectInUse();
 
 }  // namespace tetskin::kernels

@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #define TETSKIN_KERNELS plain
 #define TETSKIN_PLAIN_LANES
+#include <tetskin/core/kernels/filter_loop.h>
 #include <tetskin/core/kernels/skinning_loops.h>
 
 namespace tetskin::kernels::plain {
 
 const Table<float> tableFloat = table<float, 1>();
 const Table<double> tableDouble = table<double, 1>();
+const SelectEntries select = selectEntries<1>;
 
 }  // namespace tetskin::kernels::plain

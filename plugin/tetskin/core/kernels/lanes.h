@@ -10,6 +10,8 @@
 
 #if defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 #include <math.h>
 #include <string.h>
@@ -163,6 +165,25 @@ bool allBetween(const Lanes<S, W>& v, S low, S high) {
     std::uint64_t both = words[0];
     for (std::size_t k = 1; k < sizeof between / sizeof(std::uint64_t); ++k) both &= words[k];
     return both == ~std::uint64_t{0};
+  }
+}
+
+/// A bit a lane: is it below 0?
+template <int W>
+unsigned negativeLanes(const Lanes<float, W>& v) {
+  if constexpr (W == 1) {
+    return v < 0.0f ? 1u : 0u;
+  } else {
+    const auto negative = v < 0.0f;  // all bits set where it holds
+#if defined(__AVX2__)
+    if constexpr (W == 8) return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(negative)));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(negative)));
+#endif
+    unsigned bits = 0;
+    for (int i = 0; i < W; ++i) bits |= negative[i] ? 1u << i : 0u;
+    return bits;
   }
 }
 

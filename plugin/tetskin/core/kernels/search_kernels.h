@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to embedding: the inner loop of the search, compiled once for each instruction set and chosen at run time;
+// what skinning_kernels.h says of its header holds for this one too.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tetskin::kernels {
+
+/// The entries [first, last) of a hash.
+struct EntryRange {
+  std::uint32_t first, last;
+};
+
+/// Which entries are not beyond any of four planes?
+struct FilterWork {
+  const EntryRange* ranges = nullptr;
+  std::size_t rangeCount = 0;
+  const float* points[3] = {};    ///< planes of coordinates, by entry; kMostLanes may be read beyond the last
+  const float* limits = nullptr;  ///< by entry, likewise: how far beyond a plane counts as not beyond; null: not at all
+  float normal[4][3] = {};
+  float constant[4] = {};
+};
+constexpr std::size_t kMostLanes = 16;
+
+/// Writes the entries for which no normal . point + constant + limit is below 0, in order, and returns their number.
+/// kMostLanes more may be written.
+using SelectEntries = std::size_t (*)(const FilterWork&, std::uint32_t* selected);
+
+namespace plain {
+extern const SelectEntries select;
+}
+namespace baseline {
+extern const SelectEntries select;
+}
+namespace avx2 {
+extern const SelectEntries select;
+}
+namespace avx512 {
+extern const SelectEntries select;
+}
+
+}  // namespace tetskin::kernels
