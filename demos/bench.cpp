@@ -5,6 +5,7 @@
 // standard output: Bullet prints there.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <benchmark/benchmark.h>
+#include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body_builder.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/io/tet_mesh_writer.h>
@@ -57,6 +58,11 @@ void attachTetskin(State& state, const Bench& bench) {
 
 void attachBullet(State& state, const Bench& bench) {
   for (auto _ : state) btSoftBodyHelpers::interpolateBarycentricWeights(bench.body.get());
+}
+
+/// Ours in Bullet's place: the render nodes of a body, ready for Bullet's own updates.
+void attachRenderNodes(State& state, const Bench& bench) {
+  for (auto _ : state) require(bindRenderNodes(*bench.body).status);
 }
 
 /// One whole update as an application calls it, into its own buffer of floats.
@@ -304,6 +310,7 @@ void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
   };
   add("Attach/tetskin", attachTetskin, benchmark::kMillisecond);
   add("Attach/bullet", attachBullet, benchmark::kMillisecond);
+  add("Attach/render_nodes", attachRenderNodes, benchmark::kMillisecond);
   add("Update/linear", updateLinear, benchmark::kMicrosecond);
   add("Update/linear_original", updateLinearOriginal, benchmark::kMicrosecond);
   add("Update/quadratic", updateQuadratic, benchmark::kMicrosecond);
