@@ -280,12 +280,7 @@ class Measurement {
   }
 
   nlohmann::ordered_json summarise() const {
-    nlohmann::ordered_json json;
-    json["model"] = model_.name;
-    json["vertices"] = model_.mesh.vertexCount();
-    json["triangles"] = model_.mesh.triangleCount();
-    json["nodes"] = model_.cage.nodeCount();
-    json["tets"] = model_.cage.tetCount();
+    nlohmann::ordered_json json = summaryOf(model_);
     json["bodies"] = crowd_->size();
     json["asleep"] = everybody_.size() - awake_.size();
     json["substeps"] = Crowd::kSubsteps;

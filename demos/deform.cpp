@@ -74,22 +74,13 @@ void writeSurface(const MeshSkin<double>& skin, const ObjLayout& layout, const s
 
 nlohmann::ordered_json summarise(const Model& model, const DeformCommand& command, const EmbedReport& fit,
                                  const QuadraticReport& quadratic, double updateUs) {
-  nlohmann::ordered_json json;
-  json["model"] = model.name;
-  json["vertices"] = model.mesh.vertexCount();
-  json["triangles"] = model.mesh.triangleCount();
-  json["nodes"] = model.cage.nodeCount();
-  json["tets"] = model.cage.tetCount();
-  json["inside"] = fit.inside;
-  json["outside"] = fit.outside;
+  nlohmann::ordered_json json = summaryOf(model, fit);
   json["worst_distance"] = fit.worstDistance;
   json["worst_vertex"] = fit.worstVertex;
-  json["rest_error_max"] = fit.restErrorMax;
   if (command.skin.interpolation == Interpolation::Quadratic) {
     json["thin_nodes"] = quadratic.thinNodes;
     json["plain_nodes"] = quadratic.plainNodes;
   }
-  json["attach_ms"] = fit.milliseconds;
   json["update_us"] = updateUs;
   json["out"] = command.output;
   return json;

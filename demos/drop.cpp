@@ -98,17 +98,7 @@ nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, con
                                  const Totals& totals) {
   const double steps = std::max(1, totals.frames - 1);
   const double limit = scene.floorY() - scene.margin() - kFloorTolerance * scene.size();
-  nlohmann::ordered_json json;
-  json["model"] = model.name;
-  json["vertices"] = model.mesh.vertexCount();
-  json["triangles"] = model.mesh.triangleCount();
-  json["nodes"] = model.cage.nodeCount();
-  json["tets"] = model.cage.tetCount();
-  json["inside"] = scene.fit().inside;
-  json["outside"] = scene.fit().outside;
-  json["unbound"] = scene.fit().unbound;
-  json["attach_ms"] = scene.fit().milliseconds;
-  json["rest_error_max"] = scene.fit().restErrorMax;
+  nlohmann::ordered_json json = summaryOf(model, scene.fit());
   json["simulation_ms_per_frame"] = totals.simulationMs / steps;
   json["skin_us_per_frame"] = totals.skinUs / steps;
   json["write_ms_per_frame"] = totals.writeMs / std::max(1, totals.written);

@@ -165,14 +165,7 @@ Totals simulate(TwistScene& scene, const Model& model, const TwistOptions& optio
 nlohmann::ordered_json summarise(const Model& model, const TwistScene& scene, const TwistOptions& options,
                                  const Accuracy& linear, const Accuracy& quadratic, const Totals& totals) {
   const double steps = std::max(1, totals.frames - 1);
-  nlohmann::ordered_json json;
-  json["model"] = model.name;
-  json["vertices"] = model.mesh.vertexCount();
-  json["triangles"] = model.mesh.triangleCount();
-  json["nodes"] = model.cage.nodeCount();
-  json["tets"] = model.cage.tetCount();
-  json["inside"] = scene.fit().inside;
-  json["outside"] = scene.fit().outside;
+  nlohmann::ordered_json json = summaryOf(model, scene.fit());
   json["error_linear_rms"] = linear.rms;
   json["error_quadratic_rms"] = quadratic.rms;
   json["error_linear_max"] = linear.max;

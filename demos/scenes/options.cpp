@@ -130,6 +130,26 @@ Model loadModel(const ModelOptions& options) {
   return model;
 }
 
+nlohmann::ordered_json summaryOf(const Model& model) {
+  nlohmann::ordered_json json;
+  json["model"] = model.name;
+  json["vertices"] = model.mesh.vertexCount();
+  json["triangles"] = model.mesh.triangleCount();
+  json["nodes"] = model.cage.nodeCount();
+  json["tets"] = model.cage.tetCount();
+  return json;
+}
+
+nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit) {
+  nlohmann::ordered_json json = summaryOf(model);
+  json["inside"] = fit.inside;
+  json["outside"] = fit.outside;
+  json["unbound"] = fit.unbound;
+  json["attach_ms"] = fit.milliseconds;
+  json["rest_error_max"] = fit.restErrorMax;
+  return json;
+}
+
 void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
   std::ofstream file(path);
   file << json.dump(2) << "\n";

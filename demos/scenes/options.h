@@ -76,6 +76,9 @@ TetMesh loadCage(const std::string& path);
 TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 /// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);
+/// The head of a summary: what the model is, and how the mesh fits the cage.
+nlohmann::ordered_json summaryOf(const Model& model);
+nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit);
 void writeJson(const nlohmann::ordered_json& json, const std::string& path);
 
 /// Throws InputError if mesh and cage cannot belong together: see EmbedReport.
