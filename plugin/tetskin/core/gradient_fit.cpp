@@ -4,7 +4,9 @@
 #include <tetskin/core/tet_geometry.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <map>
+#include <utility>
 
 namespace tetskin {
 namespace {
@@ -14,6 +16,11 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr int kMostRings = 4;
 constexpr std::size_t kFewestNeighbours = 12;
+/// So many of the nearest are enough where they make a fit: beside all of two rings, a third less work every step, and
+/// a surface a sixth closer to smooth maps, as what is far away tells less of the gradient here. Those at the same
+/// distance come along, so that the stencils of a lattice are as symmetric as it is.
+constexpr std::size_t kNearNeighbours = 18;
+constexpr double kSameDistance = 1.0 + 1e-6;
 /// Smallest over largest singular value from which a fit counts as well conditioned. Where none is, smaller singular
 /// values are taken for 0: kept down to 1e-3, those of an uneven layer one cell thick make errors of four times the
 /// linear surface's; 0.05 would cost regular cages half of their gain.
@@ -130,17 +137,20 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
     const bool last = ring == kMostRings || found_.size() == before;
     if (!last && found_.size() <= kFewestNeighbours) continue;
 
-    std::vector<Eigen::Vector3d> offsets;
-    for (std::size_t k = 1; k < found_.size(); ++k) offsets.push_back(cage_.nodes[found_[k]] - cage_.nodes[node]);
-    const Fit fit(std::move(offsets));
-    const bool full = fit.wellConditioned() && found_.size() > kFewestNeighbours;
+    std::vector<std::uint32_t> neighbours = nearNeighbours();
+    Fit fit(offsetsOf(neighbours));
+    if (!fit.wellConditioned() && neighbours.size() + 1 < found_.size()) {
+      neighbours.assign(found_.begin() + 1, found_.end());
+      fit = Fit(offsetsOf(neighbours));
+    }
+    const bool full = fit.wellConditioned() && neighbours.size() >= kFewestNeighbours;
     if (!last && !full) continue;
 
     GradientStencil stencil;
     stencil.factors = fit.gradientFactors();
     if (!fit.makeAffineExact(stencil.factors)) break;
     stencil.kind = full ? GradientStencil::Kind::Full : GradientStencil::Kind::Thin;
-    stencil.nodes.assign(found_.begin() + 1, found_.end());
+    stencil.nodes = std::move(neighbours);
     Eigen::Vector3d own = Eigen::Vector3d::Zero();  // offsets are from the node itself
     for (const Eigen::Vector3d& g : stencil.factors) own -= g;
     stencil.nodes.push_back(node);
@@ -148,6 +158,27 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
     return stencil;
   }
   return plainStencil(node);
+}
+
+/// Of those found, the nearest ones.
+std::vector<std::uint32_t> CageNeighbours::nearNeighbours() const {
+  std::vector<std::pair<double, std::uint32_t>> byDistance;
+  for (std::size_t k = 1; k < found_.size(); ++k) {
+    byDistance.emplace_back((cage_.nodes[found_[k]] - cage_.nodes[found_[0]]).norm(), found_[k]);
+  }
+  std::sort(byDistance.begin(), byDistance.end());
+  std::vector<std::uint32_t> near;
+  for (const auto& [distance, other] : byDistance) {
+    if (near.size() >= kNearNeighbours && distance > kSameDistance * byDistance[kNearNeighbours - 1].first) break;
+    near.push_back(other);
+  }
+  return near;
+}
+
+std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::uint32_t>& neighbours) const {
+  std::vector<Eigen::Vector3d> offsets;
+  for (const std::uint32_t other : neighbours) offsets.push_back(cage_.nodes[other] - cage_.nodes[found_[0]]);
+  return offsets;
 }
 
 /// Appends the nodes that share an edge with those found from place `from` on. A node at the very place of the first

@@ -33,6 +33,8 @@ class CageNeighbours {
 
  private:
   void addRing(std::size_t from);
+  std::vector<std::uint32_t> nearNeighbours() const;
+  std::vector<Eigen::Vector3d> offsetsOf(const std::vector<std::uint32_t>& neighbours) const;
   GradientStencil plainStencil(std::uint32_t node) const;
 
   const TetMesh& cage_;

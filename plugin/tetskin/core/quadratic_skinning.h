@@ -30,9 +30,9 @@ struct QuadraticReport {
 /// with X rest and x current nodes (D. James, "Phong Deformation", 2020, doi 10.1145/3386569.3392371, written with one
 /// vector per cage edge). The published node gradients F_i, averages of the tets' gradients, are not exact for
 /// quadratic maps; these are, wherever the cage allows: least-squares fits of first and second derivatives over the
-/// rings of nodes around node i, corrected so that every affine map is exact.
+/// nearest nodes around node i, corrected so that every affine map is exact.
 ///
-/// Memory: some 27 x 16 bytes a node that carries vertices (28 in double), 40 bytes an edge of such a tet.
+/// Memory: some 20 x 16 bytes a node that carries vertices (28 in double), 40 bytes an edge of such a tet.
 template <class Scalar>
 class QuadraticStencils {
  public:
