@@ -241,6 +241,12 @@ TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre) {
   return mesh;
 }
 
+Box3 around(const TetMesh& cage, double factor) {
+  const Box3 box = boundingBox(cage.nodes);
+  const Eigen::Vector3d half = 0.5 * factor * box.sizes();
+  return {box.center() - half, box.center() + half};
+}
+
 std::vector<Eigen::Vector3d> randomPoints(std::size_t count, const Box3& box, unsigned seed) {
   std::mt19937 generator(seed);
   std::vector<Eigen::Vector3d> points(count);

@@ -63,6 +63,9 @@ TetMesh overlappingCage();
 /// Closed sphere of about 2 x rings x rings triangles.
 TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre);
 
+/// The box of the cage's nodes, scaled about its centre.
+Box3 around(const TetMesh& cage, double factor);
+
 /// Points uniform in a box, reproducible.
 std::vector<Eigen::Vector3d> randomPoints(std::size_t count, const Box3& box, unsigned seed);
 
