@@ -33,4 +33,8 @@ void DeformableWorld::addStatic(std::unique_ptr<btCollisionShape> shape, const b
   obstacles_.push_back(std::move(body));
 }
 
+void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {
+  node.m_v = (toBullet(target) - node.m_x) / static_cast<btScalar>(seconds);
+}
+
 }  // namespace tetskin::scenes

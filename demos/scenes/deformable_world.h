@@ -8,6 +8,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <btBulletCollisionCommon.h>
+#include <tetskin/bullet/soft_body_adapter.h>
 
 #include <memory>
 #include <vector>
@@ -40,5 +41,9 @@ class DeformableWorld {
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> obstacles_;
 };
+
+/// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
+/// changes that by no force: so it arrives, and its neighbours feel it move.
+void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds);
 
 }  // namespace tetskin::scenes

@@ -9,21 +9,39 @@
 
 namespace tetskin::scenes {
 
-Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)), total_(total), quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
+Progress::Progress(std::string what, int total, bool quiet, std::FILE* stream)
+    : what_(std::move(what)), total_(total), quiet_(quiet), stream_(stream), terminal_(isatty(fileno(stream)) != 0) {}
 
 void Progress::show(int done) {
+  shown_ = done;
   if (quiet_) return;
   constexpr int kWidth = 40;
+  const auto share = [&](int parts) { return static_cast<int>(static_cast<long long>(parts) * done / total_); };
   if (terminal_) {
-    const std::string bar(static_cast<std::size_t>(kWidth * done / total_), '#');
-    std::printf("\r%s [%-*s] %d/%d", what_.c_str(), kWidth, bar.c_str(), done, total_);
-    if (done == total_) std::printf("\n");
-  } else if (const int tenth = 10 * done / total_; tenth > lastTenth_) {
-    std::printf("%s %d/%d\n", what_.c_str(), done, total_);
+    const std::string bar(static_cast<std::size_t>(share(kWidth)), '#');
+    std::fprintf(stream_, "\r%s [%-*s] %d/%d%s\033[K", what_.c_str(), kWidth, bar.c_str(), done, total_,
+                 timeLeft(done).c_str());
+    if (done == total_) std::fprintf(stream_, "\n");
+  } else if (const int tenth = share(10); tenth > lastTenth_) {
+    std::fprintf(stream_, "%s %d/%d%s\n", what_.c_str(), done, total_, timeLeft(done).c_str());
     lastTenth_ = tenth;
   }
-  std::fflush(stdout);
+  std::fflush(stream_);
+}
+
+void Progress::skip(int done) {
+  skipped_ += done - shown_;
+  show(done);
+}
+
+std::string Progress::timeLeft(int done) const {
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const int worked = done - skipped_;
+  if (elapsed < 1.0 || worked <= 0 || done == total_) return {};
+  const auto seconds = static_cast<long long>(elapsed * (total_ - done) / worked + 0.5);
+  char text[48];
+  std::snprintf(text, sizeof text, ", %lld:%02lld left", seconds / 60, seconds % 60);
+  return text;
 }
 
 }  // namespace tetskin::scenes

@@ -2,23 +2,33 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <chrono>
+#include <cstdio>
 #include <string>
 
 namespace tetskin::scenes {
 
-/// Tells how far long work has come on standard output: a bar on a terminal, a line every tenth otherwise.
+/// Tells how far long work has come, and how long it will take: a bar on a terminal, a line every tenth otherwise.
 class Progress {
  public:
   /// total  steps of the whole work, above 0; quiet: prints nothing
-  Progress(std::string what, int total, bool quiet);
+  Progress(std::string what, int total, bool quiet, std::FILE* stream = stdout);
   /// After step `done` of total.
   void show(int done);
+  /// Likewise, but the steps since the last call took no time: they had been done before, and tell nothing of the rest.
+  void skip(int done);
 
  private:
+  std::string timeLeft(int done) const;
+
   std::string what_;
   int total_;
   bool quiet_;
+  std::FILE* stream_;
   bool terminal_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  int shown_ = 0;
+  int skipped_ = 0;
   int lastTenth_ = 0;
 };
 

@@ -85,13 +85,10 @@ bool TwistScene::step(double turn) {
   return updateSkins();
 }
 
-/// Bullet moves a node without inverse mass by its velocity, and changes that by no force: so it arrives where it
-/// shall, substep by substep, and its neighbours feel it move.
 void TwistScene::moveHeldNodes(double seconds) {
-  btSoftBody& body = body_->body();
   for (const int n : held_) {
-    const btVector3 target = toBullet(scale_ * (twist_.point(cage_.nodes[n]) - twist_.centre));
-    body.m_nodes[n].m_v = (target - body.m_nodes[n].m_x) / static_cast<btScalar>(seconds);
+    const Eigen::Vector3d target = scale_ * (twist_.point(cage_.nodes[n]) - twist_.centre);
+    moveHeldNode(body_->body().m_nodes[n], target, seconds);
   }
 }
 

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Patrick Roache, "Perspective: A Method for Uniform Reporting of Grid Refinement Studies", J. Fluids Eng. 116, 1994
+#include "report/advice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin::report {
+namespace {
+
+constexpr double kLeastOrder = 0.5, kMostOrder = 3.0;
+
+/// The rows of one kind, coarsest first.
+std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material) {
+  std::vector<Row> found;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(found), [&](const Row& row) {
+    return row.isChoice() && row.interpolation == interpolation && row.material == material;
+  });
+  std::sort(found.begin(), found.end(), [](const Row& a, const Row& b) { return a.edge > b.edge; });
+  return found;
+}
+
+double orderOf(double coarseError, double fineError, const Row& coarse, const Row& fine) {
+  if (!(coarseError > 0.0 && fineError > 0.0) || !(coarse.edge > fine.edge)) return 0.0;
+  return std::log(coarseError / fineError) / std::log(coarse.edge / fine.edge);
+}
+
+}  // namespace
+
+void markPareto(std::vector<Row>& rows) {
+  for (Row& row : rows) {
+    row.pareto = row.isChoice() && std::none_of(rows.begin(), rows.end(), [&](const Row& other) {
+                   return other.isChoice() && other.totalMs <= row.totalMs &&
+                          other.errorTotalRms <= row.errorTotalRms &&
+                          (other.totalMs < row.totalMs || other.errorTotalRms < row.errorTotalRms);
+                 });
+  }
+}
+
+std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
+                                          const std::string& material) {
+  const std::vector<Row> sorted = series(rows, interpolation, material);
+  std::vector<ObservedOrder> orders;
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    const Row &coarse = sorted[k - 1], &fine = sorted[k];
+    orders.push_back({coarse.tets, fine.tets, orderOf(coarse.errorTotalRms, fine.errorTotalRms, coarse, fine),
+                      orderOf(coarse.errorEmbeddingRms, fine.errorEmbeddingRms, coarse, fine)});
+  }
+  return orders;
+}
+
+double referenceError(const std::vector<Row>& rows) {
+  const std::vector<Row> sorted = series(rows, "quadratic", "same");
+  const auto reference = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.isReference(); });
+  if (sorted.size() < 2 || reference == rows.end()) return 0.0;
+  const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();
+  if (!(fine.edge > reference->edge)) return 0.0;
+  const auto gap = [&](const Row& row, double p) { return std::pow(row.edge, p) - std::pow(reference->edge, p); };
+  double low = kLeastOrder, high = kMostOrder;
+  for (int k = 0; k < 60; ++k) {
+    const double p = 0.5 * (low + high);
+    // The quotient of the gaps grows with the order.
+    (gap(coarse, p) / gap(fine, p) < coarse.errorTotalRms / fine.errorTotalRms ? low : high) = p;
+  }
+  return fine.errorTotalRms * std::pow(reference->edge, low) / gap(fine, low);
+}
+
+const Row* cheapest(const std::vector<Row>& rows, double targetError) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (!row.isChoice() || row.errorTotalRms > targetError) continue;
+    if (!best || row.totalMs < best->totalMs) best = &row;
+  }
+  return best;
+}
+
+}  // namespace tetskin::report

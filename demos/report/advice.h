@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What the rows of one scene say together.
+#pragma once
+
+#include <vector>
+
+#include "report/report_row.h"
+
+namespace tetskin::report {
+
+/// Marks the rows that no other choice beats in both time and error. The reference and Bullet's own path take no part.
+void markPareto(std::vector<Row>& rows);
+
+/// The power of the cage's edge with which an error falls, from each cage to the next finer one.
+struct ObservedOrder {
+  double coarseTets = 0, fineTets = 0;
+  double total = 0, embedding = 0;  ///< 0 where an error is 0
+};
+/// Of the rows with this interpolation and material.
+std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
+                                          const std::string& material);
+
+/// What the reference itself is wrong by, estimated from the two finest cages of the same material: if errors against
+/// the truth fall as C edge^p, then those against the reference are C (edge^p - reference edge^p), and two of them give
+/// C and p (which is kept between 0.5 and 3). 0 if there are fewer than two.
+double referenceError(const std::vector<Row>& rows);
+
+/// The fastest choice of at most this total error (RMS); null if there is none.
+const Row* cheapest(const std::vector<Row>& rows, double targetError);
+
+}  // namespace tetskin::report

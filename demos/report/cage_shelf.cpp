@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/cage_shelf.h"
+
+#include "scenes/options.h"
+
+namespace tetskin::report {
+
+double meanEdge(const TetMesh& cage) {
+  const std::vector<std::array<int, 2>> edges = uniqueEdges(cage);
+  double sum = 0.0;
+  for (const auto& [a, b] : edges) sum += (cage.nodes[a] - cage.nodes[b]).norm();
+  return sum / static_cast<double>(edges.size());
+}
+
+const TetMesh& CageShelf::cage(std::size_t tets) {
+  const auto found = cages_.find(tets);
+  if (found != cages_.end()) return found->second;
+  CageOptions options;
+  options.targetTets = tets;
+  Result<TetMesh> cage = buildCage(mesh_, options);
+  scenes::require(cage.status());
+  return cages_[tets] = std::move(cage).value();
+}
+
+const StiffnessCalibration& CageShelf::calibration(std::size_t tets, double poissonRatio) {
+  const auto found = calibrations_.find(tets);
+  if (found != calibrations_.end()) return found->second;
+  CalibrationOptions options;
+  options.poissonRatio = poissonRatio;
+  Result<StiffnessCalibration> calibration = calibrateStiffness(cage(tets), options);
+  scenes::require(calibration.status());
+  return calibrations_[tets] = std::move(calibration).value();
+}
+
+}  // namespace tetskin::report

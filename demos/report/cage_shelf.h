@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/cage/stiffness_calibration.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <cstddef>
+#include <map>
+
+namespace tetskin::report {
+
+/// Mean length of a cage's edges.
+double meanEdge(const TetMesh& cage);
+
+/// The cages of one mesh by the number of tets wished for, each built, and calibrated, when it is first asked for.
+/// Throws InputError.
+class CageShelf {
+ public:
+  /// mesh  outlives this object
+  explicit CageShelf(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+  const TetMesh& cage(std::size_t tets);
+  const StiffnessCalibration& calibration(std::size_t tets, double poissonRatio);
+
+ private:
+  const TriangleMesh& mesh_;
+  std::map<std::size_t, TetMesh> cages_;
+  std::map<std::size_t, StiffnessCalibration> calibrations_;
+};
+
+}  // namespace tetskin::report

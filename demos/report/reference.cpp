@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/reference.h"
+
+#include "scenes/options.h"
+
+namespace tetskin::report {
+namespace {
+
+/// Points carried by a cage in double.
+MeshSkin<double> skinOf(const TetMesh& cage, const TriangleMesh& points, Normals normals) {
+  SkinOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  options.normals = normals;
+  MeshSkin<double> skin;
+  scenes::require(skin.bind(cage, points, options).status);
+  return skin;
+}
+
+void update(MeshSkin<double>& skin, const std::vector<Eigen::Vector3f>& nodes) {
+  const Points current = toDouble(nodes);
+  if (skin.update(viewOf(current)) < nodes.size()) throw scenes::InputError("the reference is not finite");
+}
+
+}  // namespace
+
+Points toDouble(const std::vector<Eigen::Vector3f>& nodes) {
+  Points result;
+  result.reserve(nodes.size());
+  for (const Eigen::Vector3f& p : nodes) result.emplace_back(p.cast<double>());
+  return result;
+}
+
+SimulatedReference::SimulatedReference(const TriangleMesh& mesh, const TetMesh& cage, const Trajectory& trajectory)
+    : cage_(cage), trajectory_(trajectory), skin_(skinOf(cage, mesh, Normals::Transformed)) {}
+
+const ReferenceSurface& SimulatedReference::surfaceAt(int frame) {
+  update(skin_, trajectory_[static_cast<std::size_t>(frame)]);
+  const std::size_t count = skin_.positions().size();
+  surface_.positions.resize(count);
+  surface_.normals.resize(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    surface_.positions[v] = Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]);
+    surface_.normals[v] = Eigen::Map<const Eigen::Vector3f>(skin_.normals()[v]).cast<double>();
+  }
+  return surface_;
+}
+
+Trajectory SimulatedReference::drive(const TetMesh& cage) const {
+  TriangleMesh points;
+  points.positions = cage.nodes;
+  MeshSkin<double> skin = skinOf(cage_, points, Normals::None);
+  Trajectory driven;
+  for (const std::vector<Eigen::Vector3f>& nodes : trajectory_) {
+    update(skin, nodes);
+    std::vector<Eigen::Vector3f>& frame = driven.emplace_back();
+    frame.reserve(cage.nodeCount());
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+      frame.emplace_back(Eigen::Map<const Eigen::Vector3d>(skin.positions()[n]).cast<float>());
+    }
+  }
+  return driven;
+}
+
+ExactReference::ExactReference(const TriangleMesh& mesh, const scenes::Twist& map)
+    : mesh_(mesh), map_(map), restNormals_(restNormals(mesh)) {}
+
+scenes::Twist ExactReference::twistAt(int frame) const {
+  scenes::Twist twist = map_;
+  if (frame == 0) twist.turn = 0.0;
+  return twist;
+}
+
+const ReferenceSurface& ExactReference::surfaceAt(int frame) {
+  const scenes::Twist twist = twistAt(frame);
+  surface_.positions.clear();
+  surface_.normals.clear();
+  for (std::size_t v = 0; v < mesh_.vertexCount(); ++v) {
+    surface_.positions.push_back(twist.point(mesh_.positions[v]));
+    surface_.normals.push_back(twist.normal(mesh_.positions[v], restNormals_[v]));
+  }
+  return surface_;
+}
+
+Trajectory ExactReference::drive(const TetMesh& cage) const {
+  Trajectory driven(2);
+  for (int frame = 0; frame < 2; ++frame) {
+    for (const Eigen::Vector3d& p : cage.nodes) driven[frame].emplace_back(twistAt(frame).point(p).cast<float>());
+  }
+  return driven;
+}
+
+}  // namespace tetskin::report

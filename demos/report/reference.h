@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What surfaces and cages are compared with.
+#pragma once
+
+#include <tetskin/core/mesh_skin.h>
+
+#include <vector>
+
+#include "report/scene_setup.h"
+#include "report/simulation.h"
+
+namespace tetskin::report {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Current positions and unit normals of the mesh's vertices, vertexCount each.
+struct ReferenceSurface {
+  Points positions, normals;
+};
+
+/// The motion that counts as right, of any point of the rest body.
+class Reference {
+ public:
+  virtual ~Reference() = default;
+  /// Frames, the first at rest.
+  virtual int frameCount() const = 0;
+  /// Valid until the next call.
+  virtual const ReferenceSurface& surfaceAt(int frame) = 0;
+  /// Where the nodes of a cage would be if they followed the reference, by frame.
+  virtual Trajectory drive(const TetMesh& cage) const = 0;
+};
+
+/// A simulated cage. Both the mesh and the nodes of other cages follow it by quadratic skinning, which continues its
+/// motion smoothly to nodes that lie outside of it: coarse cages are larger than fine ones.
+class SimulatedReference : public Reference {
+ public:
+  /// All outlive this object. Throws InputError.
+  SimulatedReference(const TriangleMesh& mesh, const TetMesh& cage, const Trajectory& trajectory);
+
+  int frameCount() const override { return static_cast<int>(trajectory_.size()); }
+  const ReferenceSurface& surfaceAt(int frame) override;
+  Trajectory drive(const TetMesh& cage) const override;
+
+ private:
+  const TetMesh& cage_;
+  const Trajectory& trajectory_;
+  MeshSkin<double> skin_;
+  ReferenceSurface surface_;
+};
+
+/// A smooth map: what is wrong is the interpolation alone.
+class ExactReference : public Reference {
+ public:
+  ExactReference(const TriangleMesh& mesh, const scenes::Twist& map);
+
+  int frameCount() const override { return 2; }
+  const ReferenceSurface& surfaceAt(int frame) override;
+  Trajectory drive(const TetMesh& cage) const override;
+
+ private:
+  scenes::Twist twistAt(int frame) const;
+
+  const TriangleMesh& mesh_;
+  scenes::Twist map_;
+  Points restNormals_;
+  ReferenceSurface surface_;
+};
+
+/// The nodes of a frame in double, as skins of double take them.
+Points toDouble(const std::vector<Eigen::Vector3f>& nodes);
+
+}  // namespace tetskin::report

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/advice.h"
+#include "report/report_files.h"
+#include "scenes/progress.h"
+
+namespace tetskin::report {
+namespace {
+
+ReportModel loadReportModel(const ReportOptions& options) {
+  scenes::Surface surface = scenes::loadSurface(options.model);
+  ReportModel model;
+  model.name = std::move(surface.name);
+  model.modelDiagonal = boundingBox(surface.mesh.positions).diagonal().norm();
+  model.mesh = placed(std::move(surface.mesh));
+  model.diagonal = boundingBox(model.mesh.positions).diagonal().norm();
+  const auto& positions = model.mesh.positions;
+  const auto& triangles = model.mesh.triangles;
+  model.hash = hashOf(positions.data(), positions.size() * sizeof(positions[0]));
+  model.hash = hashOf(triangles.data(), triangles.size() * sizeof(triangles[0]), model.hash);
+  return model;
+}
+
+/// Progress over jobs of very different cost.
+class JobProgress {
+ public:
+  JobProgress(double cost, bool quiet) : cost_(cost), bar_("measuring", kSteps, quiet, stderr) {}
+
+  void share(double jobCost, double share) { bar_.show(stepsAt(done_ + share * jobCost)); }
+  void finish(double jobCost, bool wasStored) {
+    done_ += jobCost;
+    wasStored ? bar_.skip(stepsAt(done_)) : bar_.show(stepsAt(done_));
+  }
+
+ private:
+  static constexpr int kSteps = 1000;
+  int stepsAt(double cost) const { return std::min(kSteps, static_cast<int>(std::lround(kSteps * cost / cost_))); }
+
+  double cost_, done_ = 0.0;
+  scenes::Progress bar_;
+};
+
+SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
+  SceneResult result{runner.scene(), runner.integrator(), {}, 0.0};
+  for (const Job& job : runner.jobs()) {
+    const double cost = runner.costOf(job);
+    std::optional<std::vector<Row>> rows = runner.stored(job);
+    const bool wasStored = rows.has_value();
+    if (!wasStored) rows = runner.run(job, [&](double share) { progress.share(cost, share); });
+    progress.finish(cost, wasStored);
+    result.rows.insert(result.rows.end(), rows->begin(), rows->end());
+  }
+  const Row& first = result.rows.front();
+  for (Row& row : result.rows) {
+    if (first.isReference()) row.speedup = first.totalMs / row.totalMs;
+  }
+  markPareto(result.rows);
+  result.referenceError = referenceError(result.rows);
+  return result;
+}
+
+}  // namespace
+
+ReportResult makeReport(const ReportOptions& options) {
+  const ReportModel model = loadReportModel(options);
+  const ResultStore store(options.out + "/rows");
+  CageShelf cages(model.mesh);
+  std::vector<std::unique_ptr<SceneRunner>> runners;
+  double cost = 0.0;
+  for (const SceneKind kind : options.sceneKinds) {
+    for (const bool implicit : {false, true}) {
+      if (implicit && (!options.implicit || kind == SceneKind::Exact)) continue;
+      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, kind, implicit));
+      for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
+    }
+  }
+  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), {}};
+  JobProgress progress(cost, options.quiet);
+  for (std::unique_ptr<SceneRunner>& runner : runners) {
+    result.scenes.push_back(runScene(*runner, progress));
+    writeReport(result, options, runner->colouredMesh());
+    runner.reset();  // with its reference, which may be large
+  }
+  return result;
+}
+
+bool allFinite(const ReportResult& result) {
+  for (const SceneResult& scene : result.scenes) {
+    for (const Row& row : scene.rows) {
+      if (row.finite == 0.0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace tetskin::report

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The report of error against run time.
+//
+//   scene_setup        the scenes, as the mesh alone defines them
+//   body_scene         a cage in one of them, in Bullet
+//   simulation         its motion, and what step and surfaces cost
+//   reference          what is compared with
+//   surface_errors     how far surfaces and nodes are from it
+//   scene_runner       all cages of a scene, or what an earlier run has left of them (result_store)
+//   advice             orders, Pareto front, the reference's own error, the cheapest setting
+//   report_files       tables
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "report/report_options.h"
+#include "report/scene_runner.h"
+
+namespace tetskin::report {
+
+/// One scene with one integrator.
+struct SceneResult {
+  std::string scene, integrator;
+  std::vector<Row> rows;
+  double referenceError = 0.0;  ///< estimated; in box diagonals
+};
+
+struct ReportResult {
+  std::string model;
+  std::size_t vertices = 0, triangles = 0;
+  std::vector<SceneResult> scenes;
+};
+
+/// Measures everything, and writes all files after every scene. Throws InputError.
+ReportResult makeReport(const ReportOptions& options);
+
+/// True if every simulation stayed finite.
+bool allFinite(const ReportResult& result);
+
+}  // namespace tetskin::report

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "report/report.h"
+
+namespace tetskin::report {
+
+/// The rows as CSV. The first line names the columns, with their units where they have any.
+std::string csvOf(const ReportResult& result);
+
+/// All of it.
+nlohmann::ordered_json jsonOf(const ReportResult& result);
+
+/// Tables for people, with what they say: orders, the reference's own error, the cheapest setting for a target error
+/// (0: none).
+std::string markdownOf(const ReportResult& result, double targetError);
+
+/// Writes error_vs_time.csv, .json and .md, and the coloured mesh of the last scene, if there is one. Throws
+/// InputError.
+void writeReport(const ReportResult& result, const ReportOptions& options,
+                 const std::optional<std::string>& colouredMesh);
+
+}  // namespace tetskin::report

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "report/scene_setup.h"
+#include "report/simulation.h"
+#include "scenes/options.h"
+
+namespace tetskin::report {
+
+/// What is to be measured, and where it goes.
+struct ReportOptions {
+  scenes::ModelOptions model;
+  std::vector<SceneKind> sceneKinds = {SceneKind::Sag, SceneKind::Twist, SceneKind::Drop, SceneKind::Exact};
+  std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
+  std::size_t referenceTets = 30000;
+  std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
+  bool calibrated = true;        ///< with calibrated rows
+  bool implicit = false;         ///< implicit rows beside the explicit ones
+  int frames = 0;                ///< 0: the scene's own
+  double stiffness = 0.0;        ///< over density x gravity x size; 0: the scene's own
+  std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
+  double targetError = 0.0;      ///< in box diagonals; 0: none
+  std::string out = "out/error_vs_time", json;
+  bool quiet = false;
+};
+
+/// The command line's options, among them --quick and --full, which preset others. Call `finish` after parsing.
+class ReportCommandLine {
+ public:
+  explicit ReportCommandLine(CLI::App& app);
+  /// Throws InputError.
+  const ReportOptions& finish();
+
+ private:
+  ReportOptions options_;
+  CLI::App& app_;
+  std::vector<std::string> scenes_;
+  std::string interpolation_;
+  bool quick_ = false, full_ = false, noCalibration_ = false;
+};
+
+}  // namespace tetskin::report

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/report_row.h"
+
+#include "scenes/counted.h"
+
+namespace tetskin::report {
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all = {
+      {"tets", &Row::tets},
+      {"nodes", &Row::nodes},
+      {"edge", &Row::edge},
+      {"stiffness_factor", &Row::stiffnessFactor},
+      {"error_total_rms", &Row::errorTotalRms},
+      {"error_total_max", &Row::errorTotalMax},
+      {"error_embedding_rms", &Row::errorEmbeddingRms},
+      {"error_simulation_rms", &Row::errorSimulationRms},
+      {"normal_error_mean_deg", &Row::normalErrorMeanDeg},
+      {"simulation_ms", &Row::simulationMs},
+      {"skin_us", &Row::skinUs},
+      {"total_ms", &Row::totalMs},
+      {"attach_ms", &Row::attachMs},
+      {"calibrate_ms", &Row::calibrateMs},
+      {"speedup", &Row::speedup},
+      {"memory_bytes", &Row::memoryBytes},
+      {"frames", &Row::frames},
+      {"finite", &Row::finite},
+      {"box_diagonal_which_is_the_unit_of_errors_and_edge", &Row::diagonal},
+  };
+  return all;
+}
+
+nlohmann::ordered_json toJson(const Row& row) {
+  nlohmann::ordered_json json;
+  json["scene"] = row.scene;
+  json["integrator"] = row.integrator;
+  json["material"] = row.material;
+  json["interpolation"] = row.interpolation;
+  for (const Column& column : columns()) json[column.name] = row.*column.value;
+  json["pareto"] = row.pareto;
+  json["error_total_rms_by_frame"] = row.errorByFrame;
+  return json;
+}
+
+Row rowFrom(const nlohmann::ordered_json& json) {
+  Row row;
+  row.scene = json.at("scene");
+  row.integrator = json.at("integrator");
+  row.material = json.at("material");
+  row.interpolation = json.at("interpolation");
+  for (const Column& column : columns()) row.*column.value = json.at(column.name);
+  row.pareto = json.at("pareto");
+  row.errorByFrame = json.at("error_total_rms_by_frame").get<std::vector<double>>();
+  return row;
+}
+
+std::string describe(const Row& row) {
+  std::string text = scenes::withThousands(static_cast<std::size_t>(row.tets)) + " tets, " + row.interpolation;
+  return row.material == "calibrated" ? text + ", calibrated" : text;
+}
+
+}  // namespace tetskin::report

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// One line of the report, and what its columns are called.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace tetskin::report {
+
+struct Row {
+  std::string scene;
+  std::string integrator;     ///< explicit, implicit; none where nothing is simulated
+  std::string material;       ///< same: as the reference's; calibrated: softened by `stiffness_factor`
+  std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
+
+  double tets = 0, nodes = 0;
+  double edge = 0;  ///< mean length of the cage's edges
+  double stiffnessFactor = 1;
+  double errorTotalRms = 0, errorTotalMax = 0, errorEmbeddingRms = 0, errorSimulationRms = 0;
+  double normalErrorMeanDeg = 0;
+  double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< a frame
+  double attachMs = 0, calibrateMs = 0;              ///< once
+  double speedup = 0;                                ///< against the reference's total; 0 where nothing is simulated
+  double memoryBytes = 0;
+  double frames = 0;    ///< compared
+  double finite = 1;    ///< 0: it exploded; errors are those of the frames before
+  double diagonal = 0;  ///< of the mesh's box, in the mesh's unit: the unit of errors and edge
+
+  std::vector<double> errorByFrame;  ///< total, RMS
+  bool pareto = false;               ///< nothing in its scene is both faster and more accurate
+
+  bool isReference() const { return interpolation == "reference"; }
+  /// A setting that a user of this library may choose.
+  bool isChoice() const { return !isReference() && interpolation != "bullet" && finite != 0; }
+};
+
+/// A column of numbers: its name, which ends in its unit where that is one, and its place in a row.
+struct Column {
+  const char* name;
+  double Row::*value;
+};
+/// In the order of all tables.
+const std::vector<Column>& columns();
+
+nlohmann::ordered_json toJson(const Row& row);
+Row rowFrom(const nlohmann::ordered_json& json);
+
+/// The name of a setting, for people: "3,025 tets, quadratic, calibrated".
+std::string describe(const Row& row);
+
+}  // namespace tetskin::report

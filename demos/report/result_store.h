@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/report_row.h"
+#include "report/simulation.h"
+
+namespace tetskin::report {
+
+/// 64 bits of FNV-1a over bytes.
+std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed = 14695981039346656037ull);
+
+/// Finished work, kept in a folder under a hash of all settings that its result depends on, so that an interrupted run
+/// goes on where it stopped. Files are complete or not there at all. Throws InputError if the folder cannot be written.
+class ResultStore {
+ public:
+  /// folder  made if it is not there
+  explicit ResultStore(std::string folder);
+
+  /// Empty if there are none, or if they cannot be read.
+  std::optional<std::vector<Row>> rows(const nlohmann::ordered_json& settings) const;
+  void keep(const nlohmann::ordered_json& settings, const std::vector<Row>& rows) const;
+
+  /// A reference's rows need its motion as well: nodes by frame, all of one count.
+  std::optional<Trajectory> trajectory(const nlohmann::ordered_json& settings) const;
+  void keep(const nlohmann::ordered_json& settings, const Trajectory& trajectory) const;
+
+  /// Text that goes with the rows, such as a coloured mesh.
+  std::optional<std::string> text(const nlohmann::ordered_json& settings) const;
+  void keep(const nlohmann::ordered_json& settings, const std::string& text) const;
+
+ private:
+  std::string path(const nlohmann::ordered_json& settings, const char* extension) const;
+
+  std::string folder_;
+};
+
+}  // namespace tetskin::report

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/scene_runner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/coloured_mesh.h"
+#include "scenes/options.h"
+
+namespace tetskin::report {
+namespace {
+
+/// Of what is stored: raise it when rows of before are no longer comparable.
+constexpr int kVersion = 1;
+/// The finest cage that is compared, for the estimate of the reference's own error, has the reference's tets over this.
+constexpr std::size_t kCoarserLevel = 3;
+/// A cage this near to that level serves for it.
+constexpr double kNearEnough = 0.7;
+/// Testing all pairs, Bullet takes minutes beyond this many of them.
+constexpr double kMostBulletPairs = 1e9;
+
+std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
+  kinds.erase(std::remove(kinds.begin(), kinds.end(), SurfaceKind::Bullet), kinds.end());
+  return kinds;
+}
+
+std::vector<Job> jobsOf(SceneKind kind, const ReportOptions& options, std::size_t vertexCount) {
+  std::vector<Job> jobs;
+  const bool exact = kind == SceneKind::Exact;
+  const std::size_t level = options.referenceTets / kCoarserLevel;
+  std::vector<std::size_t> sizes = options.tets;
+  if (exact) sizes.push_back(options.referenceTets);
+  if (!exact && static_cast<double>(sizes.back()) < kNearEnough * static_cast<double>(level)) sizes.push_back(level);
+  const auto distance = [&](std::size_t tets) {
+    return std::abs(std::log(static_cast<double>(tets) / static_cast<double>(options.shownTets)));
+  };
+  const std::size_t shown = *std::min_element(options.tets.begin(), options.tets.end(),
+                                              [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+  if (!exact) jobs.push_back({options.referenceTets, false, {}, false});
+  for (const std::size_t tets : sizes) {
+    const bool bullet = static_cast<double>(tets) * static_cast<double>(vertexCount) <= kMostBulletPairs;
+    jobs.push_back({tets, false, bullet ? options.surfaces : ours(options.surfaces), tets == shown});
+    const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
+    if (!exact && options.calibrated && asked) jobs.push_back({tets, true, ours(options.surfaces), false});
+  }
+  return jobs;
+}
+
+}  // namespace
+
+SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store,
+                         const ReportOptions& options, SceneKind kind, bool implicit)
+    : model_(model),
+      cages_(cages),
+      store_(store),
+      options_(options),
+      setup_(setupOf(kind, model.mesh, options.frames)),
+      implicit_(implicit),
+      jobs_(jobsOf(kind, options, model.mesh.vertexCount())) {}
+
+std::string SceneRunner::integrator() const {
+  if (setup_.kind == SceneKind::Exact) return "none";
+  return implicit_ ? "implicit" : "explicit";
+}
+
+double SceneRunner::costOf(const Job& job) const {
+  constexpr double kImplicit = 5.0, kCompareOneFrame = 30000.0;  // in tets stepped once
+  const auto tets = static_cast<double>(job.tets);
+  if (setup_.kind == SceneKind::Exact) return kCompareOneFrame;
+  return setup_.frames * (tets * (implicit_ ? kImplicit : 1.0) + (isReference(job) ? 0.0 : kCompareOneFrame));
+}
+
+nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
+  nlohmann::ordered_json json;
+  json["version"] = kVersion;
+  json["mesh"] = model_.hash;
+  json["scene"] = scene();
+  json["frames"] = setup_.frames;
+  json["integrator"] = integrator();
+  json["stiffness"] = options_.stiffness;
+  json["reference_tets"] = setup_.kind == SceneKind::Exact ? 0 : options_.referenceTets;
+  json["tets"] = job.tets;
+  json["calibrated"] = job.calibrated;
+  json["coloured"] = job.coloured;
+  json["surfaces"] = nlohmann::ordered_json::array();
+  for (const SurfaceKind kind : job.surfaces) json["surfaces"].push_back(nameOf(kind));
+  return json;
+}
+
+std::optional<std::vector<Row>> SceneRunner::stored(const Job& job) const {
+  if (job.coloured && !store_.text(settings(job))) return {};
+  return store_.rows(settings(job));
+}
+
+std::optional<std::string> SceneRunner::colouredMesh() const {
+  const auto job = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& j) { return j.coloured; });
+  return job == jobs_.end() ? std::nullopt : store_.text(settings(*job));
+}
+
+const Material& SceneRunner::material() {
+  if (!material_) {
+    material_ = materialOf(setup_.kind, cages_.cage(options_.referenceTets), options_.stiffness, implicit_);
+  }
+  return *material_;
+}
+
+Row SceneRunner::rowOf(const Job& job, const TetMesh& cage) const {
+  Row row;
+  row.scene = scene();
+  row.integrator = integrator();
+  row.material = job.calibrated ? "calibrated" : "same";
+  row.tets = static_cast<double>(cage.tetCount());
+  row.nodes = static_cast<double>(cage.nodeCount());
+  row.edge = meanEdge(cage) / model_.diagonal;
+  row.diagonal = model_.modelDiagonal;
+  return row;
+}
+
+std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& share) {
+  const Job& job = jobs_.front();
+  const TetMesh& cage = cages_.cage(job.tets);
+  int frame = 0;
+  Simulation simulation =
+      simulate(setup_, cage, material(), model_.mesh, {}, [&] { share(static_cast<double>(++frame) / setup_.frames); });
+  Row row = rowOf(job, cage);
+  row.interpolation = "reference";
+  row.simulationMs = row.totalMs = simulation.milliseconds;
+  row.memoryBytes = static_cast<double>(simulation.bytes);
+  row.frames = static_cast<double>(simulation.trajectory.size() - 1);
+  row.finite = simulation.finite;
+  row.speedup = 1.0;
+  referenceTrajectory_ = std::move(simulation.trajectory);
+  store_.keep(settings(job), referenceTrajectory_);
+  store_.keep(settings(job), std::vector<Row>{row});
+  return {row};
+}
+
+Reference& SceneRunner::reference(const std::function<void(double)>& share) {
+  if (reference_) return *reference_;
+  if (setup_.kind == SceneKind::Exact) {
+    reference_ = std::make_unique<ExactReference>(model_.mesh, *setup_.twist);
+    return *reference_;
+  }
+  if (referenceTrajectory_.empty()) {
+    if (std::optional<Trajectory> kept = store_.trajectory(settings(jobs_.front()))) {
+      referenceTrajectory_ = std::move(*kept);
+    } else {
+      (void)referenceRows(share);
+    }
+  }
+  reference_ =
+      std::make_unique<SimulatedReference>(model_.mesh, cages_.cage(options_.referenceTets), referenceTrajectory_);
+  return *reference_;
+}
+
+void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame) {
+  const Points& positions = reference_->surfaceAt(frame).positions;
+  store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
+}
+
+std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
+  if (isReference(job)) return referenceRows(share);
+  Reference& right = reference([](double) {});
+  const TetMesh& cage = cages_.cage(job.tets);
+  Row row = rowOf(job, cage);
+  Trajectory driven = right.drive(cage);
+  Trajectory nodes = driven;
+  SurfaceCosts costs;
+  if (setup_.kind == SceneKind::Exact) {
+    costs = surfaceCosts(cage, model_.mesh, job.surfaces);
+  } else {
+    Material own = material();
+    if (job.calibrated) {
+      const StiffnessCalibration& calibration = cages_.calibration(job.tets, own.poissonRatio);
+      row.stiffnessFactor = calibration.factor;
+      row.calibrateMs = calibration.milliseconds;
+      own.youngsModulus *= calibration.factor;
+    }
+    int frame = 0;
+    Simulation simulation = simulate(setup_, cage, own, model_.mesh, job.surfaces,
+                                     [&] { share(0.5 * static_cast<double>(++frame) / setup_.frames); });
+    nodes = std::move(simulation.trajectory);
+    row.simulationMs = simulation.milliseconds;
+    row.memoryBytes = static_cast<double>(simulation.bytes);
+    row.finite = simulation.finite;
+    costs = simulation.surfaces;
+  }
+  const std::size_t frames = std::min(nodes.size(), driven.size());
+  nodes.resize(frames);
+  driven.resize(frames);
+  row.frames = static_cast<double>(frames - 1);
+  row.errorSimulationRms = nodeErrors(nodes, driven, model_.mesh);
+
+  std::vector<Row> rows;
+  for (const SurfaceKind kind : job.surfaces) {
+    const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, nodes);
+    const SurfaceCost& cost = costs[static_cast<std::size_t>(kind)];
+    Row& own = rows.emplace_back(row);
+    own.interpolation = nameOf(kind);
+    own.errorTotalRms = total.rms;
+    own.errorTotalMax = total.max;
+    own.normalErrorMeanDeg = total.normalMeanDeg;
+    own.errorByFrame = total.rmsByFrame;
+    own.errorEmbeddingRms = surfaceErrors(right, model_.mesh, cage, kind, driven).rms;
+    own.skinUs = cost.updateUs;
+    own.totalMs = row.simulationMs + cost.updateUs / 1000.0;
+    own.attachMs = cost.attachMs;
+    own.memoryBytes += static_cast<double>(cost.bytes);
+    if (job.coloured && rows.size() == 1) colour(job, total, static_cast<int>(frames) - 1);
+  }
+  share(1.0);
+  store_.keep(settings(job), rows);
+  return rows;
+}
+
+}  // namespace tetskin::report

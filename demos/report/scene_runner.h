@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/cage_shelf.h"
+#include "report/reference.h"
+#include "report/report_options.h"
+#include "report/report_row.h"
+#include "report/result_store.h"
+#include "report/surface_errors.h"
+
+namespace tetskin::report {
+
+/// What is done with one cage in one scene.
+struct Job {
+  std::size_t tets = 0;
+  bool calibrated = false;
+  std::vector<SurfaceKind> surfaces;
+  bool coloured = false;  ///< also colour a mesh by the errors
+};
+
+/// The mesh of the report.
+struct ReportModel {
+  std::string name;
+  TriangleMesh mesh;           ///< as `placed`
+  double diagonal = 0.0;       ///< of its box
+  double modelDiagonal = 0.0;  ///< the same, in the unit of its file
+  std::uint64_t hash = 0;
+};
+
+/// Measures the cages of one scene with one integrator, or takes what an earlier run had measured.
+class SceneRunner {
+ public:
+  /// All outlive this object.
+  SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store, const ReportOptions& options,
+              SceneKind kind, bool implicit);
+
+  std::string scene() const { return nameOf(setup_.kind); }
+  std::string integrator() const;
+  /// The reference first (there is none in the exact scene), then the cages, coarsest first.
+  const std::vector<Job>& jobs() const { return jobs_; }
+  /// Some measure of the time that a job takes.
+  double costOf(const Job& job) const;
+
+  /// The rows of a job, if an earlier run has left them.
+  std::optional<std::vector<Row>> stored(const Job& job) const;
+  /// share  told how much of the job is done, from 0 to 1
+  std::vector<Row> run(const Job& job, const std::function<void(double)>& share);
+  /// The coloured mesh of the job that makes one, and the error of its last colour; after the rows.
+  std::optional<std::string> colouredMesh() const;
+
+ private:
+  bool isReference(const Job& job) const { return job.surfaces.empty(); }
+  nlohmann::ordered_json settings(const Job& job) const;
+  const Material& material();
+  Reference& reference(const std::function<void(double)>& share);
+  std::vector<Row> referenceRows(const std::function<void(double)>& share);
+  Row rowOf(const Job& job, const TetMesh& cage) const;
+  void colour(const Job& job, const SurfaceErrors& errors, int frame);
+
+  const ReportModel& model_;
+  CageShelf& cages_;
+  const ResultStore& store_;
+  const ReportOptions& options_;
+  SceneSetup setup_;
+  bool implicit_;
+  std::vector<Job> jobs_;
+  std::optional<Material> material_;
+  Trajectory referenceTrajectory_;
+  std::unique_ptr<Reference> reference_;
+};
+
+}  // namespace tetskin::report

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/simulation.h"
+
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "report/bullet_surface.h"
+#include "scenes/cpu_timer.h"
+#include "scenes/crowd_scene.h"
+#include "scenes/options.h"
+
+namespace tetskin::report {
+namespace {
+
+/// Bullet clamps an exploded body to finite coordinates: beyond this many sizes from where it was a body has exploded.
+constexpr double kExploded = 20.0;
+
+/// Frames in which the surfaces of a body that nothing moves are timed.
+constexpr int kTimedFrames = 15;
+
+std::size_t indexOf(SurfaceKind kind) {
+  return static_cast<std::size_t>(kind);
+}
+
+/// Surfaces of one body, and the time that each takes.
+class TimedSurfaces {
+ public:
+  TimedSurfaces(const btSoftBody& body, const TetMesh& cage, const TriangleMesh& mesh,
+                const std::vector<SurfaceKind>& kinds)
+      : kinds_(kinds) {
+    for (const SurfaceKind kind : kinds) {
+      SurfaceCost& cost = costs_[indexOf(kind)];
+      if (kind == SurfaceKind::Bullet) {
+        bullet_.emplace(cage, mesh);
+        cost.attachMs = bullet_->attachMs();
+        cost.bytes = bullet_->bytes();
+        continue;
+      }
+      SkinOptions options;
+      options.interpolation = interpolationOf(kind);
+      const std::size_t before = scenes::heapBytes();
+      const scenes::CpuTimer timer;
+      scenes::require(skins_[indexOf(kind)].bind(body, cage, mesh, options).status);
+      cost.attachMs = timer.milliseconds();
+      cost.bytes = scenes::heapBytes() - before;
+    }
+  }
+
+  /// In another order every frame: the first to run finds the nodes in slower memory.
+  void update(int frame, int substeps) {
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+      const SurfaceKind kind = kinds_[(k + static_cast<std::size_t>(frame)) % kinds_.size()];
+      times_[indexOf(kind)].push_back(timeOf(kind, substeps));
+    }
+  }
+
+  SurfaceCosts costs() const {
+    SurfaceCosts costs = costs_;
+    for (std::size_t k = 0; k < costs.size(); ++k) costs[k].updateUs = median(times_[k]);
+    return costs;
+  }
+
+ private:
+  double timeOf(SurfaceKind kind, int substeps) {
+    const scenes::CpuTimer timer;
+    if (kind == SurfaceKind::Bullet) {
+      bullet_->interpolate();
+      return substeps * timer.microseconds();
+    }
+    (void)skins_[indexOf(kind)].update();
+    return timer.microseconds();
+  }
+
+  std::vector<SurfaceKind> kinds_;
+  std::optional<BulletSurface> bullet_;
+  std::array<SoftBodySkin, 2> skins_;
+  SurfaceCosts costs_;
+  std::array<std::vector<double>, kSurfaceKinds.size()> times_;
+};
+
+std::vector<Eigen::Vector3f> nodesOf(const btSoftBody& body) {
+  const PointView<const btScalar> view = nodePositions(body);
+  std::vector<Eigen::Vector3f> nodes;
+  nodes.reserve(view.size());
+  for (std::size_t n = 0; n < view.size(); ++n) {
+    nodes.emplace_back(Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(view[n]).cast<float>());
+  }
+  return nodes;
+}
+
+bool exploded(const std::vector<Eigen::Vector3f>& nodes) {
+  return !std::all_of(nodes.begin(), nodes.end(), [](const Eigen::Vector3f& p) {
+    return p.norm() < static_cast<float>(kExploded * kSize);  // false if not finite
+  });
+}
+
+}  // namespace
+
+const char* nameOf(SurfaceKind kind) {
+  constexpr const char* kNames[] = {"linear", "quadratic", "bullet"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+Interpolation interpolationOf(SurfaceKind kind) {
+  return kind == SurfaceKind::Quadratic ? Interpolation::Quadratic : Interpolation::Linear;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Simulation simulate(const SceneSetup& setup, const TetMesh& cage, const Material& material, const TriangleMesh& mesh,
+                    const std::vector<SurfaceKind>& kinds, const FrameDone& done) {
+  Simulation result;
+  const std::size_t before = scenes::heapBytes();
+  BodyScene scene(setup, cage, material);
+  TimedSurfaces surfaces(scene.body(), cage, mesh, kinds);
+  std::vector<double> milliseconds;
+  result.trajectory.push_back(nodesOf(scene.body()));
+  for (int frame = 1; frame <= setup.frames && result.finite; ++frame) {
+    const scenes::CpuTimer timer;
+    scene.step(frame);
+    milliseconds.push_back(timer.milliseconds());
+    if (frame == 1) result.bytes = scenes::heapBytes() - before;
+    std::vector<Eigen::Vector3f> nodes = nodesOf(scene.body());
+    result.finite = !exploded(nodes);
+    if (!result.finite) break;
+    surfaces.update(frame, material.substeps);
+    result.trajectory.push_back(std::move(nodes));
+    done();
+  }
+  result.milliseconds = median(std::move(milliseconds));
+  result.surfaces = surfaces.costs();
+  return result;
+}
+
+SurfaceCosts surfaceCosts(const TetMesh& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds) {
+  btSoftBodyWorldInfo worldInfo;
+  Result<btSoftBody*> body = makeSoftBody(cage, worldInfo);
+  scenes::require(body.status());
+  const std::unique_ptr<btSoftBody> owned(body.value());
+  TimedSurfaces surfaces(*owned, cage, mesh, kinds);
+  for (int frame = 0; frame < kTimedFrames; ++frame) surfaces.update(frame, 1);
+  return surfaces.costs();
+}
+
+}  // namespace tetskin::report

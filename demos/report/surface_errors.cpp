@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/surface_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "report/bullet_surface.h"
+#include "scenes/options.h"
+
+namespace tetskin::report {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A surface on a cage, by any of the three ways.
+class CarriedSurface {
+ public:
+  CarriedSurface(const TetMesh& cage, const TriangleMesh& mesh, SurfaceKind kind) {
+    if (kind == SurfaceKind::Bullet) {
+      bullet_ = std::make_unique<BulletSurface>(cage, mesh);
+      staleNormals_ = restNormals(mesh);
+      return;
+    }
+    SkinOptions options;
+    options.interpolation = interpolationOf(kind);
+    options.normals = Normals::Transformed;
+    scenes::require(skin_.bind(cage, mesh, options).status);
+  }
+
+  void update(const std::vector<Eigen::Vector3f>& nodes) {
+    if (bullet_) return bullet_->update(nodes);
+    const Points current = toDouble(nodes);
+    if (skin_.update(viewOf(current)) < nodes.size()) throw scenes::InputError("a cage is not finite");
+  }
+  Eigen::Vector3d position(std::size_t v) const {
+    return bullet_ ? bullet_->position(v) : Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]));
+  }
+  /// Bullet never updates its normals.
+  Eigen::Vector3d normal(std::size_t v) const {
+    return bullet_ ? staleNormals_[v] : Eigen::Map<const Eigen::Vector3f>(skin_.normals()[v]).cast<double>();
+  }
+
+ private:
+  MeshSkin<double> skin_;
+  std::unique_ptr<BulletSurface> bullet_;
+  Points staleNormals_;
+};
+
+}  // namespace
+
+SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const TetMesh& cage, SurfaceKind kind,
+                            const Trajectory& nodes) {
+  const double diagonal = boundingBox(mesh.positions).diagonal().norm();
+  const std::size_t count = mesh.vertexCount();
+  CarriedSurface surface(cage, mesh, kind);
+  SurfaceErrors errors;
+  std::vector<double> squaredByVertex(count, 0.0);
+  double squared = 0.0, degrees = 0.0;
+  for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
+    const ReferenceSurface& right = reference.surfaceAt(static_cast<int>(frame));
+    surface.update(nodes[frame]);
+    double squaredInFrame = 0.0;
+    for (std::size_t v = 0; v < count; ++v) {
+      const double distance = (surface.position(v) - right.positions[v]).norm() / diagonal;
+      squaredInFrame += distance * distance;
+      squaredByVertex[v] += distance * distance;
+      errors.max = std::max(errors.max, distance);
+      degrees += angle(surface.normal(v), right.normals[v]);
+    }
+    squared += squaredInFrame;
+    errors.rmsByFrame.push_back(std::sqrt(squaredInFrame / static_cast<double>(count)));
+  }
+  const auto frames = static_cast<double>(std::max<std::size_t>(nodes.size(), 2) - 1);
+  errors.rms = std::sqrt(squared / (frames * static_cast<double>(count)));
+  errors.normalMeanDeg = degrees / (frames * static_cast<double>(count));
+  for (const double s : squaredByVertex) errors.rmsByVertex.push_back(static_cast<float>(std::sqrt(s / frames)));
+  return errors;
+}
+
+double nodeErrors(const Trajectory& nodes, const Trajectory& driven, const TriangleMesh& mesh) {
+  double squared = 0.0;
+  std::size_t count = 0;
+  for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
+    for (std::size_t n = 0; n < nodes[frame].size(); ++n) {
+      squared += static_cast<double>((nodes[frame][n] - driven[frame][n]).squaredNorm());
+    }
+    count += nodes[frame].size();
+  }
+  if (count == 0) return 0.0;
+  return std::sqrt(squared / static_cast<double>(count)) / boundingBox(mesh.positions).diagonal().norm();
+}
+
+}  // namespace tetskin::report

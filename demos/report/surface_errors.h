@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <vector>
+
+#include "report/reference.h"
+#include "report/simulation.h"
+
+namespace tetskin::report {
+
+/// How far a surface is from the reference, in diagonals of the mesh's box, over all vertices and all frames after the
+/// first.
+struct SurfaceErrors {
+  double rms = 0.0, max = 0.0;
+  double normalMeanDeg = 0.0;
+  std::vector<double> rmsByFrame;
+  std::vector<float> rmsByVertex;  ///< over the frames
+};
+
+/// Of the surface that the nodes of a cage carry.
+/// nodes  by frame; no more frames than the reference has
+SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const TetMesh& cage, SurfaceKind kind,
+                            const Trajectory& nodes);
+
+/// Root mean square distance of a cage's nodes to where the reference would take them, likewise.
+double nodeErrors(const Trajectory& nodes, const Trajectory& driven, const TriangleMesh& mesh);
+
+}  // namespace tetskin::report
