@@ -154,7 +154,7 @@ void writeReport(const ReportResult& result, const ReportOptions& options,
   scenes::require(io::writeFile(options.json, jsonOf(result).dump(2) + "\n"));
   if (!colouredMesh) return;
   const SceneResult& last = result.scenes.back();
-  const std::string name = last.scene + (last.integrator == "implicit" ? "_implicit" : "");
+  const std::string name = last.integrator == "none" ? last.scene : last.scene + "_" + last.integrator;
   scenes::require(io::writeFile(options.out + "/error_" + name + ".ply", *colouredMesh));
 }
 

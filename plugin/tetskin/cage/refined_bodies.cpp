@@ -39,7 +39,6 @@ Eigen::VectorXd RefinedBodies::refined(std::size_t level, const Eigen::VectorXd&
   return result;
 }
 
-/// The transpose of `refined`: what the nodes of level - 1 feel of a load.
 Eigen::VectorXd RefinedBodies::coarsened(std::size_t level, const Eigen::VectorXd& load) const {
   const std::vector<std::array<int, 2>>& edges = levels_[level]->refinement.edges;
   const Eigen::Index size = load.size() - 3 * static_cast<Eigen::Index>(edges.size());

@@ -38,6 +38,7 @@ class RefinedBodies {
     Eigen::VectorXd diagonal;  ///< of the stiffness
   };
 
+  /// What the nodes of `level - 1` feel of a load on `level`: the transpose of `refined`.
   Eigen::VectorXd coarsened(std::size_t level, const Eigen::VectorXd& load) const;
   Eigen::VectorXd precondition(std::size_t level, const Eigen::VectorXd& load) const;
 

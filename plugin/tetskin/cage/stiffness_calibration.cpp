@@ -50,7 +50,9 @@ TetMesh used(const TetMesh& cage) {
   return result;
 }
 
-/// How far every level moves under the accelerations of a vibration of the coarsest, along that vibration.
+/// How far every level moves under the accelerations of a vibration of the coarsest, along that vibration. Each with
+/// its own lumped masses: those of coarse bodies lie farther out and slow turning motions, as softness would; what they
+/// do already must not be done again.
 void addResponses(const RefinedBodies& bodies, Eigen::VectorXd mode, std::vector<double>& responses) {
   Eigen::VectorXd displacement;
   for (std::size_t level = 0; level < bodies.levelCount(); ++level) {
@@ -91,7 +93,7 @@ Result<StiffnessCalibration> calibrateStiffness(const TetMesh& cage, const Calib
   for (Eigen::Index k = 0; k < modes.cols(); ++k) addResponses(bodies, modes.col(k), result.responses);
   const double limit = limitOf(result.responses);
   for (double& response : result.responses) response /= limit;
-  result.factor = result.responses.front();
+  result.factor = std::min(result.responses.front(), 1.0);
   result.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

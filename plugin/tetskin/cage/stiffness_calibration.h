@@ -21,17 +21,17 @@ struct StiffnessCalibration {
   /// Multiply Young's modulus by this, above 0 and at most 1, and leave the mass alone.
   double factor = 1.0;
   /// refinements + 1, from the cage to its finest refinement: how far the modes' loads move the body, over how far they
-  /// would move the limit of all refinements; ascending, the first is `factor`
+  /// would move the limit of all refinements; the first, if it is not above 1, is `factor`
   std::vector<double> responses;
   double milliseconds = 0.0;  ///< wall time
 };
 
-/// Finds the factor on Young's modulus that gives a cage the compliance of the body whose shape it has. The cage's own
-/// softest vibrations (of the free body, so that no scene is presumed) are taken for loads, each a field of
-/// accelerations; how far these move the cage is compared with how far they move its uniform refinement, and
-/// extrapolated to the limit: with order 2, which is that of linear tets; with two refinements or more, with the order
-/// seen, but not below 1. What the cage lacks by its shape (it is fatter than its mesh; parts that lie close together
-/// may have fused) no refinement of it shows, and the factor leaves as it is.
+/// Finds the factor on Young's modulus that gives a cage the modal compliance of the body whose shape it has. The
+/// cage's own softest vibrations (of the free body, so that no scene is presumed) are taken for loads, each a field of
+/// accelerations; how far these move the cage is compared with how far they move its uniform refinement, each with its
+/// own lumped masses, and extrapolated to the limit: with order 2, which is that of linear tets; with two refinements
+/// or more, with the order seen, but not below 1. What the cage lacks by its shape (it is fatter than its mesh; parts
+/// that lie close together may have fused) no refinement of it shows, and the factor leaves as it is.
 ///
 /// cage     usable (see `usable`), without flat tets; rest space, any unit and size
 /// Cost     with one refinement a second for 3,000 tets and four for 10,000; about 2 KB a refined tet

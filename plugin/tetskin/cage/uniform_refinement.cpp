@@ -37,7 +37,7 @@ void appendOctahedron(const std::vector<Eigen::Vector3d>& nodes, const Midpoints
   const Diagonal& shortest = *std::min_element(std::begin(kDiagonals), std::end(kDiagonals),
                                                [&](const auto& a, const auto& b) { return length(a) < length(b); });
   for (int k = 0; k < 4; ++k) {
-    tets.push_back({at(shortest.ends[0]), at(shortest.ring[k]), at(shortest.ring[(k + 1) % 4]), at(shortest.ends[1])});
+    tets.push_back({at(shortest.ends[0]), at(shortest.ring[(k + 1) % 4]), at(shortest.ring[k]), at(shortest.ends[1])});
   }
 }
 

@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+"""Draws what tetskin_error_vs_time measured, as PNG and SVG beside its JSON file (or in the folder given).
+
+error_vs_time.py RESULTS.json [FOLDER] [--tets N]
+
+For every scene: SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_frames.png, error over the frames for
+the cage nearest to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
+Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
+"""
+import argparse
+import json
+import math
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+
+COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
+MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
+STYLES = {"same": "-", "calibrated": "--"}
+TITLES = {
+    "sag": "Sag: held at the lower end, under gravity",
+    "twist": "Twist: held at both ends, one of them turned",
+    "drop": "Drop: falls on a box",
+    "exact": "Control: nodes on a smooth map, without Bullet",
+}
+plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
+                     "svg.hashsalt": "tetskin"})
+
+
+def series(scene, interpolation, material):
+    """The rows of one line, fastest first."""
+    rows = [r for r in scene["rows"] if (r["interpolation"], r["material"]) == (interpolation, material) and r["finite"]]
+    return sorted(rows, key=lambda row: row["total_ms"])
+
+
+def reference_of(scene):
+    return next((row for row in scene["rows"] if row["interpolation"] == "reference"), None)
+
+
+def draw_totals(axes, scene):
+    for interpolation, colour in COLOURS.items():
+        for material, style in STYLES.items():
+            rows = series(scene, interpolation, material)
+            if not rows:
+                continue
+            bullet = interpolation == "bullet"
+            axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], color=colour,
+                      linestyle="" if bullet else style, marker=MARKERS[interpolation],
+                      markersize=9 if interpolation == "quadratic" else 5, linewidth=1.4,
+                      markerfacecolor="none" if interpolation == "quadratic" else colour, zorder=5 if bullet else 3)
+
+
+def draw_embedding(axes, scene):
+    """Of the cages with the reference's material: calibration does not change what the embedding gets wrong."""
+    for interpolation in ("linear", "quadratic"):
+        rows = series(scene, interpolation, "same")
+        axes.plot([r["total_ms"] for r in rows], [r["error_embedding_rms"] for r in rows], color=COLOURS[interpolation],
+                  linestyle=":", marker=MARKERS[interpolation], markersize=4, linewidth=1.4, zorder=3)
+
+
+def draw_front(axes, scene):
+    front = sorted((r for r in scene["rows"] if r["pareto"]), key=lambda row: row["total_ms"])
+    axes.plot([r["total_ms"] for r in front], [r["error_total_rms"] for r in front], color="#F0E442", linewidth=7,
+              alpha=0.75, solid_capstyle="round", zorder=1)
+
+
+def label_sizes(axes, scene):
+    rows = series(scene, "linear", "same") or series(scene, "quadratic", "same")
+    for row in rows:
+        axes.annotate(f"{row['tets']:,.0f}", (row["total_ms"], row["error_total_rms"]), textcoords="offset points",
+                      xytext=(6, 9), fontsize=8, color="#333333")
+
+
+def draw_reference(axes, scene):
+    reference = reference_of(scene)
+    if not reference:
+        return
+    axes.axvline(reference["total_ms"], color="black", linewidth=1)
+    axes.annotate(f"reference: {reference['tets']:,.0f} tets, {reference['total_ms']:,.0f} ms",
+                  (reference["total_ms"], 0.03), xycoords=("data", "axes fraction"), rotation=90, ha="right",
+                  va="bottom", fontsize=8, textcoords="offset points", xytext=(-2, 0))
+    if scene["reference_error"] > 0:
+        axes.axhspan(1e-12, scene["reference_error"], color="#000000", alpha=0.08, linewidth=0, zorder=0)
+
+
+def legend_of(axes, scene):
+    entries = []
+    for interpolation in ("linear", "quadratic"):
+        if series(scene, interpolation, "same"):
+            look = dict(color=COLOURS[interpolation], marker=MARKERS[interpolation],
+                        markerfacecolor="none" if interpolation == "quadratic" else COLOURS[interpolation])
+            entries.append(Line2D([], [], linestyle="-", label=interpolation, **look))
+            if series(scene, interpolation, "calibrated"):
+                entries.append(Line2D([], [], linestyle="--", label=f"{interpolation}, calibrated", **look))
+            entries.append(Line2D([], [], linestyle=":", label=f"{interpolation}, embedding alone",
+                                  color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=4))
+    if series(scene, "bullet", "same"):
+        entries.append(Line2D([], [], linestyle="", color=COLOURS["bullet"], marker="x", label="Bullet's render nodes"))
+    entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="nothing faster and better"))
+    if reference_of(scene) and scene["reference_error"] > 0:
+        entries.append(Line2D([], [], color="#000000", alpha=0.12, linewidth=9, label="below the reference's own error"))
+    axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9)
+
+
+def error_against_time(scene, name):
+    figure, axes = plt.subplots(figsize=(8.6, 4.8))
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    draw_front(axes, scene)
+    if scene["integrator"] != "none":
+        draw_embedding(axes, scene)
+    draw_totals(axes, scene)
+    errors = [r[key] for r in scene["rows"] for key in ("error_total_rms", "error_embedding_rms") if r[key] > 0]
+    axes.set_ylim(0.5 * min(errors), 2.5 * max(errors))
+    label_sizes(axes, scene)
+    draw_reference(axes, scene)
+    axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
+    axes.set_xlabel("milliseconds a frame (simulation and skin)" if reference_of(scene) else "milliseconds a frame (skin)")
+    axes.set_ylabel("error, RMS, box diagonals")
+    axes.set_title(f"{TITLES[scene['scene']]} ({name})", fontsize=11, loc="left")
+    legend_of(axes, scene)
+    return figure
+
+
+def error_over_frames(scene, name, tets):
+    rows = [r for r in scene["rows"] if r["error_total_rms_by_frame"]]
+    shown = min((r["tets"] for r in rows), key=lambda n: abs(math.log(n / tets)))
+    figure, axes = plt.subplots(figsize=(6.4, 3.6))
+    for row in rows:
+        if row["tets"] != shown or row["interpolation"] == "bullet":
+            continue
+        errors = row["error_total_rms_by_frame"]
+        label = row["interpolation"] + (", calibrated" if row["material"] == "calibrated" else "")
+        axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, STYLES[row["material"]], label=label,
+                  color=COLOURS[row["interpolation"]], linewidth=3 if row["interpolation"] == "linear" else 1.4,
+                  alpha=0.5 if row["interpolation"] == "linear" else 1)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("seconds")
+    axes.set_ylabel("error, RMS, box diagonals")
+    axes.set_title(f"{TITLES[scene['scene']]} ({name}, {shown:,.0f} tets)", fontsize=11, loc="left")
+    axes.grid(True, color="#dddddd", linewidth=0.6)
+    axes.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def read_ply(path):
+    """The value of the last colour of a mesh that the demo wrote, and its box: lowest and highest corner."""
+    with open(path) as file:
+        header = list(iter(lambda: next(file).strip(), "end_header"))
+        count = int(next(line for line in header if line.startswith("element vertex")).split()[-1])
+        points = [tuple(map(float, next(file).split()[:3])) for _ in range(count)]
+    most = float(next(line for line in header if line.startswith("comment viridis")).split()[-1])
+    return most, [min(axis) for axis in zip(*points)], [max(axis) for axis in zip(*points)]
+
+
+def surface(path, name):
+    """The coloured mesh as f3d draws it, with the scale of its colours."""
+    most, low, high = read_ply(path)
+    centre = [(a + b) / 2 for a, b in zip(low, high)]
+    camera = [c + 1.9 * math.dist(low, high) * step for c, step in zip(centre, (-0.34, 0.40, 0.85))]
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "surface.png"
+        subprocess.run(["xvfb-run", "-a", "f3d", "--dry-run", "--quiet", str(path), f"--output={picture}", "--up=+Y",
+                        "--fxaa", "--resolution=1000,800", "--bg-color=1,1,1", "--scalars=RGB", "--comp=-2",
+                        "--camera-position=%g,%g,%g" % tuple(camera), "--camera-focal-point=%g,%g,%g" % tuple(centre)],
+                       check=True)
+        image = plt.imread(picture)
+    figure, axes = plt.subplots(figsize=(6.4, 4.4))
+    axes.imshow(image)
+    axes.set_axis_off()
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, most), "viridis")
+    bar = figure.colorbar(scale, ax=axes, shrink=0.75)
+    bar.set_label("error, RMS over the frames, box diagonals")
+    bar.ax.ticklabel_format(style="sci", scilimits=(-2, 2))
+    axes.set_title(name, fontsize=11, loc="left")
+    return figure
+
+
+def save(figure, folder, name):
+    for ending in ("png", "svg"):
+        path = folder / f"{name}.{ending}"
+        figure.savefig(path, dpi=110, bbox_inches="tight", metadata={"Date": None} if ending == "svg" else None)
+    plt.close(figure)
+    print(folder / f"{name}.png")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=Path)
+    parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("--tets", type=float, default=3000)
+    arguments = parser.parse_args()
+    results = json.loads(arguments.results.read_text())
+    folder = arguments.folder or arguments.results.parent
+    folder.mkdir(parents=True, exist_ok=True)
+    model = Path(results["model"]).stem
+    for scene in results["scenes"]:
+        integrated = scene["integrator"] != "none"
+        base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
+        name = f"{model}, {scene['integrator']}" if integrated else model
+        save(error_against_time(scene, name), folder, base)
+        if integrated:
+            save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
+        mesh = arguments.results.parent / f"error_{base}.ply"
+        if mesh.exists() and shutil.which("f3d") and shutil.which("xvfb-run"):
+            save(surface(mesh, f"{TITLES[scene['scene']]}"), folder, f"{base}_surface")
+
+
+if __name__ == "__main__":
+    main()
