@@ -11,7 +11,7 @@
 namespace tetskin::report {
 namespace {
 
-constexpr double kLeastOrder = 0.5, kMostOrder = 3.0;
+constexpr double kLeastOrder = 1.0, kMostOrder = 3.0;
 
 /// The rows of one kind, coarsest first.
 std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material) {
@@ -26,6 +26,21 @@ std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpo
 double orderOf(double coarseError, double fineError, const Row& coarse, const Row& fine) {
   if (!(coarseError > 0.0 && fineError > 0.0) || !(coarse.edge > fine.edge)) return 0.0;
   return std::log(coarseError / fineError) / std::log(coarse.edge / fine.edge);
+}
+
+/// Of the straight line through the logarithms of edge and error; 0 where an error is 0.
+double slope(const std::vector<Row>& rows, double Row::*error) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const Row& row : rows) {
+    if (!(row.*error > 0.0)) return 0.0;
+    const double edge = std::log(row.edge), value = std::log(row.*error);
+    n += 1.0;
+    x += edge;
+    y += value;
+    xx += edge * edge;
+    xy += edge * value;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
 }
 
 }  // namespace
@@ -50,6 +65,14 @@ std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const st
                       orderOf(coarse.errorEmbeddingRms, fine.errorEmbeddingRms, coarse, fine)});
   }
   return orders;
+}
+
+ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation,
+                           const std::string& material) {
+  const std::vector<Row> sorted = series(rows, interpolation, material);
+  if (sorted.size() < 2) return {};
+  return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorTotalRms),
+          slope(sorted, &Row::errorEmbeddingRms)};
 }
 
 double referenceError(const std::vector<Row>& rows) {

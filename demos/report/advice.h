@@ -22,9 +22,13 @@ struct ObservedOrder {
 std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
                                           const std::string& material);
 
+/// The power over all these cages: the slope of a straight line through the logarithms, by least squares. 0 if there
+/// are fewer than two.
+ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material);
+
 /// What the reference itself is wrong by, estimated from the two finest cages of the same material: if errors against
 /// the truth fall as C edge^p, then those against the reference are C (edge^p - reference edge^p), and two of them give
-/// C and p (which is kept between 0.5 and 3). 0 if there are fewer than two.
+/// C and p (which is kept between 1 and 3). 0 if there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
 
 /// The fastest choice of at most this total error (RMS); null if there is none.

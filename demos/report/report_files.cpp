@@ -19,18 +19,24 @@ void append(std::string& text, const char* format, Values... values) {
   text += line;
 }
 
+nlohmann::ordered_json toJson(const ObservedOrder& order) {
+  return {{"coarse_tets", order.coarseTets},
+          {"fine_tets", order.fineTets},
+          {"total", order.total},
+          {"embedding", order.embedding}};
+}
+
 nlohmann::ordered_json ordersOf(const SceneResult& scene) {
   auto json = nlohmann::ordered_json::array();
   for (const char* interpolation : {"linear", "quadratic"}) {
     for (const char* material : {"same", "calibrated"}) {
+      nlohmann::ordered_json one = {{"interpolation", interpolation}, {"material", material}};
+      one["overall"] = toJson(overallOrder(scene.rows, interpolation, material));
+      one["steps"] = nlohmann::ordered_json::array();
       for (const ObservedOrder& order : observedOrders(scene.rows, interpolation, material)) {
-        json.push_back({{"interpolation", interpolation},
-                        {"material", material},
-                        {"coarse_tets", order.coarseTets},
-                        {"fine_tets", order.fineTets},
-                        {"total", order.total},
-                        {"embedding", order.embedding}});
+        one["steps"].push_back(toJson(order));
       }
+      if (!one["steps"].empty()) json.push_back(std::move(one));
     }
   }
   return json;
@@ -62,7 +68,8 @@ void appendOrders(std::string& text, const SceneResult& scene) {
   for (const char* interpolation : {"linear", "quadratic"}) {
     const std::vector<ObservedOrder> orders = observedOrders(scene.rows, interpolation, "same");
     if (orders.empty()) continue;
-    append(text, "- %s:", interpolation);
+    const ObservedOrder all = overallOrder(scene.rows, interpolation, "same");
+    append(text, "- %s: %.1f / %.1f over all;", interpolation, all.total, all.embedding);
     for (const ObservedOrder& o : orders) {
       append(text, " %.1f / %.1f (%s to %s tets)%s", o.total, o.embedding,
              scenes::withThousands(static_cast<std::size_t>(o.coarseTets)).c_str(),

@@ -57,6 +57,11 @@ class TimedSurfaces {
     }
   }
 
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const SurfaceCost& cost : costs_) sum += cost.bytes;
+    return sum;
+  }
   SurfaceCosts costs() const {
     SurfaceCosts costs = costs_;
     for (std::size_t k = 0; k < costs.size(); ++k) costs[k].updateUs = median(times_[k]);
@@ -127,7 +132,7 @@ Simulation simulate(const SceneSetup& setup, const TetMesh& cage, const Material
     const scenes::CpuTimer timer;
     scene.step(frame);
     milliseconds.push_back(timer.milliseconds());
-    if (frame == 1) result.bytes = scenes::heapBytes() - before;
+    if (frame == 1) result.bytes = scenes::heapBytes() - before - surfaces.bytes();
     std::vector<Eigen::Vector3f> nodes = nodesOf(scene.body());
     result.finite = !exploded(nodes);
     if (!result.finite) break;

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "command.h"
+#include "report/advice.h"
+#include "report/coloured_mesh.h"
+#include "report/result_store.h"
+#include "report/scene_setup.h"
+
+namespace tetskin {
+namespace {
+
+using report::Row;
+using test::CommandFolder;
+using test::CommandResult;
+
+Row rowWith(const std::string& interpolation, double edge, double ms, double error) {
+  Row row;
+  row.scene = "sag";
+  row.material = "same";
+  row.interpolation = interpolation;
+  row.tets = 1.0 / (edge * edge * edge);
+  row.edge = edge;
+  row.totalMs = ms;
+  row.errorTotalRms = error;
+  row.errorEmbeddingRms = edge * edge;
+  return row;
+}
+
+TEST(Advice, TheFrontHoldsWhatNothingBeatsInTimeAndError) {
+  std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0),  rowWith("linear", 0.1, 1, 0.1),
+                           rowWith("linear", 0.05, 5, 0.02),    rowWith("quadratic", 0.05, 6, 0.03),
+                           rowWith("quadratic", 0.02, 9, 0.01), rowWith("bullet", 0.1, 0.1, 0.001)};
+  rows.push_back(rows[1]);
+  rows.back().totalMs = 0.5;
+  rows.back().finite = 0.0;  // exploded: no choice
+  report::markPareto(rows);
+  std::vector<bool> front;
+  for (const Row& row : rows) front.push_back(row.pareto);
+  EXPECT_EQ(front, std::vector<bool>({false, true, true, false, true, false, false}));
+  EXPECT_EQ(report::cheapest(rows, 0.05), &rows[2]);
+  EXPECT_EQ(report::cheapest(rows, 0.01), &rows[4]);
+  EXPECT_EQ(report::cheapest(rows, 0.005), nullptr);
+}
+
+TEST(Advice, FindsOrderAndTheReferencesOwnError) {
+  // Errors against a truth fall as 3 edge^2; the reference is such a cage, too.
+  std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0)};
+  for (const double edge : {0.08, 0.04, 0.02}) {
+    rows.push_back(rowWith("quadratic", edge, 1, 3.0 * (edge * edge - 0.01 * 0.01)));
+  }
+  EXPECT_NEAR(report::referenceError(rows), 3e-4, 1e-9);
+  const auto steps = report::observedOrders(rows, "quadratic", "same");
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_NEAR(steps[0].embedding, 2.0, 1e-9);
+  EXPECT_NEAR(report::overallOrder(rows, "quadratic", "same").embedding, 2.0, 1e-9);
+  EXPECT_TRUE(report::observedOrders(rows, "linear", "same").empty());
+  rows.resize(2);
+  EXPECT_EQ(report::referenceError(rows), 0.0);
+}
+
+TEST(ReportRow, ComesBackFromJson) {
+  Row row = rowWith("linear", 0.1, 2.5, 1.0 / 3.0);
+  row.errorByFrame = {0.1, 1e-7};
+  row.pareto = true;
+  EXPECT_EQ(toJson(report::rowFrom(toJson(row))), toJson(row));
+}
+
+TEST(ResultStore, KeepsWhatWasFinishedAndNothingElse) {
+  const CommandFolder folder;
+  const report::ResultStore store(folder.path("rows"));
+  const nlohmann::ordered_json settings = {{"tets", 300}}, others = {{"tets", 301}};
+  EXPECT_FALSE(store.rows(settings));
+  store.keep(settings, {rowWith("linear", 0.1, 1, 1)});
+  ASSERT_TRUE(store.rows(settings));
+  EXPECT_EQ(store.rows(settings)->size(), 1u);
+  EXPECT_FALSE(store.rows(others));
+
+  const report::Trajectory trajectory = {{Eigen::Vector3f(1, 2, 3)}, {Eigen::Vector3f(4, 5, 6)}};
+  store.keep(settings, trajectory);
+  EXPECT_EQ(store.trajectory(settings), trajectory);
+  for (const auto& file : std::filesystem::directory_iterator(folder.path("rows"))) {
+    std::ofstream(file.path(), std::ios::app) << "x";  // damaged
+  }
+  EXPECT_FALSE(store.rows(settings));
+  EXPECT_FALSE(store.trajectory(settings));
+}
+
+TEST(ColouredMesh, IsPlyWithAColourAVertex) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::string ply = report::colouredPly(mesh, mesh.positions, {0.0f, 1.0f, 9.0f}, 1.0);
+  EXPECT_NE(ply.find("element vertex 3\n"), std::string::npos);
+  EXPECT_NE(ply.find("0 0 0 68 1 84\n1 0 0 253 231 37\n0 1 0 253 231 37\n3 0 1 2\n"), std::string::npos) << ply;
+  EXPECT_EQ(report::mostOf({}), 0.0);
+  EXPECT_EQ(report::mostOf({3.0f}), 3.0);
+}
+
+class ErrorVsTime : public testing::Test {
+ protected:
+  CommandResult run(const std::vector<std::string>& arguments) const {
+    return folder.run(TETSKIN_ERROR_VS_TIME, arguments);
+  }
+  /// The small scene of the tests below, explicit.
+  std::vector<std::string> small(const std::string& scene, const std::vector<std::string>& more = {},
+                                 const std::string& out = "out") const {
+    std::vector<std::string> all = {
+        "--quick", "--quiet",     "--scene", scene,      "--tets", "300,900", "--reference-tets",
+        "2700",    "--triangles", "2000",    "--frames", "6",      "--out",   out};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  CommandFolder folder;
+};
+
+const nlohmann::json& sceneOf(const nlohmann::json& json, const std::string& name) {
+  return *std::find_if(json.at("scenes").begin(), json.at("scenes").end(),
+                       [&](const auto& scene) { return scene.at("scene") == name; });
+}
+
+/// The rows of one kind, coarsest first.
+std::vector<nlohmann::json> rowsOf(const nlohmann::json& scene, const std::string& interpolation,
+                                   const std::string& material = "same") {
+  std::vector<nlohmann::json> rows;
+  for (const auto& row : scene.at("rows")) {
+    if (row.at("interpolation") == interpolation && row.at("material") == material) rows.push_back(row);
+  }
+  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.at("tets") < b.at("tets"); });
+  return rows;
+}
+
+double number(const nlohmann::json& row, const char* key) {
+  return row.at(key).get<double>();
+}
+
+double overall(const nlohmann::json& scene, const std::string& interpolation, const char* of) {
+  for (const auto& order : scene.at("orders")) {
+    if (order.at("interpolation") == interpolation && order.at("material") == "same") {
+      return order.at("overall").at(of).get<double>();
+    }
+  }
+  return 0.0;
+}
+
+/// The figures, from one quick run of everything.
+TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
+  const CommandResult result = run({"--quick", "--out", "out", "--target-error", "0.05"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("Cheapest below an error of 0.05: "), std::string::npos) << result.out;
+  EXPECT_NE(result.err.find("1000/1000"), std::string::npos) << result.err;
+  const auto json = folder.json("out/error_vs_time.json");
+  ASSERT_EQ(json.at("scenes").size(), 4u);
+
+  const auto& exact = sceneOf(json, "exact");
+  EXPECT_GT(overall(exact, "linear", "embedding"), 1.8);
+  EXPECT_GT(overall(exact, "quadratic", "embedding"), 2.7);
+  for (const auto& row : exact.at("rows")) {
+    EXPECT_EQ(row.at("error_simulation_rms"), 0.0);
+    EXPECT_EQ(row.at("error_total_rms"), row.at("error_embedding_rms"));
+  }
+
+  for (const char* name : {"sag", "twist", "drop"}) {
+    const auto& scene = sceneOf(json, name);
+    EXPECT_GT(number(scene, "reference_error"), 0.0);
+    EXPECT_EQ(rowsOf(scene, "reference").size(), 1u);
+    EXPECT_EQ(rowsOf(scene, "bullet").size(), 3u);
+    EXPECT_EQ(rowsOf(scene, "linear", "calibrated").size(), 3u);
+    for (const char* interpolation : {"linear", "quadratic"}) {
+      const auto rows = rowsOf(scene, interpolation);
+      ASSERT_EQ(rows.size(), 3u);
+      for (std::size_t k = 1; k < rows.size(); ++k) {
+        for (const char* error : {"error_total_rms", "error_embedding_rms", "error_simulation_rms"}) {
+          EXPECT_LT(number(rows[k], error), number(rows[k - 1], error)) << name << " " << interpolation << " " << error;
+        }
+      }
+    }
+    for (const auto& row : scene.at("rows")) {
+      EXPECT_EQ(row.at("finite"), 1.0);
+      EXPECT_EQ(row.at("frames"), 24.0);
+      EXPECT_GT(number(row, "simulation_ms"), 0.0);
+      EXPECT_GT(number(row, "memory_bytes"), 0.0);
+    }
+  }
+  // In the drop, contacts move single nodes: no smooth motion, and nothing for quadratic skinning to gain.
+  for (const char* name : {"sag", "twist"}) {
+    const auto linear = rowsOf(sceneOf(json, name), "linear"), quadratic = rowsOf(sceneOf(json, name), "quadratic");
+    for (std::size_t k = 0; k < linear.size(); ++k) {
+      EXPECT_LT(number(quadratic[k], "error_embedding_rms"), number(linear[k], "error_embedding_rms")) << name << k;
+    }
+  }
+}
+
+TEST_F(ErrorVsTime, WritesTheSameRowsAsCsvMarkdownAndColouredMesh) {
+  ASSERT_EQ(run(small("sag")).status, 0);
+  std::istringstream csv(folder.read("out/error_vs_time.csv"));
+  std::string header, line;
+  std::getline(csv, header);
+  for (const char* column :
+       {"error_total_rms", "error_total_max", "error_embedding_rms", "error_simulation_rms", "normal_error_mean_deg",
+        "simulation_ms", "skin_us", "total_ms", "attach_ms", "speedup", "memory_bytes"}) {
+    EXPECT_NE((header + ",").find(std::string(",") + column + ","), std::string::npos) << column;
+  }
+  std::size_t lines = 0;
+  while (std::getline(csv, line)) {
+    ++lines;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), std::count(header.begin(), header.end(), ',')) << line;
+  }
+  const auto json = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(lines, json.at("scenes").at(0).at("rows").size());
+  EXPECT_NE(folder.read("out/error_vs_time.md").find("| reference |"), std::string::npos);
+  const std::string ply = folder.read("out/error_sag_explicit.ply");
+  EXPECT_EQ(ply.rfind("ply\n", 0), 0u);
+  EXPECT_NE(ply.find("element vertex " + std::to_string(json.at("vertices").get<int>())), std::string::npos);
+}
+
+TEST_F(ErrorVsTime, TwoRunsGiveTheSameErrors) {
+  ASSERT_EQ(run(small("drop", {}, "first")).status, 0);
+  ASSERT_EQ(run(small("drop", {}, "second")).status, 0);
+  const auto first = folder.json("first/error_vs_time.json"), second = folder.json("second/error_vs_time.json");
+  const auto &a = first.at("scenes").at(0).at("rows"), &b = second.at("scenes").at(0).at("rows");
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    for (const char* error : {"error_total_rms", "error_embedding_rms", "error_simulation_rms"}) {
+      EXPECT_NEAR(number(a[k], error), number(b[k], error), 1e-6);
+    }
+  }
+}
+
+TEST_F(ErrorVsTime, GoesOnWhereItStopped) {
+  ASSERT_EQ(run(small("sag")).status, 0);
+  const auto before = folder.json("out/error_vs_time.json");
+  // As if it had been stopped before its last cage.
+  std::filesystem::path last;
+  for (const auto& file : std::filesystem::directory_iterator(folder.path("out/rows"))) {
+    if (file.path().extension() != ".json") continue;
+    if (last.empty() || file.last_write_time() > std::filesystem::last_write_time(last)) last = file.path();
+  }
+  std::filesystem::remove(last);
+  ASSERT_EQ(run(small("sag")).status, 0);
+  const auto after = folder.json("out/error_vs_time.json");
+  const auto &a = before.at("scenes").at(0).at("rows"), &b = after.at("scenes").at(0).at("rows");
+  ASSERT_EQ(a.size(), b.size());
+  std::size_t sameTimes = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_NEAR(number(a[k], "error_total_rms"), number(b[k], "error_total_rms"), 1e-9);
+    sameTimes += a[k].at("simulation_ms") == b[k].at("simulation_ms");  // to the bit: not measured again
+  }
+  EXPECT_GE(sameTimes, a.size() - 2);
+  EXPECT_LT(sameTimes, a.size());
+}
+
+TEST_F(ErrorVsTime, ImplicitRowsStandBesideTheOthers) {
+  ASSERT_EQ(run(small("sag", {"--implicit", "--interpolation", "quadratic", "--no-calibration"})).status, 0);
+  const auto json = folder.json("out/error_vs_time.json");
+  ASSERT_EQ(json.at("scenes").size(), 2u);
+  EXPECT_EQ(json.at("scenes").at(1).at("integrator"), "implicit");
+  for (const auto& row : json.at("scenes").at(1).at("rows")) {
+    EXPECT_TRUE(row.at("interpolation") == "quadratic" || row.at("interpolation") == "reference");
+    EXPECT_EQ(row.at("material"), "same");
+  }
+}
+
+TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
+  folder.write("box.obj",
+               "v 0 0 0\nv 400 0 0\nv 400 900 0\nv 0 900 0\nv 0 0 300\nv 400 0 300\nv 400 900 300\nv 0 900 300\n"
+               "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const CommandResult result = run(small("exact", {"--mesh", "box.obj"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(json.at("model"), "box.obj");
+  EXPECT_NEAR(number(json.at("scenes").at(0).at("rows").at(0), "box_diagonal_which_is_the_unit_of_errors_and_edge"),
+              std::sqrt(400.0 * 400 + 900 * 900 + 300 * 300), 1e-6);
+}
+
+TEST_F(ErrorVsTime, RefusesBadInput) {
+  const auto expectRefused = [&](const std::vector<std::string>& arguments, const std::string& word) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+  };
+  expectRefused({"--mesh", "nowhere.obj"}, "nowhere.obj");
+  expectRefused({"--scene", "fly"}, "--scene");
+  expectRefused({"--tets", "0"}, "--tets");
+  expectRefused({"--tets", "3000", "--reference-tets", "3000"}, "reference");
+  expectRefused({"--target-error", "-1"}, "--target-error");
+  expectRefused({"--full", "--quick"}, "--full");
+  folder.write("file", "");
+  expectRefused({"--quick", "--out", "file"}, "file");
+}
+
+}  // namespace
+}  // namespace tetskin
