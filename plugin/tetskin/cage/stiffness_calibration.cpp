@@ -53,7 +53,8 @@ TetMesh used(const TetMesh& cage) {
 /// How far every level moves under the accelerations of a vibration of the coarsest, along that vibration. Each with
 /// its own lumped masses: those of coarse bodies lie farther out and slow turning motions, as softness would; what they
 /// do already must not be done again.
-void addResponses(const RefinedBodies& bodies, Eigen::VectorXd mode, std::vector<double>& responses) {
+std::vector<double> responsesTo(const RefinedBodies& bodies, Eigen::VectorXd mode) {
+  std::vector<double> responses;
   Eigen::VectorXd displacement;
   for (std::size_t level = 0; level < bodies.levelCount(); ++level) {
     const ElasticBody& body = bodies.body(level);
@@ -64,8 +65,9 @@ void addResponses(const RefinedBodies& bodies, Eigen::VectorXd mode, std::vector
     Eigen::VectorXd load = mode.cwiseProduct(body.masses);
     body.rigid.balance(load);
     displacement = level == 0 ? bodies.direct().solve(load) : bodies.solve(level, load, displacement);
-    responses[level] += load.dot(displacement) / load.dot(mode);
+    responses.push_back(load.dot(displacement) / load.dot(mode));
   }
+  return responses;
 }
 
 /// Their limit under refinement.
@@ -79,6 +81,18 @@ double limitOf(const std::vector<double>& responses) {
   return responses[last] + std::max(change, 0.0) / (quotient - 1.0);
 }
 
+/// Share of the mass that takes part in a vibration: 1 where all of it moves alike, 1/N where one node of N moves.
+double participation(const Eigen::VectorXd& mode, const Eigen::VectorXd& masses) {
+  double second = 0.0, fourth = 0.0, mass = 0.0;
+  for (Eigen::Index n = 0; n < mode.size(); n += 3) {
+    const double squared = mode.segment<3>(n).squaredNorm();
+    second += masses[n] * squared;
+    fourth += masses[n] * squared * squared;
+    mass += masses[n];
+  }
+  return second * second / (mass * fourth);
+}
+
 }  // namespace
 
 Result<StiffnessCalibration> calibrateStiffness(const TetMesh& cage, const CalibrationOptions& options) {
@@ -90,9 +104,14 @@ Result<StiffnessCalibration> calibrateStiffness(const TetMesh& cage, const Calib
   const Eigen::MatrixXd modes = softestModes(bodies.body(0), bodies.direct(), options.modes);
   StiffnessCalibration result;
   result.responses.assign(bodies.levelCount(), 0.0);
-  for (Eigen::Index k = 0; k < modes.cols(); ++k) addResponses(bodies, modes.col(k), result.responses);
-  const double limit = limitOf(result.responses);
-  for (double& response : result.responses) response /= limit;
+  double limits = 0.0;
+  for (Eigen::Index k = 0; k < modes.cols(); ++k) {
+    const std::vector<double> responses = responsesTo(bodies, modes.col(k));
+    const double weight = participation(modes.col(k), bodies.body(0).masses);
+    for (std::size_t level = 0; level < responses.size(); ++level) result.responses[level] += weight * responses[level];
+    limits += weight * limitOf(responses);
+  }
+  for (double& response : result.responses) response /= limits;
   result.factor = std::min(result.responses.front(), 1.0);
   result.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
