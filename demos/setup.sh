@@ -2,7 +2,7 @@
 
 # What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 24.04 and later.
 build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev libbenchmark-dev)
-test_packages=(libgtest-dev clang-format clang-tidy)
+test_packages=(libgtest-dev clang-format clang-tidy python3-matplotlib)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
 require_packages() {

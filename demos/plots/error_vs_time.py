@@ -164,7 +164,7 @@ def surface(path, name):
     """The coloured mesh as f3d draws it, with the scale of its colours."""
     most, low, high = read_ply(path)
     centre = [(a + b) / 2 for a, b in zip(low, high)]
-    camera = [c + 1.9 * math.dist(low, high) * step for c, step in zip(centre, (-0.34, 0.40, 0.85))]
+    camera = [c + 1.45 * math.dist(low, high) * step for c, step in zip(centre, (-0.34, 0.40, 0.85))]
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "surface.png"
         subprocess.run(["xvfb-run", "-a", "f3d", "--dry-run", "--quiet", str(path), f"--output={picture}", "--up=+Y",
