@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws what tetskin_error_vs_time measured, as PNG and SVG beside its JSON file (or in the folder given).
 
-error_vs_time.py RESULTS.json [FOLDER] [--tets N]
+error_vs_time.py RESULTS.json [FOLDER] [--tets N] [--no-surface]
 
 For every scene: SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_frames.png, error over the frames for
 the cage nearest to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
@@ -196,6 +196,7 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--tets", type=float, default=3000)
+    parser.add_argument("--no-surface", action="store_true")
     arguments = parser.parse_args()
     results = json.loads(arguments.results.read_text())
     folder = arguments.folder or arguments.results.parent
@@ -209,7 +210,7 @@ def main():
         if integrated:
             save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
         mesh = arguments.results.parent / f"error_{base}.ply"
-        if mesh.exists() and shutil.which("f3d") and shutil.which("xvfb-run"):
+        if not arguments.no_surface and mesh.exists() and shutil.which("f3d") and shutil.which("xvfb-run"):
             save(surface(mesh, f"{TITLES[scene['scene']]}"), folder, f"{base}_surface")
 
 

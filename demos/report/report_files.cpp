@@ -144,7 +144,10 @@ std::string markdownOf(const ReportResult& result, double targetError) {
     text += "\n## " + scene.scene + (scene.integrator == "none" ? "" : ", " + scene.integrator) + "\n\n";
     appendTable(text, scene);
     if (scene.referenceError > 0.0) {
-      append(text, "\nThe reference itself is wrong by about %.1e: smaller differences mean nothing.\n",
+      append(text,
+             "\nThe reference itself is wrong by about %.1e: smaller differences mean nothing. Calibrated cages aim at "
+             "the "
+             "body itself, not at the reference, which is too stiff as well: judge them by a fine one (--full).\n",
              scene.referenceError);
     }
     appendOrders(text, scene);

@@ -136,7 +136,7 @@ std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& s
   return {row};
 }
 
-Reference& SceneRunner::reference(const std::function<void(double)>& share) {
+Reference& SceneRunner::reference() {
   if (reference_) return *reference_;
   if (setup_.kind == SceneKind::Exact) {
     reference_ = std::make_unique<ExactReference>(model_.mesh, *setup_.twist);
@@ -146,7 +146,7 @@ Reference& SceneRunner::reference(const std::function<void(double)>& share) {
     if (std::optional<Trajectory> kept = store_.trajectory(settings(jobs_.front()))) {
       referenceTrajectory_ = std::move(*kept);
     } else {
-      (void)referenceRows(share);
+      (void)referenceRows([](double) {});
     }
   }
   reference_ =
@@ -159,55 +159,60 @@ void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame)
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
 }
 
-std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
-  if (isReference(job)) return referenceRows(share);
-  Reference& right = reference([](double) {});
-  const TetMesh& cage = cages_.cage(job.tets);
-  Row row = rowOf(job, cage);
-  Trajectory driven = right.drive(cage);
-  Trajectory nodes = driven;
-  SurfaceCosts costs;
+SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share) {
+  Motion motion;
+  motion.row = rowOf(job, cage);
+  motion.driven = reference_->drive(cage);
   if (setup_.kind == SceneKind::Exact) {
-    costs = surfaceCosts(cage, model_.mesh, job.surfaces);
+    motion.nodes = motion.driven;
+    motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
   } else {
     Material own = material();
     if (job.calibrated) {
       const StiffnessCalibration& calibration = cages_.calibration(job.tets, own.poissonRatio);
-      row.stiffnessFactor = calibration.factor;
-      row.calibrateMs = calibration.milliseconds;
+      motion.row.stiffnessFactor = calibration.factor;
+      motion.row.calibrateMs = calibration.milliseconds;
       own.youngsModulus *= calibration.factor;
     }
     int frame = 0;
     Simulation simulation = simulate(setup_, cage, own, model_.mesh, job.surfaces,
                                      [&] { share(0.5 * static_cast<double>(++frame) / setup_.frames); });
-    nodes = std::move(simulation.trajectory);
-    row.simulationMs = simulation.milliseconds;
-    row.memoryBytes = static_cast<double>(simulation.bytes);
-    row.finite = simulation.finite;
-    costs = simulation.surfaces;
+    motion.nodes = std::move(simulation.trajectory);
+    motion.costs = simulation.surfaces;
+    motion.row.simulationMs = simulation.milliseconds;
+    motion.row.memoryBytes = static_cast<double>(simulation.bytes);
+    motion.row.finite = simulation.finite;
   }
-  const std::size_t frames = std::min(nodes.size(), driven.size());
-  nodes.resize(frames);
-  driven.resize(frames);
-  row.frames = static_cast<double>(frames - 1);
-  row.errorSimulationRms = nodeErrors(nodes, driven, model_.mesh);
+  // One of them may have exploded.
+  const std::size_t frames = std::min(motion.nodes.size(), motion.driven.size());
+  motion.nodes.resize(frames);
+  motion.driven.resize(frames);
+  motion.row.frames = static_cast<double>(frames - 1);
+  motion.row.errorSimulationRms = nodeErrors(motion.nodes, motion.driven, model_.mesh);
+  return motion;
+}
 
+std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
+  if (isReference(job)) return referenceRows(share);
+  Reference& right = reference();
+  const TetMesh& cage = cages_.cage(job.tets);
+  const Motion motion = move(job, cage, share);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
-    const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, nodes);
-    const SurfaceCost& cost = costs[static_cast<std::size_t>(kind)];
-    Row& own = rows.emplace_back(row);
-    own.interpolation = nameOf(kind);
-    own.errorTotalRms = total.rms;
-    own.errorTotalMax = total.max;
-    own.normalErrorMeanDeg = total.normalMeanDeg;
-    own.errorByFrame = total.rmsByFrame;
-    own.errorEmbeddingRms = surfaceErrors(right, model_.mesh, cage, kind, driven).rms;
-    own.skinUs = cost.updateUs;
-    own.totalMs = row.simulationMs + cost.updateUs / 1000.0;
-    own.attachMs = cost.attachMs;
-    own.memoryBytes += static_cast<double>(cost.bytes);
-    if (job.coloured && rows.size() == 1) colour(job, total, static_cast<int>(frames) - 1);
+    const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, motion.nodes);
+    const SurfaceCost& cost = motion.costs[static_cast<std::size_t>(kind)];
+    Row& row = rows.emplace_back(motion.row);
+    row.interpolation = nameOf(kind);
+    row.errorTotalRms = total.rms;
+    row.errorTotalMax = total.max;
+    row.normalErrorMeanDeg = total.normalMeanDeg;
+    row.errorByFrame = total.rmsByFrame;
+    row.errorEmbeddingRms = surfaceErrors(right, model_.mesh, cage, kind, motion.driven).rms;
+    row.skinUs = cost.updateUs;
+    row.totalMs = row.simulationMs + cost.updateUs / 1000.0;
+    row.attachMs = cost.attachMs;
+    row.memoryBytes += static_cast<double>(cost.bytes);
+    if (job.coloured && rows.size() == 1) colour(job, total, static_cast<int>(motion.nodes.size()) - 1);
   }
   share(1.0);
   store_.keep(settings(job), rows);

@@ -51,14 +51,22 @@ class SceneRunner {
   std::optional<std::vector<Row>> stored(const Job& job) const;
   /// share  told how much of the job is done, from 0 to 1
   std::vector<Row> run(const Job& job, const std::function<void(double)>& share);
-  /// The coloured mesh of the job that makes one, and the error of its last colour; after the rows.
+  /// The coloured mesh of the job that makes one; after its rows.
   std::optional<std::string> colouredMesh() const;
 
  private:
+  /// Of a cage, as it is and as the reference would take it, with what is known of it before surfaces are compared.
+  struct Motion {
+    Row row;
+    Trajectory nodes, driven;
+    SurfaceCosts costs;
+  };
+
   bool isReference(const Job& job) const { return job.surfaces.empty(); }
   nlohmann::ordered_json settings(const Job& job) const;
   const Material& material();
-  Reference& reference(const std::function<void(double)>& share);
+  Reference& reference();
+  Motion move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share);
   std::vector<Row> referenceRows(const std::function<void(double)>& share);
   Row rowOf(const Job& job, const TetMesh& cage) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);

@@ -222,6 +222,19 @@ TEST_F(ErrorVsTime, WritesTheSameRowsAsCsvMarkdownAndColouredMesh) {
   EXPECT_NE(ply.find("element vertex " + std::to_string(json.at("vertices").get<int>())), std::string::npos);
 }
 
+TEST_F(ErrorVsTime, ItsPlotsAreDrawn) {
+  if (folder.run("python3", {"-c", "import matplotlib"}).status != 0) GTEST_SKIP() << "no matplotlib";
+  ASSERT_EQ(run(small("sag,exact")).status, 0);
+  const CommandResult drawn =
+      folder.run("python3", {TETSKIN_PLOTS "/error_vs_time.py", "out/error_vs_time.json", "plots", "--no-surface"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  for (const char* name : {"sag_explicit", "sag_explicit_frames", "exact"}) {
+    for (const char* ending : {".png", ".svg"}) {
+      EXPECT_TRUE(folder.exists("plots/" + std::string(name) + ending)) << name << ending;
+    }
+  }
+}
+
 TEST_F(ErrorVsTime, TwoRunsGiveTheSameErrors) {
   ASSERT_EQ(run(small("drop", {}, "first")).status, 0);
   ASSERT_EQ(run(small("drop", {}, "second")).status, 0);
