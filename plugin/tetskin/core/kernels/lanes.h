@@ -29,7 +29,7 @@
 #endif
 
 // GCC 12 would read a number of several uses from memory again for each of them; unaligned, that is dear.
-#if defined(__GNUC__) && defined(__x86_64__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
 #else
 #define TETSKIN_ONE_LOAD(v)
