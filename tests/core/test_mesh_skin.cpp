@@ -175,7 +175,7 @@ TEST_F(MeshSkins, BoundsAreThoseOfThePositions) {
   EXPECT_LT((skin.bounds().min() - box.min() - Eigen::Vector3d(3, -2, 1)).norm(), 2e-6);
 }
 
-TEST_F(MeshSkins, ANodeThatIsNotFiniteChangesNothing) {
+TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
   for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
     MeshSkin<float> skin;
     ASSERT_TRUE(skin.bind(cage, mesh, everything(normals)).ok());
@@ -185,7 +185,9 @@ TEST_F(MeshSkins, ANodeThatIsNotFiniteChangesNothing) {
       before.push_back(at(skin.positions(), v));
       before.push_back(at(skin.normals(), v));
     }
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
+    using Limits = std::numeric_limits<float>;
+    // Finite coordinates so large that weighted sums or normals would not be finite are no better.
+    for (const float bad : {Limits::quiet_NaN(), -Limits::infinity(), 1.1e18f, -Limits::max()}) {
       Nodes broken = rest;
       broken[70].z() = bad;
       broken[90].x() = bad;

@@ -355,14 +355,14 @@ TEST(NormalsOfAnyScale, NeedNoUnit) {
   }
 }
 
-/// Products of such coordinates are beyond a float.
+/// Squares of such areas are beyond a float.
 TEST(NormalsOfAnyScale, AreNeverNaNWhenAreasOverflow) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const TriangleMesh mesh = authoredSphere(12, 0.52);
   // In space, and near each plane, where only one coordinate of an area overflows.
   for (const Eigen::Vector3d& reach :
-       {Eigen::Vector3d(1e10, 1e10, 1e10), Eigen::Vector3d(3e25, 3e25, 3e25), Eigen::Vector3d(1, 1e20, 1e20),
-        Eigen::Vector3d(1e20, 1, 1e20), Eigen::Vector3d(1e20, 1e20, 1)}) {
+       {Eigen::Vector3d(1e10, 1e10, 1e10), Eigen::Vector3d(1e18, 1e18, 1e18), Eigen::Vector3d(1, 1e18, 1e18),
+        Eigen::Vector3d(1e18, 1, 1e18), Eigen::Vector3d(1e18, 1e18, 1)}) {
     const Points far = test::randomPoints(cage.nodeCount(), {-reach, reach}, 74);
     for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
       for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {

@@ -62,6 +62,18 @@ TEST(PointView, FindsTheFirstPointThatIsNotFinite) {
   EXPECT_EQ(firstNonFinite(viewOf(std::as_const(points))), 2u);
 }
 
+TEST(PointView, FindsTheFirstPointThatNoSurfaceCanFollow) {
+  const std::vector<Eigen::Vector3f> good = {{1e18f, -1e18f, 0}, {1, 2, 3}};
+  EXPECT_EQ(firstUnusable(viewOf(good)), 2u);
+  for (const float bad : {1.01e18f, -1e30f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<Eigen::Vector3f> points = good;
+      points[1][k] = bad;
+      EXPECT_EQ(firstUnusable(viewOf(std::as_const(points))), 1u);
+    }
+  }
+}
+
 TEST(PointView, BoundingBoxOfNothingIsEmpty) {
   EXPECT_TRUE(boundingBox(std::vector<Eigen::Vector3d>{}).isEmpty());
   const Box3 box = boundingBox(std::vector<Eigen::Vector3d>{{1, -2, 3}, {0, 5, 3}});

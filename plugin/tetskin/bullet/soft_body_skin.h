@@ -15,7 +15,7 @@ enum class UpdateStatus {
   Updated,
   Asleep,           ///< skipped: the body sleeps and has not been moved since the last update
   Hidden,           ///< skipped: the skin is not visible
-  NonFinite,        ///< skipped: a node position is infinite or not a number; the simulation has exploded
+  NonFinite,        ///< skipped: a node is infinite, not a number or beyond 1e18; the simulation has exploded
   TopologyChanged,  ///< skipped: the body has gained or lost nodes or tets since bind; bind again
   Unbound,          ///< skipped: no successful bind yet
 };
@@ -93,7 +93,7 @@ class SoftBodySkin {
   const std::shared_ptr<const SoftBodyBinding>& binding() const { return skin_.binding(); }
   /// How well the cage supports quadratic skinning; of the last bind that made a binding with it.
   const QuadraticReport& quadraticReport() const { return quadraticReport_; }
-  /// The first node that was not finite when `update` last returned NonFinite.
+  /// The first such node when `update` last returned NonFinite.
   std::size_t firstBadNode() const { return firstBadNode_; }
   /// Moves the origin for the updates to come.
   void setOrigin(const btVector3& origin);

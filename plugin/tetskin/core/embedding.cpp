@@ -90,10 +90,10 @@ Status embedVertices(const TetMesh& cage, PointReader vertices, const Triangles*
   Embedding made = Embedding::fromTets(cage, vertices, tetOf, &fit);
   reportFit(fit, report);
   report.worstPosition = vertices[report.worstVertex];
-  if (!std::isfinite(report.restErrorMax)) {
+  if (!std::isfinite(report.restErrorMax) || !(report.worstBarycentric <= kLargestBarycentric)) {
     return {StatusCode::Degenerate,
-            "some vertices are so far from the cage that their weights overflow; are mesh and "
-            "cage in the same unit?"};
+            "some vertices are so many times the size of their tet away from it that weighted sums would overflow; are "
+            "mesh and cage in the same unit?"};
   }
   if (report.worstDistance > options.maxDistance) return tooFar(report, options.maxDistance);
   report.inside = made.insideCount();

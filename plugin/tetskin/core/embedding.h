@@ -64,6 +64,9 @@ constexpr double kOverlapDepth = 1e-6;
 /// Ratio of the diagonals of mesh and cage from which different units are presumed: inches against metres are 39, and
 /// a cage 30 times as large as its mesh would leave the mesh in a handful of tets anyway.
 constexpr double kUnitRatio = 30.0;
+/// Barycentric distance beyond which a mesh is refused: times nodes as far as kLargestCoordinate, weights would leave
+/// float's range; at rest they would keep no digit long before.
+constexpr double kLargestBarycentric = 1e15;
 /// Tets whose distances differ by less than this fraction of their size are equally near.
 constexpr double kNearestTie = 1e-6;
 

@@ -157,8 +157,10 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
   }
   if (Status status = checkParts(*binding, options); !status.ok()) return status;
   if (Status status = checkTargets(options, vertexCount); !status.ok()) return status;
-  if (const std::size_t bad = firstNonFinite(nodes); bad < nodes.size()) {
-    return {StatusCode::NonFinite, "node " + std::to_string(bad) + " is not finite; bind before the body explodes"};
+  if (const std::size_t bad = firstUnusable(nodes); bad < nodes.size()) {
+    return {StatusCode::NonFinite, "node " + std::to_string(bad) +
+                                       " is not finite, or farther than 1e18 from the origin; bind before the body "
+                                       "explodes"};
   }
 
   MeshSkin made;

@@ -98,7 +98,8 @@ class MeshSkin {
               const SkinOptions& options = {});
 
   /// Computes positions, normals and tangents for these node positions, world space, nodeCount x 3. Allocates nothing.
-  /// Returns the index of the first node that is not finite, and changes nothing then; nodeCount() if all is well.
+  /// Returns the index of the first node that is not finite, or beyond kLargestCoordinate, and changes nothing then;
+  /// nodeCount() if all is well.
   [[nodiscard]] std::size_t update(PointView<const Scalar> nodes);
 
   bool bound() const { return binding_ != nullptr; }

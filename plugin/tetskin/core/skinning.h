@@ -27,8 +27,8 @@ class PackedNodes {
 
   explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount, Node::Zero()) {}
 
-  /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or size(); the
-  /// packed nodes are good for nothing then. Cost O(nodeCount), no allocation.
+  /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or is beyond
+  /// kLargestCoordinate, or size(); the packed nodes are good for nothing then. Cost O(nodeCount), no allocation.
   [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
 
   std::size_t size() const { return nodes_.size(); }

@@ -123,6 +123,21 @@ inline Box3 boundingBox(const std::vector<Eigen::Vector3d>& points) {
   return boundingBox(viewOf(points));
 }
 
+/// Largest coordinate of a node that a surface can follow, in any unit: beyond, squares and weighted sums leave float's
+/// range. Bodies that get there have exploded.
+constexpr double kLargestCoordinate = 1e18;
+
+/// Index of the first point with a coordinate that is not finite or beyond kLargestCoordinate, or `points.size()`.
+template <class Scalar>
+std::size_t firstUnusable(PointView<const Scalar> points) {
+  constexpr auto kLargest = static_cast<Scalar>(kLargestCoordinate);
+  const auto usable = [](Scalar x) { return x >= -kLargest && x <= kLargest; };  // NaN is not
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!usable(points[i][0]) || !usable(points[i][1]) || !usable(points[i][2])) return i;
+  }
+  return points.size();
+}
+
 /// Index of the first point with a coordinate that is not finite, or `points.size()`.
 template <class Scalar>
 std::size_t firstNonFinite(PointView<const Scalar> points) {
