@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""stability_map.py STRESS.json MAP.png: draws the stability map of tetskin_stress --json: stiffness against time step,
+one cell a run, coloured by how large the body became, crossed out where it exploded."""
+import json
+import math
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.colors import LogNorm
+
+LARGEST = 1000.0  # times its size; colours end there
+
+
+def draw(axes, cells):
+    steps = sorted({cell["time_step"] for cell in cells})
+    stiffnesses = sorted({cell["stiffness"] for cell in cells})
+    extents = [[math.nan] * len(steps) for _ in stiffnesses]
+    for cell in cells:
+        column, row = steps.index(cell["time_step"]), stiffnesses.index(cell["stiffness"])
+        extents[row][column] = min(cell["extent_max"], LARGEST) if cell["simulation_finite"] else LARGEST
+        if not cell["simulation_bounded"]:
+            axes.text(column, row, "×", ha="center", va="center", fontsize=13)
+    image = axes.imshow(extents, origin="lower", aspect="auto", cmap="YlOrRd", norm=LogNorm(1.0, LARGEST))
+    axes.set_xticks(range(len(steps)), [f"1/{round(1.0 / step)}" for step in steps])
+    axes.set_yticks(range(len(stiffnesses)), [f"$10^{round(math.log10(value))}$" for value in stiffnesses])
+    axes.set_xticks([k - 0.5 for k in range(1, len(steps))], minor=True)
+    axes.set_yticks([k - 0.5 for k in range(1, len(stiffnesses))], minor=True)
+    axes.grid(which="minor", color="white")
+    axes.tick_params(which="minor", length=0)
+    axes.set_xlabel("time step, s")
+    return image
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    with open(sys.argv[1], encoding="utf-8") as file:
+        cells = [case for case in json.load(file) if case["group"] == "map"]
+    if not cells:
+        sys.exit(f"{sys.argv[1]}: has no cells of the map")
+    figure, both = plt.subplots(1, 2, figsize=(9.5, 3.8), sharey=True, layout="constrained")
+    for axes, implicit in zip(both, (False, True)):
+        image = draw(axes, [cell for cell in cells if cell["implicit"] == implicit])
+        axes.set_title("implicit: one Newton step" if implicit else "explicit, implicit damping")
+    both[0].set_ylabel("Young's modulus, Pa")
+    bar = figure.colorbar(image, ax=both, extend="max")
+    bar.set_label("largest extent, times the body's; × exploded")
+    figure.savefig(sys.argv[2], dpi=110)
+
+
+if __name__ == "__main__":
+    main()

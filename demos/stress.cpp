@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Stiff and extreme cases, each run in Bullet and judged: does the simulation stay bounded, does the skin do what it
+// promises.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "scenes/options.h"
+#include "stress/report.h"
+#include "stress/run_case.h"
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+using namespace tetskin::stress;
+
+namespace {
+
+struct StressOptions {
+  bool quick = false;
+  bool quiet = false;
+  std::string only;
+  std::string json;
+  std::string markdown;
+};
+
+std::vector<StressCase> chosenCases(const StressOptions& options) {
+  std::vector<StressCase> cases = stressCases();
+  const auto leftOut = [&](const StressCase& c) {
+    return (options.quick && !c.quick) || c.name.find(options.only) == std::string::npos;
+  };
+  cases.erase(std::remove_if(cases.begin(), cases.end(), leftOut), cases.end());
+  if (cases.empty()) throw InputError("--only " + options.only + ": no case has that in its name");
+  return cases;
+}
+
+void writeText(const std::string& text, const std::string& path) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
+}
+
+int run(const StressOptions& options) {
+  std::vector<Row> rows;
+  for (const StressCase& stressCase : chosenCases(options)) {
+    rows.push_back({stressCase, runCase(stressCase)});
+    if (!options.quiet) printRow(rows.back());
+  }
+  const auto broken = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.verdict.held(); });
+  if (!options.json.empty()) writeJson(toJson(rows), options.json);
+  if (!options.markdown.empty()) writeText(toMarkdown(rows), options.markdown);
+  if (!options.quiet) {
+    printMap(rows);
+    std::printf("\n%zu cases, %td of which did not hold\n", rows.size(), broken);
+  }
+  return broken == 0 ? kDone : kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  StressOptions options;
+  CLI::App app("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
+  app.add_flag("--quick", options.quick, "A part of the cases, in less than a minute");
+  app.add_option("--only", options.only, "Only the cases with this in their names");
+  app.add_option("--json", options.json, "File of the results, a list of cases");
+  app.add_option("--markdown", options.markdown, "File of the results, as tables");
+  app.add_flag("--quiet", options.quiet, "Print nothing but errors");
+  return runDemo(app, argc, argv, [&] { return run(options); });
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "stress/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tetskin::stress {
+namespace {
+
+std::string simulationWord(const Verdict& verdict) {
+  if (!verdict.simulationFinite) return "not finite";
+  return verdict.simulationBounded ? "bounded" : "exploded";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : "; ") + word;
+  return all;
+}
+
+std::string heldWord(const Verdict& verdict) {
+  return verdict.held() ? "held" : "NOT HELD: " + joined(verdict.broken);
+}
+
+/// One line a stiffness, one letter a time step.
+void printMapOf(const std::vector<const Row*>& cells, const char* integrator) {
+  std::printf("\n%s: stable (o) or not (x); stiffness against steps a second\n%10s", integrator, "");
+  double stiffness = -1.0;
+  for (const Row* cell : cells) {
+    if (cell->stressCase.stiffness == cells.front()->stressCase.stiffness) {
+      std::printf("%6.0f", 1.0 / cell->stressCase.timeStep);
+    }
+  }
+  for (const Row* cell : cells) {
+    if (cell->stressCase.stiffness != stiffness) {
+      stiffness = cell->stressCase.stiffness;
+      std::printf("\n%10.0e", stiffness);
+    }
+    std::printf("%6s", cell->verdict.simulationBounded ? "o" : "x");
+  }
+  std::printf("\n");
+}
+
+}  // namespace
+
+nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
+  auto json = nlohmann::ordered_json::array();
+  for (const auto& [stressCase, verdict] : rows) {
+    nlohmann::ordered_json row;
+    row["name"] = stressCase.name;
+    row["group"] = stressCase.group;
+    row["simulation_finite"] = verdict.simulationFinite;
+    row["simulation_bounded"] = verdict.simulationBounded;
+    row["skin_finite"] = verdict.skinFinite;
+    row["status"] = verdict.status;
+    row["amplification"] = verdict.amplification;
+    row["rest_error"] = verdict.restError;
+    row["shape_error"] = verdict.shapeError;
+    row["normal_error"] = verdict.normalError;
+    row["weight_error"] = verdict.weightError;
+    row["extent_max"] = verdict.extentMax;
+    row["held"] = verdict.held();
+    row["broken"] = verdict.broken;
+    row["milliseconds"] = verdict.milliseconds;
+    row["force"] = toString(stressCase.force);
+    row["implicit"] = stressCase.implicit;
+    row["stiffness"] = stressCase.stiffness;
+    row["poisson"] = stressCase.poisson;
+    row["damping"] = stressCase.damping;
+    row["time_step"] = stressCase.timeStep;
+    row["substeps"] = stressCase.substeps;
+    row["event"] = toString(stressCase.event);
+    row["cage"] = toString(stressCase.cage);
+    row["mesh"] = toString(stressCase.surface);
+    row["interpolation"] = toString(stressCase.interpolation);
+    row["normals"] = toString(stressCase.normals);
+    json.push_back(std::move(row));
+  }
+  return json;
+}
+
+std::string toMarkdown(const std::vector<Row>& rows) {
+  std::string text;
+  std::string group;
+  for (const auto& [stressCase, verdict] : rows) {
+    if (stressCase.group != group) {
+      group = stressCase.group;
+      text += "\n## " + group +
+              "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | expectations "
+              "|\n|---|---|---|---|---|---|---|---|\n";
+    }
+    char numbers[160];
+    std::snprintf(numbers, sizeof numbers, " | %s | %.3g | %s | %s | %.4f | %.1e | ", simulationWord(verdict).c_str(),
+                  verdict.extentMax, verdict.skinFinite ? "finite" : "not finite", verdict.status.c_str(),
+                  verdict.amplification, verdict.restError);
+    text += "| " + stressCase.name + numbers + heldWord(verdict) + " |\n";
+  }
+  return text;
+}
+
+void printRow(const Row& row) {
+  const Verdict& verdict = row.verdict;
+  std::printf("%-48s %-10s %8.3g  %-10s %7.4f %9.1e %7.0f ms  %s\n", row.stressCase.name.c_str(),
+              simulationWord(verdict).c_str(), verdict.extentMax, verdict.status.c_str(), verdict.amplification,
+              verdict.restError, verdict.milliseconds, heldWord(verdict).c_str());
+}
+
+void printMap(const std::vector<Row>& rows) {
+  for (const bool implicit : {false, true}) {
+    std::vector<const Row*> cells;
+    for (const Row& row : rows) {
+      if (row.stressCase.group == "map" && row.stressCase.implicit == implicit) cells.push_back(&row);
+    }
+    std::stable_sort(cells.begin(), cells.end(),
+                     [](const Row* a, const Row* b) { return a->stressCase.stiffness < b->stressCase.stiffness; });
+    if (!cells.empty()) printMapOf(cells, implicit ? "implicit" : "explicit");
+  }
+}
+
+}  // namespace tetskin::stress

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+#include "stress/skin_judge.h"
+
+namespace tetskin::stress {
+
+struct Row {
+  StressCase stressCase;
+  Verdict verdict;
+};
+
+/// A list of one object a case.
+nlohmann::ordered_json toJson(const std::vector<Row>& rows);
+/// A table a group.
+std::string toMarkdown(const std::vector<Row>& rows);
+/// On standard output: a line a case, and the stability map in letters.
+void printRow(const Row& row);
+void printMap(const std::vector<Row>& rows);
+
+}  // namespace tetskin::stress

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/mesh_skin.h>
+
+#include <string>
+#include <vector>
+
+namespace tetskin::stress {
+
+/// Bullet's force models; mass-spring in the classic world, the others in the deformable one.
+enum class Force { MassSpring, LinearElasticity, NeoHookean, Corotated };
+
+/// What happens to the body.
+enum class Event {
+  Land,          ///< falls on the floor
+  Pluck,         ///< a hundredth longer at once, and let go
+  SquashFlat,    ///< all nodes are put on a plane and let go
+  Stretch,       ///< ten times as long at once, and let go
+  Mirror,        ///< inside out
+  Permute,       ///< every node is put where another was
+  Spin,          ///< 100 turns a second
+  Teleport,      ///< 1,000 lengths away, and back
+  Impact,        ///< hits the floor at 100 lengths a second
+  Pull,          ///< held by one node, pulled away three lengths by another
+  HeavyBox,      ///< a box of 1,000 times its mass falls on it
+  NodeNaN,       ///< a node is not a number, for one update
+  NodeInfinite,  ///< a node is infinite, for one update
+  NodeTooFar,    ///< a node is finite, but beyond what a surface can follow, for one update
+};
+
+/// The cage that the skin is bound to. The body is made of its tets that are not flat.
+enum class Cage {
+  Bar,           ///< the bar's own
+  FlatTets,      ///< with tets of no volume in it
+  NeedleTets,    ///< squeezed to 1e-4 in two directions
+  SliverTets,    ///< squeezed to 1e-8 in one
+  AllFlat,       ///< squeezed to 1e-12 in one
+  Inverted,      ///< every other tet inside out
+  Duplicates,    ///< every tet twice
+  Unreferenced,  ///< with nodes that no tet names
+  Far1e5,        ///< the body 1e5 lengths from the origin, the skin's origin there
+  Far1e7,        ///< 1e7 lengths
+  Tiny,          ///< 1e-4 of the size
+  Huge,          ///< 1e4 times the size
+  OneTet,        ///< around all of the bar
+  Large,         ///< 300,000 tets
+};
+
+/// The mesh that the skin carries.
+enum class Surface {
+  Bar,           ///< the bar
+  FarOutside,    ///< with vertices up to 1,000 lengths outside the cage
+  Coincident,    ///< every vertex three times
+  NonFinite,     ///< one vertex is not a number: must be refused
+  ThreeMillion,  ///< three million vertices
+  NoVertices,    ///< must be refused
+};
+
+/// What Bullet is expected to do. Its behaviour where it is not documented to be stable may differ between versions
+/// and machines: there the expectation is all about the skin.
+enum class Simulation { Bounded, Unbounded, Either };
+
+/// One row of the table: what is simulated, what the skin is asked for, and what Bullet and `bind` shall do. What the
+/// skin shall do follows: see `SkinJudge`.
+struct StressCase {
+  std::string group;
+  std::string name;
+
+  Force force = Force::NeoHookean;
+  bool implicit = false;
+  /// Young's modulus, Pa, for a body of 1 kg and 2 m; mass-spring: link stiffness from 0 to 1. 0: the library's
+  /// default.
+  double stiffness = 0.0;
+  double poisson = 0.3;
+  double damping = 0.02;         ///< seconds
+  double timeStep = 1.0 / 60.0;  ///< seconds a frame
+  int substeps = 4;              ///< of a frame
+  int frames = 30;
+
+  Event event = Event::Land;
+  Cage cage = Cage::Bar;
+  Surface surface = Surface::Bar;
+  Interpolation interpolation = Interpolation::Linear;
+  Normals normals = Normals::None;
+
+  Simulation simulation = Simulation::Bounded;
+  bool recovers = false;                ///< Bullet shall bring the body back to its shape
+  StatusCode refusal = StatusCode::Ok;  ///< of makeSoftBody and bind, or of bind alone
+  bool quick = false;                   ///< also runs with --quick
+
+  double substep() const { return timeStep / substeps; }
+};
+
+/// Names for reports.
+const char* toString(Force force);
+const char* toString(Event event);
+const char* toString(Cage cage);
+const char* toString(Surface surface);
+const char* toString(Interpolation interpolation);
+const char* toString(Normals normals);
+
+/// All cases, in groups: first the stability map, whose cells are runs of their own.
+std::vector<StressCase> stressCases();
+
+}  // namespace tetskin::stress
