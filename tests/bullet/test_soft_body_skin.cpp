@@ -3,11 +3,9 @@
 #include "support/allocation_count.h"
 #include "support/odd_meshes.h"
 
-#include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body_builder.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/tet_geometry.h>
 
 #include <algorithm>
 #include <array>
@@ -438,87 +436,6 @@ TEST_F(Skin, EveryUpdateStatusHasAName) {
   EXPECT_STREQ(toString(UpdateStatus::NonFinite), "not finite");
   EXPECT_STREQ(toString(UpdateStatus::TopologyChanged), "topology changed");
   EXPECT_STREQ(toString(UpdateStatus::Unbound), "unbound");
-}
-
-/// Bullet's own render mesh on the same body.
-class BulletsRenderMesh : public Skin {
- protected:
-  /// An irregular cage: in a lattice, vertices outside have several equally good tets.
-  BulletsRenderMesh() {
-    const auto noise =
-        test::randomPoints(cage.nodeCount(), {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.06)}, 5);
-    for (std::size_t n = 0; n < cage.nodeCount(); ++n) cage.nodes[n] = inBulletsPrecision(cage.nodes[n] + noise[n]);
-    body.reset(makeSoftBody(cage, info));
-  }
-
-  static Eigen::Vector3d inBulletsPrecision(const Eigen::Vector3d& p) { return toEigen(toBullet(p)); }
-
-  void addRenderNodes(const std::vector<Eigen::Vector3d>& vertices) {
-    for (const Eigen::Vector3d& p : vertices) {
-      btSoftBody::RenderNode node;
-      node.m_x = toBullet(p);
-      node.m_uv1.setZero();
-      node.m_normal.setZero();
-      body->m_renderNodes.push_back(node);
-    }
-    btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
-  }
-
-  /// The tet that Bullet chose, by its nodes; -1 if none.
-  int bulletsTet(int v) const {
-    const auto& parents = body->m_renderNodesParents[v];
-    if (parents.size() != 4) return -1;
-    Tet tet{};
-    for (int k = 0; k < 4; ++k) tet[k] = static_cast<int>(parents[k] - &body->m_nodes[0]);
-    const auto found = std::find(cage.tets.begin(), cage.tets.end(), tet);
-    return found == cage.tets.end() ? -1 : static_cast<int>(found - cage.tets.begin());
-  }
-
-  double barycentric(int tet, const Eigen::Vector3d& v) const {
-    return barycentricDistance(BarycentricMap(cornersOf(cage, cage.tets[tet]))(v));
-  }
-};
-
-TEST_F(BulletsRenderMesh, AgreesOnTetsAndPositions) {
-  std::vector<Eigen::Vector3d> vertices =
-      test::randomPoints(3000, {Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(1.15)}, 3);
-  std::transform(vertices.begin(), vertices.end(), vertices.begin(), inBulletsPrecision);
-  addRenderNodes(vertices);
-  SkinOptions options;
-  options.outside = OutsideRule::Barycentric;
-  ASSERT_TRUE(skin.bind(*body, cage, viewOf(std::as_const(vertices)), options).ok());
-  bend();
-  body->interpolateRenderMesh();
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
-
-  const auto bindings = skin.binding()->embedding.bindings();
-  int otherTets = 0;
-  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
-    const int bullets = bulletsTet(v);
-    ASSERT_GE(bullets, 0);
-    if (bullets != bindings[v].tet) {
-      // Bullet decides in its own precision: it may differ where two tets are equally good.
-      EXPECT_NEAR(barycentric(bullets, vertices[v]), barycentric(bindings[v].tet, vertices[v]), 1e-5);
-      ++otherTets;
-      continue;
-    }
-    EXPECT_LT((toEigen(body->m_renderNodes[v].m_x) - at(skin, v)).norm(), 1e-5) << "vertex " << v;
-  }
-  EXPECT_LE(otherTets, sizeof(btScalar) == 8 ? 0 : 3);
-}
-
-TEST_F(BulletsRenderMesh, SendsAFarVertexToTheOriginWhereOursFollows) {
-  // Defect, reproduced here: farther than 1,000 altitudes Bullet keeps no tet and draws the vertex at the world's
-  // origin.
-  const std::vector<Eigen::Vector3d> vertices{{400.0, 0.3, 0.4}};
-  addRenderNodes(vertices);
-  EXPECT_EQ(body->m_renderNodesParents[0].size(), 0);
-  ASSERT_TRUE(skin.bind(*body, cage, viewOf(vertices)).ok());
-  body->translate(btVector3(0, 2, 0));
-  body->interpolateRenderMesh();
-  skin.update();
-  EXPECT_EQ(body->m_renderNodes[0].m_x.length(), 0);
-  EXPECT_LT((at(skin, 0) - Eigen::Vector3d(400.0, 2.3, 0.4)).norm(), 1e-2);
 }
 
 }  // namespace

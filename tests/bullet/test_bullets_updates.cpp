@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// When and what Bullet updates of a render mesh, beside what we do: the defects of its own path that can be reproduced
+// with the installed Bullet. The README's table names these tests.
+#include <algorithm>
+#include <cmath>
+
+#include "bullets_render_mesh.h"
+#include "worlds.h"
+
+namespace tetskin {
+namespace {
+
+using test::figure;
+using test::Points;
+
+constexpr btScalar kStep = btScalar(1) / 240;
+/// Where no update puts a vertex.
+const btVector3 kNowhere(-77, -77, -77);
+
+TetMesh cube() {
+  TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.5;
+  return cage;
+}
+
+Points someVertices() {
+  return test::randomPoints(20, {Eigen::Vector3d(0, 0.5, 0), Eigen::Vector3d(1, 1.5, 1)}, 2);
+}
+
+/// A body in one of Bullet's worlds, with its own render mesh and a skin.
+template <class World>
+struct Both {
+  World world{cube()};
+  SoftBodySkin skin;
+  btSoftBody& body = world.body();
+  Points vertices = someVertices();
+
+  Both() {
+    test::setRenderNodes(body, vertices);
+    btSoftBodyHelpers::interpolateBarycentricWeights(&body);
+    TriangleMesh mesh;
+    mesh.positions = vertices;
+    EXPECT_TRUE(skin.bind(body, cube(), mesh).ok());
+  }
+  /// Forgets where Bullet last put its first vertex.
+  void forget() { body.m_renderNodes[0].m_x = kNowhere; }
+  bool bulletHasUpdated() const { return body.m_renderNodes[0].m_x != kNowhere; }
+  /// Lets it fall asleep, and then some.
+  void letSleep() {
+    for (int step = 0; step < 3000 && body.isActive(); ++step) {
+      world.world->stepSimulation(kStep, 1, kStep);
+      skin.update();
+    }
+    ASSERT_FALSE(body.isActive());
+    world.world->stepSimulation(kStep, 1, kStep);
+    skin.update();
+  }
+};
+
+/// Looks after every substep at whether Bullet has updated its render mesh.
+class CountUpdates : public btActionInterface {
+ public:
+  explicit CountUpdates(Both<test::DeformableWorld>& watched) : both(watched) { both.world.world->addAction(this); }
+  ~CountUpdates() override { both.world.world->removeAction(this); }
+  void updateAction(btCollisionWorld*, btScalar) override {
+    count += both.bulletHasUpdated();
+    both.forget();
+  }
+  void debugDraw(btIDebugDraw*) override {}
+
+  Both<test::DeformableWorld>& both;
+  int count = 0;
+};
+
+/// Only the last of a frame's updates is ever drawn.
+TEST(BulletsUpdates, HappenInEverySubstep) {
+  Both<test::DeformableWorld> both;
+  CountUpdates updates(both);
+  both.forget();
+  ASSERT_EQ(both.world.world->stepSimulation(btScalar(10.01) * kStep, 10, kStep), 10);
+  figure("Bullet's updates in a frame of 10 substeps", updates.count);
+  EXPECT_EQ(updates.count, 10);
+  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);  // ours: this one
+}
+
+TEST(BulletsUpdates, HappenWhileTheBodySleeps) {
+  Both<test::DeformableWorld> both;
+  both.letSleep();
+  both.forget();
+  both.world.world->stepSimulation(kStep, 1, kStep);
+  EXPECT_TRUE(both.bulletHasUpdated());
+  EXPECT_EQ(both.skin.update(), UpdateStatus::Asleep);
+}
+
+TEST(BulletsUpdates, NeverHappenInASoftRigidWorld) {
+  Both<test::RigidWorld> both;
+  both.forget();
+  for (int step = 0; step < 100; ++step) both.world.world->stepSimulation(kStep, 1, kStep);
+  EXPECT_FALSE(both.bulletHasUpdated());
+  const double before = both.skin.bounds().min().y();
+  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);
+  EXPECT_LT(both.skin.bounds().min().y(), before - 0.1);
+}
+
+TEST(BulletsUpdates, HappenInASoftMultiBodyWorldAsOursDo) {
+  Both<test::MultiBodyWorld> both;
+  both.forget();
+  both.world.world->stepSimulation(kStep, 1, kStep);
+  EXPECT_TRUE(both.bulletHasUpdated());
+  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);
+}
+
+/// Bullet calls its update where it has moved the nodes; what an application moves stays behind until the next step.
+TEST(BulletsUpdates, AreNotMadeByATransform) {
+  Both<test::DeformableWorld> both;
+  const btVector3 before = both.body.m_renderNodes[3].m_x;
+  both.body.translate(btVector3(5, 0, 0));
+  EXPECT_EQ(both.body.m_renderNodes[3].m_x, before);
+  ASSERT_EQ(both.skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(static_cast<double>(both.skin.positions()[3][0]), both.vertices[3].x() + 5.0, 1e-5);
+}
+
+/// Asleep or not, we notice without being told.
+TEST(BulletsUpdates, LeaveATeleportedSleeperBehind) {
+  Both<test::DeformableWorld> both;
+  both.letSleep();
+  const Box3 before = both.skin.bounds();
+  const btVector3 bullets = both.body.m_renderNodes[3].m_x;
+  both.body.translate(btVector3(5, 0, 0));
+  EXPECT_EQ(both.body.m_renderNodes[3].m_x, bullets);
+  ASSERT_EQ(both.skin.update(), UpdateStatus::Updated);
+  EXPECT_NEAR(both.skin.bounds().min().x(), before.min().x() + 5.0, 1e-5);
+}
+
+TEST(BulletsUpdates, NeverTouchNormals) {
+  TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  btSoftBodyWorldInfo info;
+  const std::unique_ptr<btSoftBody> body(makeSoftBody(cage, info));
+  TriangleMesh mesh;
+  mesh.positions = {{0.5, 0.5, 0.5}};
+  mesh.normals = {{0, 1, 0}};
+  test::setRenderNodes(*body, mesh.positions);
+  body->m_renderNodes[0].m_normal.setValue(0, 1, 0);
+  btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
+  SkinOptions options;
+  options.normals = Normals::Transformed;
+  SoftBodySkin skin;
+  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+  body->rotate(btQuaternion(btVector3(0, 0, 1), btScalar(SIMD_HALF_PI)));
+  body->interpolateRenderMesh();
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(body->m_renderNodes[0].m_normal, btVector3(0, 1, 0));
+  EXPECT_LT((Eigen::Map<const Eigen::Vector3f>(skin.normals()[0]) - Eigen::Vector3f(-1, 0, 0)).norm(), 1e-5f);
+}
+
+/// The soft body's own node normals are those of the substep before.
+TEST(BulletsUpdates, LeaveNodeNormalsASubstepBehind) {
+  Both<test::DeformableWorld> both;
+  both.body.rotate(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)));
+  both.body.updateNormals();
+  for (int n = 0; n < both.body.m_nodes.size(); ++n) {  // turning fast
+    const btVector3 arm = both.body.m_nodes[n].m_x - both.body.m_nodes[0].m_x;
+    both.body.m_nodes[n].m_v = btVector3(0, 0, 20).cross(arm);
+  }
+  both.world.world->stepSimulation(kStep, 1, kStep);
+  std::vector<btVector3> left;
+  for (int n = 0; n < both.body.m_nodes.size(); ++n) left.push_back(both.body.m_nodes[n].m_n);
+  both.body.updateNormals();
+  double worst = 0.0;
+  for (int n = 0; n < both.body.m_nodes.size(); ++n) {
+    const btVector3 now = both.body.m_nodes[n].m_n;
+    if (now.length2() > btScalar(0.5)) worst = std::max(worst, static_cast<double>((left[n] - now).length()));
+  }
+  figure("radians by which node normals lag at 20 radians a second and 240 substeps a second", worst);
+  EXPECT_GT(worst, 0.04);
+}
+
+/// When the node array moves in memory, Bullet's tets and the parents of its render nodes stay pointing to where it
+/// was.
+TEST(BulletsUpdates, ReadThroughPointersLeftBehindByAppendNode) {
+  Both<test::DeformableWorld> both;
+  btSoftBody& body = both.body;
+  const btSoftBody::Node* const before = &body.m_nodes[0];
+  while (&body.m_nodes[0] == before) body.appendNode(btVector3(0, 3, 0), 1);
+  const auto pointsIntoTheNodes = [&](const btSoftBody::Node* node) {
+    return !std::less<>()(node, &body.m_nodes[0]) && std::less<>()(node, &body.m_nodes[0] + body.m_nodes.size());
+  };
+  int dangling = 0;
+  for (int v = 0; v < body.m_renderNodes.size(); ++v) dangling += !pointsIntoTheNodes(body.m_renderNodesParents[v][0]);
+  int danglingTets = 0;
+  for (int t = 0; t < body.m_tetras.size(); ++t) danglingTets += !pointsIntoTheNodes(body.m_tetras[t].m_n[0]);
+  figure("render nodes with dangling pointers, of 20", dangling);
+  figure("tets with dangling pointers, of 162", danglingTets);
+  EXPECT_EQ(dangling, body.m_renderNodes.size());
+  EXPECT_EQ(danglingTets, body.m_tetras.size());
+  EXPECT_EQ(both.skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_LT(std::abs(static_cast<double>(both.skin.positions()[3][0]) - both.vertices[3].x()), 1e-5);
+}
+
+using BulletsUpdatesDeathTest = testing::Test;
+
+/// Render nodes that were added but never bound: Bullet reads past the end of an empty array in the next step.
+TEST_F(BulletsUpdatesDeathTest, CrashOnRenderNodesThatWereNeverBound) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_DEATH(
+      {
+        test::DeformableWorld world(cube());
+        test::setRenderNodes(world.body(), someVertices());
+        world.world->stepSimulation(kStep, 1, kStep);
+      },
+      "");
+  SoftBodySkin unbound;
+  EXPECT_EQ(unbound.update(), UpdateStatus::Unbound);
+}
+
+/// Bound to faces, of which the body has none.
+TEST_F(BulletsUpdatesDeathTest, CrashOnABodyWithoutFaces) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_DEATH(
+      {
+        test::DeformableWorld world(cube());
+        while (world.body().m_faces.size() > 0) world.body().m_faces.pop_back();
+        test::setRenderNodes(world.body(), someVertices());
+        btSoftBodyHelpers::extrapolateBarycentricWeights(&world.body());
+        world.world->stepSimulation(kStep, 1, kStep);
+      },
+      "");
+}
+
+}  // namespace
+}  // namespace tetskin
