@@ -2,7 +2,7 @@
 
 # What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 24.04 and later.
 build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev libbenchmark-dev)
-test_packages=(libgtest-dev clang-format clang-tidy python3-matplotlib)
+test_packages=(libgtest-dev clang clang-format clang-tidy python3-matplotlib)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
 require_packages() {
@@ -35,6 +35,14 @@ require_packages() {
   echo "Installing missing packages: ${missing[*]}"
   "${sudo[@]}" apt-get update -qq
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive $install
+}
+
+# Installs what clang needs for the fuzzers (libclang-rt-14-dev on Debian 12). Without it they are driven at random.
+require_fuzzer_runtime() {
+  local version
+  version=$(dpkg-query -W -f='${Depends}' clang 2>/dev/null | sed -n 's/.*clang-\([0-9]*\).*/\1/p' || true)
+  [ -n "$version" ] || return 0
+  (require_packages "libclang-rt-$version-dev") || echo "No libclang-rt-$version-dev: the fuzzers are driven at random."
 }
 
 # configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed.

@@ -3,22 +3,52 @@ set(nested_options --build-generator ${CMAKE_GENERATOR} --build-noclean)
 set(nested_parallel 2)
 
 # Builds the project elsewhere with these options, and runs the tests that it then has.
+#   TARGET   only this target
+#   TESTS    only the tests that match this
+#   OPTIONS  of the configuration
 function(tetskin_test_configuration name)
+  cmake_parse_arguments(arg "" "TARGET;TESTS" "OPTIONS" ${ARGN})
+  set(target_option)
+  if(arg_TARGET)
+    set(target_option --build-target ${arg_TARGET})
+  endif()
+  if(NOT arg_TESTS)
+    set(arg_TESTS .)
+  endif()
   add_test(NAME configuration.${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
-      ${nested_options}
-      --build-options ${ARGN} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
-      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${nested_parallel})
+      ${nested_options} ${target_option}
+      --build-options ${arg_OPTIONS} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${nested_parallel} -R ${arg_TESTS})
   set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel})
 endfunction()
 
-tetskin_test_configuration(double_precision
+tetskin_test_configuration(double_precision OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
-tetskin_test_configuration(sanitized
-  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DTETSKIN_SANITIZE=address,undefined)
-tetskin_test_configuration(optional_parts_off
+tetskin_test_configuration(sanitized OPTIONS
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined)
+tetskin_test_configuration(optional_parts_off OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)
+
+# The fuzzers, a minute each: by libFuzzer if there is a clang with its runtime, otherwise by our random driver.
+find_program(CLANG_CXX NAMES clang++-14 clang++)
+set(fuzzed_compiler)
+set(fuzzed_sanitizers address,undefined)
+if(CLANG_CXX)
+  file(WRITE ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
+    "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof 0)) { return 0; }\n")
+  execute_process(COMMAND ${CLANG_CXX} -fsanitize=fuzzer,address,undefined ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
+      -o ${PROJECT_BINARY_DIR}/fuzzer_runtime
+    RESULT_VARIABLE without_runtime OUTPUT_QUIET ERROR_QUIET)
+  if(NOT without_runtime)
+    set(fuzzed_compiler -DCMAKE_CXX_COMPILER=${CLANG_CXX})
+    set(fuzzed_sanitizers fuzzer-no-link,address,undefined)
+  endif()
+endif()
+tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz OPTIONS ${fuzzed_compiler}
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
+  -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_DEMOS=OFF)
 
 # A project that uses the library, through the installed package and as a subdirectory; both run what they have built.
 function(tetskin_test_consumer name)

@@ -52,6 +52,9 @@ struct Material {
   ForceModel model;
   bool implicit;
 };
+void PrintTo(const Material& material, std::ostream* out) {  // not byte by byte: some are padding
+  *out << material.name;
+}
 
 class Materials : public testing::TestWithParam<Material> {};
 

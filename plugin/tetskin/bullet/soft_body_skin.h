@@ -35,8 +35,8 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 /// Works in every Bullet world and for a body in none; a skin only reads its body. Update after stepSimulation, not in
 /// a tick callback: there is no callback at which the positions are final in all worlds. A body that was moved, scaled
 /// or teleported by hand simply needs the next update. Several skins may share a body, and several bodies a binding.
-/// The body must outlive the skin's last update: once it is gone, `update` and `setVisible(true)` would read freed memory,
-/// while all else may be called, `bind` to another body included. A skin may be moved, not copied.
+/// The body must outlive the skin's last update: once it is gone, `update` and `setVisible(true)` would read freed
+/// memory, while all else may be called, `bind` to another body included. A skin may be moved, not copied.
 class SoftBodySkin {
  public:
   SoftBodySkin() = default;
