@@ -25,8 +25,9 @@ endfunction()
 
 tetskin_test_configuration(double_precision OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
+# Without the demos, which take longer to build so than all the rest of it.
 tetskin_test_configuration(sanitized OPTIONS
-  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined)
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
 tetskin_test_configuration(optional_parts_off OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)

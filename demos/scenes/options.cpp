@@ -40,10 +40,6 @@ void addChoice(CLI::App& app, const std::string& name, Choice& choice,
 
 }  // namespace
 
-void require(const Status& status) {
-  if (!status.ok()) throw InputError(status.message);
-}
-
 void addMeshOptions(CLI::App& app, ModelOptions& options) {
   app.add_option("--mesh", options.mesh,
                  "Render mesh, any format assimp reads (default: a built-in " + nameOf(options.builtIn) + ")");

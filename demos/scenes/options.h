@@ -14,20 +14,14 @@
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
+
+#include "scenes/input_error.h"
 
 namespace tetskin::scenes {
 
 /// Exit statuses of every demo.
 constexpr int kDone = 0, kRunFailed = 1, kBadInput = 2;
-
-/// Bad arguments or unreadable input: caught by `runDemo`, printed as one line, exit status 2.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-/// Throws an InputError unless the status is ok.
-void require(const Status& status);
 
 enum class BuiltIn { Serpent, Bar };
 

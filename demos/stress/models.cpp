@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "scenes/bar.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::stress {
 namespace {
@@ -29,7 +29,9 @@ BarModel makeBarModel(std::size_t triangles, std::size_t tets) {
   bar.mesh = scenes::makeBar(triangles);
   CageOptions options;
   options.targetTets = tets;
-  bar.cage = scenes::cageFor({"bar", bar.mesh}, options);
+  Result<TetMesh> cage = buildCage(bar.mesh, options);
+  scenes::require(cage.status());
+  bar.cage = std::move(cage).value();
   const Box3 box = boundingBox(bar.cage.nodes);
   const double scale = kSize / box.sizes().maxCoeff();
   for (auto* points : {&bar.cage.nodes, &bar.mesh.positions}) {

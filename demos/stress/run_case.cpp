@@ -4,7 +4,6 @@
 
 #include <chrono>
 
-#include "scenes/options.h"
 #include "stress/events.h"
 
 namespace tetskin::stress {

@@ -9,7 +9,7 @@
 #include <tetskin/bullet/deformable_body.h>
 
 #include "scenes/deformable_world.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 #include "stress/events.h"
 
 namespace tetskin::stress {

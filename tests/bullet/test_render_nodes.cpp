@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What bindRenderNodes makes of a body, beside what Bullet makes of it.
-#include "support/odd_meshes.h"
+#include "bullets_render_mesh.h"
 
-#include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <gtest/gtest.h>
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body_adapter.h>
@@ -23,16 +22,7 @@ constexpr bool kDouble = sizeof(btScalar) == 8;
 /// Of barycentric distances computed by Bullet.
 constexpr double kBulletsRounding = kDouble ? 1e-9 : 1e-5;
 
-void setRenderNodes(btSoftBody& body, const std::vector<Eigen::Vector3d>& points) {
-  while (body.m_renderNodes.size() > 0) body.m_renderNodes.pop_back();
-  for (const Eigen::Vector3d& p : points) {
-    btSoftBody::RenderNode node;
-    node.m_x = toBullet(p);
-    node.m_uv1.setZero();
-    node.m_normal.setZero();
-    body.m_renderNodes.push_back(node);
-  }
-}
+using test::setRenderNodes;
 
 /// Four parents of one render node as node indices.
 Tet parentsOf(const btSoftBody& body, int v) {

@@ -42,7 +42,9 @@ SkinOptions takeOptions(FuzzedBytes& bytes) {
   options.interpolation = bytes.number(1) == 1 ? Interpolation::Quadratic : Interpolation::Linear;
   options.normals = static_cast<Normals>(bytes.number(2));
   options.order = bytes.number(1) == 1 ? VertexOrder::Sorted : VertexOrder::Mesh;
-  options.previousPositions = bytes.number(1) == 1;
+  options.skipStill = bytes.number(1) == 1;
+  options.bounds = !options.skipStill;
+  options.previousPositions = !options.skipStill && bytes.number(1) == 1;
   return options;
 }
 
