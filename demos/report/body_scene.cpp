@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/body_scene.h"
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scenes/cpu_timer.h"
 #include "scenes/crowd_scene.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 

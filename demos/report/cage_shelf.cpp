@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/cage_shelf.h"
 
-#include "scenes/options.h"
+#include <tetskin/cage/cage_builder.h>
+
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/reference.h"
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {

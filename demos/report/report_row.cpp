@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/report_row.h"
 
+#include <nlohmann/json.hpp>
+
 #include "scenes/counted.h"
 
 namespace tetskin::report {

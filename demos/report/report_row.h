@@ -4,7 +4,7 @@
 // One line of the report, and what its columns are called.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>

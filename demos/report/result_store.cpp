@@ -7,9 +7,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {

@@ -10,7 +10,7 @@
 #include "report/bullet_surface.h"
 #include "scenes/cpu_timer.h"
 #include "scenes/crowd_scene.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {

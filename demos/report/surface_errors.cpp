@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "report/bullet_surface.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {

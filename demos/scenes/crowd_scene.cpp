@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::scenes {
 namespace {

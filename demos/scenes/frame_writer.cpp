@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/frame_writer.h"
 
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 
 namespace tetskin::scenes {
 

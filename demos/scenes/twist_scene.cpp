@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "scenes/options.h"
+
 namespace tetskin::scenes {
 namespace {
 

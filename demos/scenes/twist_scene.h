@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "scenes/deformable_world.h"
-#include "scenes/options.h"
 #include "scenes/twist.h"
 
 namespace tetskin::scenes {
+
+struct Model;
 
 /// A body without weight, held at both ends of its longest side. One end is turned, and may be let go; the body carries
 /// a linear and a quadratic surface. As in DropScene, Bullet simulates the model scaled to `kSize`, and results are in

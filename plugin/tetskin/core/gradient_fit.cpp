@@ -177,6 +177,7 @@ std::vector<std::uint32_t> CageNeighbours::nearNeighbours() const {
 
 std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::uint32_t>& neighbours) const {
   std::vector<Eigen::Vector3d> offsets;
+  offsets.reserve(neighbours.size());
   for (const std::uint32_t other : neighbours) offsets.push_back(cage_.nodes[other] - cage_.nodes[found_[0]]);
   return offsets;
 }

@@ -12,12 +12,11 @@ namespace {
 
 bool available(InstructionSet set) {
   switch (set) {
-    case InstructionSet::Plain:
-      return true;
 #ifdef TETSKIN_VECTOR_KERNELS
     case InstructionSet::Baseline:
-      return true;
 #endif
+    case InstructionSet::Plain:
+      return true;
 #ifdef TETSKIN_X86_KERNELS
     case InstructionSet::Avx2:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

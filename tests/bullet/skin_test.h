@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "support/odd_meshes.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace tetskin::test {
+
+/// A body of a lattice cage, which is at rest, in no world, and a sphere that sticks out of it.
+class SkinTest : public testing::Test {
+ protected:
+  SkinTest() : body(makeSoftBody(cage, info)) {}
+
+  void bend() {
+    for (int n = 0; n < body->m_nodes.size(); ++n) {
+      const Eigen::Vector3d p = cage.nodes[n];
+      body->m_nodes[n].m_x =
+          toBullet(p + 0.2 * Eigen::Vector3d(std::sin(4 * p.y()), p.x() * p.z(), std::cos(3 * p.x())));
+    }
+  }
+
+  /// Those of the sleeping body that may move unnoticed, by trying.
+  std::vector<int> nodesNotLookedAt() {
+    std::vector<int> unseen;
+    for (int n = 0; n < body->m_nodes.size(); ++n) {
+      const btVector3 here = body->m_nodes[n].m_x;
+      body->m_nodes[n].m_x += btVector3(0, 1, 0);
+      if (skin.update() == UpdateStatus::Asleep) unseen.push_back(n);
+      body->m_nodes[n].m_x = here;
+      skin.update();
+    }
+    return unseen;
+  }
+
+  static Eigen::Vector3d at(const SoftBodySkin& of, std::size_t v) {
+    const btScalar* p = of.positions()[v];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+
+  TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+  TriangleMesh mesh = test::sphere(30, 0.53, Eigen::Vector3d::Constant(0.5));
+  btSoftBodyWorldInfo info;
+  std::unique_ptr<btSoftBody> body;
+  SoftBodySkin skin;
+};
+
+}  // namespace tetskin::test
