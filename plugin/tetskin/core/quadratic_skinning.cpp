@@ -79,6 +79,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
     }
     starts_.push_back(static_cast<std::uint32_t>(entryNodes_.size()));
   }
+  entryFactors_.push_back(0);
   for (const Edge& edge : edges) {
     const Eigen::Vector3d half = 0.5 * (cage.nodes[edge[1]] - cage.nodes[edge[0]]);
     for (const std::uint32_t node : edge) edgeGradients_.push_back(gradientOf[node]);
@@ -103,7 +104,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
 
 template <class Scalar>
 EdgeVectors<Scalar>::EdgeVectors(const QuadraticStencils<Scalar>& stencils)
-    : gradients_(12 * stencils.gradientCount()), edges_(4 * stencils.edgeCount()) {
+    : gradients_(kernels::kGradientStride * stencils.gradientCount()), edges_(4 * stencils.edgeCount()) {
   for (std::size_t e = 0; e < stencils.edgeCount(); ++e) edges_[4 * e + 3] = stencils.restLengths()[e];
 }
 

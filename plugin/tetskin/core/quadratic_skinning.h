@@ -47,7 +47,7 @@ class QuadraticStencils {
   /// By gradient, and one more: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
-  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry, 1 / length
+  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry and 1, 1 / length
   const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 an edge
   /// 4 an edge: half the rest vector from its first node to its second, and the square of that half's length.
   const std::vector<Scalar>& halfRest() const { return halfRest_; }
@@ -82,7 +82,7 @@ class EdgeVectors {
   const Scalar* data() const { return edges_.data(); }
 
  private:
-  std::vector<Scalar> gradients_;  ///< 12 a gradient: its columns, padded
+  std::vector<Scalar> gradients_;  ///< kernels::kGradientStride a gradient
   std::vector<Scalar> edges_;
 };
 

@@ -15,11 +15,6 @@ struct WidePlane {
   Lanes<float, W> at(const Lanes<float, W> p[3]) const { return (x * p[0] + y * p[1]) + (z * p[2] + constant); }
 };
 
-template <int W>
-Lanes<float, W> smaller(const Lanes<float, W>& a, const Lanes<float, W>& b) {
-  return a < b ? a : b;
-}
-
 /// Appends first + k for every lane k < count that is not below 0; returns the new end. No branch, which would be
 /// mispredicted at every hit.
 template <int W>
@@ -51,11 +46,11 @@ std::size_t selectEntries(const FilterWork& work, std::uint32_t* selected) {
   std::uint32_t* out = selected;
   for (const EntryRange* range = work.ranges; range != work.ranges + work.rangeCount; ++range) {
     for (std::uint32_t e = range->first; e < range->last; e += W) {
-      const Lanes<float, W> p[3] = {load<float, W>(work.points[0] + e), load<float, W>(work.points[1] + e),
-                                    load<float, W>(work.points[2] + e)};
+      const Lanes<float, W> p[3] = {load<W>(work.points[0] + e), load<W>(work.points[1] + e),
+                                    load<W>(work.points[2] + e)};
       Lanes<float, W> bound =
-          smaller<W>(smaller<W>(planes[0].at(p), planes[1].at(p)), smaller<W>(planes[2].at(p), planes[3].at(p)));
-      if (work.limits) bound += load<float, W>(work.limits + e);
+          smaller(smaller(planes[0].at(p), planes[1].at(p)), smaller(planes[2].at(p), planes[3].at(p)));
+      if (work.limits) bound += load<W>(work.limits + e);
       out = appendNotNegative<W>(bound, e, range->last - e, out);
     }
   }

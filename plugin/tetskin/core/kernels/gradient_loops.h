@@ -4,32 +4,40 @@
 // Internal to the kernels: the nodes' gradients, and the edges' vectors that follow from them.
 #pragma once
 
-#include <tetskin/core/kernels/lanes.h>
+#include <tetskin/core/kernels/points.h>
 #include <tetskin/core/kernels/skinning_kernels.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// Adds one neighbour's part: its position times its factor's three coordinates.
-template <class S>
-void addNeighbour(const GradientWork<S>& work, std::uint32_t entry, Lanes<S, 4> column[3]) {
-  const Lanes<S, 4> x = loadPadded(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[entry]));
-  const S* g = work.factors + 3 * static_cast<std::size_t>(entry);
-  for (int c = 0; c < 3; ++c) column[c] += x * g[c];
-}
+/// Columns of a gradient, P in a register, and perhaps one that means nothing.
+template <class S, int P>
+struct Columns {
+  static constexpr int kRegisters = (3 + P - 1) / P;
+  Points<S, P> of[kRegisters] = {};
 
-template <class S>
+  /// One neighbour's part: its position times its factor's three coordinates.
+  void add(const GradientWork<S>& work, std::size_t entry) {
+    const Points<S, P> x = repeated<S, P>(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[entry]));
+    const S* factor = work.factors + 3 * entry;
+    for (int i = 0; i < kRegisters; ++i) of[i] += x * spread<S, P>(factor + P * i);
+  }
+};
+
+template <class S, int P>
 void gradients(const GradientWork<S>& given) {
   const GradientWork<S> work = given;
   for (std::size_t n = work.firstNode; n < work.lastNode; ++n) {
     // Two sums, as an addition has to wait for the one before.
-    Lanes<S, 4> even[3] = {}, odd[3] = {};
-    std::uint32_t e = work.starts[n];
-    for (; e + 1 < work.starts[n + 1]; e += 2) {
-      addNeighbour(work, e, even);
-      addNeighbour(work, e + 1, odd);
+    Columns<S, P> even, odd;
+    std::size_t e = work.starts[n];
+    const std::size_t end = work.starts[n + 1];
+    for (; e + 1 < end; e += 2) {
+      even.add(work, e);
+      odd.add(work, e + 1);
     }
-    if (e < work.starts[n + 1]) addNeighbour(work, e, even);
-    for (int c = 0; c < 3; ++c) storePadded<S>(even[c] + odd[c], work.gradients + 12 * n + 4 * c);
+    if (e < end) even.add(work, e);
+    S* out = work.gradients + kGradientStride * n;
+    for (int i = 0; i < Columns<S, P>::kRegisters; ++i) storeWhole<S, P>(even.of[i] + odd.of[i], out + 4 * P * i);
   }
 }
 
@@ -44,8 +52,8 @@ template <class S>
 void edges(const EdgeWork<S>& given) {
   const EdgeWork<S> work = given;
   for (std::size_t i = work.firstEdge; i < work.lastEdge; ++i) {
-    const S* a = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i]);
-    const S* b = work.gradients + 12 * static_cast<std::size_t>(work.gradientOf[2 * i + 1]);
+    const S* a = work.gradients + kGradientStride * static_cast<std::size_t>(work.gradientOf[2 * i]);
+    const S* b = work.gradients + kGradientStride * static_cast<std::size_t>(work.gradientOf[2 * i + 1]);
     const S* half = work.halfRest + 4 * i;
     Lanes<S, 4> e = (loadPadded(a) - loadPadded(b)) * half[0];
     for (int c = 1; c < 3; ++c) e += (loadPadded(a + 4 * c) - loadPadded(b + 4 * c)) * half[c];

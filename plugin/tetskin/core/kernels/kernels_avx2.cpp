@@ -6,8 +6,8 @@
 
 namespace tetskin::kernels::avx2 {
 
-const Table<float> tableFloat = table<float, 8>();
-const Table<double> tableDouble = table<double, 4>();
+const Table<float> tableFloat = table<float, 2>();
+const Table<double> tableDouble = table<double, 1>();
 const SelectEntries select = selectEntries<8>;
 
 }  // namespace tetskin::kernels::avx2

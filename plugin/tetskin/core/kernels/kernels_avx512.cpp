@@ -6,8 +6,8 @@
 
 namespace tetskin::kernels::avx512 {
 
-const Table<float> tableFloat = table<float, 16>();
-const Table<double> tableDouble = table<double, 8>();
+const Table<float> tableFloat = table<float, 4>();
+const Table<double> tableDouble = table<double, 2>();
 const SelectEntries select = selectEntries<16>;
 
 }  // namespace tetskin::kernels::avx512

@@ -6,8 +6,8 @@
 
 namespace tetskin::kernels::baseline {
 
-const Table<float> tableFloat = table<float, 4>();
-const Table<double> tableDouble = table<double, 2>();
+const Table<float> tableFloat = table<float, 1>();
+const Table<double> tableDouble = table<double, 1>();
 const SelectEntries select = selectEntries<4>;
 
 }  // namespace tetskin::kernels::baseline

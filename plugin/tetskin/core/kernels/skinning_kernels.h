@@ -49,15 +49,18 @@ struct Extent {
   Scalar high[3];
 };
 
+/// Scalars of a gradient: three columns of 4, and 4 that mean nothing.
+constexpr std::size_t kGradientStride = 16;
+
 /// One node's gradient is the sum of neighbour positions times `factors`: see quadratic_skinning.h.
 template <class Scalar>
 struct GradientWork {
   std::size_t firstNode = 0, lastNode = 0;  ///< of those with a gradient
   const std::uint32_t* starts = nullptr;    ///< by node with a gradient, and one more: its first entry
   const std::uint32_t* neighbours = nullptr;
-  const Scalar* factors = nullptr;  ///< 3 an entry
+  const Scalar* factors = nullptr;  ///< 3 an entry, and memory for one scalar more
   const Scalar* nodes = nullptr;    ///< as above
-  Scalar* gradients = nullptr;      ///< 12 scalars a node with a gradient: 3 columns of 4
+  Scalar* gradients = nullptr;      ///< kGradientStride scalars a node with a gradient
 };
 
 template <class Scalar>

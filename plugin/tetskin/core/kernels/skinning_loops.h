@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal: all loops behind skinning_kernels.h, W vertices at a time. Included once for each instruction set.
+// Internal: all loops behind skinning_kernels.h, P points at a time. Included once for each instruction set.
 #pragma once
 
 #include <tetskin/core/kernels/direction_loops.h>
@@ -10,9 +10,9 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-template <class S, int W>
+template <class S, int P>
 constexpr Table<S> table() {
-  return {positions<S, W>, directions<S, W>, gradients<S>, edges<S>};
+  return {positions<S, P>, directions<S, P>, gradients<S, P>, edges<S>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: how the points of one tet follow its nodes, W at a time.
+// Internal to the kernels: how the points of one tet follow its nodes.
 //
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022 (linear)
@@ -18,161 +18,138 @@
 // Its value and its derivatives are then the same few multiply-adds for every vertex.
 #pragma once
 
-#include <tetskin/core/kernels/lanes.h>
+#include <tetskin/core/kernels/points.h>
 #include <tetskin/core/kernels/skinning_kernels.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// Columns of the map's gradient: derivatives by b0, b1 and b2.
-template <class S, int W>
-struct Gradient {
-  Lanes<S, W> column[3][3];  ///< column, coordinate
-};
-
-template <class S>
-Lanes<S, 4> nodeAt(const Work<S>& work, int node) {
-  return loadPadded(work.nodes + 4 * static_cast<std::size_t>(node));
+template <class S, int P>
+Points<S, P> nodeAt(const Work<S>& work, int node) {
+  return repeated<S, P>(work.nodes + 4 * static_cast<std::size_t>(node));
 }
 
 /// The vector of a cage edge; the fourth number is its rest length.
 template <class S>
-Lanes<S, 4> edgeAt(const Work<S>& work, std::uint32_t edge) {
-  return loadPadded(work.edges + 4 * static_cast<std::size_t>(edge));
+const S* edgeAt(const Work<S>& work, std::uint32_t edge) {
+  return work.edges + 4 * static_cast<std::size_t>(edge);
 }
 
-template <class S, int W>
-void loadWeights(const float* const planes[3], std::uint32_t slot, Lanes<S, W> b[3]) {
-  for (int k = 0; k < 3; ++k) b[k] = load<S, W>(planes[k] + slot);
-}
+/// The numbers of P vertices in three planes.
+template <class S, int P>
+struct Weights {
+  Points<S, P> of[3];
 
-// One tet under each kind of surface: `make` once a run, then its points, and the gradient for normals and tangents.
+  Weights(const float* const planes[3], std::size_t slot)
+      : of{spread<S, P>(planes[0] + slot), spread<S, P>(planes[1] + slot), spread<S, P>(planes[2] + slot)} {}
+  const Points<S, P>& operator[](int k) const { return of[k]; }
+};
+
+// One tet under each kind of surface: made once a run, then x(b) - x3 of its points, and the columns of the gradient
+// (derivatives by b0, b1 and b2) for normals and tangents. The differences are summed before x3 is added, which may be
+// far from the origin.
 
 /// x(b) without the edges' vectors.
-template <class S>
+template <class S, int P>
 struct LinearTet {
-  S base[4];
-  S slope[3][4];
+  Points<S, P> last, slope[3];
 
-  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
+  LinearTet(const Work<S>& work, std::size_t run) {
     const Run& r = work.runs[run];
-    const Lanes<S, 4> last = nodeAt(work, r.nodes[3]);
-    storePadded<S>(last + shift, base);
-    for (int n = 0; n < 3; ++n) storePadded<S>(nodeAt(work, r.nodes[n]) - last, slope[n]);
+    last = nodeAt<S, P>(work, r.nodes[3]);
+    for (int n = 0; n < 3; ++n) slope[n] = nodeAt<S, P>(work, r.nodes[n]) - last;
   }
-
-  template <int W>
-  void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
-    Lanes<S, W> b[3];
-    loadWeights<S, W>(work.weights, slot, b);
-    for (int k = 0; k < 3; ++k) x[k] = base[k] + (slope[0][k] * b[0] + slope[1][k] * b[1] + slope[2][k] * b[2]);
+  Points<S, P> fromLast(const Work<S>& work, std::size_t slot) const {
+    const Weights<S, P> b(work.weights, slot);
+    return slope[0] * b[0] + slope[1] * b[1] + slope[2] * b[2];
   }
 };
 
 /// The polynomial of the head of this file.
-template <class S>
+template <class S, int P>
 struct QuadraticMap {
-  S base[4];
-  S slope[3][4];    ///< of b_k: x_k - x3 + e_k3
-  S bend[3][4];     ///< of -b_k b_k: e_k3
-  S product[3][4];  ///< of b1 b2, b0 b2, b0 b1: the one without k
+  Points<S, P> last;
+  Points<S, P> slope[3];    ///< of b_k: x_k - x3 + e_k3
+  Points<S, P> bend[3];     ///< of -b_k b_k: e_k3
+  Points<S, P> product[3];  ///< of b1 b2, b0 b2, b0 b1: the one without k
 
-  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
+  QuadraticMap(const Work<S>& work, std::size_t run) {
     const Run& r = work.runs[run];
-    const Lanes<S, 4> last = nodeAt(work, r.nodes[3]);
-    storePadded<S>(last + shift, base);
     const std::uint32_t* ids = work.runEdges + 6 * run;
-    const Lanes<S, 4> to3[3] = {edgeAt(work, ids[2]), edgeAt(work, ids[4]), edgeAt(work, ids[5])};
-    const Lanes<S, 4> opposite[3] = {edgeAt(work, ids[3]), edgeAt(work, ids[1]), edgeAt(work, ids[0])};
+    const std::uint32_t to3[3] = {ids[2], ids[4], ids[5]}, opposite[3] = {ids[3], ids[1], ids[0]};
+    last = nodeAt<S, P>(work, r.nodes[3]);
+    for (int n = 0; n < 3; ++n) bend[n] = repeated<S, P>(edgeAt(work, to3[n]));
     for (int n = 0; n < 3; ++n) {
-      storePadded<S>(nodeAt(work, r.nodes[n]) - last + to3[n], slope[n]);
-      storePadded<S>(to3[n], bend[n]);
-      storePadded<S>(opposite[n] - to3[(n + 1) % 3] - to3[(n + 2) % 3], product[n]);
+      slope[n] = nodeAt<S, P>(work, r.nodes[n]) - last + bend[n];
+      product[n] = repeated<S, P>(edgeAt(work, opposite[n])) - bend[(n + 1) % 3] - bend[(n + 2) % 3];
     }
   }
 
-  /// x(b) without its base.
-  template <class V>
-  V fromBase(const V b[3], int k) const {
-    return b[0] * (slope[0][k] - bend[0][k] * b[0] + product[2][k] * b[1] + product[1][k] * b[2]) +
-           b[1] * (slope[1][k] - bend[1][k] * b[1] + product[0][k] * b[2]) + b[2] * (slope[2][k] - bend[2][k] * b[2]);
+  Points<S, P> fromLast(const Weights<S, P>& b) const {
+    return (slope[0] - bend[0] * b[0] + product[2] * b[1] + product[1] * b[2]) * b[0] +
+           (slope[1] - bend[1] * b[1] + product[0] * b[2]) * b[1] + (slope[2] - bend[2] * b[2]) * b[2];
   }
   /// Derivative by b_n.
-  template <class V>
-  V derivative(const V b[3], int n, int k) const {
+  Points<S, P> derivative(const Weights<S, P>& b, int n) const {
     const int p = (n + 1) % 3, q = (n + 2) % 3;
-    return slope[n][k] - S(2) * bend[n][k] * b[n] + product[q][k] * b[p] + product[p][k] * b[q];
-  }
-  template <int W>
-  void gradientAt(const Lanes<S, W> b[3], Gradient<S, W>& g) const {
-    for (int n = 0; n < 3; ++n) {
-      for (int k = 0; k < 3; ++k) g.column[n][k] = derivative(b, n, k);
-    }
+    return slope[n] - bend[n] * (b[n] + b[n]) + product[q] * b[p] + product[p] * b[q];
   }
 };
 
-template <class S>
-struct QuadraticTet : QuadraticMap<S> {
-  template <int W>
-  void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
-    Lanes<S, W> b[3];
-    loadWeights<S, W>(work.weights, slot, b);
-    for (int k = 0; k < 3; ++k) x[k] = this->base[k] + this->fromBase(b, k);
+template <class S, int P>
+struct QuadraticTet : QuadraticMap<S, P> {
+  using QuadraticMap<S, P>::QuadraticMap;
+
+  Points<S, P> fromLast(const Work<S>& work, std::size_t slot) const {
+    return QuadraticMap<S, P>::fromLast(Weights<S, P>(work.weights, slot));
   }
-  template <int W>
-  void gradient(const Work<S>& work, std::uint32_t slot, Gradient<S, W>& g) const {
-    Lanes<S, W> b[3];
-    loadWeights<S, W>(work.weights, slot, b);
-    this->template gradientAt<W>(b, g);
+  void gradient(const Work<S>& work, std::size_t slot, Points<S, P> column[3]) const {
+    const Weights<S, P> b(work.weights, slot);
+    for (int n = 0; n < 3; ++n) column[n] = this->derivative(b, n);
   }
 };
 
-template <class S>
-struct QuadraticTetOutside : QuadraticMap<S> {
-  S shortestRest;  ///< of the tet's edges
+template <class S, int P>
+struct QuadraticTetOutside : QuadraticMap<S, P> {
+  S longestSquared;  ///< of what the quadratic part may add: the shortest edge at rest
 
-  void make(const Work<S>& work, std::size_t run, const Lanes<S, 4>& shift) {
-    QuadraticMap<S>::make(work, run, shift);
+  QuadraticTetOutside(const Work<S>& work, std::size_t run) : QuadraticMap<S, P>(work, run) {
     const std::uint32_t* ids = work.runEdges + 6 * run;
-    shortestRest = edgeAt(work, ids[0])[3];
+    S shortest = edgeAt(work, ids[0])[3];
     for (int i = 1; i < 6; ++i) {
       const S rest = edgeAt(work, ids[i])[3];
-      if (rest < shortestRest) shortestRest = rest;
+      if (rest < shortest) shortest = rest;
     }
+    longestSquared = shortest * shortest;
   }
 
-  template <int W>
-  void closest(const Work<S>& work, std::uint32_t slot, Lanes<S, W> c[3]) const {
-    loadWeights<S, W>(work.closest, slot - work.closestBase, c);
-  }
   /// What the quadratic part adds is taken, with its derivatives, at the closest point, and continued to first order. A
   /// crumpled cage would carry it far away: it is never longer than the tet's shortest edge at rest.
-  template <int W>
-  void positions(const Work<S>& work, std::uint32_t slot, Lanes<S, W> x[3]) const {
-    using V = Lanes<S, W>;
-    V b[3], c[3], added[3];
-    loadWeights<S, W>(work.weights, slot, b);
-    closest<W>(work, slot, c);
-    for (int k = 0; k < 3; ++k) {
-      V linear = all<S, W>(S(0));
-      added[k] = this->fromBase(c, k);
-      for (int n = 0; n < 3; ++n) {
-        linear += (this->slope[n][k] - this->bend[n][k]) * b[n];
-        added[k] += this->derivative(c, n, k) * (b[n] - c[n]);
-      }
-      added[k] -= linear;
-      x[k] = this->base[k] + linear;
+  Points<S, P> fromLast(const Work<S>& work, std::size_t slot) const {
+    const Weights<S, P> b(work.weights, slot), c(work.closest, slot - work.closestBase);
+    Points<S, P> linear = {}, added = QuadraticMap<S, P>::fromLast(c);
+    for (int n = 0; n < 3; ++n) {
+      linear += (this->slope[n] - this->bend[n]) * b[n];
+      added += this->derivative(c, n) * (b[n] - c[n]);
     }
-    const V length = squareRoots<S, W>(added[0] * added[0] + added[1] * added[1] + added[2] * added[2]);
-    const V limit = all<S, W>(shortestRest);
-    const V scale = length > limit ? limit / length : all<S, W>(S(1));
-    // Nodes so far apart that the length overflows leave no correction worth having.
-    for (int k = 0; k < 3; ++k) x[k] += length * 0 == 0 ? added[k] * scale : all<S, W>(S(0));
+    added -= linear;
+    const Points<S, P> squared = squaredLengths<S, P>(added);
+    if (!allBetween<S, P>(squared, S(-1), longestSquared)) added = shortened(added, squared);
+    return linear + added;
   }
-  template <int W>
-  void gradient(const Work<S>& work, std::uint32_t slot, Gradient<S, W>& g) const {
-    Lanes<S, W> c[3];
-    closest<W>(work, slot, c);
-    this->template gradientAt<W>(c, g);
+  void gradient(const Work<S>& work, std::size_t slot, Points<S, P> column[3]) const {
+    const Weights<S, P> c(work.closest, slot - work.closestBase);
+    for (int n = 0; n < 3; ++n) column[n] = this->derivative(c, n);
+  }
+
+ private:
+  /// Nodes so far apart that the length overflows leave no correction worth having.
+  TETSKIN_NOINLINE Points<S, P> shortened(Points<S, P> added, Points<S, P> squared) const {
+    for (int i = 0; i < 4 * P; ++i) {
+      const S q = squared[i];
+      if (q < longestSquared) continue;
+      added[i] = q * 0 == 0 ? added[i] * squareRoot(longestSquared / q) : S(0);
+    }
+    return added;
   }
 };
 
