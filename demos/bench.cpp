@@ -118,10 +118,10 @@ void normalsRecomputed(State& state, const Bench& bench) {
   SoftBodySkin skin;
   require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
   const NormalTopology& topology = *skin.binding()->recomputed;
-  std::vector<float> faceVectors(4 * topology.triangleCount());
+  std::vector<btScalar> padded(4 * bench.model.mesh.vertexCount());
   std::vector<Eigen::Vector3f> normals(bench.model.mesh.vertexCount());
   for (auto _ : state) {
-    recomputeNormals(topology, skin.positions(), faceVectors, viewOf(normals));
+    recomputeNormals(topology, skin.positions(), padded, viewOf(normals));
     benchmark::ClobberMemory();
   }
 }

@@ -1,94 +1,19 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "support/odd_meshes.h"
-#include "support/smooth_maps.h"
-
-#include <gtest/gtest.h>
-#include <tetskin/core/mesh_skin.h>
+#include "carried_normals.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tetskin {
 namespace {
 
+using test::angle;
+using test::authoredSphere;
+using test::box;
+using test::Carried;
+using test::cofactors;
+using test::kCentre;
 using Points = std::vector<Eigen::Vector3d>;
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-const Eigen::Vector3d kCentre = Eigen::Vector3d::Constant(0.5);
-
-Eigen::Matrix3d cofactors(const Eigen::Matrix3d& m) {
-  Eigen::Matrix3d c;
-  c << m.col(1).cross(m.col(2)), m.col(2).cross(m.col(0)), m.col(0).cross(m.col(1));
-  return c;
-}
-
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// A sphere with exact normals, and tangents along its circles of latitude.
-TriangleMesh authoredSphere(int rings, double radius) {
-  TriangleMesh mesh = test::sphere(rings, radius, kCentre);
-  for (const Eigen::Vector3d& p : mesh.positions) {
-    const Eigen::Vector3d n = (p - kCentre).normalized();
-    mesh.normals.push_back(n.cast<float>());
-    const Eigen::Vector3d t = std::abs(n.y()) > 0.999 ? Eigen::Vector3d::UnitX() : n.cross(Eigen::Vector3d::UnitY());
-    mesh.tangents.emplace_back(static_cast<float>(t.normalized().x()), static_cast<float>(t.normalized().y()),
-                               static_cast<float>(t.normalized().z()), -1.0f);
-  }
-  return mesh;
-}
-
-/// A unit cube whose faces share no vertices, each corner with its face's normal if `authored`.
-TriangleMesh box(bool authored) {
-  TriangleMesh mesh;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int side = 0; side < 2; ++side) {
-      const int first = static_cast<int>(mesh.vertexCount());
-      for (int c = 0; c < 4; ++c) {
-        Eigen::Vector3d p;
-        p[axis] = side;
-        p[(axis + 1) % 3] = c == 1 || c == 2;
-        p[(axis + 2) % 3] = c >= 2;
-        mesh.positions.push_back(p);
-        if (authored) mesh.normals.push_back((2.0f * static_cast<float>(side) - 1.0f) * Eigen::Vector3f::Unit(axis));
-      }
-      const int second = side == 1 ? 1 : 3, last = side == 1 ? 3 : 1;
-      mesh.triangles.push_back({first, first + second, first + 2});
-      mesh.triangles.push_back({first, first + 2, first + last});
-    }
-  }
-  return mesh;
-}
-
-template <class Scalar>
-class Carried {
- public:
-  Carried(const TetMesh& cage, const TriangleMesh& mesh, Normals normals,
-          Interpolation interpolation = Interpolation::Quadratic, double hardEdgeDegrees = kHardEdgeDegrees) {
-    SkinOptions options;
-    options.normals = normals;
-    options.interpolation = interpolation;
-    options.hardEdgeDegrees = hardEdgeDegrees;
-    fit = skin.bind(cage, mesh, options);
-    EXPECT_TRUE(fit.ok()) << fit.describe();
-  }
-  void move(const Points& places) {
-    std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
-    for (const Eigen::Vector3d& p : places) nodes.push_back(p.cast<Scalar>());
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), nodes.size());
-  }
-  Eigen::Vector3d normal(std::size_t v) const {
-    return Eigen::Map<const Eigen::Vector3f>(skin.normals()[v]).template cast<double>();
-  }
-  Eigen::Vector3d tangent(std::size_t v) const {
-    return Eigen::Map<const Eigen::Vector3f>(skin.tangents()[v]).template cast<double>();
-  }
-
-  MeshSkin<Scalar> skin;
-  EmbedReport fit;
-};
 
 class NormalsOnLattices : public testing::TestWithParam<test::LatticeKind> {};
 INSTANTIATE_TEST_SUITE_P(Normals, NormalsOnLattices, testing::ValuesIn(test::latticeKinds()),
@@ -175,81 +100,6 @@ TEST(Transformed, RestNormalsAreReproduced) {
   }
 }
 
-TEST(Recomputed, AreThoseOfTheDeformedTriangles) {
-  const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-  const TriangleMesh mesh = test::sphere(16, 0.45, kCentre);
-  Carried<double> carried(cage, mesh, Normals::Recomputed);
-  const test::SmoothMap twist = test::smoothMaps(kCentre)[0];
-  carried.move(twist(cage.nodes));
-  std::vector<Eigen::Vector3d> expected(mesh.vertexCount(), Eigen::Vector3d::Zero());
-  for (const auto& t : mesh.triangles) {
-    Eigen::Vector3d corner[3];
-    for (int k = 0; k < 3; ++k) corner[k] = Eigen::Map<const Eigen::Vector3d>(carried.skin.positions()[t[k]]);
-    for (const int v : t) expected[v] += (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  }
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    EXPECT_LT((carried.normal(v) - expected[v].normalized()).norm(), 1e-6);
-    EXPECT_LT(angle(carried.normal(v), cofactors(twist.gradient(mesh.positions[v])) * (mesh.positions[v] - kCentre)),
-              12.0);
-  }
-}
-
-TEST(Recomputed, AuthoredHardEdgesAreKept) {
-  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
-  const TriangleMesh mesh = box(true);
-  Carried<float> carried(cage, mesh, Normals::Recomputed);
-  const test::SmoothMap map = test::affineMap(4);
-  carried.move(map(cage.nodes));
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    EXPECT_LT(angle(carried.normal(v), cofactors(map.gradient(kCentre)) * mesh.normals[v].cast<double>()), 0.1);
-  }
-}
-
-TEST(Recomputed, WithoutAuthoredNormalsTheCornersOfABoxAreSmooth) {
-  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
-  for (const auto& [authored, hardEdgeDegrees] : {std::pair{false, kHardEdgeDegrees}, std::pair{true, 91.0}}) {
-    const TriangleMesh mesh = box(authored);
-    Carried<float> carried(cage, mesh, Normals::Recomputed, Interpolation::Linear, hardEdgeDegrees);
-    for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-      const Eigen::Vector3d corner = mesh.positions[v] - kCentre;  // one or two triangles of each face meet here
-      EXPECT_LT(angle(carried.normal(v), corner), 36.0);
-      EXPECT_GT((carried.normal(v).cwiseProduct(corner)).minCoeff(), 0.1);
-      for (std::size_t w = 0; w < v; ++w) {
-        if (mesh.positions[v] == mesh.positions[w]) {
-          EXPECT_EQ(carried.normal(v), carried.normal(w));
-        }
-      }
-    }
-  }
-}
-
-/// Every triangle with vertices of its own, as in an STL file; normals of one position differ by a little.
-TEST(Recomputed, SeamsAreSmoothToTheLastBit) {
-  const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-  const TriangleMesh whole = authoredSphere(12, 0.52);
-  TriangleMesh cut;
-  for (const auto& t : whole.triangles) {
-    for (const int v : t) {
-      cut.positions.push_back(whole.positions[v]);
-      // A degree or so off, as if from a coarse file.
-      const float off = 0.01f * static_cast<float>(cut.normals.size() % 3);
-      cut.normals.push_back((whole.normals[v] + off * Eigen::Vector3f::UnitX()).normalized());
-    }
-    const int last = static_cast<int>(cut.vertexCount());
-    cut.triangles.push_back({last - 3, last - 2, last - 1});
-  }
-  const test::SmoothMap waves = test::smoothMaps(kCentre)[3];
-  Carried<float> expected(cage, whole, Normals::Recomputed), carried(cage, cut, Normals::Recomputed);
-  EXPECT_EQ(carried.skin.binding()->recomputed->groupCount(), whole.vertexCount());
-  expected.move(waves(cage.nodes));
-  carried.move(waves(cage.nodes));
-  for (std::size_t t = 0; t < whole.triangleCount(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(carried.normal(3 * t + k), expected.normal(whole.triangles[t][k]));
-    }
-  }
-}
-
 TEST(Transformed, SeamsWithEqualNormalsGetIdenticalBits) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   TriangleMesh mesh = authoredSphere(12, 0.52);
@@ -263,22 +113,6 @@ TEST(Transformed, SeamsWithEqualNormalsGetIdenticalBits) {
     EXPECT_EQ(carried.normal(v), carried.normal(v + count));
     EXPECT_EQ(carried.tangent(v), carried.tangent(v + count));
   }
-}
-
-TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
-  TriangleMesh mesh;
-  mesh.positions.assign(5, {0.1, 0.2, 0.3});
-  const auto tilted = [](double degrees) -> Eigen::Vector3f {
-    return Eigen::Vector3d(std::sin(degrees / kDegrees), std::cos(degrees / kDegrees), 0.0).cast<float>();
-  };
-  for (const double degrees : {0.0, 60.0, 3.0, 63.0, 120.0}) mesh.normals.push_back(tilted(degrees));
-  const NormalTopology topology(mesh, {});
-  EXPECT_EQ(topology.groupCount(), 3u);
-  EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 2, 1, 3, 4}));
-  EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 2, 4, 5}));
-  EXPECT_EQ(NormalTopology(mesh, {}, 61.0).groupCount(), 2u);
-  mesh.normals.clear();
-  EXPECT_EQ(NormalTopology(mesh, {}).groupCount(), 1u);
 }
 
 /// Two cages, of which one collapses to a point: its normals stay what they were.

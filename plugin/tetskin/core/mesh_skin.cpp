@@ -198,7 +198,7 @@ void MeshSkin<Scalar>::prepareArrays(std::size_t vertexCount) {
   if (options_.normalTarget.empty()) normals_.resize(vertexCount);
   fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors to begin with: see transformDirections
   if (options_.normals == Normals::Recomputed) {
-    faceVectors_.resize(4 * binding_->recomputed->triangleCount());
+    padded_.resize(4 * vertexCount);
     return;
   }
   const auto scratchFor = [&](PointView<float> out, const Eigen::Vector3f& unit,
@@ -245,7 +245,7 @@ void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
   }
   if (options_.normals == Normals::Transformed) skinDirections();
   if (options_.normals == Normals::Recomputed) {
-    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), faceVectors_, normalsOut(), options_.threads);
+    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), padded_, normalsOut(), options_.threads);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <tetskin/core/normals.h>
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/quadratic_skinning.h>
+#include <tetskin/core/recomputed_normals.h>
 #include <tetskin/core/skinning.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
@@ -146,7 +147,7 @@ class MeshSkin {
   MovedParts<Scalar> moved_;  ///< with skipStill
   std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_, previous_;
   std::vector<Eigen::Vector3f> normals_, tangents_;
-  std::vector<float> faceVectors_;
+  std::vector<Scalar> padded_;   ///< positions, for recomputed normals
   std::vector<Scalar> scratch_;  ///< of positions, where they are not written directly
   std::vector<Eigen::Vector3f> normalScratch_, tangentScratch_;
   Box3 bounds_;

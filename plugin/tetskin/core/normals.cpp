@@ -8,11 +8,6 @@
 namespace tetskin {
 namespace {
 
-using skin_tasks::firstItem;
-using skin_tasks::taskCount;
-
-constexpr std::size_t kTrianglesPerTask = 16384;
-constexpr std::size_t kGroupsPerTask = 8192;
 /// How far an authored normal's length may be from 1.
 constexpr float kUnitTolerance = 0.1f;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
@@ -31,41 +26,6 @@ bool normalise(Eigen::Matrix<Scalar, 3, 1>& sum) {
   }
   sum /= std::sqrt(squared);
   return true;
-}
-
-/// Squares between this and its inverse are far from the ends of float's range.
-constexpr float kOrdinary = 1e-30f;
-
-/// Vertices that share a normal, as lists: those at one position whose rest normals are within an angle of each other.
-std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, double hardEdgeDegrees, std::size_t& groupCount) {
-  const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
-  const bool authored = mesh.normals.size() == mesh.vertexCount();
-  const auto limit = static_cast<float>(std::cos(hardEdgeDegrees * kDegree));
-  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-  // The groups at one position are chained by their first vertices.
-  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNone), next(mesh.vertexCount(), kNone);
-  groupCount = 0;
-  for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
-    std::uint32_t other = first[v];
-    std::uint32_t lastOther = kNone;
-    while (other != kNone && other != v) {
-      if (!authored || mesh.normals[v].dot(mesh.normals[other]) >= limit) break;
-      lastOther = other;
-      other = next[other];
-    }
-    if (other != kNone && other != v) {
-      groupOf[v] = groupOf[other];
-      continue;
-    }
-    if (lastOther != kNone) next[lastOther] = v;
-    groupOf[v] = static_cast<std::uint32_t>(groupCount++);
-  }
-  return groupOf;
-}
-
-/// Starts of lists from their lengths, which come one place late.
-void accumulate(std::vector<std::uint32_t>& starts) {
-  for (std::size_t k = 1; k < starts.size(); ++k) starts[k] += starts[k - 1];
 }
 
 }  // namespace
@@ -161,80 +121,6 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   if (!direct) skin_tasks::place(embedding, sorted, out, order, threads);
 }
 
-NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
-                               double hardEdgeDegrees) {
-  assert(places.empty() || places.size() == mesh.vertexCount());
-  const auto placeOf = [&](std::size_t v) { return places.empty() ? static_cast<std::uint32_t>(v) : places[v]; };
-  std::size_t groups = 0;
-  const std::vector<std::uint32_t> groupOf = smoothGroups(mesh, hardEdgeDegrees, groups);
-
-  groupTriangles_.assign(groups + 1, 0);
-  groupPlaces_.assign(groups + 1, 0);
-  for (const auto& t : mesh.triangles) {
-    for (const int v : t) {
-      triangles_.push_back(placeOf(static_cast<std::size_t>(v)));
-      ++groupTriangles_[groupOf[v] + 1];
-    }
-  }
-  for (const std::uint32_t group : groupOf) ++groupPlaces_[group + 1];
-  accumulate(groupTriangles_);
-  accumulate(groupPlaces_);
-
-  corners_.resize(triangles_.size());
-  places_.resize(mesh.vertexCount());
-  std::vector<std::uint32_t> next(groupTriangles_.begin(), groupTriangles_.end() - 1);
-  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-    for (const int v : mesh.triangles[t]) corners_[next[groupOf[v]]++] = static_cast<std::uint32_t>(t);
-  }
-  next.assign(groupPlaces_.begin(), groupPlaces_.end() - 1);
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) places_[next[groupOf[v]]++] = placeOf(v);
-}
-
-template <class Scalar>
-void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> positions,
-                      std::vector<float>& faceVectors, PointView<float> out, ParallelFor* threads) {
-  assert(faceVectors.size() == 4 * topology.triangleCount());
-  assert(positions.size() == topology.places().size() && out.size() == positions.size());
-  const std::uint32_t* triangle = topology.triangles().data();
-  std::size_t tasks = taskCount(topology.triangleCount(), kTrianglesPerTask);
-  runTasks(threads, tasks, [&](std::size_t task) {
-    const std::size_t last = firstItem(topology.triangleCount(), tasks, task + 1);
-    for (std::size_t t = firstItem(topology.triangleCount(), tasks, task); t < last; ++t) {
-      const Scalar* a = positions[triangle[3 * t]];
-      const Scalar* b = positions[triangle[3 * t + 1]];
-      const Scalar* c = positions[triangle[3 * t + 2]];
-      const Scalar u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-      float* face = faceVectors.data() + 4 * t;
-      face[0] = static_cast<float>(u[1] * w[2] - u[2] * w[1]);
-      face[1] = static_cast<float>(u[2] * w[0] - u[0] * w[2]);
-      face[2] = static_cast<float>(u[0] * w[1] - u[1] * w[0]);
-    }
-  });
-
-  tasks = taskCount(topology.groupCount(), kGroupsPerTask);
-  runTasks(threads, tasks, [&](std::size_t task) {
-    const std::size_t last = firstItem(topology.groupCount(), tasks, task + 1);
-    for (std::size_t g = firstItem(topology.groupCount(), tasks, task); g < last; ++g) {
-      using Padded = Eigen::Array4f;
-      Padded sum = Padded::Zero();
-      for (std::uint32_t k = topology.groupTriangles()[g]; k < topology.groupTriangles()[g + 1]; ++k) {
-        sum += Eigen::Map<const Padded>(faceVectors.data() + 4 * static_cast<std::size_t>(topology.corners()[k]));
-      }
-      Eigen::Vector3f normal(sum[0], sum[1], sum[2]);
-      const float squared = normal.squaredNorm();
-      if (squared > kOrdinary && squared < 1.0f / kOrdinary) {
-        normal *= 1.0f / std::sqrt(squared);
-      } else if (!normalise(normal)) {
-        continue;
-      }
-      for (std::uint32_t k = topology.groupPlaces()[g]; k < topology.groupPlaces()[g + 1]; ++k) {
-        float* target = out[topology.places()[k]];
-        for (int i = 0; i < 3; ++i) target[i] = normal[i];
-      }
-    }
-  });
-}
-
 #define TETSKIN_INSTANTIATE(Scalar)                                                                              \
   template void transformDirections(const Embedding&, const DirectionFactors&, const QuadraticStencils<Scalar>*, \
                                     const EdgeVectors<Scalar>*, const PackedNodes<Scalar>&, PointView<float>,    \
@@ -242,9 +128,4 @@ void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> po
 TETSKIN_INSTANTIATE(float)
 TETSKIN_INSTANTIATE(double)
 #undef TETSKIN_INSTANTIATE
-template void recomputeNormals(const NormalTopology&, PointView<const float>, std::vector<float>&, PointView<float>,
-                               ParallelFor*);
-template void recomputeNormals(const NormalTopology&, PointView<const double>, std::vector<float>&, PointView<float>,
-                               ParallelFor*);
-
 }  // namespace tetskin

@@ -19,10 +19,6 @@ enum class Normals {
   Recomputed,   ///< the deformed triangles, weighted by area: also right where the surface folds within a tet
 };
 
-/// Normals that differ by more than this at one position make a hard edge. Below, they are a smooth normal's rounding,
-/// or that of a file; a facet of a smooth surface turns more.
-constexpr double kHardEdgeDegrees = 5.0;
-
 /// The mesh's authored normals; where there are none, or one is not of unit length, those of its triangles, weighted by
 /// area and smooth across coincident vertices. vertexCount unit vectors, of (0, 1, 0) for vertices without triangles.
 std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh);
@@ -60,8 +56,8 @@ class DirectionFactors {
 /// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
 /// out              vertexCount x 3, caller-owned, any stride; world space
 /// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
-/// writes; not
-///                  needed for `out` side by side in sorted order; without it, some is allocated, and `out` is read
+///                  writes; not needed for `out` side by side in sorted order; without it, some is allocated, and `out`
+///                  is read
 /// movedRuns        as in SkinOutput
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
@@ -70,41 +66,5 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
                          float* scratch = nullptr, ParallelFor* threads = nullptr,
                          const std::uint8_t* movedRuns = nullptr);
-
-/// Which triangles make the normal of which vertices: vertices at one position share theirs, unless their rest normals
-/// differ by more than an angle (a hard edge). Immutable, shared like an Embedding.
-/// Memory: 12 bytes a triangle, 12 a corner, 8 a vertex at most.
-class NormalTopology {
- public:
-  NormalTopology() = default;
-  /// places  by vertex, where it is written (its slot, for VertexOrder::Sorted); empty for the mesh's order
-  NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
-                 double hardEdgeDegrees = kHardEdgeDegrees);
-
-  std::size_t triangleCount() const { return triangles_.size() / 3; }
-  std::size_t groupCount() const { return groupTriangles_.size() - 1; }
-  const std::vector<std::uint32_t>& triangles() const { return triangles_; }            ///< 3 places a triangle
-  const std::vector<std::uint32_t>& groupTriangles() const { return groupTriangles_; }  ///< by group, and one more
-  const std::vector<std::uint32_t>& corners() const { return corners_; }                ///< triangles, group by group
-  const std::vector<std::uint32_t>& groupPlaces() const { return groupPlaces_; }        ///< by group, and one more
-  const std::vector<std::uint32_t>& places() const { return places_; }                  ///< places, group by group
-
- private:
-  std::vector<std::uint32_t> triangles_;
-  std::vector<std::uint32_t> groupTriangles_ = {0};
-  std::vector<std::uint32_t> corners_;
-  std::vector<std::uint32_t> groupPlaces_ = {0};
-  std::vector<std::uint32_t> places_;
-};
-
-/// Writes the unit normals of the deformed triangles, weighted by area. Gathered per vertex in a fixed order, so that
-/// the bits depend on no number of threads. Where all triangles have collapsed, what is there is left.
-///
-/// positions    vertexCount x 3, as just written
-/// faceVectors  triangleCount x 4, scratch of the caller
-/// Cost         O(triangleCount + vertexCount), no allocation
-template <class Scalar>
-void recomputeNormals(const NormalTopology& topology, PointView<const Scalar> positions,
-                      std::vector<float>& faceVectors, PointView<float> out, ParallelFor* threads = nullptr);
 
 }  // namespace tetskin

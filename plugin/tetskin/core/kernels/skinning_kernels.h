@@ -81,15 +81,29 @@ struct DirectionPlanes {
   const float* factors[3] = {};  ///< planes, by slot, of the padded length of weights
 };
 
+/// Groups of places that share a normal: see recomputed_normals.h.
+template <class Scalar>
+struct PathWork {
+  std::size_t firstGroup = 0, lastGroup = 0;
+  const std::uint32_t* groupPaths = nullptr;   ///< by group, and one more: where its path begins
+  const std::uint32_t* paths = nullptr;        ///< places
+  const std::uint32_t* groupPlaces = nullptr;  ///< by group, and one more
+  const std::uint32_t* places = nullptr;       ///< of the group; the first is the path's centre
+  const Scalar* points = nullptr;              ///< 4 scalars a place
+  float* out = nullptr;                        ///< by place
+  std::size_t outStride = 0;                   ///< bytes
+};
+
 /// The loops of one instruction set. Points are written side by side in the order of the slots: slot s at out + 3 s.
 /// Given an extent, `positions` widens it. `directions` writes unit vectors, and leaves a point as it is where there is
-/// no direction any more.
+/// no direction any more; so does `pathNormals`.
 template <class Scalar>
 struct Table {
   void (*positions)(const Work<Scalar>&, const Scalar shift[3], Scalar* out, Extent<Scalar>*);
   void (*directions)(const Work<Scalar>&, const DirectionPlanes&, float* out);
   void (*gradients)(const GradientWork<Scalar>&);
   void (*edges)(const EdgeWork<Scalar>&);
+  void (*pathNormals)(const PathWork<Scalar>&);
 };
 
 namespace plain {

@@ -6,13 +6,14 @@
 
 #include <tetskin/core/kernels/direction_loops.h>
 #include <tetskin/core/kernels/gradient_loops.h>
+#include <tetskin/core/kernels/path_loops.h>
 #include <tetskin/core/kernels/position_loops.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S, int P>
 constexpr Table<S> table() {
-  return {positions<S, P>, directions<S, P>, gradients<S, P>, edges<S>};
+  return {positions<S, P>, directions<S, P>, gradients<S, P>, edges<S>, pathNormals<S>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS
