@@ -227,5 +227,27 @@ TEST(PackedNodes, ReadsAnyStrideAndNamesTheFirstNodeThatIsNotFinite) {
   }
 }
 
+/// It reads four numbers at a time: the fourth may be anything, and that of the last may not even be there.
+TEST(PackedNodes, TakeNothingFromBehindAPosition) {
+  for (const std::size_t count : {1u, 2u, 3u, 4u, 7u}) {
+    for (const std::size_t stride : {3u, 4u, 5u}) {
+      std::vector<float> memory(stride * (count - 1) + 3, std::numeric_limits<float>::quiet_NaN());
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (std::size_t n = 0; n < count; ++n) {
+        for (std::size_t k = 0; k < 3; ++k) memory[stride * n + k] = static_cast<float>(n * n + k);
+        sum += Eigen::Map<const Eigen::Vector3f>(memory.data() + stride * n);
+      }
+      PackedNodes<float> packed(count);
+      EXPECT_EQ(packed.pack(PointView<const float>(memory.data(), count, stride * sizeof(float))), count);
+      EXPECT_LT((packed.mean() - sum / static_cast<float>(count)).norm(), 1e-6f);
+      for (std::size_t n = 0; n < count; ++n) {
+        const Eigen::Vector3f p = packed.mean() + Eigen::Map<const Eigen::Vector3f>(packed.data() + 4 * n);
+        EXPECT_LT((p - Eigen::Map<const Eigen::Vector3f>(memory.data() + stride * n)).norm(), 1e-5f);
+        EXPECT_EQ(packed.data()[4 * n + 3], 0.0f);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

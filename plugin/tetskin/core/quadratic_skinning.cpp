@@ -104,7 +104,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
 
 template <class Scalar>
 EdgeVectors<Scalar>::EdgeVectors(const QuadraticStencils<Scalar>& stencils)
-    : gradients_(kernels::kGradientStride * stencils.gradientCount()), edges_(4 * stencils.edgeCount()) {
+    : gradients_(stencils.gradientCount()), edges_(4 * stencils.edgeCount()) {
   for (std::size_t e = 0; e < stencils.edgeCount(); ++e) edges_[4 * e + 3] = stencils.restLengths()[e];
 }
 
@@ -120,7 +120,7 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
   gradients.neighbours = stencils.entryNodes().data();
   gradients.factors = stencils.entryFactors().data();
   gradients.nodes = nodes.data();
-  gradients.gradients = gradients_.data();
+  gradients.gradients = gradients_.empty() ? nullptr : gradients_.front().columns;
   std::size_t tasks = taskCount(stencils.gradientCount(), kGradientsPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {
     kernels::GradientWork<Scalar> part = gradients;
@@ -136,7 +136,7 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
   kernels::EdgeWork<Scalar> edges;
   edges.gradientOf = stencils.edgeGradients().data();
   edges.halfRest = stencils.halfRest().data();
-  edges.gradients = gradients_.data();
+  edges.gradients = gradients.gradients;
   edges.edges = edges_.data();
   tasks = taskCount(stencils.edgeCount(), kEdgesPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {

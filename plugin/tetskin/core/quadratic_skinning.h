@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/kernels/skinning_kernels.h>
 #include <tetskin/core/skinning.h>
 
 #include <string>
@@ -82,7 +83,11 @@ class EdgeVectors {
   const Scalar* data() const { return edges_.data(); }
 
  private:
-  std::vector<Scalar> gradients_;  ///< kernels::kGradientStride a gradient
+  /// One a cache line, or two.
+  struct alignas(64) Gradient {
+    Scalar columns[kernels::kGradientStride];
+  };
+  std::vector<Gradient> gradients_;
   std::vector<Scalar> edges_;
 };
 

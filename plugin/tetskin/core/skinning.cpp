@@ -10,23 +10,36 @@ namespace tetskin {
 template <class Scalar>
 std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   assert(positions.size() == size());
-  Point sum = Point::Zero();
-  Scalar largest[3] = {};  // one for each axis, as one for all would be a chain of three times the length
-  Scalar* to = nodes_.empty() ? nullptr : nodes_.front().data();
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Scalar* p = positions[i];
-    for (int k = 0; k < 3; ++k) {
-      to[4 * i + static_cast<std::size_t>(k)] = p[k];
-      sum[k] += p[k];
-      largest[k] = std::max(largest[k], std::abs(p[k]));  // passes over what is not a number: the sum does not
-    }
+  if (nodes_.empty()) return 0;
+  // Two of each, as one would wait for itself.
+  Node sum[2] = {Node::Zero(), Node::Zero()}, largest[2] = {Node::Zero(), Node::Zero()};
+  const auto add = [](const Node& p, Node& total, Node& most) {
+    total += p;
+    most = most.cwiseMax(p.cwiseAbs());  // passes over what is no number: the sum does not
+  };
+  // Read with the scalar behind each, which may not be there for the last.
+  const std::size_t last = size() - 1;
+  for (std::size_t i = 0; i + 2 <= last; i += 2) {
+    const Node p = Eigen::Map<const Node>(positions[i]), q = Eigen::Map<const Node>(positions[i + 1]);
+    nodes_[i] = p;
+    nodes_[i + 1] = q;
+    add(p, sum[0], largest[0]);
+    add(q, sum[1], largest[1]);
   }
-  const bool tooLarge = std::max({largest[0], largest[1], largest[2]}) > static_cast<Scalar>(kLargestCoordinate);
-  if (!sum.allFinite() || tooLarge) return firstUnusable(positions);
+  for (std::size_t i = last - last % 2; i <= last; ++i) {
+    nodes_[i] << Eigen::Map<const Point>(positions[i]), Scalar(0);
+    add(nodes_[i], sum[0], largest[0]);
+  }
+  const Point total = (sum[0] + sum[1]).template head<3>();
+  const Scalar most = largest[0].cwiseMax(largest[1]).template head<3>().maxCoeff();
+  if (!total.allFinite() || most > static_cast<Scalar>(kLargestCoordinate)) return firstUnusable(positions);
   // Differences to a point among the nodes are nearly exact, however far they all are from the origin.
-  mean_ = sum / static_cast<Scalar>(std::max<std::size_t>(1, size()));
+  mean_ = total / static_cast<Scalar>(size());
   const Node mean(mean_[0], mean_[1], mean_[2], Scalar(0));
-  for (Node& node : nodes_) node -= mean;
+  for (Node& node : nodes_) {
+    node -= mean;
+    node[3] = 0;
+  }
   return size();
 }
 

@@ -221,13 +221,20 @@ TETSKIN_INLINE Points<S, P> sideBySide(const Points<S, P>& v) {
   if constexpr (P == 1) return v;
 }
 
-/// Writes P points side by side, and P numbers more.
+/// Writes P points side by side, and up to P numbers more.
 template <class S, int P>
 TETSKIN_INLINE void storePoints(const Points<S, P>& v, S* out) {
   const Points<S, P> points = sideBySide<S, P>(v);
+#if defined(__AVX512F__)
+  if constexpr (P == 4) {
+    // 64 bytes would straddle two cache lines most of the time.
+    _mm256_storeu_ps(out, _mm512_castps512_ps256(points));
+    return _mm_storeu_ps(out + 8, _mm512_extractf32x4_ps(points, 2));
+  }
+#endif
   ::memcpy(out, &points, sizeof points);
 }
-/// Points from a slot on whose memory storePoints touches.
+/// Points from a slot on whose memory storePoints may touch.
 template <int P>
 constexpr std::uint32_t kSlotsTouched = (4 * P + 2) / 3;
 
