@@ -3,11 +3,12 @@ set(nested_options --build-generator ${CMAKE_GENERATOR} --build-noclean)
 set(nested_parallel 2)
 
 # Builds the project elsewhere with these options, and runs the tests that it then has.
-#   TARGET   only this target
-#   TESTS    only the tests that match this
-#   OPTIONS  of the configuration
+#   TARGET    only this target
+#   TESTS     only the tests that match this
+#   PARALLEL  so many tests at once, if not as many as processors are taken
+#   OPTIONS   of the configuration
 function(tetskin_test_configuration name)
-  cmake_parse_arguments(arg "" "TARGET;TESTS" "OPTIONS" ${ARGN})
+  cmake_parse_arguments(arg "" "TARGET;TESTS;PARALLEL" "OPTIONS" ${ARGN})
   set(target_option)
   if(arg_TARGET)
     set(target_option --build-target ${arg_TARGET})
@@ -15,20 +16,26 @@ function(tetskin_test_configuration name)
   if(NOT arg_TESTS)
     set(arg_TESTS .)
   endif()
+  if(NOT arg_PARALLEL)
+    set(arg_PARALLEL ${nested_parallel})
+  endif()
   add_test(NAME configuration.${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
       ${nested_options} ${target_option}
       --build-options ${arg_OPTIONS} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
-      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${nested_parallel} -R ${arg_TESTS})
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error --parallel ${arg_PARALLEL}
+      -R ${arg_TESTS})
   set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel})
 endfunction()
 
-tetskin_test_configuration(double_precision OPTIONS
+# The parts that know of Bullet's precision; the others are templates, tested for both in one build.
+tetskin_test_configuration(double_precision TARGET test_bullet TESTS ^bullet OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
 # Without the demos, which take longer to build so than all the rest of it.
 tetskin_test_configuration(sanitized OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
-tetskin_test_configuration(optional_parts_off OPTIONS
+# The same code as in the whole build: that it configures, links and runs without the rest is what is tested.
+tetskin_test_configuration(optional_parts_off TARGET fuzzers TESTS ^fuzz OPTIONS
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)
 
@@ -47,7 +54,7 @@ if(CLANG_CXX)
     set(fuzzed_sanitizers fuzzer-no-link,address,undefined)
   endif()
 endif()
-tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz OPTIONS ${fuzzed_compiler}
+tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 3 OPTIONS ${fuzzed_compiler}
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
   -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_DEMOS=OFF)
 

@@ -14,6 +14,9 @@
 
 namespace tetskin::test {
 
+/// Of positions of a body about 1 in size.
+constexpr double kRounding = 2e-6;
+
 /// A body of a lattice cage, which is at rest, in no world, and a sphere that sticks out of it.
 class SkinTest : public testing::Test {
  protected:

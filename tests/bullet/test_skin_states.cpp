@@ -9,9 +9,9 @@
 namespace tetskin {
 namespace {
 
-class SkinState : public test::SkinTest {};
+using test::kRounding;
 
-constexpr double kRounding = 2e-6;
+class SkinState : public test::SkinTest {};
 
 TEST_F(SkinState, HiddenSkinIsLeftAloneAndRightAtOnceWhenShown) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());

@@ -12,9 +12,9 @@
 namespace tetskin {
 namespace {
 
-class Skin : public test::SkinTest {};
+using test::kRounding;
 
-constexpr double kRounding = 2e-6;
+class Skin : public test::SkinTest {};
 
 TEST_F(Skin, IsAtRestRightAfterBind) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());

@@ -20,6 +20,9 @@ struct NamedWorld {
   const char* name;
   MakeWorld make;
 };
+void PrintTo(const NamedWorld& world, std::ostream* out) {  // not byte by byte: there are addresses among them
+  *out << world.name;
+}
 
 template <class World>
 std::unique_ptr<test::TestWorld> makeWorld(const TetMesh& cage) {

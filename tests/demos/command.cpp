@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -70,6 +71,12 @@ std::vector<std::array<double, 3>> objPositions(const std::string& text) {
     numbers >> p[0] >> p[1] >> p[2];
   }
   return positions;
+}
+
+void expectRefused(const CommandResult& result, const std::string& word) {
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
 }
 
 }  // namespace tetskin::test

@@ -39,6 +39,9 @@ class CommandFolder {
   std::filesystem::path folder_;
 };
 
+/// Exit status 2, and one line that names what is wrong.
+void expectRefused(const CommandResult& result, const std::string& word);
+
 /// Vertex positions of an OBJ file.
 std::vector<std::array<double, 3>> objPositions(const std::string& text);
 

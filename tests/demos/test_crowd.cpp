@@ -14,6 +14,7 @@ namespace {
 
 using test::CommandFolder;
 using test::CommandResult;
+using test::expectRefused;
 
 TEST(Crowd, SleepersStayAsleepAndInPlaceWhileTheOthersFall) {
   scenes::ModelOptions options;
@@ -104,16 +105,11 @@ TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
 }
 
 TEST_F(CrowdCommand, RefusesBadInput) {
-  const auto expectRefused = [&](const std::vector<std::string>& arguments, const std::string& word) {
-    const CommandResult result = crowd(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-  };
-  expectRefused({"--mesh", "nowhere.obj"}, "nowhere.obj");
-  expectRefused({"--bodies", "0"}, "--bodies");
-  expectRefused({"--frames", "none"}, "--frames");
-  expectRefused({"--bodies", "2", "--triangles", "2000", "--frames", "1", "--json", "no/where.json"}, "no/where.json");
+  expectRefused(crowd({"--mesh", "nowhere.obj"}), "nowhere.obj");
+  expectRefused(crowd({"--bodies", "0"}), "--bodies");
+  expectRefused(crowd({"--frames", "none"}), "--frames");
+  expectRefused(crowd({"--bodies", "2", "--triangles", "2000", "--frames", "1", "--json", "no/where.json"}),
+                "no/where.json");
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace {
 using report::Row;
 using test::CommandFolder;
 using test::CommandResult;
+using test::expectRefused;
 
 Row rowWith(const std::string& interpolation, double edge, double ms, double error) {
   Row row;
@@ -295,20 +296,14 @@ TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
 }
 
 TEST_F(ErrorVsTime, RefusesBadInput) {
-  const auto expectRefused = [&](const std::vector<std::string>& arguments, const std::string& word) {
-    const CommandResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-  };
-  expectRefused({"--mesh", "nowhere.obj"}, "nowhere.obj");
-  expectRefused({"--scene", "fly"}, "--scene");
-  expectRefused({"--tets", "0"}, "--tets");
-  expectRefused({"--tets", "3000", "--reference-tets", "3000"}, "reference");
-  expectRefused({"--target-error", "-1"}, "--target-error");
-  expectRefused({"--full", "--quick"}, "--full");
+  expectRefused(run({"--mesh", "nowhere.obj"}), "nowhere.obj");
+  expectRefused(run({"--scene", "fly"}), "--scene");
+  expectRefused(run({"--tets", "0"}), "--tets");
+  expectRefused(run({"--tets", "3000", "--reference-tets", "3000"}), "reference");
+  expectRefused(run({"--target-error", "-1"}), "--target-error");
+  expectRefused(run({"--full", "--quick"}), "--full");
   folder.write("file", "");
-  expectRefused({"--quick", "--out", "file"}, "file");
+  expectRefused(run({"--quick", "--out", "file"}), "file");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace {
 
 using test::CommandFolder;
 using test::CommandResult;
+using test::expectRefused;
 
 class StressCommand : public testing::Test {
  protected:
@@ -61,16 +62,10 @@ TEST_F(StressCommand, RunsTheCasesNamed) {
 }
 
 TEST_F(StressCommand, RefusesBadInput) {
-  const auto expectRefused = [&](const std::vector<std::string>& arguments, const std::string& word) {
-    const CommandResult result = stress(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-  };
-  expectRefused({"--only", "no such case"}, "no such case");
-  expectRefused({"--often"}, "--often");
-  expectRefused({"--only", "mesh/non_finite/linear", "--json", "no/where.json"}, "no/where.json");
-  expectRefused({"--only", "mesh/non_finite/linear", "--markdown", "no/where.md"}, "no/where.md");
+  expectRefused(stress({"--only", "no such case"}), "no such case");
+  expectRefused(stress({"--often"}), "--often");
+  expectRefused(stress({"--only", "mesh/non_finite/linear", "--json", "no/where.json"}), "no/where.json");
+  expectRefused(stress({"--only", "mesh/non_finite/linear", "--markdown", "no/where.md"}), "no/where.md");
 }
 
 }  // namespace

@@ -64,10 +64,7 @@ class TwistCommand : public testing::Test {
   CommandResult twist(const std::vector<std::string>& arguments) const { return folder.run(TETSKIN_TWIST, arguments); }
 
   void expectRefused(const std::vector<std::string>& arguments, const std::string& word) const {
-    const CommandResult result = twist(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    test::expectRefused(twist(arguments), word);
     EXPECT_FALSE(folder.exists("out"));
   }
 

@@ -5,6 +5,7 @@
 // is inlined into it.
 #include "support/allocation_count.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
@@ -14,36 +15,67 @@ namespace {
 
 std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
 
-/// In front of every block; keeps its alignment.
-struct alignas(std::max_align_t) Header {
-  std::size_t size;
-};
+/// The block's size is kept in front of it, in as much as its alignment takes.
+constexpr std::size_t kOrdinary = alignof(std::max_align_t);
 
-void release(void* memory) {
-  if (!memory) return;
-  Header* header = static_cast<Header*>(memory) - 1;
-  bytes -= header->size;
-  std::free(header);
+std::size_t& sizeOf(void* block) {
+  return *reinterpret_cast<std::size_t*>(static_cast<char*>(block) - kOrdinary);
 }
 
-}  // namespace
-
-void* operator new(std::size_t size) {
+void* allocate(std::size_t size, std::size_t alignment) noexcept {
+  char* memory =
+      static_cast<char*>(std::aligned_alloc(alignment, (alignment + size + alignment - 1) / alignment * alignment));
+  if (!memory) return nullptr;
   ++allocations;
   const std::size_t now = bytes += size;
   std::size_t most = peak;
   while (now > most && !peak.compare_exchange_weak(most, now)) {
   }
-  Header* header = static_cast<Header*>(std::malloc(sizeof(Header) + size));
-  if (!header) throw std::bad_alloc();
-  header->size = size;
-  return header + 1;
+  sizeOf(memory + alignment) = size;
+  return memory + alignment;
 }
-void operator delete(void* memory) noexcept {
-  release(memory);
+void* allocateOrThrow(std::size_t size, std::size_t alignment) {
+  void* block = allocate(size, alignment);
+  if (!block) throw std::bad_alloc();
+  return block;
 }
-void operator delete(void* memory, std::size_t) noexcept {
-  release(memory);
+
+void release(void* block, std::size_t alignment) noexcept {
+  if (!block) return;
+  bytes -= sizeOf(block);
+  std::free(static_cast<char*>(block) - alignment);
+}
+
+std::size_t from(std::align_val_t alignment) {
+  return std::max(kOrdinary, static_cast<std::size_t>(alignment));
+}
+
+}  // namespace
+
+// What the standard library's others call, and those which a sanitizer's runtime has of its own.
+void* operator new(std::size_t size) {
+  return allocateOrThrow(size, kOrdinary);
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size, kOrdinary);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocateOrThrow(size, from(alignment));
+}
+void operator delete(void* block) noexcept {
+  release(block, kOrdinary);
+}
+void operator delete(void* block, std::size_t) noexcept {
+  release(block, kOrdinary);
+}
+void operator delete(void* block, const std::nothrow_t&) noexcept {
+  release(block, kOrdinary);
+}
+void operator delete(void* block, std::align_val_t alignment) noexcept {
+  release(block, from(alignment));
+}
+void operator delete(void* block, std::size_t, std::align_val_t alignment) noexcept {
+  release(block, from(alignment));
 }
 
 namespace tetskin::test {

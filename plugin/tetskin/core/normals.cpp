@@ -10,7 +10,6 @@ namespace {
 
 /// How far an authored normal's length may be from 1.
 constexpr float kUnitTolerance = 0.1f;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 /// A sum of face vectors as a unit vector; false where nothing is left of it.
 template <class Scalar>
