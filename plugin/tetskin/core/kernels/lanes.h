@@ -5,7 +5,7 @@
 // own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h.
 //
 // With GCC and Clang the compiler's vector types do the work, on every processor. Without them, or with
-// TETSKIN_PLAIN_LANES, the same code is plain C++: lanes are one wide, and only padded points are four numbers.
+// TETSKIN_PLAIN_LANES, the same code is plain C++: lanes are one wide, and only points are four numbers.
 #pragma once
 
 #if defined(__AVX2__)

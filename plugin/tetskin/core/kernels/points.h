@@ -13,18 +13,13 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 template <class S, int P>
 using Points = Lanes<S, 4 * P>;
 
-/// A point padded to four scalars.
+/// Points as they lie in memory, four scalars each: one, and P.
 template <class S>
 Lanes<S, 4> loadPadded(const S* from) {
   Lanes<S, 4> v;
   ::memcpy(&v, from, sizeof v);
   return v;
 }
-template <class S>
-void storePadded(const Lanes<S, 4>& v, S* to) {
-  ::memcpy(to, &v, sizeof v);
-}
-
 template <class S, int P>
 TETSKIN_INLINE Points<S, P> loadPoints(const S* from) {
   Points<S, P> v;
