@@ -107,13 +107,15 @@ void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& me
   for (std::uint32_t& group : groupOf) group = numberOf[group];
 }
 
-/// Positions [first, last), each to four scalars.
+/// Positions [first, last), each to four scalars; the fourth stays as it is where it is not another position's.
 template <class Scalar, class In>
 void pad(PointView<const In> positions, std::size_t first, std::size_t last, Scalar* to) {
   if constexpr (std::is_same_v<Scalar, In>) {
-    // With the scalar behind each, which may not be there for the last of all.
-    for (std::size_t k = first; k + 1 < last; ++k) std::memcpy(to + 4 * k, positions[k], 4 * sizeof(Scalar));
-    std::memcpy(to + 4 * (last - 1), positions[last - 1], 3 * sizeof(Scalar));
+    std::size_t k = first;
+    if (positions.strideBytes() == 3 * sizeof(Scalar)) {
+      for (; k + 1 < last; ++k) std::memcpy(to + 4 * k, positions[k], 4 * sizeof(Scalar));
+    }
+    for (; k < last; ++k) std::memcpy(to + 4 * k, positions[k], 3 * sizeof(Scalar));
   } else {
     // Relative to one of them, so that far from the origin nothing is lost.
     using Wider = std::common_type_t<Scalar, In>;
