@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
 """Draws what tetskin_error_vs_time measured, as PNG and SVG beside its JSON file (or in the folder given).
 
 error_vs_time.py RESULTS.json [FOLDER] [--tets N] [--no-surface]

@@ -46,6 +46,11 @@ TEST_F(StressCommand, QuickCasesHold) {
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
   }
   EXPECT_EQ(bounded.size(), 2u) << "it tells what explodes from what does not";
+#ifdef TETSKIN_PYTHON
+  const CommandResult drawn = folder.run(TETSKIN_PYTHON, {TETSKIN_PLOTS "/stability_map.py", "s.json", "map.png"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_TRUE(folder.exists("map.png"));
+#endif
 }
 
 TEST_F(StressCommand, RunsTheCasesNamed) {

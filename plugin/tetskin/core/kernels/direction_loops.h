@@ -97,7 +97,7 @@ void directionsOf(const Work<S>& given, const DirectionPlanes& givenPlanes, floa
   const DirectionPlanes planes = givenPlanes;
   // Runs are short: their sums are collected, and made unit vectors four registers at a time.
   constexpr std::size_t kMost = 64 * P;
-  S sums[4 * (kMost + 4 * P)] = {};
+  alignas(64) S sums[4 * (kMost + 4 * P)] = {};
   std::size_t first = work.runs[work.firstRun].firstSlot;  // of which there is a sum
   for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
     const Directions tet(work, planes.kind, r);

@@ -222,7 +222,7 @@ TETSKIN_INLINE void storePoints(const Points<S, P>& v, S* out) {
   const Points<S, P> points = sideBySide<S, P>(v);
 #if defined(__AVX512F__)
   if constexpr (P == 4) {
-    // 64 bytes would straddle two cache lines most of the time.
+    // Exactly these: 64 bytes would straddle two cache lines most of the time.
     _mm256_storeu_ps(out, _mm512_castps512_ps256(points));
     return _mm_storeu_ps(out + 8, _mm512_extractf32x4_ps(points, 2));
   }
@@ -236,18 +236,16 @@ constexpr std::uint32_t kSlotsTouched = (4 * P + 2) / 3;
 /// Writes P points side by side, and nothing else.
 template <int P>
 TETSKIN_INLINE void storeExactly(const Points<float, P>& v, float* out) {
-  const Points<float, P> points = sideBySide<float, P>(v);
-#if defined(__AVX512F__)
-  if constexpr (P == 4) return _mm512_mask_storeu_ps(out, 0xfff, points);
-#endif
+  if constexpr (P == 4) return storePoints<float, P>(v, out);
 #if defined(__AVX2__)
   if constexpr (P == 2) {
+    const Points<float, P> points = sideBySide<float, P>(v);
     _mm_storeu_ps(out, _mm256_castps256_ps128(points));
     return _mm_storel_pi(reinterpret_cast<__m64*>(out + 4), _mm256_extractf128_ps(points, 1));
   }
 #endif
   if constexpr (P == 1) {
-    for (int k = 0; k < 3; ++k) out[k] = points[k];
+    for (int k = 0; k < 3; ++k) out[k] = v[k];
   }
 }
 

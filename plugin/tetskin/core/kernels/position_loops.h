@@ -67,9 +67,10 @@ template <class S, int P, class Tet, bool kExtent>
 void positionsOf(const Work<S>& work, const S shift[3], S* out, Extent<S>* extent) {
   const S padded[4] = {shift[0], shift[1], shift[2], S(0)};
   WideExtent<S, P> reached(kExtent ? *extent : Extent<S>{});
+  constexpr std::size_t kTouched = kSlotsTouched<P>;
   const std::size_t end = work.runs[work.lastRun].firstSlot;
   std::size_t spilling = work.lastRun;  // runs before this one may
-  while (spilling > work.firstRun && work.runs[spilling].firstSlot + kSlotsTouched < P >> end) --spilling;
+  while (spilling > work.firstRun && work.runs[spilling].firstSlot + kTouched > end) --spilling;
   positionsOfRuns<S, P, Tet, kExtent, true>(work, work.firstRun, spilling, padded, out, reached);
   positionsOfRuns<S, P, Tet, kExtent, false>(work, spilling, work.lastRun, padded, out, reached);
   if (kExtent) reached.mergeInto(*extent);
