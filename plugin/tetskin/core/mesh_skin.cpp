@@ -17,10 +17,10 @@ Status checkAttributes(const TriangleMesh& mesh) {
   return check(mesh.tangents.size(), "tangents");
 }
 
-std::vector<Eigen::Vector3d> directionsOf(const std::vector<Eigen::Vector4f>& tangents) {
+std::vector<Eigen::Vector3d> directionsOf(const std::vector<Tangent>& tangents) {
   std::vector<Eigen::Vector3d> directions;
   directions.reserve(tangents.size());
-  for (const Eigen::Vector4f& t : tangents) directions.push_back(t.head<3>().cast<double>());
+  for (const Tangent& t : tangents) directions.push_back(t.head<3>().cast<double>());
   return directions;
 }
 

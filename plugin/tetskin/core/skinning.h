@@ -25,7 +25,7 @@ class PackedNodes {
  public:
   using Point = Eigen::Matrix<Scalar, 3, 1>;
 
-  explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount, Node::Zero()) {}
+  explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount) {}
 
   /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or is beyond
   /// kLargestCoordinate, or size(); the packed nodes are good for nothing then. Cost O(nodeCount), no allocation.
@@ -33,12 +33,16 @@ class PackedNodes {
 
   std::size_t size() const { return nodes_.size(); }
   /// size() x 4: position minus mean(), and a 0.
-  const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().data(); }
+  const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().scalars; }
   const Point& mean() const { return mean_; }
 
  private:
-  using Node = Eigen::Matrix<Scalar, 4, 1>;
-  std::vector<Node, Eigen::aligned_allocator<Node>> nodes_;
+  /// Not an Eigen type: how those are aligned, and how Eigen frees them, depends on the flags that each file is compiled
+  /// with, the application's and ours.
+  struct alignas(4 * sizeof(Scalar)) Node {
+    Scalar scalars[4] = {};
+  };
+  std::vector<Node> nodes_;
   Point mean_ = Point::Zero();
 };
 

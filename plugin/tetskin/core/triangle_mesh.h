@@ -19,12 +19,15 @@ struct TriangleGroup {
   std::size_t triangleCount = 0;
 };
 
+/// A unit tangent, and in w the sign of the bitangent. Four floats that no compiler flag aligns otherwise.
+using Tangent = Eigen::Matrix<float, 4, 1, Eigen::DontAlign>;
+
 /// A render mesh at rest. Vertices may coincide (texture seams), surfaces may be open, and several parts are fine.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> positions;     ///< vertexCount x 3, rest space, the file's own unit
   std::vector<std::array<int, 3>> triangles;  ///< triangleCount x 3 vertex indices, counter-clockwise from outside
   std::vector<Eigen::Vector3f> normals;       ///< authored unit normals, one a vertex; or empty
-  std::vector<Eigen::Vector4f> tangents;      ///< unit tangents, and in w the sign of the bitangent; or empty
+  std::vector<Tangent> tangents;              ///< one a vertex; or empty
   std::vector<Eigen::Vector2f> texcoords;     ///< texture coordinates, one a vertex; or empty
   std::vector<TriangleGroup> groups;          ///< cover all triangles in order; or empty: one group without a name
 
