@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBodySolver.h>
-#include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableLinearElasticityForce.h>
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
+#include <tetskin/bullet/body_forces.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/core/tet_geometry.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 namespace tetskin {
 namespace {
@@ -52,62 +54,180 @@ double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options,
   return std::min(wanted, kStableFrequency / (options.timeStep * options.timeStep * frequency));
 }
 
-std::unique_ptr<btDeformableLagrangianForce> elasticForce(const SoftBodyOptions& options, double youngsModulus) {
-  const auto [shear, first] = lame(youngsModulus, options.poissonRatio);
-  const auto mu = static_cast<btScalar>(shear), lambda = static_cast<btScalar>(first);
-  const auto damping = static_cast<btScalar>(options.damping);
-  if (options.forceModel == ForceModel::LinearElasticity) {
-    // Third and fourth: damping by mass, which would slow even free fall, and by stiffness.
-    return std::make_unique<btDeformableLinearElasticityForce>(mu, lambda, btScalar(0), damping);
-  }
-  return std::make_unique<btDeformableNeoHookeanForce>(mu, lambda, damping);
+/// Seconds of damping, and a stiffness.
+struct Material {
+  double youngsModulus = 0.0;
+  double poissonRatio = 0.0;
+  double damping = 0.0;
+};
+
+void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
+  force.setDamping(damping);
+}
+/// Damping by mass, the first, would slow even free fall.
+void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
+  force.setDamping(0, damping);
+}
+
+template <class Force>
+void setMaterial(Force& force, const Material& material) {
+  const auto [mu, lambda] = lame(material.youngsModulus, material.poissonRatio);
+  force.setLameParameters(static_cast<btScalar>(mu), static_cast<btScalar>(lambda));
+  setDamping(force, static_cast<btScalar>(material.damping));
+}
+
+Status invalid(const char* message) {
+  return {StatusCode::InvalidOption, message};
 }
 
 }  // namespace
 
-DeformableBody::DeformableBody(btDeformableMultiBodyDynamicsWorld& world, std::unique_ptr<btSoftBody> body)
-    : world_(world), body_(std::move(body)) {}
+/// The members of a DeformableBody, in an order in which forces go before the body that they are for.
+struct DeformableBody::Parts {
+  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, ForceList& ofForces, std::unique_ptr<btSoftBody> made)
+      : world(ofWorld), list(ofForces), body(std::move(made)), gravity(ofWorld, ofForces) {}
+
+  btDeformableMultiBodyDynamicsWorld& world;
+  ForceList& list;
+  std::unique_ptr<btSoftBody> body;
+  std::vector<btScalar> masses;  ///< by node: what it has when it is not pinned
+  Material material;
+  BodyGravity gravity;
+  std::unique_ptr<btDeformableLagrangianForce> elasticity;
+  std::function<void(const Material&)> applyMaterial;  ///< to `elasticity`, which is one of several types
+
+  template <class Force>
+  void makeElasticity() {
+    auto force = std::make_unique<OwnForce<Force>>(list);
+    applyMaterial = [to = force.get()](const Material& now) { setMaterial(*to, now); };
+    elasticity = std::move(force);
+  }
+  void set(const Material& now) {
+    material = now;
+    applyMaterial(now);
+    body->activate();
+  }
+  Status checkNode(int node) const {
+    if (node >= 0 && node < body->m_nodes.size()) return {};
+    return {StatusCode::IndexOutOfRange, "there is no node " + std::to_string(node) + " in a body of " +
+                                             std::to_string(body->m_nodes.size()) + " nodes"};
+  }
+};
+
+DeformableBody::DeformableBody(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world,
                                                             const TetMesh& cage, const SoftBodyOptions& options) {
   if (options.forceModel == ForceModel::MassSpring) {
-    return Status{StatusCode::InvalidOption,
-                  "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, "
-                  "or add the body to a btSoftRigidDynamicsWorld"};
+    return invalid(
+        "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
+        "the "
+        "body to a btSoftRigidDynamicsWorld");
   }
   Result<btSoftBody*> made = makeSoftBody(cage, world.getWorldInfo(), options);
   if (!made.ok()) return made.status();
-  std::unique_ptr<DeformableBody> result(new DeformableBody(world, std::unique_ptr<btSoftBody>(made.value())));
-  world.getWorldInfo().m_gravity = world.getGravity();
-  world.setImplicit(options.implicit);
-  world.setLineSearch(false);
-  world.setUseProjection(true);
-  world.addSoftBody(&result->body());
-  result->addForces(cage, options);
-  return result;
-}
-
-void DeformableBody::addForces(const TetMesh& cage, const SoftBodyOptions& options) {
-  const btVector3 gravity = world_.getGravity();
-  youngsModulus_ = options.youngsModulus > 0.0
-                       ? options.youngsModulus
-                       : defaultYoungsModulus(cage, options, static_cast<double>(gravity.length()));
-  forces_.push_back(std::make_unique<btDeformableGravityForce>(gravity));
-  forces_.push_back(elasticForce(options, youngsModulus_));
-  // Past btDeformableMultiBodyDynamicsWorld::addForce, which would merge them with other bodies' by type alone.
-  auto* solver = static_cast<btDeformableBodySolver*>(body_->getSoftBodySolver());
-  for (const auto& force : forces_) {
-    force->addSoftBody(body_.get());
-    force->setIndices(solver->getIndices());
-    solver->getLagrangianForceArray()->push_back(force.get());
+  std::unique_ptr<btSoftBody> body(made.value());
+  if (options.configureWorld) {
+    world.setUseProjection(true);
+    if (options.implicit) world.setLineSearch(false);
+    if (options.implicit) world.setImplicit(*options.implicit);
   }
+  world.addSoftBody(body.get());
+  auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
+
+  auto parts = std::make_unique<Parts>(world, *solver->getLagrangianForceArray(), std::move(body));
+  const double mass = options.density > 0.0 ? options.density * totalVolume(cage) : options.mass;
+  for (const double m : lumpedMasses(cage, mass)) parts->masses.push_back(static_cast<btScalar>(m));
+  if (options.forceModel == ForceModel::LinearElasticity) {
+    parts->makeElasticity<btDeformableLinearElasticityForce>();
+  } else {
+    parts->makeElasticity<btDeformableNeoHookeanForce>();
+  }
+  const double gravity = static_cast<double>(world.getGravity().length());
+  const double stiffness =
+      options.youngsModulus > 0.0 ? options.youngsModulus : defaultYoungsModulus(cage, options, gravity);
+  parts->set({stiffness, options.poissonRatio, options.damping});
+  for (btDeformableLagrangianForce* force :
+       {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
+    force->setIndices(solver->getIndices());
+  }
+  addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
+  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(parts)));
 }
 
 DeformableBody::~DeformableBody() {
-  auto* solver = static_cast<btDeformableBodySolver*>(body_->getSoftBodySolver());
-  if (!solver) return;
-  for (const auto& force : forces_) solver->getLagrangianForceArray()->remove(force.get());
-  world_.removeSoftBody(body_.get());
+  // Taken out of the world, by the application or by the world's own end: nothing there is left to be told, and nothing
+  // may be there to tell.
+  if (!parts_->body->getBroadphaseHandle()) return;
+  removeFromList(parts_->list, &parts_->gravity);
+  removeFromList(parts_->list, parts_->elasticity.get());
+  parts_->world.removeSoftBody(parts_->body.get());
+}
+
+btSoftBody& DeformableBody::body() {
+  return *parts_->body;
+}
+const btSoftBody& DeformableBody::body() const {
+  return *parts_->body;
+}
+double DeformableBody::youngsModulus() const {
+  return parts_->material.youngsModulus;
+}
+double DeformableBody::poissonRatio() const {
+  return parts_->material.poissonRatio;
+}
+double DeformableBody::damping() const {
+  return parts_->material.damping;
+}
+
+Status DeformableBody::setYoungsModulus(double pressure) {
+  if (!(pressure > 0.0 && std::isfinite(pressure))) return invalid("a Young's modulus must be above 0, and finite");
+  parts_->set({pressure, poissonRatio(), damping()});
+  return {};
+}
+
+Status DeformableBody::setPoissonRatio(double ratio) {
+  if (!(ratio >= 0.0 && ratio < 0.5)) return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+  parts_->set({youngsModulus(), ratio, damping()});
+  return {};
+}
+
+Status DeformableBody::setDamping(double seconds) {
+  if (!(seconds >= 0.0 && std::isfinite(seconds))) return invalid("damping must not be negative, and must be finite");
+  parts_->set({youngsModulus(), poissonRatio(), seconds});
+  return {};
+}
+
+void DeformableBody::setGravity(const btVector3& gravity) {
+  parts_->gravity.set(gravity);
+  body().activate();
+}
+
+void DeformableBody::followWorldGravity() {
+  parts_->gravity.set({});
+  body().activate();
+}
+
+bool DeformableBody::isPinned(int node) const {
+  assert(parts_->checkNode(node).ok());
+  return body().m_nodes[node].m_im == 0;
+}
+
+Status DeformableBody::pin(int node) {
+  if (Status status = parts_->checkNode(node); !status.ok()) return status;
+  btSoftBody::Node& pinned = body().m_nodes[node];
+  if (pinned.m_im > 0) parts_->masses[static_cast<std::size_t>(node)] = 1 / pinned.m_im;
+  for (btVector3* rate : {&pinned.m_v, &pinned.m_vn, &pinned.m_splitv}) rate->setZero();
+  body().setMass(node, 0);
+  body().activate();
+  return {};
+}
+
+Status DeformableBody::unpin(int node) {
+  if (Status status = parts_->checkNode(node); !status.ok()) return status;
+  if (isPinned(node)) body().setMass(node, parts_->masses[static_cast<std::size_t>(node)]);
+  body().activate();
+  return {};
 }
 
 }  // namespace tetskin

@@ -2,12 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <BulletSoftBody/btDeformableLagrangianForce.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body_builder.h>
 
 #include <memory>
-#include <vector>
 
 namespace tetskin {
 
@@ -15,15 +13,20 @@ namespace tetskin {
 /// to create, to keep apart and to delete.
 ///
 /// Bullet's `addForce` gives a second body the first one's force of the same type, material and all, and neither bodies
-/// nor forces are ever deleted. Here every body has its own, and all go when this object goes, which must be before
-/// the world does.
+/// nor forces are ever deleted. Here every body has its own, which no body of the application's ever joins, and all go
+/// when this object goes. That should be before the world does. If the world has been deleted first, this object only
+/// frees its memory; but a solver that outlives its world must not be used in another one then.
+///
+/// The application may take the body out of the world itself: it then has no forces any more.
 class DeformableBody {
  public:
-  /// Makes the body (see `makeSoftBody`) and adds it to the world. The world is set to the one way of solving in which
-  /// bodies land and rest: projected contacts, no line search, explicit unless `options.implicit`. Step it with
+  /// Makes the body (see `makeSoftBody`) and adds it to the world. Unless `options.configureWorld` is false, switches
+  /// on the world's projection of contacts, without which soft bodies do not land but hang, or fall through, and sets
+  /// what `options.implicit` says, if it is given; nothing else in the world is changed. Step it with
   /// `stepSimulation(dt, 4, dt / 4)` for 60 frames a second; one substep a frame is too few.
   ///
-  /// world   must have been made with a btDeformableBodySolver, and its gravity set
+  /// world   must have been made with a btDeformableBodySolver; its gravity now serves as the scale of the default
+  ///         stiffness
   /// cage    where the body shall be, world space
   /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here
   static Result<std::unique_ptr<DeformableBody>> add(btDeformableMultiBodyDynamicsWorld& world, const TetMesh& cage,
@@ -32,19 +35,36 @@ class DeformableBody {
   DeformableBody(const DeformableBody&) = delete;
   DeformableBody& operator=(const DeformableBody&) = delete;
 
-  btSoftBody& body() { return *body_; }
-  const btSoftBody& body() const { return *body_; }
-  /// The stiffness in use, in pressure units: that of the options, or the default for this cage and gravity.
-  double youngsModulus() const { return youngsModulus_; }
+  btSoftBody& body();
+  const btSoftBody& body() const;
+
+  /// The stiffness in use, in pressure units: the last one set, or that of the options, or the default for this cage,
+  /// the world's gravity and `options.timeStep`.
+  double youngsModulus() const;
+  double poissonRatio() const;
+  double damping() const;  ///< seconds
+
+  /// The body's material from the next step on; it wakes. As in SoftBodyOptions, but the stiffness must be above 0, and
+  /// is not bounded by the time step. Errors: InvalidOption, and nothing is changed.
+  Status setYoungsModulus(double pressure);
+  Status setPoissonRatio(double ratio);
+  Status setDamping(double seconds);
+
+  /// Gravity follows the world's, also when that changes, until it is set here. The body wakes.
+  void setGravity(const btVector3& gravity);
+  void followWorldGravity();
+
+  /// Holds a node where it is, or lets it go again, with the mass that it had. To move a pinned node, set the m_x of
+  /// `body().m_nodes[node]`. The body wakes. Errors: IndexOutOfRange; a node that is pinned, or not, already is none.
+  Status pin(int node);
+  Status unpin(int node);
+  bool isPinned(int node) const;
 
  private:
-  DeformableBody(btDeformableMultiBodyDynamicsWorld& world, std::unique_ptr<btSoftBody> body);
-  void addForces(const TetMesh& cage, const SoftBodyOptions& options);
+  struct Parts;
+  explicit DeformableBody(std::unique_ptr<Parts> parts);
 
-  btDeformableMultiBodyDynamicsWorld& world_;
-  std::unique_ptr<btSoftBody> body_;
-  std::vector<std::unique_ptr<btDeformableLagrangianForce>> forces_;
-  double youngsModulus_ = 0.0;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace tetskin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/body_trees.h>
 #include <tetskin/bullet/soft_body_builder.h>
 #include <tetskin/core/tet_geometry.h>
 
@@ -96,15 +97,25 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
-/// Bullet would do this in the first step, and build a tree of the faces on the way, which only collisions by faces
-/// need: in quadratic time, and, if the surface has two parts that share no edge, without ever coming to an end (seen
-/// with Bullet 3.24: btSoftBody::initializeFaceTree joins neighbours until one is left).
-void finishWithoutFaceTree(btSoftBody& body) {
+/// What Bullet would do in the first step, but with our trees.
+void finish(const SoftBodyOptions& options, btSoftBody& body) {
   body.updateConstants();
+  options.faceTree ? buildTrees(body) : leaveOutFaceTree(body);
   body.m_bUpdateRtCst = false;
 }
 
 }  // namespace
+
+void setMass(btSoftBody& body, int node, btScalar mass) {
+  assert(node >= 0 && node < body.m_nodes.size());
+  body.setMass(node, mass);
+  updateConstants(body);
+}
+
+void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces) {
+  body.setTotalMass(mass, fromFaces);
+  updateConstants(body);
+}
 
 std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
   std::vector<double> masses(cage.nodeCount(), 0.0);
@@ -128,11 +139,11 @@ Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& world
 
   std::vector<btVector3> nodes(positive.nodeCount());
   std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);
-  auto body = std::make_unique<btSoftBody>(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr);
+  auto body = std::make_unique<BodyWithTrees>(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr);
   configure(positive, options, *body);
   appendElements(positive, *body);
   setMasses(positive, options, *body);
-  finishWithoutFaceTree(*body);
+  finish(options, *body);
   return body.release();
 }
 

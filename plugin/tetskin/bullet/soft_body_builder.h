@@ -7,6 +7,7 @@
 #include <tetskin/core/types.h>
 
 #include <functional>
+#include <optional>
 
 namespace tetskin {
 
@@ -39,8 +40,17 @@ struct SoftBodyOptions {
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
   double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
-  /// Deformable world: one Newton step an update instead of explicit elastic forces. A property of the whole world.
-  bool implicit = false;
+  /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every
+  /// other soft body with trees, in each substep. Without them rays in the deformable world miss the body, those in the
+  /// classic worlds meet only its tets, and it collides by its nodes alone.
+  bool faceTree = true;
+
+  /// For DeformableBody, the next two: may it set what is a property of the whole world? If so, projection is switched
+  /// on, without which bodies do not land; and nothing else, except by `implicit`. If not, nothing is set.
+  bool configureWorld = true;
+  /// One Newton step an update (true) or explicit elastic forces (false), both without line search; not given: as the
+  /// world is.
+  std::optional<bool> implicit;
 };
 
 /// For `SoftBodyOptions::pinned`: the nodes in a box, rest space.
@@ -53,10 +63,9 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// rest matrices. Negative tets are reoriented, flat ones refused. Node masses are a quarter of each tet's around the
 /// node, but at least 0.3 of the mean: slivers' nodes would otherwise be too light to be stable.
 ///
-/// The body collides with rigid bodies by its nodes, and has no tree of faces, which Bullet would otherwise build in
-/// the first step: in quadratic time, and without end for a body of several parts. If you ask for collisions by faces
-/// (m_cfg.collisions with VF_DD, SDF_RDF or VF_SS), or pin nodes afterwards with `btSoftBody::setMass`, that tree is
-/// back; pin by `options.pinned`, or set `m_bUpdateRtCst = false` again.
+/// The body collides with rigid bodies by its nodes. Its trees of faces and nodes are ready: Bullet would build them in
+/// the first step or ray test, in quadratic time, and without end for a body of several parts. Bullet does so again
+/// after its own `setMass` and `setTotalMass`, so use those below (a `DeformableBody` may be given either).
 ///
 /// worldInfo  of the world that the body will be added to; must outlive the body
 /// Returns    the body, owned by the caller and in no world yet; null on error
@@ -64,6 +73,11 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// Errors     an unusable cage (see `usable`), flat tets, options out of range
 Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
                                  const SoftBodyOptions& options = {});
+
+/// As the body's own `setMass` (0 pins the node) and `setTotalMass`, but Bullet is left nothing to build: the trees
+/// stay. For bodies made by `makeSoftBody` that are in no `DeformableBody`. Cost O(links + faces).
+void setMass(btSoftBody& body, int node, btScalar mass);
+void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces = false);
 
 /// Node masses as `makeSoftBody` gives them, nodeCount, adding up to totalMass.
 std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass);
