@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "deformable_test.h"
 #include "support/odd_meshes.h"
-#include "worlds.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/core/tet_geometry.h>
 
 #include <cmath>
@@ -12,40 +11,13 @@
 namespace tetskin {
 namespace {
 
-/// A deformable world without a body of its own.
-class EmptyWorld : public test::DeformableWorldBase {
- public:
-  EmptyWorld() : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {}
-  btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
-};
-
-std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage, const SoftBodyOptions& options = {}) {
-  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, options);
-  EXPECT_TRUE(body.ok()) << body.status().message;
-  return std::move(body).value();
-}
-
-double lowest(const btSoftBody& body) {
-  double y = HUGE_VAL;
-  for (int n = 0; n < body.m_nodes.size(); ++n) y = std::min<double>(y, body.m_nodes[n].m_x.y());
-  return y;
-}
-
-double rmsSpeed(const btSoftBody& body) {
-  double squared = 0.0;
-  for (int n = 0; n < body.m_nodes.size(); ++n) squared += body.m_nodes[n].m_v.length2();
-  return std::sqrt(squared / body.m_nodes.size());
-}
-
-void step(EmptyWorld& world, int frames) {
-  for (int f = 0; f < frames; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
-}
-
-TetMesh cageAbove(double height) {
-  TetMesh cage = test::latticeCage(5, 4, 5, 0.2);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
-  return cage;
-}
+using test::added;
+using test::cageAbove;
+using test::EmptyWorld;
+using test::lowest;
+using test::rmsSpeed;
+using test::step;
+using test::twoParts;
 
 struct Material {
   const char* name;
@@ -200,12 +172,7 @@ TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
 TEST(DeformableBody, PartsThatShareNoNodeFallAndRest) {
   // With its tree of faces, Bullet 3.24 would never come back from the first step.
   EmptyWorld world;
-  TetMesh cage = cageAbove(0.3);
-  const TetMesh other = cage;
-  const int first = static_cast<int>(cage.nodeCount());
-  for (const Eigen::Vector3d& p : other.nodes) cage.nodes.push_back(p + Eigen::Vector3d(3, 0, 0));
-  for (const Tet& t : other.tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
-  const auto body = added(world, cage);
+  const auto body = added(world, twoParts(cageAbove(0.3)));
   step(world, 240);
   EXPECT_GT(lowest(body->body()), -0.05);
   EXPECT_LT(lowest(body->body()), 0.1);

@@ -59,7 +59,7 @@ class TestWorld {
 template <class World, class Solver>
 class ClassicWorld : public TestWorld {
  public:
-  explicit ClassicWorld(const TetMesh& cage) {
+  explicit ClassicWorld(const TetMesh& cage, SoftBodyOptions options = {}) {
     auto constraintSolver = std::make_unique<Solver>();
     auto concrete = std::make_unique<World>(&dispatcher, &broadphase, constraintSolver.get(), &configuration);
     soft = concrete.get();
@@ -68,7 +68,6 @@ class ClassicWorld : public TestWorld {
     addFloor();
     soft->getWorldInfo().m_gravity.setValue(0, -10, 0);
     soft->getWorldInfo().m_sparsesdf.Initialize();
-    SoftBodyOptions options;
     options.forceModel = ForceModel::MassSpring;
     body_.reset(makeSoftBody(cage, soft->getWorldInfo(), options));
     soft->addSoftBody(body_.get());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/node_samples.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <algorithm>
@@ -12,49 +13,6 @@ Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {
   if (static_cast<std::size_t>(body.m_nodes.size()) == nodeCount) return {};
   return {StatusCode::SizeMismatch, "the body has " + std::to_string(body.m_nodes.size()) + " nodes, but the cage " +
                                         std::to_string(nodeCount) + "; bind with the cage that the body was made of"};
-}
-
-using FourNodes = std::array<int, 4>;
-
-/// Below this fraction of the largest offset, a part that is orthogonal to the others counts as none.
-constexpr double kIndependent = 1e-3;
-
-/// The first four nodes from `start` on that are not in one plane; the last is -1 if there are none.
-FourNodes independentFrom(PointView<const btScalar> nodes, std::size_t start) {
-  const auto at = [&](std::size_t n) {
-    return Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(nodes[n]).cast<double>();
-  };
-  FourNodes found = {static_cast<int>(start), -1, -1, -1};
-  Eigen::Vector3d axes[3];
-  double largest = 0.0;
-  std::size_t count = 0;
-  for (std::size_t n = start + 1; n < nodes.size() && count < 3; ++n) {
-    Eigen::Vector3d offset = at(n) - at(start);
-    largest = std::max(largest, offset.norm());
-    for (std::size_t k = 0; k < count; ++k) offset -= axes[k].dot(offset) * axes[k];
-    if (!(offset.norm() > kIndependent * largest)) continue;
-    axes[count++] = offset.normalized();
-    found[count] = static_cast<int>(n);
-  }
-  return found;
-}
-
-/// Four nodes that are not in one plane, as close together in memory as there are: each page of it that is not in the
-/// caches costs a sleeping body a tenth of a microsecond or two. Any four of a flat body.
-FourNodes nodesToSample(PointView<const btScalar> nodes) {
-  constexpr std::uintptr_t kPage = 4096;
-  const auto page = [&](int n) { return reinterpret_cast<std::uintptr_t>(nodes[static_cast<std::size_t>(n)]) / kPage; };
-  const auto cost = [&](const FourNodes& n) { return std::make_pair(page(n[3]) - page(n[0]), n[3] - n[0]); };
-  const int last = static_cast<int>(nodes.size()) - 1;
-  FourNodes best = {0, last / 3, 2 * last / 3, last};
-  bool any = false;
-  for (std::size_t start = 0; start + 3 < nodes.size(); ++start) {
-    const FourNodes four = independentFrom(nodes, start);
-    if (four[3] < 0) break;  // nor are there any farther on
-    if (!any || cost(four) < cost(best)) best = four;
-    any = true;
-  }
-  return best;
 }
 
 /// Asks memory for what is there.
@@ -134,7 +92,10 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   nodeCount_ = body.m_nodes.size();
   tetCount_ = body.m_tetras.size();
   moved_ = false;
-  const FourNodes four = nodesToSample(nodePositions(body));
+  const PointView<const btScalar> nodes = nodePositions(body);
+  const FourNodes four = nodesToSample(nodes.size(), nodes.strideBytes(), [&](std::size_t n) {
+    return Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(nodes[n]).cast<double>().eval();
+  });
   for (std::size_t k = 0; k < samples_.size(); ++k) samples_[k].node = four[k];
   sample();
   return {};

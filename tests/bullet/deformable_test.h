@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "support/odd_meshes.h"
+#include "worlds.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/bullet/deformable_body.h>
+
+#include <cmath>
+#include <memory>
+
+namespace tetskin::test {
+
+/// A deformable world without a body of its own.
+class EmptyWorld : public DeformableWorldBase {
+ public:
+  EmptyWorld() : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {}
+  btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
+};
+
+inline std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage,
+                                             const SoftBodyOptions& options = {}) {
+  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, options);
+  EXPECT_TRUE(body.ok()) << body.status().message;
+  return std::move(body).value();
+}
+
+inline double lowest(const btSoftBody& body) {
+  double y = HUGE_VAL;
+  for (int n = 0; n < body.m_nodes.size(); ++n) y = std::min<double>(y, body.m_nodes[n].m_x.y());
+  return y;
+}
+
+inline double rmsSpeed(const btSoftBody& body) {
+  double squared = 0.0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) squared += body.m_nodes[n].m_v.length2();
+  return std::sqrt(squared / body.m_nodes.size());
+}
+
+inline void step(EmptyWorld& world, int frames) {
+  for (int f = 0; f < frames; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+}
+
+inline TetMesh cageAbove(double height) {
+  TetMesh cage = latticeCage(5, 4, 5, 0.2);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
+  return cage;
+}
+
+/// The cage and a copy of it three units along x, which share no node.
+inline TetMesh twoParts(TetMesh cage) {
+  const int first = static_cast<int>(cage.nodeCount());
+  for (int n = 0; n < first; ++n) cage.nodes.push_back(cage.nodes[n] + Eigen::Vector3d(3, 0, 0));
+  const std::vector<Tet> tets = cage.tets;
+  for (const Tet& t : tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+  return cage;
+}
+
+}  // namespace tetskin::test

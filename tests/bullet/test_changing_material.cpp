@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A DeformableBody that is changed while it lives, and what it sets of its world.
+#include "deformable_test.h"
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::EmptyWorld;
+using test::lowest;
+using test::rmsSpeed;
+using test::step;
+
+/// A beam in the air, held at one end.
+std::unique_ptr<DeformableBody> heldBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {
+  TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
+  for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
+  SoftBodyOptions options;
+  options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
+  options.forceModel = model;
+  options.youngsModulus = youngsModulus;
+  options.damping = 0.05;
+  return added(world, beam, options);
+}
+
+class Models : public testing::TestWithParam<ForceModel> {};
+INSTANTIATE_TEST_SUITE_P(DeformableBody, Models, testing::Values(ForceModel::NeoHookean, ForceModel::LinearElasticity));
+
+TEST_P(Models, ANewStiffnessBendsAsIfItHadBeenThereFromTheStart) {
+  EmptyWorld world, other;
+  const auto changed = heldBeam(world, GetParam(), 900);
+  const auto stiff = heldBeam(other, GetParam(), 6000);
+  step(world, 120);
+  step(other, 360);
+  ASSERT_LT(lowest(changed->body()), lowest(stiff->body()) - 0.2);
+  ASSERT_TRUE(changed->setYoungsModulus(6000).ok());
+  EXPECT_EQ(changed->youngsModulus(), 6000);
+  step(world, 360);
+  EXPECT_NEAR(lowest(changed->body()), lowest(stiff->body()), 0.01);
+}
+
+TEST_P(Models, MoreDampingStopsASwingSooner) {
+  const auto speedAfterASecond = [](double damping) {
+    EmptyWorld world;
+    const auto body = heldBeam(world, GetParam(), 6000);
+    EXPECT_TRUE(body->setDamping(damping).ok());
+    step(world, 60);
+    return rmsSpeed(body->body());
+  };
+  EXPECT_LT(speedAfterASecond(0.3), 0.3 * speedAfterASecond(0.005));
+}
+
+TEST_P(Models, PoissonsRatioDecidesHowMuchVolumeACompressionTakes) {
+  const auto relativeVolume = [](double ratio) {
+    EmptyWorld world;
+    SoftBodyOptions options;
+    options.forceModel = GetParam();
+    options.youngsModulus = 60;
+    const auto body = added(world, cageAbove(0.05), options);
+    const btScalar before = body->body().getVolume();
+    EXPECT_TRUE(body->setPoissonRatio(ratio).ok());
+    EXPECT_EQ(body->poissonRatio(), ratio);
+    step(world, 180);
+    return static_cast<double>(body->body().getVolume() / before);
+  };
+  EXPECT_LT(relativeVolume(0.05), relativeVolume(0.45) - 0.01);
+}
+
+TEST(DeformableBody, RefusesAMaterialThatMakesNoSenseAndKeepsItsOwn) {
+  EmptyWorld world;
+  const auto body = added(world, cageAbove(1));
+  const double stiffness = body->youngsModulus();
+  for (const double bad : {0.0, -1.0, HUGE_VAL, std::nan("")}) {
+    EXPECT_EQ(body->setYoungsModulus(bad).code, StatusCode::InvalidOption) << bad;
+  }
+  for (const double bad : {-0.1, 0.5, std::nan("")}) {
+    EXPECT_EQ(body->setPoissonRatio(bad).code, StatusCode::InvalidOption) << bad;
+  }
+  for (const double bad : {-0.1, HUGE_VAL, std::nan("")}) {
+    EXPECT_EQ(body->setDamping(bad).code, StatusCode::InvalidOption) << bad;
+  }
+  EXPECT_EQ(body->youngsModulus(), stiffness);
+  EXPECT_EQ(body->poissonRatio(), 0.3);
+  EXPECT_EQ(body->damping(), 0.02);
+}
+
+TEST(DeformableBody, GravityFollowsTheWorldsUnlessSet) {
+  EmptyWorld world;
+  const auto body = added(world, cageAbove(20));
+  const auto acceleration = [&] {
+    const btScalar before = body->body().m_nodes[0].m_v.y();
+    step(world, 6);
+    return static_cast<double>(body->body().m_nodes[0].m_v.y() - before) * 10.0;
+  };
+  EXPECT_NEAR(acceleration(), -10.0, 0.1);
+  world.world->setGravity(btVector3(0, -2, 0));
+  EXPECT_NEAR(acceleration(), -2.0, 0.1);
+  body->setGravity(btVector3(0, 5, 0));
+  EXPECT_NEAR(acceleration(), 5.0, 0.1);
+  world.world->setGravity(btVector3(0, -9, 0));
+  EXPECT_NEAR(acceleration(), 5.0, 0.1);
+  body->followWorldGravity();
+  EXPECT_NEAR(acceleration(), -9.0, 0.1);
+}
+
+TEST(DeformableBody, NodesArePinnedAndLetGoWhileItMoves) {
+  EmptyWorld world;
+  const auto body = added(world, cageAbove(2));
+  step(world, 10);
+  const btVector3 where = body->body().m_nodes[0].m_x;
+  const btScalar mass = body->body().getMass(0);
+  ASSERT_TRUE(body->pin(0).ok());
+  ASSERT_TRUE(body->pin(0).ok());
+  EXPECT_TRUE(body->isPinned(0));
+  step(world, 60);
+  EXPECT_LT((body->body().m_nodes[0].m_x - where).length(), 1e-5);
+  EXPECT_GT(lowest(body->body()), 0.3);  // hangs from it
+  ASSERT_TRUE(body->unpin(0).ok());
+  EXPECT_FALSE(body->isPinned(0));
+  EXPECT_EQ(body->body().getMass(0), mass);
+  step(world, 180);
+  EXPECT_LT(lowest(body->body()), 0.1);
+  EXPECT_EQ(body->pin(-1).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body->unpin(body->body().m_nodes.size()).code, StatusCode::IndexOutOfRange);
+}
+
+TEST(DeformableBody, LetsGoOfNodesThatWerePinnedFromTheStart) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.pinned = [](const Eigen::Vector3d&) { return true; };
+  options.mass = 3.0;
+  const auto body = added(world, test::twoParts(cageAbove(0.3)), options);
+  step(world, 10);
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) ASSERT_TRUE(body->unpin(n).ok());
+  EXPECT_NEAR(body->body().getTotalMass(), 3.0, 1e-4);
+  step(world, 60);
+  EXPECT_LT(lowest(body->body()), 0.15);
+}
+
+/// What the world's solver was told in the last substep.
+struct Told : btDeformableBodySolver {
+  static bool implicit(const btSoftBodySolver& solver) {
+    return static_cast<const btDeformableBodySolver&>(solver).*(&Told::m_implicit);
+  }
+  static bool lineSearch(const btSoftBodySolver& solver) {
+    return static_cast<const btDeformableBodySolver&>(solver).*(&Told::m_lineSearch);
+  }
+  static bool projection(const btSoftBodySolver& solver) {
+    return static_cast<const btDeformableBodySolver&>(solver).m_useProjection;
+  }
+};
+
+TEST(DeformableBody, LeavesAnImplicitWorldImplicit) {
+  EmptyWorld world;
+  world.deformable().setImplicit(true);
+  world.deformable().setLineSearch(true);
+  world.deformable().setUseProjection(false);
+  const auto body = added(world, cageAbove(5));
+  step(world, 1);
+  EXPECT_TRUE(Told::implicit(*world.softSolver));
+  EXPECT_TRUE(Told::lineSearch(*world.softSolver));
+  EXPECT_TRUE(Told::projection(*world.softSolver));  // without which bodies do not land
+}
+
+TEST(DeformableBody, MakesTheWorldWhatIsAskedFor) {
+  EmptyWorld world;
+  world.deformable().setLineSearch(true);
+  for (const bool implicit : {true, false}) {
+    SoftBodyOptions options;
+    options.implicit = implicit;
+    const auto body = added(world, cageAbove(5), options);
+    step(world, 1);
+    EXPECT_EQ(Told::implicit(*world.softSolver), implicit);
+    EXPECT_FALSE(Told::lineSearch(*world.softSolver));
+  }
+}
+
+TEST(DeformableBody, SetsNothingOfAWorldThatItMustNotConfigure) {
+  EmptyWorld world;
+  world.deformable().setUseProjection(false);
+  world.deformable().setImplicit(true);
+  world.deformable().setLineSearch(true);
+  world.deformable().getWorldInfo().m_gravity.setValue(1, 2, 3);
+  SoftBodyOptions options;
+  options.configureWorld = false;
+  options.implicit = false;
+  const auto body = added(world, cageAbove(5), options);
+  step(world, 1);
+  EXPECT_FALSE(Told::projection(*world.softSolver));
+  EXPECT_TRUE(Told::implicit(*world.softSolver));
+  EXPECT_TRUE(Told::lineSearch(*world.softSolver));
+  EXPECT_EQ(world.deformable().getWorldInfo().m_gravity, btVector3(1, 2, 3));
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// An application's own body, with Bullet's own forces, in a world where bodies of ours come and go.
+#include "deformable_test.h"
+
+#include <tetskin/bullet/body_forces.h>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::EmptyWorld;
+using test::step;
+
+/// What the application makes: a body with gravity and material of its own, added by Bullet's means.
+class OwnBody {
+ public:
+  explicit OwnBody(btDeformableMultiBodyDynamicsWorld& world, double height = 20.0)
+      : body_(makeSoftBody(cageAbove(height), world.getWorldInfo()).value()), world_(world) {
+    world.addSoftBody(body_.get());
+    world.addForce(body_.get(), &gravity);
+    world.addForce(body_.get(), &elasticity);
+  }
+  ~OwnBody() {
+    world_.removeForce(body_.get(), &gravity);
+    world_.removeForce(body_.get(), &elasticity);
+    world_.removeSoftBody(body_.get());
+  }
+
+  /// World units per second squared, over so many frames; a body in free fall, whatever its material.
+  double fallsAt(EmptyWorld& world, int frames = 12) {
+    const auto speed = [&] {
+      double sum = 0.0;
+      for (int n = 0; n < body_->m_nodes.size(); ++n) sum -= static_cast<double>(body_->m_nodes[n].m_v.y());
+      return sum / body_->m_nodes.size();
+    };
+    const double before = speed();
+    step(world, frames);
+    return (speed() - before) * 60.0 / frames;
+  }
+
+  btDeformableGravityForce gravity{btVector3(0, btScalar(-1.6), 0)};
+  btDeformableNeoHookeanForce elasticity{400, 600, btScalar(0.05)};
+
+ private:
+  std::unique_ptr<btSoftBody> body_;
+  btDeformableMultiBodyDynamicsWorld& world_;
+};
+
+double fallsAt(EmptyWorld& world, const DeformableBody& body, int frames = 12) {
+  const auto speed = [&] {
+    double sum = 0.0;
+    for (int n = 0; n < body.body().m_nodes.size(); ++n) sum -= static_cast<double>(body.body().m_nodes[n].m_v.y());
+    return sum / body.body().m_nodes.size();
+  };
+  const double before = speed();
+  step(world, frames);
+  return (speed() - before) * 60.0 / frames;
+}
+
+ForceList& forcesOf(EmptyWorld& world) {
+  return *static_cast<btDeformableBodySolver*>(world.softSolver.get())->getLagrangianForceArray();
+}
+
+SoftBodyOptions with(bool implicit) {
+  SoftBodyOptions options;
+  options.implicit = implicit;
+  return options;
+}
+
+/// Explicit worlds, and implicit ones, in which Bullet takes one gravity for all.
+class ForeignForces : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Worlds, ForeignForces, testing::Bool(),
+                         [](const auto& instance) { return instance.param ? "Implicit" : "Explicit"; });
+
+TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
+  EmptyWorld world;
+  auto ours = added(world, cageAbove(20), with(GetParam()));
+  OwnBody own(world.deformable());
+  EXPECT_EQ(own.gravity.m_softBodies.size(), 1);
+  EXPECT_EQ(own.elasticity.m_softBodies.size(), 1);
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
+  ours.reset();
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+}
+
+TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
+  EmptyWorld world;
+  OwnBody own(world.deformable());
+  auto ours = added(world, cageAbove(20), with(GetParam()));
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
+  ours.reset();
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  EXPECT_EQ(forcesOf(world).size(), 2);
+}
+
+TEST_P(ForeignForces, DoNotJoinOursBetweenARemovalAndTheNextStep) {
+  EmptyWorld world;
+  auto first = added(world, cageAbove(20), with(GetParam()));
+  auto second = added(world, cageAbove(40), with(GetParam()));
+  step(world, 2);
+  second.reset();
+  OwnBody own(world.deformable());
+  EXPECT_EQ(own.gravity.m_softBodies.size(), 1);
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  EXPECT_NEAR(fallsAt(world, *first), 10.0, 0.05);
+}
+
+TEST_P(ForeignForces, OfAnotherBodyGoWithoutHarm) {
+  EmptyWorld world;
+  auto ours = added(world, cageAbove(20), with(GetParam()));
+  {
+    OwnBody own(world.deformable());
+    step(world, 2);
+  }
+  EXPECT_EQ(forcesOf(world).size(), 2);
+  EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
+}
+
+TEST_P(ForeignForces, AndOursMayEachHaveAGravityOfTheirOwn) {
+  EmptyWorld world;
+  auto mars = added(world, cageAbove(20), with(GetParam()));
+  auto earth = added(world, cageAbove(40), with(GetParam()));
+  mars->setGravity(btVector3(0, btScalar(-3.7), 0));
+  EXPECT_NEAR(fallsAt(world, *mars), 3.7, 0.02);
+  EXPECT_NEAR(fallsAt(world, *earth), 10.0, 0.05);
+  OwnBody own(world.deformable(), 60);
+  EXPECT_NEAR(fallsAt(world, *mars), 3.7, 0.02);
+  EXPECT_NEAR(fallsAt(world, *earth), 10.0, 0.05);
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+}
+
+TEST_P(ForeignForces, AreLeftAloneWhenTheApplicationTakesOurBodyOut) {
+  EmptyWorld world;
+  auto ours = added(world, cageAbove(20), with(GetParam()));
+  OwnBody own(world.deformable());
+  step(world, 2);
+  world.deformable().removeSoftBody(&ours->body());
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  ours.reset();
+  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
+  ours = added(world, cageAbove(40), with(GetParam()));
+  EXPECT_EQ(forcesOf(world).size(), 4);  // the places that were kept are gone
+  EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
+}
+
+TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
+  // A beam held at one end; beside it, ours, of a hundredth of its stiffness.
+  const auto tip = [](bool besideOurs) {
+    EmptyWorld world;
+    TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
+    for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
+    SoftBodyOptions options;
+    options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
+    options.youngsModulus = 60;
+    std::unique_ptr<DeformableBody> ours;
+    if (besideOurs) ours = added(world, beam, options);
+    for (Eigen::Vector3d& p : beam.nodes) p.z() += 3;
+    const std::unique_ptr<btSoftBody> own(makeSoftBody(beam, world.deformable().getWorldInfo(), options).value());
+    btDeformableGravityForce gravity(btVector3(0, -10, 0));
+    btDeformableNeoHookeanForce elasticity(2400, 3600, btScalar(0.05));
+    world.deformable().addSoftBody(own.get());
+    world.deformable().addForce(own.get(), &gravity);
+    world.deformable().addForce(own.get(), &elasticity);
+    step(world, 40);
+    const double y = test::lowest(*own);
+    world.deformable().removeSoftBody(own.get());
+    return y;
+  };
+  EXPECT_NEAR(tip(true), tip(false), 0.005);  // one iterative solve serves all bodies of a world
+}
+
+TEST(DeformableBody, MayOutliveItsWorld) {
+  std::unique_ptr<DeformableBody> body;
+  {
+    EmptyWorld world;
+    body = added(world, cageAbove(1));
+    step(world, 2);
+  }
+  EXPECT_GT(body->body().m_nodes.size(), 0);
+  body.reset();
+}
+
+}  // namespace
+}  // namespace tetskin
