@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 
+#include "bench/body_cases.h"
 #include "scenes/options.h"
 #include "scenes/serpent.h"
 
@@ -340,6 +341,7 @@ int main(int argc, char** argv) {
     if (options.mesh.empty()) {
       registerUpdateSizes(options.tets);
       registerBuildBodySizes();
+      bench::registerBodyCases();
       registerAttachSizes();
       registerBuildCageSizes();
     }
