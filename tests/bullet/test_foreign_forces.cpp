@@ -168,6 +168,8 @@ TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
     world.deformable().addForce(own.get(), &elasticity);
     step(world, 40);
     const double y = test::lowest(*own);
+    world.deformable().removeForce(own.get(), &gravity);
+    world.deformable().removeForce(own.get(), &elasticity);
     world.deformable().removeSoftBody(own.get());
     return y;
   };
