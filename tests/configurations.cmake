@@ -77,6 +77,9 @@ if(TETSKIN_INSTALL)
   set_tests_properties(consumer.installed_package consumer.installed_core_alone
     PROPERTIES FIXTURES_REQUIRED installed_package)
 endif()
+add_test(NAME consumer.after_demos_run
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/after_demos_run
+    -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
 tetskin_test_consumer(add_subdirectory -DTETSKIN_SOURCE=${PROJECT_SOURCE_DIR} -DCONSUME=subdirectory)
 
 # Configurations that must stop, with a message that says why.
