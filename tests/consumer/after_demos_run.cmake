@@ -18,4 +18,4 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/build -G ${GENERATOR} -DCMAKE_BUI
 run(${CMAKE_COMMAND} --build ${FOLDER}/build --target ${target})
 run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${FOLDER}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${FOLDER}/consumer -G ${GENERATOR}
-  -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCONSUME=package)
+  -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCONSUME=package -DSOURCE=${SOURCE})
