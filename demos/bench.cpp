@@ -10,6 +10,7 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/io/tet_mesh_writer.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -330,7 +331,9 @@ void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);  // takes its own flags out
+  // Takes its own flags out. Asked for help, it would print only these and exit.
+  const bool help = std::any_of(argv, argv + argc, [](const char* text) { return std::string(text) == "--help"; });
+  if (!help) benchmark::Initialize(&argc, argv);
   ModelOptions options;
   CLI::App app(
       "Benchmarks of attaching, updating, building and writing, each beside Bullet's own. Takes Google "

@@ -44,6 +44,7 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
 }
 
 int run(CageCommand command) {
+  if (!command.json.empty()) requireWritable(command.json);
   const Surface surface = loadSurface(command.model);
   command.cage.targetTets = command.model.tets;
   command.cage.fit = !command.loose;
@@ -69,8 +70,10 @@ int main(int argc, char** argv) {
   CageCommand command;
   CLI::App app("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
   addMeshOptions(app, command.model);
-  app.add_option("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node")->required();
-  app.add_option("--json", command.json, "File of the summary");
+  app.add_option("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node")
+      ->required()
+      ->check(isFileName());
+  addSummaryOption(app, command.json, "File of the summary");
   app.add_flag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
   app.add_flag("--quiet", command.quiet, "Print nothing but errors");
   return runDemo(app, argc, argv, [&] { return run(command); });

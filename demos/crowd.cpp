@@ -328,6 +328,7 @@ void printTable(const nlohmann::ordered_json& json) {
 }
 
 int run(const CrowdOptions& options) {
+  if (!options.json.empty()) requireWritable(options.json);
   try {
     const nlohmann::ordered_json json = Measurement(options).run();
     if (!options.json.empty()) writeJson(json, options.json);
@@ -352,7 +353,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames, "Timed frames of every variant; the median counts")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--json", options.json, "File of the results");
+  addSummaryOption(app, options.json, "File of the results");
   app.add_flag("--quiet", options.quiet, "Print nothing but errors");
   return runDemo(app, argc, argv, [&] { return run(options); });
 }

@@ -75,8 +75,6 @@ void writeSurface(const MeshSkin<double>& skin, const ObjLayout& layout, const s
 nlohmann::ordered_json summarise(const Model& model, const DeformCommand& command, const EmbedReport& fit,
                                  const QuadraticReport& quadratic, double updateUs) {
   nlohmann::ordered_json json = summaryOf(model, fit);
-  json["worst_distance"] = fit.worstDistance;
-  json["worst_vertex"] = fit.worstVertex;
   if (command.skin.interpolation == Interpolation::Quadratic) {
     json["thin_nodes"] = quadratic.thinNodes;
     json["plain_nodes"] = quadratic.plainNodes;
@@ -90,6 +88,7 @@ int run(const DeformCommand& command) {
   if (io::lowerExtension(command.output) != ".obj") {
     throw InputError(command.output + ": is of a format that is not written; use .obj");
   }
+  if (!command.json.empty()) requireWritable(command.json);
   Model model;
   static_cast<Surface&>(model) = loadSurface(command.model);
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
@@ -121,15 +120,18 @@ int run(const DeformCommand& command) {
 int main(int argc, char** argv) {
   DeformCommand command;
   CLI::App app("Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.");
-  app.add_option("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads")->required();
-  app.add_option("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh")->required();
-  app.add_option("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order")
+  const auto addFile = [&](const char* name, std::string& file, const char* description) {
+    return app.add_option(name, file, description)->check(isFileName());
+  };
+  addFile("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads")->required();
+  addFile("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh")->required();
+  addFile("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order")
       ->required();
-  app.add_option("-o,--output", command.output, "Deformed mesh to write: .obj")->required();
+  addFile("-o,--output", command.output, "Deformed mesh to write: .obj")->required();
   addInterpolationOption(app, command.skin);
   addSkinOptions(app, command.skin);
-  app.add_option("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
-  app.add_option("--json", command.json, "File of the summary");
+  addFile("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
+  addSummaryOption(app, command.json, "File of the summary");
   app.add_flag("--quiet", command.quiet, "Print nothing but errors");
   return runDemo(app, argc, argv, [&] { return run(command); });
 }

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
-#include <tetskin/io/tet_mesh_writer.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +26,8 @@ struct DropOptions {
 
 /// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
 constexpr double kExploded = 20.0;
-/// The surface may pass the floor by the collision margin and this fraction of its size.
+/// The surface may pass the floor by the collision margin and this fraction of its size: contacts are at the cage's
+/// nodes.
 constexpr double kFloorTolerance = 0.01;
 /// Slower than this many sizes a second over the last half second is at rest.
 constexpr double kRestSpeed = 0.05;
@@ -53,18 +52,12 @@ struct Totals {
   }
 };
 
-std::string cagePath(const std::string& folder, int frame) {
-  char name[32];
-  std::snprintf(name, sizeof name, "cage_%04d.vtk", frame);
-  return (std::filesystem::path(folder) / name).string();
-}
-
 void writeFrame(const DropScene& scene, const DropOptions& options, int frame, FrameWriter& writer, Totals& totals) {
   const auto start = std::chrono::steady_clock::now();
   writer.write(frame, scene.surface(), scene.bounds(), scene.normals());
-  if (options.writeCage) require(saveTetMesh(scene.currentCage(), cagePath(options.output.out, frame)));
+  if (options.writeCage) writer.writeCage(frame, scene.currentCage());
   totals.writeMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  ++totals.written;
+  if (totals.written++ == 0 && !options.output.quiet) std::printf("%s\n", writer.announcement().c_str());
 }
 
 void measure(const DropScene& scene, double restExtent, Totals& totals) {
@@ -97,7 +90,7 @@ Totals simulate(DropScene& scene, const DropOptions& options, FrameWriter& write
 nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, const DropOptions& options,
                                  const Totals& totals) {
   const double steps = std::max(1, totals.frames - 1);
-  const double limit = scene.floorY() - scene.margin() - kFloorTolerance * scene.size();
+  const double tolerance = scene.margin() + kFloorTolerance * scene.size();
   nlohmann::ordered_json json = summaryOf(model, scene.fit());
   json["simulation_ms_per_frame"] = totals.simulationMs / steps;
   json["skin_us_per_frame"] = totals.skinUs / steps;
@@ -107,7 +100,8 @@ nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, con
   json["floor_y"] = scene.floorY();
   json["margin"] = scene.margin();
   json["lowest_y"] = totals.lowest;
-  json["above_floor"] = totals.lowest >= limit;
+  json["floor_tolerance"] = tolerance;
+  json["above_floor"] = totals.lowest >= scene.floorY() - tolerance;
   json["extent_max"] = totals.extentMax;
   json["rest_speed"] = totals.restSpeed();
   json["at_rest"] = totals.restSpeed() < kRestSpeed;
@@ -129,12 +123,17 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   row("nodes", number("nodes", "%.0f"));
   row("tets", number("tets", "%.0f"));
   row("inside / outside", number("inside", "%.0f") + " / " + number("outside", "%.0f"));
+  if (json.at("outside") > 0) {
+    row("farthest outside", "vertex " + number("worst_vertex", "%.0f") + ", by " + number("worst_distance", "%.3g"));
+  }
   row("attach", number("attach_ms", "%.2f ms"));
   row("rest error", number("rest_error_max", "%.1e box diagonals"));
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
   row("skin", number("skin_us_per_frame", "%.1f us a frame"));
   row("write", number("write_ms_per_frame", "%.2f ms a frame"));
   row("speed at the end", number("rest_speed", "%.3f sizes a second"));
+  row("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor: y = " + number("floor_y", "%.4g") +
+                          ", less a tolerance of " + number("floor_tolerance", "%.2g"));
   row("frames", number("frames", "%.0f"));
   row("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summaryPath);
 }
@@ -143,22 +142,25 @@ int run(const DropOptions& options) {
   const Model model = loadModel(options.model);
   DropScene scene(model.mesh, model.cage, options.skin);
   requireFit(scene.fit(), options.model);
-  FrameWriter writer(options.output.out, layoutWith(options.skin.normals, model.layout));
-  const std::filesystem::path folder = options.output.out;
+  const OutputOptions& output = options.output;
+  FrameWriter writer({output.out, output.frames, output.every, options.writeCage},
+                     layoutWith(options.skin.normals, model.layout));
+  const std::string path = summaryPath(output);
   const TriangleMesh obstacles = scene.obstacles();
-  require(ObjLayout::fromMesh(obstacles).writeTo((folder / "obstacles.obj").string(), viewOf(obstacles.positions)));
+  const std::string obstaclesPath = (std::filesystem::path(output.out) / "obstacles.obj").string();
+  require(ObjLayout::fromMesh(obstacles).writeTo(obstaclesPath, viewOf(obstacles.positions)));
 
   const Totals totals = simulate(scene, options, writer);
   const nlohmann::ordered_json json = summarise(model, scene, options, totals);
-  const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
   writeJson(json, path);
-  if (!options.output.quiet) printTable(json, path);
+  if (!output.quiet) printTable(json, path);
   if (!totals.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", totals.frames - 1);
     return kRunFailed;
   }
   if (!json.at("above_floor").get<bool>()) {
-    std::fprintf(stderr, "tetskin_drop: the surface passed through the floor, down to y = %g\n", totals.lowest);
+    std::fprintf(stderr, "tetskin_drop: the surface passed through the floor at y = %g, down to y = %g\n",
+                 scene.floorY(), totals.lowest);
     return kRunFailed;
   }
   return kDone;

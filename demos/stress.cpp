@@ -42,8 +42,12 @@ void writeText(const std::string& text, const std::string& path) {
 }
 
 int run(const StressOptions& options) {
+  const std::vector<StressCase> cases = chosenCases(options);
+  for (const std::string& path : {options.json, options.markdown}) {
+    if (!path.empty()) requireWritable(path);
+  }
   std::vector<Row> rows;
-  for (const StressCase& stressCase : chosenCases(options)) {
+  for (const StressCase& stressCase : cases) {
     rows.push_back({stressCase, runCase(stressCase)});
     if (!options.quiet) printRow(rows.back());
   }
@@ -62,10 +66,10 @@ int run(const StressOptions& options) {
 int main(int argc, char** argv) {
   StressOptions options;
   CLI::App app("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
-  app.add_flag("--quick", options.quick, "A part of the cases, in less than a minute");
+  app.add_flag("--quick", options.quick, "A part of the cases, in some 15 s");
   app.add_option("--only", options.only, "Only the cases with this in their names");
-  app.add_option("--json", options.json, "File of the results, a list of cases");
-  app.add_option("--markdown", options.markdown, "File of the results, as tables");
+  addSummaryOption(app, options.json, "File of the results, a list of cases");
+  app.add_option("--markdown", options.markdown, "File of the results, as tables")->check(isFileName());
   app.add_flag("--quiet", options.quiet, "Print nothing but errors");
   return runDemo(app, argc, argv, [&] { return run(options); });
 }

@@ -5,7 +5,6 @@
 // surface on the same coarse cage, side by side, and the errors of both.
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 #include "scenes/frame_writer.h"
 #include "scenes/options.h"
@@ -154,7 +153,7 @@ Totals simulate(TwistScene& scene, const Model& model, const TwistOptions& optio
     if (frame < kReleased) compareSurfaces(scene, rest.diagonal().norm(), totals);
     if (frame % options.output.every == 0) {
       pair.write(scene, frame, writer);
-      ++totals.written;
+      if (totals.written++ == 0 && !options.output.quiet) std::printf("%s\n", writer.announcement().c_str());
     }
     totals.frames = frame + 1;
     progress.show(frame + 1);
@@ -203,6 +202,10 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   };
   std::printf("\n%s: %.0f vertices, %.0f tets\n", json.at("model").get<std::string>().c_str(), number("vertices"),
               number("tets"));
+  if (json.at("outside") > 0) {
+    std::printf("  %.0f vertices outside the cage, the farthest, vertex %.0f, by %.3g\n", number("outside"),
+                number("worst_vertex"), number("worst_distance"));
+  }
   std::printf("  %-26s%11s%11s\n", "", "linear", "quadratic");
   both("error, RMS", "%11.2e", "error_", "_rms", "box diagonals, with the nodes set to a full turn");
   both("error, largest", "%11.2e", "error_", "_max", "box diagonals");
@@ -221,12 +224,11 @@ int run(const TwistOptions& options) {
   const Accuracy linear = measure(model, options.skin, Interpolation::Linear);
   const Accuracy quadratic = measure(model, options.skin, Interpolation::Quadratic);
   SideBySide pair(model.mesh);
-  FrameWriter writer(options.output.out, layoutWith(options.skin.normals, pair.layout()));
-
+  FrameWriter writer({options.output.out, options.output.frames, options.output.every},
+                     layoutWith(options.skin.normals, pair.layout()));
+  const std::string path = summaryPath(options.output);
   const Totals totals = simulate(scene, model, options, writer, pair);
   const nlohmann::ordered_json json = summarise(model, scene, options, linear, quadratic, totals);
-  const std::filesystem::path folder = options.output.out;
-  const std::string path = options.output.json.empty() ? (folder / "summary.json").string() : options.output.json;
   writeJson(json, path);
   if (!options.output.quiet) printTable(json, path);
   if (totals.finite) return kDone;

@@ -58,13 +58,13 @@ tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 3 OPTIONS 
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
   -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_DEMOS=OFF)
 
-# A project that uses the library, through the installed package and as a subdirectory; both run what they have built.
+# A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 function(tetskin_test_consumer name)
   add_test(NAME consumer.${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumer
       ${PROJECT_BINARY_DIR}/consumers/${name} ${nested_options}
-      --build-options -DCMAKE_BUILD_TYPE=Release ${ARGN}
-      --test-command consumer)
+      --build-options -DCMAKE_BUILD_TYPE=Release -DSOURCE=${PROJECT_SOURCE_DIR} ${ARGN}
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
   set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600)
 endfunction()
 
@@ -74,10 +74,27 @@ if(TETSKIN_INSTALL)
   set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed_package)
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
   tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
-  set_tests_properties(consumer.installed_package consumer.installed_core_alone
-    PROPERTIES FIXTURES_REQUIRED installed_package)
+  # The README's first program with flags that the library was not compiled with: what they change in the layout or the
+  # allocation of a type must not matter.
+  set(package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=program -DCMAKE_BUILD_TYPE=None)
+  tetskin_test_consumer(flags_avx2 ${package} "-DCMAKE_CXX_FLAGS=-O2 -mavx2 -mfma")
+  tetskin_test_consumer(flags_native ${package} "-DCMAKE_CXX_FLAGS=-O2 -march=native")
+  tetskin_test_consumer(flags_sanitized ${package}
+    "-DCMAKE_CXX_FLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all")
+  set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.flags_avx2
+    consumer.flags_native consumer.flags_sanitized PROPERTIES FIXTURES_REQUIRED installed_package)
+  file(WRITE ${PROJECT_BINARY_DIR}/has_avx2.cpp
+    "int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }\n")
+  try_run(has_avx2 has_avx2_compiled ${PROJECT_BINARY_DIR}/has_avx2 ${PROJECT_BINARY_DIR}/has_avx2.cpp)
+  if(NOT has_avx2_compiled OR NOT has_avx2 EQUAL 0)
+    message(STATUS "The processor has no AVX2: no test of an application compiled for it")
+    set_tests_properties(consumer.flags_avx2 PROPERTIES DISABLED ON)
+  endif()
 endif()
-tetskin_test_consumer(add_subdirectory -DTETSKIN_SOURCE=${PROJECT_SOURCE_DIR} -DCONSUME=subdirectory)
+add_test(NAME consumer.after_demos_run
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/after_demos_run
+    -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
+tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory)
 
 # Configurations that must stop, with a message that says why.
 function(tetskin_test_refusal name message)

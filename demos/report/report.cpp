@@ -69,6 +69,7 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
 ReportResult makeReport(const ReportOptions& options) {
   const ReportModel model = loadReportModel(options);
   const ResultStore store(options.out + "/rows");
+  scenes::requireWritable(options.json);
   CageShelf cages(model.mesh);
   std::vector<std::unique_ptr<SceneRunner>> runners;
   double cost = 0.0;

@@ -16,36 +16,35 @@ ReportCommandLine::ReportCommandLine(CLI::App& app) : app_(app) {
   ReportOptions& o = options_;
   std::vector<std::string> names;
   for (const SceneKind kind : kAllScenes) names.push_back(nameOf(kind));
-  app.add_option("--mesh", o.model.mesh, "Render mesh, any format assimp reads (default: the built-in serpent)");
-  app.add_option("--triangles", o.model.triangles, "Triangles of the built-in serpent")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  scenes::addSurfaceOptions(app, o.model);
   app.add_option("--scene", scenes_, "sag, twist, drop, exact, with commas (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   app.add_option("--tets", o.tets, "Tets of the cages, with commas")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
+      ->check(scenes::isCount())
       ->capture_default_str();
   app.add_option("--reference-tets", o.referenceTets, "Tets of the cage that counts as right")
-      ->check(CLI::PositiveNumber)
+      ->check(scenes::isCount())
       ->capture_default_str();
   app.add_flag("--full", full_, "A reference of 300,000 tets");
-  app.add_flag("--quick", quick_, "A small report, within two minutes");
+  app.add_flag("--quick", quick_, "A small report, in half a minute");
   app.add_option("--interpolation", interpolation_, "Only linear, or only quadratic (default: both, and Bullet's own)")
       ->check(CLI::IsMember({"linear", "quadratic"}));
   app.add_flag("--implicit", o.implicit, "Implicit elasticity as well, beside the explicit one");
   app.add_flag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
   app.add_option("--frames", o.frames, "Frames of 1/60 s (default: the scene's)")->check(CLI::Range(1, 100000));
   app.add_option("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)")
-      ->check(CLI::PositiveNumber);
+      ->check(scenes::isPositive());
   app.add_option("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals")
-      ->check(CLI::PositiveNumber);
+      ->check(scenes::isPositive());
   app.add_option("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors")
+      ->check(scenes::isCount())
       ->capture_default_str();
   app.add_option("--out", o.out, "Folder of the report, and of what an interrupted run had finished")
+      ->check(scenes::isFileName())
       ->capture_default_str();
-  app.add_option("--json", o.json, "File of the results (default: error_vs_time.json in the folder)");
+  scenes::addSummaryOption(app, o.json, "File of the results (default: error_vs_time.json in the folder)");
   app.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 

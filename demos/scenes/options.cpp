@@ -5,9 +5,12 @@
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <new>
 
 #include "scenes/bar.h"
@@ -15,6 +18,12 @@
 
 namespace tetskin::scenes {
 namespace {
+
+/// With more than this share of a mesh's vertices outside a cage, one of them farther out than this share of the mesh's
+/// diagonal, the cage is another model's. One that lies within its mesh has many vertices outside, but near.
+constexpr double kManyOutside = 0.5, kFarOutside = 0.1;
+
+constexpr const char* kNotWritable = ": cannot be written; does its folder exist?";
 
 std::string nameOf(BuiltIn model) {
   return model == BuiltIn::Bar ? "bar" : "serpent";
@@ -38,20 +47,56 @@ void addChoice(CLI::App& app, const std::string& name, Choice& choice,
   app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
 }
 
+CLI::Validator isFinite(const char* demand, bool (*holds)(double)) {
+  const auto check = [=](std::string& text) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    const bool good = !text.empty() && *end == '\0' && std::isfinite(number) && holds(number);
+    return good ? std::string() : "'" + text + "' is not " + demand;
+  };
+  return CLI::Validator(check, "");
+}
+
 }  // namespace
 
-void addMeshOptions(CLI::App& app, ModelOptions& options) {
-  app.add_option("--mesh", options.mesh,
-                 "Render mesh, any format assimp reads (default: a built-in " + nameOf(options.builtIn) + ")");
-  app.add_option("--tets", options.tets, "Tets of a built cage")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--triangles", options.triangles, "Triangles of the built-in " + nameOf(options.builtIn))
+CLI::Validator isFileName() {
+  return CLI::Validator(
+      [](std::string& text) { return std::string(text.empty() ? "the name of a file is empty" : ""); }, "");
+}
+
+CLI::Validator isCount() {
+  return CLI::Range(1, std::numeric_limits<int>::max());
+}
+
+CLI::Validator isPositive() {
+  return isFinite("a finite, positive number", [](double number) { return number > 0.0; });
+}
+
+CLI::Validator isNotNegative() {
+  return isFinite("a finite, non-negative number", [](double number) { return number >= 0.0; });
+}
+
+void addSurfaceOptions(CLI::App& app, ModelOptions& options) {
+  const std::string builtIn = "built-in " + nameOf(options.builtIn);
+  CLI::Option* mesh =
+      app.add_option("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a " + builtIn + ")")
+          ->check(isFileName());
+  app.add_option("--triangles", options.triangles, "Triangles of the " + builtIn)
       ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(mesh);
+}
+
+void addMeshOptions(CLI::App& app, ModelOptions& options) {
+  addSurfaceOptions(app, options);
+  app.add_option("--tets", options.tets, "Tets of a built cage")->check(isCount())->capture_default_str();
 }
 
 void addModelOptions(CLI::App& app, ModelOptions& options) {
   addMeshOptions(app, options);
-  app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
+  app.add_option("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)")
+      ->check(isFileName())
+      ->excludes("--tets");
 }
 
 void addInterpolationOption(CLI::App& app, SkinOptions& options) {
@@ -69,9 +114,11 @@ void addSkinOptions(CLI::App& app, SkinOptions& options) {
             "Which tet carries a vertex outside the cage");
   app.add_option("--max-distance", options.maxDistance,
                  "Refuse a mesh with a vertex farther than this from the cage, in the mesh's unit")
-      ->check(CLI::Validator(
-          [](const std::string& text) { return std::string(text[0] == '-' ? "a distance must not be negative" : ""); },
-          "LENGTH"));
+      ->check(isNotNegative());
+}
+
+void addSummaryOption(CLI::App& app, std::string& path, const std::string& description) {
+  app.add_option("--json", path, description)->check(isFileName());
 }
 
 void addOutputOptions(CLI::App& app, OutputOptions& options) {
@@ -79,8 +126,8 @@ void addOutputOptions(CLI::App& app, OutputOptions& options) {
   app.add_option("--every", options.every, "Write every so many frames")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--out", options.out, "Folder of the OBJ sequence")->capture_default_str();
-  app.add_option("--json", options.json, "File of the summary (default: summary.json in the folder)");
+  app.add_option("--out", options.out, "Folder of the OBJ sequence")->check(isFileName())->capture_default_str();
+  addSummaryOption(app, options.json, "File of the summary (default: summary.json in the folder)");
   app.add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
 
@@ -143,25 +190,56 @@ nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit) {
   json["unbound"] = fit.unbound;
   json["attach_ms"] = fit.milliseconds;
   json["rest_error_max"] = fit.restErrorMax;
+  json["worst_distance"] = fit.worstDistance;
+  json["worst_vertex"] = fit.worstVertex;
   return json;
 }
 
 void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
   std::ofstream file(path);
   file << json.dump(2) << "\n";
-  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
+  if (!file.flush()) throw InputError(path + kNotWritable);
+}
+
+void requireWritable(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::file_type before = fs::status(path, none).type();
+  if (before != fs::file_type::not_found && before != fs::file_type::regular && before != fs::file_type::directory) {
+    return;  // /dev/stdout, a pipe: not to be touched before its time
+  }
+  if (!std::ofstream(path, std::ios::app)) throw InputError(path + kNotWritable);
+  if (before == fs::file_type::not_found) fs::remove(fs::canonical(path, none), none);  // not the link to it
+}
+
+std::string summaryPath(const OutputOptions& options) {
+  const std::string path =
+      options.json.empty() ? (std::filesystem::path(options.out) / "summary.json").string() : options.json;
+  requireWritable(path);
+  return path;
 }
 
 void requireFit(const EmbedReport& report, const ModelOptions& options) {
   const std::string mesh = options.mesh.empty() ? nameOf(options.builtIn) : options.mesh;
   if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
-  if (!report.unitsDiffer()) return;
+  const double size = report.meshBox.diagonal().norm();
   char text[256];
-  std::snprintf(text, sizeof text, "their boxes have diagonals of %.4g and %.4g and %s",
-                report.meshBox.diagonal().norm(), report.cageBox.diagonal().norm(),
-                report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
-  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text +
-                   "; are they in different units? Scale one of them");
+  if (report.unitsDiffer()) {
+    std::snprintf(text, sizeof text,
+                  "their boxes have diagonals of %.4g and %.4g and %s; are they in different units? Scale one of them",
+                  size, report.cageBox.diagonal().norm(),
+                  report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
+  } else if (static_cast<double>(report.outside) > kManyOutside * static_cast<double>(report.vertexCount) &&
+             report.worstDistance > kFarOutside * size) {
+    std::snprintf(
+        text, sizeof text,
+        "%zu of %zu vertices lie outside it, vertex %zu by %.3g, and the mesh's diagonal is %.3g; take a cage "
+        "made for this mesh, such as tetskin_cage builds",
+        report.outside, report.vertexCount, report.worstVertex, report.worstDistance, size);
+  } else {
+    return;
+  }
+  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text);
 }
 
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout) {

@@ -43,15 +43,25 @@ struct OutputOptions {
   bool quiet = false;
 };
 
-/// --mesh, --triangles, --tets.
+/// Checks of options' values; what they refuse, they say in one line.
+CLI::Validator isFileName();     ///< not empty
+CLI::Validator isCount();        ///< whole, at least 1
+CLI::Validator isPositive();     ///< above 0, and finite
+CLI::Validator isNotNegative();  ///< 0 or above, and finite
+
+/// --mesh, or --triangles.
+void addSurfaceOptions(CLI::App& app, ModelOptions& options);
+/// Those and --tets.
 void addMeshOptions(CLI::App& app, ModelOptions& options);
-/// Those and --cage.
+/// Those and --cage, instead of --tets.
 void addModelOptions(CLI::App& app, ModelOptions& options);
 /// --interpolation.
 void addInterpolationOption(CLI::App& app, SkinOptions& options);
 /// --normals, --outside, --max-distance.
 void addSkinOptions(CLI::App& app, SkinOptions& options);
-/// The defaults of `options` are the demo's.
+/// --json.
+void addSummaryOption(CLI::App& app, std::string& path, const std::string& description);
+/// --frames, --every, --out, --json, --quiet. The defaults of `options` are the demo's.
 void addOutputOptions(CLI::App& app, OutputOptions& options);
 
 struct Surface {
@@ -74,8 +84,13 @@ Model loadModel(const ModelOptions& options);
 nlohmann::ordered_json summaryOf(const Model& model);
 nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit);
 void writeJson(const nlohmann::ordered_json& json, const std::string& path);
+/// Throws InputError if this file cannot be written, so that it is known before the work. Does not change it.
+void requireWritable(const std::string& path);
+/// Where the summary goes; its folder is there, and it can be written. Throws InputError.
+std::string summaryPath(const OutputOptions& options);
 
-/// Throws InputError if mesh and cage cannot belong together: see EmbedReport.
+/// Throws InputError if mesh and cage cannot belong together: they are in different units (see EmbedReport), or most of
+/// the mesh lies outside, and far.
 void requireFit(const EmbedReport& report, const ModelOptions& options);
 
 /// The layout in which a skin with these normals is written.

@@ -162,6 +162,69 @@ TEST_F(Drop, WritesEveryKthFrameAndTheCageBesideIt) {
   EXPECT_EQ(folder.json("o/summary.json")["frames_written"], 3);
 }
 
+TEST_F(Drop, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
+  folder.write("box.obj", boxObj());
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"--mesh", "box.obj", "--tets", "60", "--out", "o", "--quiet", "--frames"});
+    return drop(more);
+  };
+  ASSERT_EQ(run({"8", "--write-cage"}).status, 0);
+  const std::vector<std::string> others = {"o/frame_0100.obj", "o/frame_7.obj", "o/cage_old.vtk", "o/notes.txt"};
+  for (const std::string& name : others) folder.write(name, "mine");
+  folder.write("kept.obj", "mine");
+  folder.write("o/.tetskin_frames", folder.read("o/.tetskin_frames") + "../kept.obj\nnotes.txt\ncage_old.vtk\n\n.\n");
+
+  EXPECT_EQ(run({"3", "--json", "no/where.json"}).status, 2);
+  EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what does not run replaces nothing";
+  ASSERT_EQ(run({"5", "--every", "2"}).status, 0);
+  for (const char* name : {"o/frame_0000.obj", "o/frame_0002.obj", "o/frame_0004.obj"}) {
+    EXPECT_TRUE(folder.exists(name)) << name;
+  }
+  EXPECT_EQ(folder.count("o", ".obj"), 3u + 2u + 1u) << "ours, those that are not, and the obstacles";
+  EXPECT_EQ(folder.count("o", ".vtk"), 1u);
+  for (const std::string& name : others) EXPECT_EQ(folder.read(name), "mine") << name;
+  EXPECT_EQ(folder.read("kept.obj"), "mine");
+}
+
+TEST_F(Drop, SaysHowMuchItWritesBeforeItDoes) {
+  folder.write("box.obj", boxObj());
+  const CommandResult result =
+      drop({"--mesh", "box.obj", "--tets", "3000", "--frames", "60", "--every", "30", "--write-cage", "--out", "o"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::size_t place = result.out.find("writing 2 frames, about ");
+  ASSERT_NE(place, std::string::npos) << result.out;
+  EXPECT_LT(place, result.out.find("simulating"));
+  const double written =
+      static_cast<double>(folder.read("o/frame_0000.obj").size() + folder.read("o/cage_0000.vtk").size() +
+                          folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size());
+  EXPECT_NEAR(std::stod(result.out.substr(place + 24)), 1e-6 * written, 0.051 + 0.1e-6 * written) << result.out;
+  EXPECT_NE(result.out.find("MB, to o\n"), std::string::npos) << result.out;
+}
+
+TEST_F(Drop, NamesTheFarthestVertexOutside) {
+  folder.write("box.obj", boxObj(0.45, "-0.56"));
+  folder.write("cube.vtk", cubeVtk());
+  const CommandResult result = drop({"--mesh", "box.obj", "--cage", "cube.vtk", "--frames", "2", "--out", "o"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("o/summary.json");
+  EXPECT_EQ(json["outside"], 1);
+  EXPECT_EQ(json["worst_vertex"], 0);
+  EXPECT_NEAR(json["worst_distance"], 0.06, 1e-6);
+  EXPECT_NE(result.out.find("vertex 0, by 0.06"), std::string::npos) << result.out;
+}
+
+TEST_F(Drop, TellsTheToleranceByWhichItJudgesTheFloor) {
+  folder.write("box.obj", boxObj());
+  const CommandResult result = drop({"--mesh", "box.obj", "--tets", "60", "--every", "240", "--out", "o"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("o/summary.json");
+  const double tolerance = json["floor_tolerance"], floor = json["floor_y"], lowest = json["lowest_y"];
+  EXPECT_GT(tolerance, json["margin"]);
+  EXPECT_LT(tolerance, json["margin"].get<double>() + 0.02);
+  EXPECT_EQ(json["above_floor"].get<bool>(), lowest >= floor - tolerance);
+  EXPECT_NE(result.out.find("tolerance"), std::string::npos) << result.out;
+}
+
 TEST_F(Drop, ModelsOfAnySizeAndPlaceGiveTheSameMotion) {
   for (const double half : {0.4, 400.0}) {
     folder.write("box.obj", boxObj(half));
@@ -262,9 +325,8 @@ TEST_F(Drop, RefusesASummaryThatCannotBeWritten) {
   folder.write("box.obj", boxObj());
   const CommandResult result =
       drop({"--mesh", "box.obj", "--tets", "60", "--frames", "2", "--out", "o", "--json", "no/such/s.json"});
-  EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.err.find("no/such/s.json"), std::string::npos);
-  EXPECT_TRUE(folder.exists("o/frame_0001.obj"));  // what was computed is kept
+  test::expectRefused(result, "no/such/s.json");
+  EXPECT_EQ(folder.count("o", ".obj"), 0u);
 }
 
 TEST_F(Drop, RefusesUnknownOptionsAndSenselessValues) {

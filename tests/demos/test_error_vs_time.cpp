@@ -288,7 +288,8 @@ TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
   folder.write("box.obj",
                "v 0 0 0\nv 400 0 0\nv 400 900 0\nv 0 900 0\nv 0 0 300\nv 400 0 300\nv 400 900 300\nv 0 900 300\n"
                "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const CommandResult result = run(small("exact", {"--mesh", "box.obj"}));
+  const CommandResult result = run({"--quick", "--quiet", "--scene", "exact", "--mesh", "box.obj", "--tets", "300",
+                                    "--reference-tets", "900", "--frames", "6", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
   EXPECT_EQ(json.at("model"), "box.obj");

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What the documentation's snippets speak of without declaring it: what an application would have by then. They are
+// compiled and linked, not run.
+#pragma once
+
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <tetskin/bullet/bullet_parallel_for.h>
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/render_nodes.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/stiffness_calibration.h>
+#include <tetskin/io/embedding_file.h>
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/threads/thread_pool.h>
+
+struct Vertex {
+  float position[3], normal[3], texcoord[2];
+};
+
+inline btDeformableMultiBodyDynamicsWorld* world = nullptr;
+inline tetskin::TetMesh cage;
+inline tetskin::TriangleMesh mesh;
+inline std::unique_ptr<tetskin::DeformableBody> body;
+inline btSoftBody* softBody = nullptr;  // the application's own
+inline tetskin::SkinOptions options;
+inline tetskin::SoftBodySkin skin;
+inline tetskin::Embedding embedding;
+inline std::vector<tetskin::SoftBodySkin*> everybody;
+inline std::vector<Vertex> vertices;

@@ -1,0 +1,52 @@
+# What the documentation shows between fences, ```cpp and ```cmake, as files: so it is compiled, and stays true.
+
+# From the text `rest`: `before`, which ends with the next fence, and what follows as the new `rest`; empty if there is
+# no such fence.
+macro(next_fence fence)
+  string(FIND "${rest}" "${fence}" start)
+  if(start EQUAL -1)
+    set(rest "")
+  else()
+    string(LENGTH "${fence}" length)
+    math(EXPR start "${start} + ${length}")
+    string(SUBSTRING "${rest}" 0 ${start} before)
+    string(SUBSTRING "${rest}" ${start} -1 rest)
+  endif()
+endmacro()
+
+# Writes the blocks of a page to folder/<page>_<line>.<language>, and appends the files to these lists:
+#   programs      C++ with a main(), as it is
+#   fragments     other C++, as the body of a function; what it speaks of, snippet.h declares
+#   cmake_blocks
+# Compilers name the page and its line in their messages.
+function(extract_snippets page folder)
+  cmake_path(GET page STEM stem)
+  foreach(language cpp cmake)
+    file(READ ${page} rest)
+    set(line 1)
+    next_fence("```${language}\n")
+    while(NOT rest STREQUAL "")
+      string(REGEX MATCHALL "\n" newlines "${before}")
+      list(LENGTH newlines newlines)
+      math(EXPR line "${line} + ${newlines}")
+      string(FIND "${rest}" "```" end)
+      string(SUBSTRING "${rest}" 0 ${end} block)
+      if(language STREQUAL "cmake")
+        set(kind cmake_blocks)
+      elseif(block MATCHES "int main\\(")
+        set(kind programs)
+        string(PREPEND block "#line ${line} \"${page}\"\n")
+      else()
+        set(kind fragments)
+        set(block "#include \"snippet.h\"\nvoid ${stem}_${line}() {\n#line ${line} \"${page}\"\n${block}}\n")
+      endif()
+      set(file ${folder}/${stem}_${line}.${language})
+      file(CONFIGURE OUTPUT ${file} CONTENT "@block@" @ONLY)
+      list(APPEND ${kind} ${file})
+      next_fence("```${language}\n")
+    endwhile()
+  endforeach()
+  foreach(kind programs fragments cmake_blocks)
+    set(${kind} ${${kind}} PARENT_SCOPE)
+  endforeach()
+endfunction()

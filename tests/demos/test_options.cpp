@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What the programs' command lines have in common: each is asked.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+using test::expectRefused;
+
+using Arguments = std::vector<std::string>;
+
+/// A program, and the arguments that it cannot do without.
+struct Program {
+  std::string path;
+  Arguments required = {};
+};
+
+const Program kDrop{TETSKIN_DROP}, kTwist{TETSKIN_TWIST}, kCrowd{TETSKIN_CROWD}, kBench{TETSKIN_BENCH},
+    kErrorVsTime{TETSKIN_ERROR_VS_TIME}, kStress{TETSKIN_STRESS}, kCage{TETSKIN_CAGE, {"-o", "o.vtk"}},
+    kDeform{TETSKIN_DEFORM, {"--deformed", "d.vtk", "-o", "o.obj"}};
+
+class Options : public testing::Test {
+ protected:
+  /// Exit status 2, and one short line with the word; nothing is written.
+  void expectRefusal(const Program& program, const Arguments& arguments, const std::string& word) const {
+    Arguments all = program.required;
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    SCOPED_TRACE(program.path + testing::PrintToString(all));
+    const CommandResult result = folder.run(program.path, all);
+    expectRefused(result, word);
+    EXPECT_LT(result.err.size(), 160u) << result.err;
+    EXPECT_FALSE(folder.exists("out"));
+  }
+
+  CommandFolder folder;
+};
+
+TEST_F(Options, AnEmptyFileNameIsRefused) {
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage}) {
+    expectRefusal(program, {"--mesh", ""}, "--mesh");
+  }
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench}) expectRefusal(program, {"--cage", ""}, "--cage");
+  for (const Program& program : {kDrop, kTwist, kErrorVsTime}) expectRefusal(program, {"--out", ""}, "--out");
+  for (const Program& program : {kDrop, kTwist, kCrowd, kErrorVsTime, kStress, kCage}) {
+    expectRefusal(program, {"--json", ""}, "--json");
+  }
+  expectRefusal(kStress, {"--markdown", ""}, "--markdown");
+  expectRefusal(kDeform, {"--cage", "c.vtk", "--mesh", ""}, "--mesh");
+  expectRefusal(kDeform, {"--mesh", "m.obj", "--cage", ""}, "--cage");
+  expectRefusal(kDeform, {"--mesh", "m.obj", "--cage", "c.vtk", "--dump-embedding", ""}, "--dump-embedding");
+  expectRefusal({TETSKIN_CAGE}, {"-o", ""}, "--output");
+}
+
+TEST_F(Options, AFileAndWhatIsMadeWithoutItExcludeEachOther) {
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench}) {
+    expectRefusal(program, {"--tets", "10", "--cage", "c.vtk"}, "excludes --");
+  }
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage}) {
+    expectRefusal(program, {"--mesh", "m.obj", "--triangles", "3000"}, "excludes --");
+  }
+}
+
+TEST_F(Options, NumbersThatMakeNoSenseAreRefused) {
+  const auto expectNone = [&](const Program& program, const std::string& option, const Arguments& values) {
+    for (const std::string& value : values) expectRefusal(program, {option, value}, option);
+  };
+  const Arguments noCounts = {"0", "-1", "1.5", "nan", "inf", "many", "", "99999999999999999999"};
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage}) {
+    expectNone(program, "--tets", noCounts);
+    expectNone(program, "--triangles", noCounts);
+  }
+  for (const Program& program : {kDrop, kTwist, kCrowd, kErrorVsTime}) expectNone(program, "--frames", noCounts);
+  for (const Program& program : {kDrop, kTwist}) expectNone(program, "--every", noCounts);
+  expectNone(kCrowd, "--bodies", noCounts);
+  for (const char* option : {"--reference-tets", "--show-tets"}) expectNone(kErrorVsTime, option, noCounts);
+
+  const Arguments noLengths = {"nan", "-nan", "inf", "-inf", "1e999", "-1", "-0.001", "far", ""};
+  for (const Program& program : {kDrop, kTwist}) expectNone(program, "--max-distance", noLengths);
+  expectNone({TETSKIN_DEFORM, {"--mesh", "m.obj", "--cage", "c.vtk", "--deformed", "d.vtk", "-o", "o.obj"}},
+             "--max-distance", noLengths);
+  for (const char* option : {"--stiffness", "--target-error"}) {
+    expectNone(kErrorVsTime, option, noLengths);
+    expectNone(kErrorVsTime, option, {"0"});
+  }
+}
+
+TEST_F(Options, ASummaryThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  for (const Program& program : {kDrop, kTwist, kCrowd, kErrorVsTime}) {
+    const CommandResult result = folder.run(program.path, {"--triangles", "2000", "--json", "no/where.json"});
+    expectRefused(result, "no/where.json");
+    for (const char* begun : {"simulating", "twisting", "measuring"}) {
+      EXPECT_EQ((result.out + result.err).find(begun), std::string::npos) << program.path << result.out << result.err;
+    }
+  }
+  for (const char* option : {"--json", "--markdown"}) {
+    const CommandResult result = folder.run(TETSKIN_STRESS, {"--only", "mesh/non_finite/linear", option, "no/where"});
+    expectRefused(result, "no/where");
+    EXPECT_EQ(result.out, "");
+  }
+  expectRefused(folder.run(TETSKIN_CAGE, {"--triangles", "2000", "-o", "o.vtk", "--json", "no/where.json"}),
+                "no/where");
+  EXPECT_FALSE(folder.exists("o.vtk"));
+}
+
+TEST_F(Options, TheTrialWhetherASummaryCanBeWrittenChangesNoFile) {
+  folder.write("s.json", "earlier");
+  for (const char* name : {"s.json", "new.json"}) {
+    expectRefused(folder.run(TETSKIN_CROWD, {"--mesh", "nowhere.obj", "--json", name}), "nowhere.obj");
+  }
+  std::filesystem::create_symlink("target.json", folder.path("link.json"));
+  expectRefused(folder.run(TETSKIN_CROWD, {"--mesh", "nowhere.obj", "--json", "link.json"}), "nowhere.obj");
+  EXPECT_EQ(folder.read("s.json"), "earlier");
+  EXPECT_FALSE(folder.exists("new.json"));
+  EXPECT_FALSE(folder.exists("target.json"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link.json")));
+}
+
+TEST_F(Options, ACageOfAnotherModelIsRefusedWithTheNamesOfBoth) {
+  folder.write("m.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0.1 0.1 0.1\nf 1 2 3\nf 1 2 4\n");
+  folder.write("other.vtk",
+               "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0.05\n1 0 0.05\n"
+               "0 1 0.05\n0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  for (const Program& program :
+       {kDrop, kTwist, kCrowd, Program{TETSKIN_DEFORM, {"--deformed", "other.vtk", "-o", "o.obj"}}}) {
+    for (const char* word : {"m.obj", "other.vtk", "3 of 4 vertices"}) {
+      Arguments all = program.required;
+      all.insert(all.end(), {"--mesh", "m.obj", "--cage", "other.vtk"});
+      expectRefused(folder.run(program.path, all), word);
+    }
+    EXPECT_FALSE(folder.exists("o.obj") || folder.exists("out"));
+  }
+}
+
+TEST_F(Options, HelpOfEveryProgramListsTheSharedOnes) {
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage, kDeform}) {
+    const CommandResult result = folder.run(program.path, {"--help"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.out.find("--mesh"), std::string::npos) << program.path << result.out;
+  }
+  const CommandResult bench = folder.run(TETSKIN_BENCH, {"--help"});
+  for (const char* option : {"--cage", "--tets", "--triangles", "--benchmark_filter"}) {
+    EXPECT_NE(bench.out.find(option), std::string::npos) << bench.out;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin
