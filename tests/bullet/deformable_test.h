@@ -49,6 +49,13 @@ inline TetMesh cageAbove(double height) {
   return cage;
 }
 
+/// A tenth as many tets, for what does not depend on them.
+inline TetMesh smallCageAbove(double height) {
+  TetMesh cage = latticeCage(2, 2, 3, 0.3);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
+  return cage;
+}
+
 /// The cage and a copy of it three units along x, which share no node.
 inline TetMesh twoParts(TetMesh cage) {
   const int first = static_cast<int>(cage.nodeCount());

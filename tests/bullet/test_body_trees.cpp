@@ -11,8 +11,8 @@ namespace tetskin {
 namespace {
 
 using test::added;
-using test::cageAbove;
 using test::EmptyWorld;
+using test::smallCageAbove;
 using test::step;
 using test::twoParts;
 
@@ -67,7 +67,7 @@ void expectRaysAsByBruteForce(const btCollisionWorld& world, const btSoftBody& b
 
 TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
   EmptyWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.5)));
+  const auto body = added(world, twoParts(smallCageAbove(0.5)));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 1);
   step(world, 3);
   expectRaysAsByBruteForce(world.deformable(), body->body(), 2);
@@ -77,7 +77,7 @@ TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
 
 TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
   EmptyWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.5)));
+  const auto body = added(world, twoParts(smallCageAbove(0.5)));
   step(world, 10);
   body->body().translate(btVector3(5, 1, 0));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 1);
@@ -89,7 +89,7 @@ TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
 
 TEST(BodyTrees, AreRightForASleeperAlsoOnceItIsMoved) {
   EmptyWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.05)));
+  const auto body = added(world, twoParts(smallCageAbove(0.05)));
   for (int frame = 0; body->body().isActive() && frame < 900; ++frame) step(world, 1);
   ASSERT_FALSE(body->body().isActive());
   step(world, 2);
@@ -107,14 +107,14 @@ using ClassicWorlds = testing::Types<test::RigidWorld, test::MultiBodyWorld>;
 TYPED_TEST_SUITE(ClassicTrees, ClassicWorlds);
 
 TYPED_TEST(ClassicTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
-  TypeParam world(twoParts(cageAbove(0.5)));
+  TypeParam world(twoParts(smallCageAbove(0.5)));
   expectRaysAsByBruteForce(*world.world, world.body(), 1);
   for (int k = 0; k < 20; ++k) world.world->stepSimulation(btScalar(1) / 60);
   expectRaysAsByBruteForce(*world.world, world.body(), 2);
 }
 
 TEST(BodyTrees, StayThroughNewMassesSoThatTheNextStepDoesNotHang) {
-  test::DeformableWorld bare(twoParts(cageAbove(0.5)));
+  test::DeformableWorld bare(twoParts(smallCageAbove(0.5)));
   const auto stepped = [&] {
     bare.world->stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
     expectRaysAsByBruteForce(*bare.world, bare.body(), 1);
@@ -133,7 +133,7 @@ TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
   EmptyWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 1.2; };
-  const auto body = added(world, twoParts(cageAbove(0.5)), options);
+  const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
   step(world, 5);
   for (int n = 0; n < body->body().m_nodes.size(); ++n) {
     if (body->isPinned(n)) body->body().setMass(n, btScalar(0.01));
@@ -146,7 +146,7 @@ TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
 
 TEST(BodyTrees, AreBuiltAnewForFacesAndNodesThatWereAdded) {
   EmptyWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.5)));
+  const auto body = added(world, twoParts(smallCageAbove(0.5)));
   btSoftBody& soft = body->body();
   const btDbvtNode* root = soft.m_fdbvt.m_root;
   soft.m_bUpdateRtCst = true;
@@ -163,7 +163,7 @@ TEST(BodyTrees, LeftOutLetRaysMissAndNothingHang) {
   SoftBodyOptions options;
   options.faceTree = false;
   EmptyWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.5)), options);
+  const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
   const auto expectMisses = [&] {
     for (const Ray& ray : raysAround(body->body(), 1)) EXPECT_EQ(hitIn(world.deformable(), body->body(), ray), 1.0);
   };
@@ -183,7 +183,7 @@ TEST(BodyTrees, LeftOutInAClassicWorldMeetTheTets) {
   SoftBodyOptions options;
   options.faceTree = false;
   options.forceModel = ForceModel::MassSpring;
-  test::RigidWorld world(twoParts(cageAbove(3)), options);
+  test::RigidWorld world(twoParts(smallCageAbove(3)), options);
   for (int k = 0; k < 5; ++k) world.world->stepSimulation(btScalar(1) / 60);
   expectRaysAsByBruteForce(*world.world, world.body(), 1);
   world.body().translate(btVector3(0, 1, 0));
@@ -193,7 +193,7 @@ TEST(BodyTrees, LeftOutInAClassicWorldMeetTheTets) {
 
 TEST(BodyTrees, OfAnExplodedBodyAreBuilt) {
   btSoftBodyWorldInfo info;
-  const std::unique_ptr<btSoftBody> body(makeSoftBody(cageAbove(0), info).value());
+  const std::unique_ptr<btSoftBody> body(makeSoftBody(smallCageAbove(0), info).value());
   for (int n = 0; n < body->m_nodes.size(); n += 3) body->m_nodes[n].m_x.setX(btScalar(NAN));
   buildTrees(*body);
   EXPECT_EQ(body->m_fdbvt.m_leaves, body->m_faces.size());
@@ -205,7 +205,7 @@ TEST(BulletsFaceTreeDeathTest, NeverEndsForABodyOfTwoParts) {
       {
         btSoftBodyWorldInfo info;
         const std::unique_ptr<btSoftBody> body(makeSoftBody(twoParts(test::singleTet()), info).value());
-        alarm(2);  // for eight faces
+        alarm(1);  // for eight faces
         body->initializeFaceTree();
       },
       testing::KilledBySignal(SIGALRM), "");

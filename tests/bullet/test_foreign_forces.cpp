@@ -10,15 +10,15 @@ namespace tetskin {
 namespace {
 
 using test::added;
-using test::cageAbove;
 using test::EmptyWorld;
+using test::smallCageAbove;
 using test::step;
 
 /// What the application makes: a body with gravity and material of its own, added by Bullet's means.
 class OwnBody {
  public:
   explicit OwnBody(btDeformableMultiBodyDynamicsWorld& world, double height = 20.0)
-      : body_(makeSoftBody(cageAbove(height), world.getWorldInfo()).value()), world_(world) {
+      : body_(makeSoftBody(smallCageAbove(height), world.getWorldInfo()).value()), world_(world) {
     world.addSoftBody(body_.get());
     world.addForce(body_.get(), &gravity);
     world.addForce(body_.get(), &elasticity);
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ForeignForces, testing::Bool(),
 
 TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
   EmptyWorld world;
-  auto ours = added(world, cageAbove(20), with(GetParam()));
+  auto ours = added(world, smallCageAbove(20), with(GetParam()));
   OwnBody own(world.deformable());
   EXPECT_EQ(own.gravity.m_softBodies.size(), 1);
   EXPECT_EQ(own.elasticity.m_softBodies.size(), 1);
@@ -90,7 +90,7 @@ TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
 TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
   EmptyWorld world;
   OwnBody own(world.deformable());
-  auto ours = added(world, cageAbove(20), with(GetParam()));
+  auto ours = added(world, smallCageAbove(20), with(GetParam()));
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
   EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
   ours.reset();
@@ -100,8 +100,8 @@ TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
 
 TEST_P(ForeignForces, DoNotJoinOursBetweenARemovalAndTheNextStep) {
   EmptyWorld world;
-  auto first = added(world, cageAbove(20), with(GetParam()));
-  auto second = added(world, cageAbove(40), with(GetParam()));
+  auto first = added(world, smallCageAbove(20), with(GetParam()));
+  auto second = added(world, smallCageAbove(40), with(GetParam()));
   step(world, 2);
   second.reset();
   OwnBody own(world.deformable());
@@ -112,7 +112,7 @@ TEST_P(ForeignForces, DoNotJoinOursBetweenARemovalAndTheNextStep) {
 
 TEST_P(ForeignForces, OfAnotherBodyGoWithoutHarm) {
   EmptyWorld world;
-  auto ours = added(world, cageAbove(20), with(GetParam()));
+  auto ours = added(world, smallCageAbove(20), with(GetParam()));
   {
     OwnBody own(world.deformable());
     step(world, 2);
@@ -123,8 +123,8 @@ TEST_P(ForeignForces, OfAnotherBodyGoWithoutHarm) {
 
 TEST_P(ForeignForces, AndOursMayEachHaveAGravityOfTheirOwn) {
   EmptyWorld world;
-  auto mars = added(world, cageAbove(20), with(GetParam()));
-  auto earth = added(world, cageAbove(40), with(GetParam()));
+  auto mars = added(world, smallCageAbove(20), with(GetParam()));
+  auto earth = added(world, smallCageAbove(40), with(GetParam()));
   mars->setGravity(btVector3(0, btScalar(-3.7), 0));
   EXPECT_NEAR(fallsAt(world, *mars), 3.7, 0.02);
   EXPECT_NEAR(fallsAt(world, *earth), 10.0, 0.05);
@@ -136,14 +136,14 @@ TEST_P(ForeignForces, AndOursMayEachHaveAGravityOfTheirOwn) {
 
 TEST_P(ForeignForces, AreLeftAloneWhenTheApplicationTakesOurBodyOut) {
   EmptyWorld world;
-  auto ours = added(world, cageAbove(20), with(GetParam()));
+  auto ours = added(world, smallCageAbove(20), with(GetParam()));
   OwnBody own(world.deformable());
   step(world, 2);
   world.deformable().removeSoftBody(&ours->body());
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
   ours.reset();
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
-  ours = added(world, cageAbove(40), with(GetParam()));
+  ours = added(world, smallCageAbove(40), with(GetParam()));
   EXPECT_EQ(forcesOf(world).size(), 4);  // the places that were kept are gone
   EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
 }
@@ -180,7 +180,7 @@ TEST(DeformableBody, MayOutliveItsWorld) {
   std::unique_ptr<DeformableBody> body;
   {
     EmptyWorld world;
-    body = added(world, cageAbove(1));
+    body = added(world, smallCageAbove(1));
     step(world, 2);
   }
   EXPECT_GT(body->body().m_nodes.size(), 0);
