@@ -212,7 +212,7 @@ TEST(LoadMesh, NamesAVertexThatIsNotFinite) {
       "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const Result<TriangleMesh> mesh = loadText("m.ply", header + buffer + '\3' + raw<std::int32_t>({0, 1, 2}));
-  expectError(mesh.status(), StatusCode::NonFinite, {"m.ply: vertex 2", "correct the model"});
+  expectError(mesh.status(), StatusCode::NonFinite, {"m.ply: vertex 2", "correct it"});
 }
 
 TEST(LoadMesh, NamesAFaceWithAnIndexOutOfRange) {

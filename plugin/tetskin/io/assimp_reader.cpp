@@ -207,7 +207,7 @@ Result<TriangleMesh> collect(const std::string& path, const aiScene& scene) {
   }
   if (mesh.groups.size() == 1 && mesh.groups[0].name.empty() && mesh.groups[0].material.empty()) mesh.groups.clear();
   const Status status = checkTriangleMesh(mesh);
-  if (!status.ok()) return fileError(status.code, path, 0, status.message + "; correct the model or export it again");
+  if (!status.ok()) return fileError(status.code, path, 0, status.message + " in the model, or export it again");
   return mesh;
 }
 
