@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -59,6 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TETSKIN_FUZZ_EXPECT(!mesh.value().tets.empty());
   const TetMeshReport report = repairTetMesh(mesh.value());
   TETSKIN_FUZZ_EXPECT(report.indexOutOfRange.count == 0 && report.nonFiniteNodes.count == 0);
+  TETSKIN_FUZZ_EXPECT(firstUnusable(viewOf(std::as_const(mesh.value().nodes))) == mesh.value().nodeCount());
   TETSKIN_FUZZ_EXPECT(checkTetMesh(mesh.value()).negativeVolume.count == 0);
   return 0;
 }

@@ -215,6 +215,14 @@ TEST(LoadMesh, NamesAVertexThatIsNotFinite) {
   expectError(mesh.status(), StatusCode::NonFinite, {"m.ply: vertex 2", "correct it"});
 }
 
+TEST(LoadMesh, NamesAVertexThatIsTooFar) {
+  expectError(loadText("m.stl",
+                       "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e31 "
+                       "0\nendloop\nendfacet\nendsolid plate\n")
+                  .status(),
+              StatusCode::NonFinite, {"m.stl: vertex 2", "beyond 1e18", "orrect"});
+}
+
 TEST(LoadMesh, NamesAFaceWithAnIndexOutOfRange) {
   expectError(loadText("m.ply", ply(kCorners, 4, "3 0 1 2\n3 0 1 9\n", 2)).status(), StatusCode::IndexOutOfRange,
               {"m.ply: ", "face 1", "vertex 9"});

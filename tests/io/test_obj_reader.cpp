@@ -32,6 +32,24 @@ TEST(LoadObj, KeepsVertexOrderAndUnusedVertices) {
   EXPECT_TRUE(mesh.value().groups.empty());
 }
 
+TEST(LoadObj, ReadsTheLineEndsOfOldMacs) {
+  for (const char* text :
+       {"# a comment\rv 0 0 0\rv 1 0 0\r\rv 0 1 0\rf 1 \\\r2 3\r", "v 0 0 0\rv 1 0 0\rv 0 1 0\nf 1 2 3"}) {
+    const Result<TriangleMesh> mesh = loadText(text);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh.value().positions, (std::vector<Eigen::Vector3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}}));
+  }
+  expectError(loadText("v 0 0 0\rv 1 0 0\rv 0 x 0\r").status(), StatusCode::Malformed, {"m.obj:3:"});
+  expectError(loadText("v 0 0 0\r\r\nv 1 0 0\r\nv 0 x 0\r\n").status(), StatusCode::Malformed, {"m.obj:3:"});
+}
+
+TEST(LoadObj, NamesTheLineOfACoordinateThatIsTooFar) {
+  expectError(loadText("v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n").status(), StatusCode::NonFinite,
+              {"m.obj:3:", "vertex 2", "beyond 1e18", "Correct it"});
+  EXPECT_TRUE(loadText("v 0 0 0\nv 1e18 0 0\nv 0 -1e18 0\nf 1 2 3\n").ok());
+}
+
 TEST(LoadObj, ReadsPositionsExactlyInDouble) {
   const TriangleMesh mesh = loadText("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n");
   ASSERT_EQ(mesh.vertexCount(), 3u);

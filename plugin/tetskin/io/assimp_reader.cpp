@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/io/assimp_reader.h>
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/polygon.h>
 
@@ -15,6 +16,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace tetskin::io {
@@ -208,6 +210,10 @@ Result<TriangleMesh> collect(const std::string& path, const aiScene& scene) {
   if (mesh.groups.size() == 1 && mesh.groups[0].name.empty() && mesh.groups[0].material.empty()) mesh.groups.clear();
   const Status status = checkTriangleMesh(mesh);
   if (!status.ok()) return fileError(status.code, path, 0, status.message + " in the model, or export it again");
+  const PointView<const double> positions = viewOf(std::as_const(mesh.positions));
+  if (const std::string fault = coordinateFault(positions); !fault.empty()) {
+    return fileError(StatusCode::NonFinite, path, 0, "vertex " + std::to_string(firstUnusable(positions)) + fault);
+  }
   return mesh;
 }
 

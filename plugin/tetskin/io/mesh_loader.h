@@ -21,8 +21,9 @@ namespace tetskin {
 /// - where only some of the meshes have texture coordinates, the others get 0; where only some have normals, the others
 ///   get smooth ones, weighted by area. Normals are unit, or 0 where the file's are useless.
 ///
-/// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite, and Empty if there are no vertices
-/// or no triangles. The message names the file, and the line of an `.obj` file. Throws nothing.
+/// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite (also for a coordinate beyond
+/// kLargestCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the line of
+/// an `.obj` file. Throws nothing.
 Result<TriangleMesh> loadMesh(const std::string& path);
 
 }  // namespace tetskin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/number_text.h>
 #include <tetskin/io/obj_reader.h>
@@ -129,9 +130,8 @@ Status ObjParser::readPosition() {
   Eigen::Vector3d position;
   Status status = readNumbers(3, 3, position);
   if (!status.ok()) return status;
-  if (!position.allFinite()) {
-    return error(StatusCode::NonFinite, "vertex " + std::to_string(mesh_.vertexCount()) +
-                                            " has a coordinate that is not finite; correct the line");
+  if (const std::string fault = coordinateFault(position); !fault.empty()) {
+    return error(StatusCode::NonFinite, "vertex " + std::to_string(mesh_.vertexCount()) + fault);
   }
   if (mesh_.vertexCount() == static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     return error(StatusCode::UnsupportedFormat, "more than 2147483647 vertices; split the model");

@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   Hang Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", file formats .node and .ele
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/tetgen_file.h>
 #include <tetskin/io/text_scanner.h>
@@ -79,9 +80,8 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
       return malformed(path, record,
                        "has node " + std::to_string(index) + " out of turn; nodes are numbered one by one from 0 or 1");
     }
-    if (!node.allFinite()) {
-      return fileError(StatusCode::NonFinite, path, record.line(),
-                       "node " + std::to_string(index) + " has a coordinate that is not finite; correct it");
+    if (const std::string fault = coordinateFault(node); !fault.empty()) {
+      return fileError(StatusCode::NonFinite, path, record.line(), "node " + std::to_string(index) + fault);
     }
     nodes.push_back(node);
   }
@@ -147,9 +147,9 @@ Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport&) {
   const bool isNode = lowerExtension(path) == ".node";
   const std::string nodePath = isNode ? path : sibling(path, ".node", ".NODE");
   const std::string elePath = isNode ? sibling(path, ".ele", ".ELE") : path;
-  const Result<std::string> nodeText = readFile(nodePath);
+  const Result<std::string> nodeText = readText(nodePath);
   if (!nodeText.ok()) return nodeText.status();
-  const Result<std::string> eleText = readFile(elePath);
+  const Result<std::string> eleText = readText(elePath);
   if (!eleText.ok()) return eleText.status();
 
   TetMesh mesh;
