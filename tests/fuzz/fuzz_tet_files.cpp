@@ -3,40 +3,17 @@
 //
 // Files of tet meshes, damaged: whatever the bytes, there is a sound mesh or a message. The first byte chooses the
 // format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed.
-#include "fuzz.h"
+#include "fuzz_files.h"
 
 #include <tetskin/io/tet_mesh_reader.h>
-#include <unistd.h>
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 
 namespace {
 
 using namespace tetskin;
-
-/// A folder of this process' own.
-const std::filesystem::path& folder() {
-  struct Folder {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("tetskin_fuzz_" + std::to_string(getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder made;
-  return made.path;
-}
-
-std::string write(const char* name, const std::string& bytes) {
-  const std::string path = (folder() / name).string();
-  std::ofstream(path, std::ios::binary) << bytes;
-  return path;
-}
+using test::write;
 
 Result<TetMesh> load(char format, const std::string& bytes) {
   if (format == 'v') return loadTetMesh(write("c.vtk", bytes));

@@ -6,6 +6,7 @@
 #include <tetskin/io/obj_reader.h>
 #include <tetskin/io/obj_scanner.h>
 #include <tetskin/io/polygon.h>
+#include <tetskin/io/unit_normal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -100,9 +101,7 @@ Status ObjParser::readStatement() {
   }
   if (keyword == "vn") {
     Status status = readNumbers(3, 3, values);
-    const double length = values.norm();
-    const bool usable = std::isfinite(length) && length > 0.0;
-    normals_.emplace_back(usable ? Eigen::Vector3f((values / length).cast<float>()) : Eigen::Vector3f(0, 0, 0));
+    normals_.push_back(unitNormal(values));
     return status;
   }
   if (keyword == "g" || keyword == "o") name_ = ObjWords(statement_.rest).name();

@@ -3,11 +3,11 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
+#include <tetskin/io/binary_numbers.h>
 #include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/text_scanner.h>
 #include <tetskin/io/vtk_file.h>
-#include <tetskin/io/vtk_numbers.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -141,7 +141,7 @@ Status VtkReader::readCount(const char* what, std::uint64_t& count) {
 }
 
 Status VtkReader::checkRoom(std::uint64_t count, const std::string& type) {
-  const VtkNumberType numbers = vtkNumberType(type);
+  const NumberType numbers = vtkNumberType(type);
   if (binary_ && numbers.bytes == 0) {
     return error(StatusCode::UnsupportedFormat,
                  "has binary data of type " + excerpt(type) + ", which is not read; save it as ASCII");
@@ -161,12 +161,9 @@ Status VtkReader::readReals(std::uint64_t count, const std::string& type, std::v
   if (!status.ok()) return status;
   values.resize(static_cast<std::size_t>(count));
   if (binary_) {
-    const VtkNumberType numbers = vtkNumberType(type);
+    const NumberType numbers = vtkNumberType(type);
     const std::string_view data = in_.bytes(values.size() * numbers.bytes);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const char* at = data.data() + i * numbers.bytes;
-      values[i] = numbers.real ? decodeReal(at, numbers.bytes) : static_cast<double>(decodeInteger(at, numbers));
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = decodeNumber(data.data() + i * numbers.bytes, numbers);
     return {};
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -183,7 +180,7 @@ Status VtkReader::readIntegers(std::uint64_t count, const std::string& type, std
   if (!status.ok()) return status;
   values.resize(static_cast<std::size_t>(count));
   if (binary_) {
-    const VtkNumberType numbers = vtkNumberType(type);
+    const NumberType numbers = vtkNumberType(type);
     if (numbers.real) return error(StatusCode::Malformed, "has indices of type " + excerpt(type) + "; save it again");
     const std::string_view data = in_.bytes(values.size() * numbers.bytes);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = decodeInteger(data.data() + i * numbers.bytes, numbers);
