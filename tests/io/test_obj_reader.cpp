@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 namespace tetskin {
 namespace {
@@ -134,6 +135,21 @@ TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
     ASSERT_EQ(mesh.triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(area(mesh), 4.0) << face;
   }
+}
+
+TEST(LoadObj, APolygonThatCrossesItselfNamesAllItsCorners) {
+  std::mt19937 random(1);
+  std::string text, face = "f";
+  for (int v = 1; v <= 200; ++v) {
+    text += "v " + std::to_string(random() % 1000) + " " + std::to_string(random() % 1000) + " 0\n";
+    face += " " + std::to_string(v);
+  }
+  const Result<TriangleMesh> mesh = loadText(text + face);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().triangleCount(), 198u);
+  std::set<int> named;
+  for (const Triangle& t : mesh.value().triangles) named.insert(t.begin(), t.end());
+  EXPECT_EQ(named.size(), 200u);
 }
 
 TEST(LoadObj, ConcavePolygonsAreNotFolded) {
