@@ -55,7 +55,7 @@ int run(CageCommand command) {
   // Counted as an application would see it, not as the builder believes it to be.
   Embedding embedding;
   const EmbedReport fit = embed(cage, viewOf(surface.mesh.positions), {}, embedding);
-  require(fit.status);
+  if (!fit.ok()) throw InputError(surface.name + ": " + fit.status.message);
   if (!command.json.empty()) writeJson(summarise(surface, report, fit), command.json);
   if (!command.quiet) std::printf("%s%s\n", report.describe().c_str(), command.output.c_str());
   if (fit.outside == 0) return kDone;

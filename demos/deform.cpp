@@ -102,8 +102,9 @@ int run(const DeformCommand& command) {
   requireFit(fit, command.model);
   MeshSkin<double> skin;
   const auto start = std::chrono::steady_clock::now();
-  require(skin.bind(binding, viewOf(deformed.nodes), command.skin));
+  const Status bound = skin.bind(binding, viewOf(deformed.nodes), command.skin);
   const double updateUs = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  if (!bound.ok()) throw InputError(command.deformed + ": " + bound.message);
 
   writeSurface(skin, layoutWith(command.skin.normals, layout.value()), command.output);
   if (!command.embedding.empty()) require(io::writeFile(command.embedding, embeddingText(binding->embedding)));

@@ -67,6 +67,16 @@ TEST(TetMesh, ReportsNonFiniteNodes) {
   EXPECT_EQ(usable(mesh, report).code, StatusCode::NonFinite);
 }
 
+TEST(TetMesh, RefusesMoreTetsThanItsIndicesCanNumber) {
+  EXPECT_TRUE(checkTetCounts(kMostTets, kMostTets).ok());
+  const Status nodes = checkTetCounts(kMostTets + 1, 1);
+  EXPECT_EQ(nodes.code, StatusCode::TooLarge);
+  EXPECT_NE(nodes.message.find("134217728 nodes"), std::string::npos) << nodes.message;
+  const Status tets = checkTetCounts(4, kMostTets + 1);
+  EXPECT_EQ(tets.code, StatusCode::TooLarge);
+  EXPECT_NE(tets.message.find("134217728 tets"), std::string::npos) << tets.message;
+}
+
 TEST(TetMesh, UsableRefusesWhatCannotBeEmbeddedIn) {
   TetMesh mesh;
   EXPECT_EQ(usable(mesh, checkTetMesh(mesh)).code, StatusCode::Empty);
@@ -77,7 +87,7 @@ TEST(TetMesh, UsableRefusesWhatCannotBeEmbeddedIn) {
   mesh.nodes[3].z() = 0.0;
   const Status flat = usable(mesh, checkTetMesh(mesh));
   EXPECT_EQ(flat.code, StatusCode::Degenerate);
-  EXPECT_FALSE(flat.message.empty());
+  EXPECT_NE(flat.message.find("flat; "), std::string::npos) << flat.message;
 }
 
 TEST(TetMesh, UsableAcceptsSurvivableFaults) {

@@ -13,7 +13,7 @@ namespace {
 
 TEST(StatusCode, EveryCodeHasItsOwnName) {
   std::set<std::string> names;
-  constexpr int kCodes = static_cast<int>(StatusCode::CageMismatch) + 1;
+  constexpr int kCodes = static_cast<int>(StatusCode::TooLarge) + 1;
   for (int c = 0; c < kCodes; ++c) names.insert(toString(static_cast<StatusCode>(c)));
   EXPECT_EQ(names.size(), static_cast<std::size_t>(kCodes));
   EXPECT_EQ(names.count("unknown status"), 0u);
@@ -95,6 +95,16 @@ TEST(TriangleMesh, CheckNamesTheFirstFault) {
   const Status notFinite = checkTriangleMesh(mesh);
   EXPECT_EQ(notFinite.code, StatusCode::NonFinite);
   EXPECT_NE(notFinite.message.find("vertex 1"), std::string::npos);
+}
+
+TEST(CheckTriangleCounts, RefusesMoreThanItsIndicesCanNumber) {
+  EXPECT_TRUE(checkTriangleCounts(2147483647, kMostTriangles).ok());
+  const Status vertices = checkTriangleCounts(2147483648, 1);
+  EXPECT_EQ(vertices.code, StatusCode::TooLarge);
+  EXPECT_NE(vertices.message.find("2147483648 vertices, more than the 2147483647"), std::string::npos);
+  const Status triangles = checkTriangleCounts(3, kMostTriangles + 1);
+  EXPECT_EQ(triangles.code, StatusCode::TooLarge);
+  EXPECT_NE(triangles.message.find("477218589 triangles, more than the 477218588"), std::string::npos);
 }
 
 }  // namespace

@@ -73,11 +73,13 @@ TEST_F(CageCommand, FlatSheetGetsAThinCage) {
 TEST_F(CageCommand, RefusesBadInput) {
   folder.write("empty.obj", "# nothing\n");
   folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n");
   folder.write("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
   folder.write("ok.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expectRefused({"--mesh", "nowhere.obj", "-o", "c.vtk"}, "nowhere.obj");
   expectRefused({"--mesh", "empty.obj", "-o", "c.vtk"}, "empty.obj");
   expectRefused({"--mesh", "nan.obj", "-o", "c.vtk"}, "nan.obj:2");
+  expectRefused({"--mesh", "far.obj", "-o", "c.vtk"}, "far.obj:3: vertex 2 has a coordinate beyond 1e18");
   expectRefused({"--mesh", "point.obj", "-o", "c.vtk"}, "point.obj");
   expectRefused({"--mesh", "ok.obj", "--tets", "0", "-o", "c.vtk"}, "--tets");
   expectRefused({"--mesh", "ok.obj", "--tets", "900000000", "-o", "c.vtk"}, "ok.obj");

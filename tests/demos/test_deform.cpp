@@ -362,10 +362,19 @@ TEST_F(Deform, RefusesADeformedCageThatHasExploded) {
   writeTwoTets(folder);
   std::string text = folder.read("rest.vtk");
   text.replace(text.find("1 0 0"), 1, "nan");
-  folder.write("now.vtk", text);
-  const CommandResult result = deform();
-  EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.err.find("now.vtk:"), std::string::npos) << result.err;
+  folder.write("nan.vtk", text);
+  text.replace(text.find("nan"), 3, "1e20");
+  folder.write("far.vtk", text);
+  expectRefused(with({"--deformed", "nan.vtk"}), {"nan.vtk:7: node 1", "not finite"});
+  expectRefused(with({"--deformed", "far.vtk"}), {"far.vtk:7: node 1", "beyond 1e18"});
+}
+
+TEST_F(Deform, NamesTheRestCageWhoseTetsAreAllFlat) {
+  writeTwoTets(folder);
+  std::string text = folder.read("rest.vtk");
+  text.replace(text.find("0 0 1"), 5, "1 1 0").replace(text.find("0 0 -1"), 6, "-1 1 0");
+  folder.write("flat.vtk", text);
+  expectRefused(with({"--cage", "flat.vtk"}), {"flat.vtk: all 2 tets", "flat; "});
 }
 
 }  // namespace

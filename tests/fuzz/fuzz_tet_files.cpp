@@ -3,39 +3,17 @@
 //
 // Files of tet meshes, damaged: whatever the bytes, there is a sound mesh or a message. The first byte chooses the
 // format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed.
-#include "fuzz.h"
+#include "fuzz_files.h"
 
 #include <tetskin/io/tet_mesh_reader.h>
-#include <unistd.h>
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string>
+#include <utility>
 
 namespace {
 
 using namespace tetskin;
-
-/// A folder of this process' own.
-const std::filesystem::path& folder() {
-  struct Folder {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("tetskin_fuzz_" + std::to_string(getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder made;
-  return made.path;
-}
-
-std::string write(const char* name, const std::string& bytes) {
-  const std::string path = (folder() / name).string();
-  std::ofstream(path, std::ios::binary) << bytes;
-  return path;
-}
+using test::write;
 
 Result<TetMesh> load(char format, const std::string& bytes) {
   if (format == 'v') return loadTetMesh(write("c.vtk", bytes));
@@ -59,6 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TETSKIN_FUZZ_EXPECT(!mesh.value().tets.empty());
   const TetMeshReport report = repairTetMesh(mesh.value());
   TETSKIN_FUZZ_EXPECT(report.indexOutOfRange.count == 0 && report.nonFiniteNodes.count == 0);
+  TETSKIN_FUZZ_EXPECT(firstUnusable(viewOf(std::as_const(mesh.value().nodes))) == mesh.value().nodeCount());
   TETSKIN_FUZZ_EXPECT(checkTetMesh(mesh.value()).negativeVolume.count == 0);
   return 0;
 }

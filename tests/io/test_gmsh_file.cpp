@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
+#include <algorithm>
+
 namespace tetskin {
 namespace {
 
@@ -53,6 +55,20 @@ TEST(LoadGmsh, ReadsOverOtherSections) {
   expectTwoTets(loadText("$Comments\nany text, 5 numbers\n$EndComments\n" + kHead4 +
                          "$PhysicalNames\n1\n3 1 \"the $body\"\n$EndPhysicalNames\n$Entities\n0 0 0 0\n$EndEntities\n" +
                          kNodes4 + kElements4 + "$NodeData\n1\n\"T\"\n$EndNodeData\n"));
+}
+
+TEST(LoadGmsh, ReadsTheLineEndsOfOldMacs) {
+  for (std::string text : {kHead2 + kNodes2 + kElements2, kHead4 + kNodes4 + kElements4}) {
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    expectTwoTets(loadText(text));
+  }
+}
+
+TEST(LoadGmsh, NamesTheLineOfACoordinateThatIsTooFar) {
+  std::string text = kHead2 + kNodes2 + kElements2;
+  text.replace(text.find("0.1 1 1"), 3, "2e18");
+  expectError(loadText(text).status(), StatusCode::NonFinite,
+              {"c.msh:10:", "node 1000000", "beyond 1e18", "Correct it"});
 }
 
 TEST(LoadGmsh, SectionsMayComeInAnyOrder) {

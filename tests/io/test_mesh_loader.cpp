@@ -19,23 +19,7 @@ Result<TriangleMesh> loadText(const std::string& name, const std::string& text) 
   return loadMesh(folder.write(name, text));
 }
 
-std::string ply(const std::string& vertices, int vertexCount, const std::string& faces, int faceCount) {
-  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertexCount) +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faceCount) +
-         "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
-}
-
 const std::string kCorners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-
-TEST(LoadMesh, ReadsPlyAndCutsItsPolygons) {
-  const Result<TriangleMesh> mesh = loadText("m.ply", ply(kCorners, 4, "4 0 1 2 3\n3 0 2 1\n", 2));
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  EXPECT_EQ(mesh.value().positions[2], Eigen::Vector3d(1, 1, 0));
-  EXPECT_EQ(mesh.value().triangleCount(), 3u);
-  EXPECT_EQ(mesh.value().triangles.back(), (Triangle{0, 2, 1}));
-  EXPECT_TRUE(mesh.value().normals.empty());
-  EXPECT_TRUE(mesh.value().texcoords.empty());
-}
 
 TEST(LoadMesh, KeepsTheThreeVerticesOfEveryStlTriangle) {
   const TriangleMesh mesh =
@@ -184,8 +168,35 @@ TEST(LoadMesh, FacesWithoutCornersDoNoHarm) {
 }
 
 TEST(LoadMesh, RefusesMeshesWithoutTriangles) {
-  expectError(loadText("points.ply", ply(kCorners, 4, "", 0)).status(), StatusCode::Empty,
-              {"points.ply", "no triangles", "export"});
+  expectError(loadText("lines.off", "OFF\n4 1 0\n" + kCorners + "2 0 1\n").status(), StatusCode::Empty,
+              {"lines.off", "no triangles", "export"});
+}
+
+TEST(LoadMesh, RefusesCountsThatTheFileCannotHold) {
+  for (const char* header : {"OFF\n2000000000 1 0\n", "OFF 4 # vertices\n2000000000 0\n", "2000000000\n1\n",
+                             "STCNnOFF\n3\n18446744073709551615 1 0\n", "OFF\n4 2 0\n"}) {
+    expectError(loadText("m.off", header + kCorners + "3 0 1 2\n").status(), StatusCode::Malformed,
+                {"m.off: states ", " vertices and ", "but holds 5 lines", "complete"});
+  }
+  EXPECT_TRUE(loadText("m.off", "# one\nOFF # two\n\n4\n1 0\n" + kCorners + "3 0 1 2").ok());
+  const auto glb = [](std::uint32_t scene) { return "glTF" + raw<std::uint32_t>({2, 24, scene}) + "JSON" + "{}  "; };
+  expectError(loadText("m.glb", glb(2000000000)).status(), StatusCode::Malformed,
+              {"m.glb: states a scene of 2000000000 bytes", "holds 24 bytes", "complete"});
+  expectError(loadText("m.glb", glb(5)).status(), StatusCode::Malformed, {"m.glb: states a scene of 5 bytes"});
+  expectError(loadText("m.glb", glb(4)).status(), StatusCode::Malformed, {"m.glb: cannot be read: "});
+  expectError(loadText("m.glb", "glTF").status(), StatusCode::Malformed, {"m.glb: cannot be read: "});
+  const std::string triangle = raw<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0}) + std::string(2, '\0');
+  const auto stl = [&](std::uint32_t triangles, const std::string& mark) {
+    return mark + std::string(80 - mark.size(), '\0') + raw<std::uint32_t>({triangles}) + triangle;
+  };
+  // By 32 bits, 2147483649 triangles take as many bytes as one.
+  for (const std::uint32_t count : {2u, 2000000000u, 2147483649u, 4294967295u}) {
+    for (const char* mark : {"", "solid"}) {
+      expectError(loadText("m.stl", stl(count, mark)).status(), StatusCode::Malformed,
+                  {"m.stl: states " + std::to_string(count) + " triangles", "holds 134 bytes", "complete"});
+    }
+  }
+  EXPECT_EQ(loadText("m.stl", stl(1, "solid")).value().triangleCount(), 1u);
 }
 
 TEST(LoadMesh, NamesAMissingFileAndAFolder) {
@@ -202,22 +213,28 @@ TEST(LoadMesh, NamesFormatsThatAreNotRead) {
 
 TEST(LoadMesh, PassesOnWhatAssimpSaysOfABrokenFile) {
   expectError(loadText("m.gltf", "{ broken").status(), StatusCode::Malformed, {"m.gltf: cannot be read: ", "export"});
-  expectError(loadText("m.ply", "plyer").status(), StatusCode::Malformed, {"m.ply: cannot be read: "});
   expectError(loadText("m.stl", "").status(), StatusCode::Malformed, {"m.stl: cannot be read: "});
 }
 
 TEST(LoadMesh, NamesAVertexThatIsNotFinite) {
-  const std::string buffer = raw<float>({0, 0, 0, 1, 0, 0, 0, std::numeric_limits<float>::infinity(), 0});
-  std::string header =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  const Result<TriangleMesh> mesh = loadText("m.ply", header + buffer + '\3' + raw<std::int32_t>({0, 1, 2}));
-  expectError(mesh.status(), StatusCode::NonFinite, {"m.ply: vertex 2", "correct the model"});
+  expectError(loadText("m.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 inf 0\n3 0 1 2\n").status(), StatusCode::NonFinite,
+              {"m.off: vertex 2", "correct it"});
+}
+
+TEST(LoadMesh, NamesAVertexThatIsTooFar) {
+  expectError(loadText("m.stl",
+                       "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e31 "
+                       "0\nendloop\nendfacet\nendsolid plate\n")
+                  .status(),
+              StatusCode::NonFinite, {"m.stl: vertex 2", "beyond 1e18", "orrect"});
 }
 
 TEST(LoadMesh, NamesAFaceWithAnIndexOutOfRange) {
-  expectError(loadText("m.ply", ply(kCorners, 4, "3 0 1 2\n3 0 1 9\n", 2)).status(), StatusCode::IndexOutOfRange,
-              {"m.ply: ", "face 1", "vertex 9"});
+  expectError(loadText("m.x3d",
+                       R"(<?xml version="1.0"?><X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1 0 1 9 -1">
+<Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)")
+                  .status(),
+              StatusCode::IndexOutOfRange, {"m.x3d: ", "face 1", "vertex 9"});
 }
 
 }  // namespace

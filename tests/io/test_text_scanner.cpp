@@ -41,6 +41,30 @@ TEST(ParseDouble, OverflowIsInfiniteAndUnderflowIsZero) {
   EXPECT_TRUE(std::isnan(value));
 }
 
+TEST(ParseDouble, TellsOverflowFromUnderflowByTheDigits) {
+  const std::string zeros(400, '0'), ones(400, '1');
+  const auto read = [](const std::string& text) {
+    double value = 99;
+    EXPECT_TRUE(parseDouble(text, value)) << text;
+    return value;
+  };
+  EXPECT_EQ(read("0." + zeros + "1"), 0.0);
+  EXPECT_EQ(read("0." + zeros + "1e+2"), 0.0);
+  EXPECT_EQ(read("-0." + zeros + "1"), 0.0);
+  EXPECT_EQ(read("." + zeros + "1"), 0.0);
+  EXPECT_EQ(read("1e-99999999999999999999"), 0.0);
+  EXPECT_EQ(read("1e-9223372036854775808"), 0.0);
+  EXPECT_EQ(read(ones), HUGE_VAL);
+  EXPECT_EQ(read(ones + "e-5"), HUGE_VAL);
+  EXPECT_EQ(read(ones + ".5E-5"), HUGE_VAL);
+  EXPECT_EQ(read("+" + ones), HUGE_VAL);
+  EXPECT_EQ(read("-" + ones + "e-5"), -HUGE_VAL);
+  EXPECT_EQ(read("1e99999999999999999999"), HUGE_VAL);
+  EXPECT_EQ(read("0." + zeros + "1e401"), 1.0);
+  EXPECT_EQ(read("1" + zeros + "e-400"), 1.0);
+  EXPECT_EQ(read("0" + zeros + "1"), 1.0);
+}
+
 TEST(ParseInteger, RejectsFractionsAndWhatDoesNotFit) {
   int value = 0;
   EXPECT_TRUE(parseInteger("+7", value));

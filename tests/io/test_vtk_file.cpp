@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace tetskin {
@@ -52,6 +53,30 @@ TEST(LoadVtk, WithoutCellTypesAllCellsAreTets) {
   expectTwoTets(loadText(kHead + kPoints + kCells));
   const std::string wedge = "CELLS 2 12\n4 0 1 2 3\n6 0 1 2 3 4 0\n";
   expectError(loadText(kHead + kPoints + wedge).status(), StatusCode::Malformed, {"c.vtk:13:", "cell 1", "6 nodes"});
+}
+
+// What follows is the shape of files that Bullet's btSoftBodyHelpers::CreateFromVtkFile reads, and that Bullet ships.
+
+TEST(LoadVtk, TheMarkNeedsNoBlank) {
+  const std::string rest = kHead.substr(kHead.find("vtk"));
+  for (const char* mark : {"#", "#  ", "#\t"}) expectTwoTets(loadText(mark + rest + kPoints + kCells + kTypes));
+  expectError(loadText("#vtkDataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
+  expectError(loadText("## vtk DataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
+}
+
+TEST(LoadVtk, TheStatedSizeOfCellsOfTextMeansNothing) {
+  for (const char* size : {"1", "2", "8", "2000000000"}) {
+    expectTwoTets(loadText(kHead + kPoints + "CELLS 2 " + size + "\n4 0 1 2 3\n4 1 2 3 4\n\n" + kTypes));
+  }
+}
+
+TEST(LoadVtk, ALoneTypeOfTetsStandsForAllCells) {
+  expectTwoTets(loadText(kHead + kPoints + kCells + "CELL_TYPES 10\n"));
+  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 12\n").status(), StatusCode::Malformed, {"too short"});
+  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 10\n10\n").status(), StatusCode::Malformed,
+              {"c.vtk:14:"});
+  const std::string wedge = "CELLS 1 7\n6 0 1 2 3 4 0\n";
+  expectError(loadText(kHead + kPoints + wedge + "CELL_TYPES 10\n").status(), StatusCode::Malformed, {"6 nodes"});
 }
 
 TEST(LoadVtk, SkipsAndCountsOtherCells) {
@@ -147,9 +172,38 @@ TEST(LoadVtk, NamesTheLineOfAnIndexOutOfRange) {
       StatusCode::IndexOutOfRange, {"c.vtk:16:", "cell 0", "node -1"});
 }
 
+TEST(LoadVtk, RefusesBinaryCellsThatBelieTheirSize) {
+  const std::string text = binaryText();
+  std::string longer = text;
+  longer.replace(text.find("CELLS 3 14\n") + 11, 4, big(std::int32_t(9)));
+  expectError(loadText(longer).status(), StatusCode::Malformed, {"c.vtk: ", "cell 2 of 3", "counts"});
+  std::string fewer = text;
+  fewer.replace(text.find("CELLS 3"), 7, "CELLS 2");
+  expectError(loadText(fewer).status(), StatusCode::Malformed, {"c.vtk:", "behind the last of its 2 cells"});
+}
+
 TEST(LoadVtk, NamesTheLineOfACoordinateThatIsNotFinite) {
   expectError(loadText(kHead + "POINTS 2 float\n0 0 0\n0 nan 0\n").status(), StatusCode::NonFinite,
               {"c.vtk:7:", "node 1"});
+  expectError(loadText(kHead + "POINTS 2 float\n0 0 0\n0 -1e19 0\n").status(), StatusCode::NonFinite,
+              {"c.vtk:7:", "node 1", "beyond 1e18", "Correct it"});
+  std::string far = binaryText();
+  far.replace(far.find("POINTS 5 double\n") + 16 + 24, 8, big(1e19));
+  expectError(loadText(far).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1", "beyond 1e18"});
+}
+
+TEST(LoadVtk, ReadsTheLineEndsOfOldMacs) {
+  std::string text = kHead + "METADATA\n\n" + kPoints + kCells + kTypes;
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  expectTwoTets(loadText(text));
+}
+
+TEST(LoadVtk, KeepsCarriageReturnsInBinaryData) {
+  std::string text = binaryText();
+  text.replace(text.find("POINTS 5 double\n") + 16, 8, big(-0.0).replace(7, 1, "\r"));
+  const Result<TetMesh> mesh = loadText(text);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().nodes[0].x(), -13 * 4.9406564584124654e-324);
 }
 
 TEST(LoadVtk, RefusesCountsThatDoNotFit) {
@@ -158,10 +212,12 @@ TEST(LoadVtk, RefusesCountsThatDoNotFit) {
   expectError(loadText(kHead + "POINTS 99999999999999999999 float\n").status(), code, {"c.vtk:5:"});
   expectError(loadText(kHead + "POINTS 18446744073709551615 float\n").status(), code, {"c.vtk:5:"});
   expectError(loadText(kHead + "POINTS 4 float\n0 0 0 1\n0 0 0 1 0 x 0 1\n").status(), code, {"c.vtk:7:", "number"});
-  expectError(loadText(kHead + kPoints + "CELLS 9 10\n4 0 1 2 3\n4 1 2 3 4\n" + kTypes).status(), code, {"cell 2"});
+  expectError(loadText(kHead + kPoints + "CELLS 9 10\n4 0 1 2 3\n4 1 2 3 4\n" + kTypes).status(), code,
+              {"c.vtk:14:", "cell 2 of 9", "counts"});
   expectError(loadText(kHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n5 1 2 3 4\n" + kTypes).status(), code,
               {"c.vtk:13:", "cell 1"});
-  expectError(loadText(kHead + kPoints + "CELLS 1 10\n4 0 1 2 3\n4 1 2 3 4\n").status(), code, {"c.vtk:13:", "behind"});
+  expectError(loadText(kHead + kPoints + "CELLS 1 10\n4 0 1 2 3\n4 1 2 3 4\n").status(), code,
+              {"c.vtk:13:", "'4'", "section"});
   expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 1\n10\n").status(), code, {"1 cell types for 2 cells"});
   expectError(loadText(kHead + "POINTS 1 float\n0 0 0\n1 1 1\n").status(), code, {"c.vtk:7:", "'1'", "section"});
   expectError(loadText(kHead + kPoints).status(), code, {"ends before CELLS"});

@@ -116,20 +116,30 @@ TetMeshReport checkTetMesh(const TetMesh& mesh) {
   return report;
 }
 
+Status checkTetCounts(std::size_t nodes, std::size_t tets) {
+  if (nodes <= kMostTets && tets <= kMostTets) return {};
+  const bool excess = nodes > kMostTets;
+  return {StatusCode::TooLarge, "the cage has " + std::to_string(excess ? nodes : tets) +
+                                    (excess ? " nodes" : " tets") + ", more than the " + std::to_string(kMostTets) +
+                                    " that can be numbered; make a coarser one"};
+}
+
 Status usable(const TetMesh& mesh, const TetMeshReport& report) {
   const auto first = [](const TetMeshReport::Fault& fault) { return std::to_string(fault.first); };
   if (mesh.tets.empty()) return {StatusCode::Empty, "the cage has no tets"};
+  if (Status status = checkTetCounts(mesh.nodeCount(), mesh.tetCount()); !status.ok()) return status;
   if (report.indexOutOfRange.count > 0) {
     return {StatusCode::IndexOutOfRange, "tet " + first(report.indexOutOfRange) +
                                              " of the cage names a node that does not exist; there are " +
-                                             std::to_string(mesh.nodeCount()) + " nodes"};
+                                             std::to_string(mesh.nodeCount()) + " nodes; correct the tet"};
   }
   if (report.nonFiniteNodes.count > 0) {
     return {StatusCode::NonFinite,
-            "node " + first(report.nonFiniteNodes) + " of the cage has a coordinate that is not finite"};
+            "node " + first(report.nonFiniteNodes) + " of the cage has a coordinate that is not finite; correct it"};
   }
   if (report.zeroVolume.count + report.repeatedNode.count == mesh.tetCount()) {
-    return {StatusCode::Degenerate, "all " + std::to_string(mesh.tetCount()) + " tets of the cage are flat"};
+    return {StatusCode::Degenerate, "all " + std::to_string(mesh.tetCount()) +
+                                        " tets of the cage are flat; is it a surface? Fill its inside with tets"};
   }
   return {};
 }

@@ -24,7 +24,8 @@ struct TetMesh {
 };
 
 /// What is wrong with a tet mesh: how many of each, and where the first one is (undefined where the count is 0).
-/// The first three make a mesh unusable, the others are survivable and reported.
+/// The first two make a mesh unusable. The others are survivable and reported, as long as not every tet repeats a node
+/// or has no volume.
 struct TetMeshReport {
   struct Fault {
     std::size_t count = 0;
@@ -51,8 +52,14 @@ TetMeshReport checkTetMesh(const TetMesh& mesh);
 /// for N nodes, allocates nothing.
 TetMeshReport checkForUse(const TetMesh& mesh);
 
-/// Ok if the mesh can be used, by a report of either check: it has tets, all indices exist, all coordinates are finite,
-/// at least one tet has a volume.
+/// Most nodes, and most tets: the lists of neighbours of all of them, up to 32 each, are counted by 32 bits.
+constexpr std::size_t kMostTets = 0xFFFFFFFFu / 32;
+
+/// Ok if a mesh may have so many. Error: TooLarge
+Status checkTetCounts(std::size_t nodes, std::size_t tets);
+
+/// Ok if the mesh can be used, by a report of either check: it has tets, not too many, all indices exist, all
+/// coordinates are finite, at least one tet has a volume.
 Status usable(const TetMesh& mesh, const TetMeshReport& report);
 
 /// Reverses the orientation of negative tets by exchanging their last two nodes. Returns the report of the mesh as it

@@ -4,19 +4,29 @@
 
 namespace tetskin {
 
+Status checkTriangleCounts(std::size_t vertices, std::size_t triangles) {
+  if (vertices <= kMostVertices && triangles <= kMostTriangles) return {};
+  const bool excess = vertices > kMostVertices;
+  return {StatusCode::TooLarge, "the mesh has " + std::to_string(excess ? vertices : triangles) +
+                                    (excess ? " vertices" : " triangles") + ", more than the " +
+                                    std::to_string(excess ? kMostVertices : kMostTriangles) +
+                                    " that can be numbered; split it"};
+}
+
 Status checkTriangleMesh(const TriangleMesh& mesh) {
+  if (Status status = checkTriangleCounts(mesh.vertexCount(), mesh.triangleCount()); !status.ok()) return status;
   if (mesh.positions.empty()) return {StatusCode::Empty, "the mesh has no vertices"};
   const std::size_t bad = firstNonFinite(viewOf(mesh.positions));
   if (bad < mesh.vertexCount()) {
     return {StatusCode::NonFinite,
-            "vertex " + std::to_string(bad) + " of the mesh has a coordinate that is not finite"};
+            "vertex " + std::to_string(bad) + " of the mesh has a coordinate that is not finite; correct it"};
   }
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
     for (const int v : mesh.triangles[t]) {
       if (v >= 0 && static_cast<std::size_t>(v) < mesh.vertexCount()) continue;
       return {StatusCode::IndexOutOfRange, "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
                                                ", but the mesh has " + std::to_string(mesh.vertexCount()) +
-                                               " vertices"};
+                                               " vertices; correct the triangle"};
     }
   }
   return {};

@@ -35,8 +35,16 @@ struct TriangleMesh {
   std::size_t triangleCount() const { return triangles.size(); }
 };
 
-/// Ok if the mesh has vertices, all finite, and every triangle names existing vertices. A mesh without triangles (a
-/// point cloud) is fine. Cost O(vertexCount + triangleCount).
+/// Most vertices: their indices are ints. Most triangles: the paths around vertices along which normals are computed
+/// take nine numbers a triangle at worst, which are counted by 32 bits.
+constexpr std::size_t kMostVertices = 0x7FFFFFFF;
+constexpr std::size_t kMostTriangles = 0xFFFFFFFFu / 9;
+
+/// Ok if a mesh may have so many. Error: TooLarge
+Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
+
+/// Ok if the mesh has vertices, not too many, all finite, and every triangle names existing vertices. A mesh without
+/// triangles (a point cloud) is fine. Cost O(vertexCount + triangleCount).
 Status checkTriangleMesh(const TriangleMesh& mesh);
 
 }  // namespace tetskin

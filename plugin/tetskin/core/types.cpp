@@ -32,6 +32,8 @@ const char* toString(StatusCode code) {
       return "outside the cage";
     case StatusCode::CageMismatch:
       return "of another cage";
+    case StatusCode::TooLarge:
+      return "too large";
   }
   return "unknown status";
 }

@@ -31,6 +31,7 @@ enum class StatusCode {
   InvalidOption,      ///< an option's value makes no sense
   OutsideCage,        ///< a vertex lies farther outside the cage than allowed
   CageMismatch,       ///< the data belongs to another cage
+  TooLarge,           ///< more of something than indices of 32 bits can number
 };
 
 /// Name of a status code, for messages and logs. Never null.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/io/assimp_reader.h>
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/polygon.h>
+#include <tetskin/io/stated_sizes.h>
+#include <tetskin/io/unit_normal.h>
 
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -11,10 +14,10 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace tetskin::io {
@@ -36,12 +39,6 @@ Eigen::Affine3d affine(const aiMatrix4x4& m) {
 
 Eigen::Vector3d vector(const aiVector3D& v) {
   return {v.x, v.y, v.z};
-}
-
-/// v / |v|, or 0 where that is no direction.
-Eigen::Vector3f direction(const Eigen::Vector3d& v) {
-  const double length = v.norm();
-  return length > 0.0 && std::isfinite(length) ? Eigen::Vector3f((v / length).cast<float>()) : Eigen::Vector3f(0, 0, 0);
 }
 
 /// Matrix of cofactors times the sign of the determinant: a positive multiple of the inverse transpose, which normals
@@ -126,7 +123,7 @@ void appendSmoothNormals(TriangleMesh& mesh, std::size_t firstVertex, std::size_
     const Eigen::Vector3d area = (mesh.positions[at(1)] - p).cross(mesh.positions[at(2)] - p);
     for (int corner = 0; corner < 3; ++corner) sums[at(corner) - firstVertex] += area;
   }
-  for (const Eigen::Vector3d& sum : sums) mesh.normals.push_back(direction(sum));
+  for (const Eigen::Vector3d& sum : sums) mesh.normals.push_back(unitNormal(sum));
 }
 
 void appendTriangles(const Instance& instance, const std::vector<int>& vertices, TriangleMesh& mesh) {
@@ -162,7 +159,7 @@ void appendNormals(const Instance& instance, const std::vector<bool>& kept, std:
   if (!part.HasNormals()) return appendSmoothNormals(mesh, firstVertex, firstTriangle);
   const Eigen::Matrix3d toScene = normalMatrix(instance.toScene.linear());
   for (unsigned v = 0; v < part.mNumVertices; ++v) {
-    if (kept[v]) mesh.normals.push_back(direction(toScene * vector(part.mNormals[v])));
+    if (kept[v]) mesh.normals.push_back(unitNormal(toScene * vector(part.mNormals[v])));
   }
 }
 
@@ -207,7 +204,11 @@ Result<TriangleMesh> collect(const std::string& path, const aiScene& scene) {
   }
   if (mesh.groups.size() == 1 && mesh.groups[0].name.empty() && mesh.groups[0].material.empty()) mesh.groups.clear();
   const Status status = checkTriangleMesh(mesh);
-  if (!status.ok()) return fileError(status.code, path, 0, status.message + "; correct the model or export it again");
+  if (!status.ok()) return fileError(status.code, path, 0, status.message + " in the model, or export it again");
+  const PointView<const double> positions = viewOf(std::as_const(mesh.positions));
+  if (const std::string fault = coordinateFault(positions); !fault.empty()) {
+    return fileError(StatusCode::NonFinite, path, 0, "vertex " + std::to_string(firstUnusable(positions)) + fault);
+  }
   return mesh;
 }
 
@@ -230,6 +231,7 @@ Status checkPath(const std::string& path, const Assimp::Importer& importer) {
 Result<TriangleMesh> importFile(const std::string& path) {
   Assimp::Importer importer;
   Status status = checkPath(path, importer);
+  if (status.ok()) status = checkStatedSizes(path);
   if (!status.ok()) return status;
   // A file with nothing but bones would otherwise show up as a mesh of its bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);

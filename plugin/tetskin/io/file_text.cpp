@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 namespace tetskin::io {
 
@@ -43,6 +44,25 @@ Result<std::string> readFile(const std::string& path) {
     return fileError(StatusCode::FileNotFound, path, 0, "cannot be read: " + systemReason() + "; check the disk");
   }
   return bytes;
+}
+
+Result<std::string> readText(const std::string& path) {
+  Result<std::string> text = readFile(path);
+  if (!text.ok()) return text;
+  return withLineFeeds(std::move(text).value());
+}
+
+std::string withLineFeeds(std::string text) {
+  if (text.find('\r') == text.npos) return text;
+  bool beforeFeed = false;
+  for (auto c = text.rbegin(); c != text.rend(); ++c) {
+    if (*c != '\r') {
+      beforeFeed = *c == '\n';
+    } else if (!beforeFeed) {
+      *c = '\n';
+    }
+  }
+  return text;
 }
 
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what) {

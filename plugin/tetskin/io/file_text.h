@@ -13,6 +13,12 @@ namespace tetskin::io {
 /// All bytes of a file. Errors: FileNotFound, also for a folder and for a file that cannot be read.
 Result<std::string> readFile(const std::string& path);
 
+/// All of a text file. Lone carriage returns, the line ends of old Macs, become line feeds. Errors: those of `readFile`
+Result<std::string> readText(const std::string& path);
+
+/// The text with its lone carriage returns as line feeds. Those before a line feed stay.
+std::string withLineFeeds(std::string text);
+
 /// A status whose message starts with the place: "path:line: what", or "path: what" where line is 0.
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what);
 

@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   Christophe Geuzaine, Jean-François Remacle, "Gmsh Reference Manual", chapter "Gmsh file formats"
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/gmsh_file.h>
 #include <tetskin/io/text_scanner.h>
@@ -133,9 +134,8 @@ Status GmshReader::readCount(std::uint64_t numbersEach, std::uint64_t& count) {
 Status GmshReader::readPosition() {
   Eigen::Vector3d node;
   if (!in_.number(node[0]) || !in_.number(node[1]) || !in_.number(node[2])) return cutShort();
-  if (!node.allFinite()) {
-    return error(StatusCode::NonFinite, "node " + std::to_string(tags_[mesh_.nodeCount()].first) +
-                                            " has a coordinate that is not finite; correct it");
+  if (const std::string fault = coordinateFault(node); !fault.empty()) {
+    return error(StatusCode::NonFinite, "node " + std::to_string(tags_[mesh_.nodeCount()].first) + fault);
   }
   mesh_.nodes.push_back(node);
   return {};
@@ -268,7 +268,7 @@ Status GmshReader::collectTets() {
 }  // namespace
 
 Result<TetMesh> readGmshFile(const std::string& path, TetFileReport& report) {
-  const Result<std::string> text = readFile(path);
+  const Result<std::string> text = readText(path);
   if (!text.ok()) return text.status();
   return GmshReader(path, text.value(), report).read();
 }

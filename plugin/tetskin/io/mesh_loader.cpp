@@ -4,11 +4,14 @@
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/obj_reader.h>
+#include <tetskin/io/ply_reader.h>
 
 namespace tetskin {
 
 Result<TriangleMesh> loadMesh(const std::string& path) {
-  return io::lowerExtension(path) == ".obj" ? io::readObj(path) : io::readWithAssimp(path);
+  const std::string extension = io::lowerExtension(path);
+  if (extension == ".obj") return io::readObj(path);
+  return extension == ".ply" ? io::readPly(path) : io::readWithAssimp(path);
 }
 
 }  // namespace tetskin

@@ -14,15 +14,18 @@ namespace tetskin {
 /// triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has one of its own.
 /// See `io/obj_reader.h`.
 ///
-/// Everything else (PLY, STL, glTF, FBX, Collada, 3DS, OFF, ...) is read by assimp, as it stands in its scene:
+/// `.ply` files likewise, see `io/ply_reader.h`: no groups, normals and texture coordinates if the file has them.
+///
+/// Everything else (STL, glTF, FBX, Collada, 3DS, OFF, ...) is read by assimp, as it stands in its scene:
 /// - every mesh once for each node that shows it, transformed, as one group; in the file's own unit;
 /// - vertices are those of assimp (three a triangle for STL), none joined; those of lines and points are left out, and
 ///   so are bones and animations;
 /// - where only some of the meshes have texture coordinates, the others get 0; where only some have normals, the others
 ///   get smooth ones, weighted by area. Normals are unit, or 0 where the file's are useless.
 ///
-/// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite, and Empty if there are no vertices
-/// or no triangles. The message names the file, and the line of an `.obj` file. Throws nothing.
+/// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite (also for a coordinate beyond
+/// kLargestCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the line of
+/// an `.obj` or an ASCII `.ply` file. Throws nothing.
 Result<TriangleMesh> loadMesh(const std::string& path);
 
 }  // namespace tetskin

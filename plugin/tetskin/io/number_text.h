@@ -2,29 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <system_error>
 
 namespace tetskin::io {
-
-/// Reads a token that is one number and nothing else: decimal or scientific, with an optional sign, also "inf" and
-/// "nan". Correctly rounded, whatever the locale. A number too large for double is infinite, one too small is 0.
-/// Returns false, with `value` unspecified, if the token is not a number.
-inline bool parseDouble(std::string_view token, double& value) {
-  const char* first = token.data();
-  const char* last = first + token.size();
-  // std::from_chars takes no plus sign.
-  if (token.size() > 1 && *first == '+' && first[1] != '-') ++first;
-  const auto [end, error] = std::from_chars(first, last, value);
-  if (end != last || error == std::errc::invalid_argument) return false;
-  if (error == std::errc::result_out_of_range) {
-    const bool tiny = token.find("e-") != token.npos || token.find("E-") != token.npos;
-    value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
-  }
-  return true;
-}
 
 /// Reads a token that is one whole number and nothing else, with an optional sign; false if it is not, or does not fit.
 template <class Integer>
@@ -34,6 +20,38 @@ bool parseInteger(std::string_view token, Integer& value) {
   if (token.size() > 1 && *first == '+' && first[1] != '-') ++first;
   const auto [end, error] = std::from_chars(first, last, value);
   return error == std::errc() && end == last;
+}
+
+/// True if a number is 1 or more, false if it is less, by its text alone: there it may be far beyond a double.
+inline bool isLarge(std::string_view token) {
+  const std::size_t mark = std::min(token.find_first_of("eE"), token.size());
+  const std::string_view digits = token.substr(0, mark);
+  const std::size_t first = std::min(digits.find_first_of("123456789"), digits.size());
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  // 0.d1 d2 d3 ... times 10^places, without the exponent; a point before the first digit counts itself.
+  const std::int64_t places =
+      static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first) + (point < first ? 1 : 0);
+  if (mark == token.size()) return places > 0;
+  std::int32_t exponent = 0;
+  if (parseInteger(token.substr(mark + 1), exponent)) return places + exponent > 0;
+  return token[mark + 1] != '-';  // no text is as long as that exponent
+}
+
+/// Reads a token that is one number and nothing else: decimal or scientific, with an optional sign, also "inf" and
+/// "nan". Correctly rounded, whatever the locale. A number too large for double is infinite, of its sign, and one
+/// too small is 0. Returns false, with `value` unspecified, if the token is not a number.
+inline bool parseDouble(std::string_view token, double& value) {
+  const char* first = token.data();
+  const char* last = first + token.size();
+  // std::from_chars takes no plus sign.
+  if (token.size() > 1 && *first == '+' && first[1] != '-') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (end != last || error == std::errc::invalid_argument) return false;
+  if (error == std::errc::result_out_of_range) {
+    const double huge = std::numeric_limits<double>::infinity();
+    value = !isLarge(token) ? 0.0 : *first == '-' ? -huge : huge;
+  }
+  return true;
 }
 
 /// Room that `formatNumber` needs: the longest double is -2.2250738585072014e-308.

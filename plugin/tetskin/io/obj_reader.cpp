@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/number_text.h>
 #include <tetskin/io/obj_reader.h>
 #include <tetskin/io/obj_scanner.h>
 #include <tetskin/io/polygon.h>
+#include <tetskin/io/unit_normal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,9 +101,7 @@ Status ObjParser::readStatement() {
   }
   if (keyword == "vn") {
     Status status = readNumbers(3, 3, values);
-    const double length = values.norm();
-    const bool usable = std::isfinite(length) && length > 0.0;
-    normals_.emplace_back(usable ? Eigen::Vector3f((values / length).cast<float>()) : Eigen::Vector3f(0, 0, 0));
+    normals_.push_back(unitNormal(values));
     return status;
   }
   if (keyword == "g" || keyword == "o") name_ = ObjWords(statement_.rest).name();
@@ -129,9 +129,8 @@ Status ObjParser::readPosition() {
   Eigen::Vector3d position;
   Status status = readNumbers(3, 3, position);
   if (!status.ok()) return status;
-  if (!position.allFinite()) {
-    return error(StatusCode::NonFinite, "vertex " + std::to_string(mesh_.vertexCount()) +
-                                            " has a coordinate that is not finite; correct the line");
+  if (const std::string fault = coordinateFault(position); !fault.empty()) {
+    return error(StatusCode::NonFinite, "vertex " + std::to_string(mesh_.vertexCount()) + fault);
   }
   if (mesh_.vertexCount() == static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     return error(StatusCode::UnsupportedFormat, "more than 2147483647 vertices; split the model");

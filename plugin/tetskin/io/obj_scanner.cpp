@@ -97,7 +97,7 @@ std::string_view withoutMark(std::string_view text) {
 }
 
 Result<std::string> readObjText(const std::string& path) {
-  Result<std::string> text = readFile(path);
+  Result<std::string> text = readText(path);
   if (text.ok() && text.value().find('\0') != std::string::npos) {
     return fileError(StatusCode::Malformed, path, 0,
                      "is binary, not the text of a Wavefront OBJ model (a compiler's object file, or UTF-16?); save it "

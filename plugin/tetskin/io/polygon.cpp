@@ -16,6 +16,10 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
+/// Searches for an ear that may fail, each of which takes quadratic time, before what is left is cut off corner by
+/// corner. Polygons that touch themselves need a few; those that cross themselves, nearly one for every corner.
+constexpr std::size_t kMostFailures = 4;
+
 /// The polygon seen from the side towards which its area vector points, along the nearest axis: counter-clockwise.
 std::vector<Point> flattened(const std::vector<Eigen::Vector3d>& positions, const std::vector<int>& corners) {
   const auto at = [&](std::size_t i) { return positions[static_cast<std::size_t>(corners[i % corners.size()])]; };
@@ -62,10 +66,14 @@ void clipEars(const std::vector<Point>& points, const std::vector<int>& corners,
               std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::size_t> left(points.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::size_t mayFail = kMostFailures;
   for (std::size_t count = left.size(); count > 2; --count) {
     std::size_t ear = 0;
-    while (ear < count && !isEar(points, left, ear)) ++ear;
-    if (ear == count) ear = 0;
+    while (mayFail > 0 && ear < count && !isEar(points, left, ear)) ++ear;
+    if (ear == count) {
+      ear = 0;
+      --mayFail;
+    }
     triangles.push_back(
         {corners[left[(ear + count - 1) % count]], corners[left[ear]], corners[left[(ear + 1) % count]]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));

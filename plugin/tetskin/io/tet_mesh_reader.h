@@ -19,13 +19,14 @@ struct TetFileReport {
 };
 
 /// Reads a tet mesh; the extension, in any case, tells the format:
-/// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid
+/// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid; also as loosely written
+///                   as Bullet's own files
 /// - `.node`, `.ele` TetGen: given either, the other is found beside it; counted from 0 or 1; corners of 10-node tets
 /// - `.msh`          Gmsh, ASCII, versions 2.x and 4.1
 ///
 /// Nodes and tets are in the file's order and unit. Cells other than tets of 4 nodes are skipped and counted in
 /// `report`, also tets with more nodes (VTK types 24 and 71, Gmsh type 11, ...). In what is returned, every index names
-/// a node and every coordinate is finite; for all else see `checkTetMesh`.
+/// a node and no coordinate is beyond kLargestCoordinate; for all else see `checkTetMesh`.
 ///
 /// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
 ///

@@ -3,9 +3,10 @@
 //
 // This work is based on:
 //   Hang Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", file formats .node and .ele
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/tetgen_file.h>
-#include <tetskin/io/text_scanner.h>
+#include <tetskin/io/text_records.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -15,27 +16,6 @@
 namespace tetskin::io {
 
 namespace {
-
-/// The lines of a TetGen file that are neither blank nor a comment.
-class Records {
- public:
-  explicit Records(std::string_view text) : in_(text) {}
-  /// A scanner of the next line, without its comment. At the end of the file its words are empty.
-  TextScanner next() {
-    while (in_.remaining() > 0) {
-      const std::size_t line = in_.line();
-      const std::string_view text = in_.restOfLine();
-      const TextScanner record(text.substr(0, text.find('#')), line);
-      TextScanner ahead = record;
-      if (!ahead.word().empty()) return record;
-    }
-    return TextScanner({}, in_.line());
-  }
-  bool hasRoomFor(std::uint64_t numbers) const { return in_.hasRoomFor(numbers); }
-
- private:
-  TextScanner in_;
-};
 
 Status malformed(const std::string& path, const TextScanner& record, const std::string& what) {
   return fileError(StatusCode::Malformed, path, record.line(), what);
@@ -51,7 +31,7 @@ Status tooShort(const std::string& path, const TextScanner& record, std::uint64_
 /// index.
 Status readNodes(const std::string& path, std::string_view text, std::vector<Eigen::Vector3d>& nodes,
                  std::int64_t& base) {
-  Records records(text);
+  TextRecords records(text);
   TextScanner header = records.next();
   std::uint64_t count = 0, dimension = 0;
   if (!header.integer(count) || !header.integer(dimension)) {
@@ -79,9 +59,8 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
       return malformed(path, record,
                        "has node " + std::to_string(index) + " out of turn; nodes are numbered one by one from 0 or 1");
     }
-    if (!node.allFinite()) {
-      return fileError(StatusCode::NonFinite, path, record.line(),
-                       "node " + std::to_string(index) + " has a coordinate that is not finite; correct it");
+    if (const std::string fault = coordinateFault(node); !fault.empty()) {
+      return fileError(StatusCode::NonFinite, path, record.line(), "node " + std::to_string(index) + fault);
     }
     nodes.push_back(node);
   }
@@ -110,7 +89,7 @@ Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, st
 
 /// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...".
 Status readTets(const std::string& path, std::string_view text, std::int64_t base, TetMesh& mesh) {
-  Records records(text);
+  TextRecords records(text);
   TextScanner header = records.next();
   std::uint64_t count = 0, corners = 0;
   if (!header.integer(count) || !header.integer(corners)) {
@@ -147,9 +126,9 @@ Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport&) {
   const bool isNode = lowerExtension(path) == ".node";
   const std::string nodePath = isNode ? path : sibling(path, ".node", ".NODE");
   const std::string elePath = isNode ? sibling(path, ".ele", ".ELE") : path;
-  const Result<std::string> nodeText = readFile(nodePath);
+  const Result<std::string> nodeText = readText(nodePath);
   if (!nodeText.ok()) return nodeText.status();
-  const Result<std::string> eleText = readFile(elePath);
+  const Result<std::string> eleText = readText(elePath);
   if (!eleText.ok()) return eleText.status();
 
   TetMesh mesh;

@@ -3,13 +3,13 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
+#include <tetskin/io/binary_numbers.h>
+#include <tetskin/io/coordinate_fault.h>
 #include <tetskin/io/file_text.h>
 #include <tetskin/io/text_scanner.h>
 #include <tetskin/io/vtk_file.h>
-#include <tetskin/io/vtk_numbers.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -100,7 +100,8 @@ Status VtkReader::readHeader() {
   if (first.substr(0, 5) == "<?xml" || first.substr(0, 8) == "<VTKFile") {
     return error(StatusCode::UnsupportedFormat, "is an XML file of VTK, which is not read; save it as legacy VTK");
   }
-  if (lower(first.substr(0, 22)) != "# vtk datafile version") {
+  TextScanner mark(first.substr(0, 1) == "#" ? first.substr(1) : std::string_view());  // some files have no blank there
+  if (lower(mark.word()) != "vtk" || lower(mark.word()) != "datafile" || lower(mark.word()) != "version") {
     return fileError(StatusCode::Malformed, path_, 1,
                      "does not begin with '# vtk DataFile Version'; is it a legacy VTK file?");
   }
@@ -140,7 +141,7 @@ Status VtkReader::readCount(const char* what, std::uint64_t& count) {
 }
 
 Status VtkReader::checkRoom(std::uint64_t count, const std::string& type) {
-  const VtkNumberType numbers = vtkNumberType(type);
+  const NumberType numbers = vtkNumberType(type);
   if (binary_ && numbers.bytes == 0) {
     return error(StatusCode::UnsupportedFormat,
                  "has binary data of type " + excerpt(type) + ", which is not read; save it as ASCII");
@@ -160,19 +161,15 @@ Status VtkReader::readReals(std::uint64_t count, const std::string& type, std::v
   if (!status.ok()) return status;
   values.resize(static_cast<std::size_t>(count));
   if (binary_) {
-    const VtkNumberType numbers = vtkNumberType(type);
+    const NumberType numbers = vtkNumberType(type);
     const std::string_view data = in_.bytes(values.size() * numbers.bytes);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const char* at = data.data() + i * numbers.bytes;
-      values[i] = numbers.real ? decodeReal(at, numbers.bytes) : static_cast<double>(decodeInteger(at, numbers));
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = decodeNumber(data.data() + i * numbers.bytes, numbers);
     return {};
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!in_.number(values[i])) return notANumber();
-    if (std::isfinite(values[i])) continue;
-    return error(StatusCode::NonFinite,
-                 "node " + std::to_string(i / 3) + " has a coordinate that is not finite; correct it");
+    const std::string fault = coordinateFault({values[i], 0.0, 0.0});
+    if (!fault.empty()) return error(StatusCode::NonFinite, "node " + std::to_string(i / 3) + fault);
   }
   return {};
 }
@@ -183,7 +180,7 @@ Status VtkReader::readIntegers(std::uint64_t count, const std::string& type, std
   if (!status.ok()) return status;
   values.resize(static_cast<std::size_t>(count));
   if (binary_) {
-    const VtkNumberType numbers = vtkNumberType(type);
+    const NumberType numbers = vtkNumberType(type);
     if (numbers.real) return error(StatusCode::Malformed, "has indices of type " + excerpt(type) + "; save it again");
     const std::string_view data = in_.bytes(values.size() * numbers.bytes);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = decodeInteger(data.data() + i * numbers.bytes, numbers);
@@ -207,14 +204,12 @@ Status VtkReader::readPoints() {
     return error(StatusCode::Malformed, "states " + std::to_string(count) + " points; correct the file");
   }
   std::vector<double> values;
-  status = readReals(3 * count, type, values);
-  if (!status.ok()) return status;
+  if (status = readReals(3 * count, type, values); !status.ok()) return status;
   mesh_.nodes.resize(static_cast<std::size_t>(count));
   for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
-    mesh_.nodes[n] = {values[3 * n], values[3 * n + 1], values[3 * n + 2]};
-    if (mesh_.nodes[n].allFinite()) continue;
-    return fileError(StatusCode::NonFinite, path_, 0,
-                     "node " + std::to_string(n) + " has a coordinate that is not finite; correct it");
+    mesh_.nodes[n] = Eigen::Vector3d(&values[3 * n]);
+    const std::string fault = coordinateFault(mesh_.nodes[n]);
+    if (!fault.empty()) return fileError(StatusCode::NonFinite, path_, 0, "node " + std::to_string(n) + fault);
   }
   hasPoints_ = true;
   return {};
@@ -228,30 +223,44 @@ Status VtkReader::readCells() {
   endHeader();
   cellFirst_.clear();
   cellSize_.clear();
+  entries_.clear();
+  entryLines_.clear();
   hasCells_ = true;
   TextScanner ahead = in_;
   return lower(ahead.word()) == "offsets" ? readOffsetCells(count, size) : readCountedCells(count, size);
 }
 
-/// The form up to version 4: every cell is the number of its nodes and their indices.
+/// The form up to version 4: every cell is the number of its nodes and their indices. How many numbers these are tells
+/// where binary data end. Text needs no telling, and some of Bullet's own files state it wrong.
 Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) {
-  Status status = readIntegers(size, "int", entries_, &entryLines_);
+  std::vector<std::int64_t> numbers;
+  Status status = binary_ ? readIntegers(size, "int", numbers) : Status();
   if (!status.ok()) return status;
-  std::size_t next = 0;
+  std::size_t taken = 0;
+  const auto take = [&](std::int64_t& number) {
+    if (!binary_) return in_.integer(number);
+    if (taken == numbers.size()) return false;
+    number = numbers[taken++];
+    return true;
+  };
   for (std::uint64_t cell = 0; cell < cellCount; ++cell) {
-    const std::int64_t nodes = next < entries_.size() ? entries_[next] : -1;
-    if (nodes < 0 || static_cast<std::uint64_t>(nodes) > entries_.size() - next - 1) {
-      return fileError(StatusCode::Malformed, path_, next < entries_.size() ? lineOf(next) : in_.line(),
-                       "cell " + std::to_string(cell) + " runs beyond the cells' stated size of " +
-                           std::to_string(size) + "; correct the counts");
+    std::int64_t nodes = 0;
+    bool good = take(nodes) && nodes >= 0;
+    const std::size_t line = binary_ ? 0 : in_.line();
+    cellFirst_.push_back(entries_.size());
+    for (std::int64_t n = 0; good && n < nodes; ++n) {
+      good = take(entries_.emplace_back());
+      if (!binary_) entryLines_.push_back(in_.line());
     }
-    cellFirst_.push_back(next + 1);
-    cellSize_.push_back(static_cast<std::size_t>(nodes));
-    next += static_cast<std::size_t>(nodes) + 1;
+    cellSize_.push_back(entries_.size() - cellFirst_.back());
+    if (good) continue;
+    return fileError(StatusCode::Malformed, path_, line,
+                     "cell " + std::to_string(cell) + " of " + std::to_string(cellCount) +
+                         " is not the number of its nodes and as many indices; correct the cell or the counts");
   }
-  if (next == entries_.size()) return {};
-  return fileError(StatusCode::Malformed, path_, lineOf(next),
-                   "has entries behind the last of its " + std::to_string(cellCount) + " cells; correct the counts");
+  if (taken == numbers.size()) return {};
+  return error(StatusCode::Malformed,
+               "has entries behind the last of its " + std::to_string(cellCount) + " cells; correct the counts");
 }
 
 /// The form of version 5: cell c is the range [OFFSETS[c], OFFSETS[c + 1]) of CONNECTIVITY.
@@ -260,16 +269,14 @@ Status VtkReader::readOffsetCells(std::uint64_t offsetCount, std::uint64_t size)
   std::string type = lower(in_.word());
   endHeader();
   std::vector<std::int64_t> offsets;
-  Status status = readIntegers(offsetCount, type, offsets);
-  if (!status.ok()) return status;
+  if (Status status = readIntegers(offsetCount, type, offsets); !status.ok()) return status;
   const std::string keyword = lower(in_.word());
   if (keyword != "connectivity") {
     return error(StatusCode::Malformed, "has " + excerpt(keyword) + " in place of CONNECTIVITY; correct the file");
   }
   type = lower(in_.word());
   endHeader();
-  status = readIntegers(size, type, entries_, &entryLines_);
-  if (!status.ok()) return status;
+  if (Status status = readIntegers(size, type, entries_, &entryLines_); !status.ok()) return status;
   for (std::size_t cell = 0; cell + 1 < offsets.size(); ++cell) {
     const std::int64_t first = offsets[cell], end = offsets[cell + 1];
     if (first < 0 || end < first || static_cast<std::uint64_t>(end) > size) {
@@ -287,6 +294,9 @@ Status VtkReader::readCellTypes() {
   Status status = readCount("cell types", count);
   if (!status.ok()) return status;
   endHeader();
+  // Bullet's own files end with a lone "CELL_TYPES 10": all cells are tets.
+  TextScanner ahead = in_;
+  if (count == kVtkTet && ahead.word().empty()) return {};
   hasTypes_ = true;
   return readIntegers(count, "int", cellTypes_);
 }
@@ -375,8 +385,10 @@ Status VtkReader::addTet(std::size_t cell) {
 }  // namespace
 
 Result<TetMesh> readVtkFile(const std::string& path, TetFileReport& report) {
-  const Result<std::string> text = readFile(path);
+  Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
+  // In binary data a carriage return is a byte like any other, but lines before them end with a line feed.
+  if (text.value().find('\n') == std::string::npos) text.value() = withLineFeeds(std::move(text.value()));
   return VtkReader(path, text.value(), report).read();
 }
 

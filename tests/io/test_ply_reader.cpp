@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/mesh_loader.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::TempFolder;
+using Triangle = std::array<int, 3>;
+
+Result<TriangleMesh> loadText(const std::string& text) {
+  const TempFolder folder;
+  return loadMesh(folder.write("m.ply", text));
+}
+
+const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
+const std::string kList = "property list uchar int vertex_indices\n";
+
+/// The header of a model: `vertices` and `faces` are counts with the properties behind them.
+std::string header(const std::string& format, const std::string& vertices, const std::string& faces) {
+  return "ply\nformat " + format + " 1.0\ncomment any\nelement vertex " + vertices + "element face " + faces +
+         "end_header\n";
+}
+std::string ascii(const std::string& vertices, const std::string& faces) {
+  return header("ascii", vertices, faces);
+}
+
+const std::string kHead = ascii("4\n" + kXyz, "2\n" + kList);
+const std::string kCorners = "0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n";
+
+void expectPlate(const Result<TriangleMesh>& mesh) {
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  ASSERT_EQ(mesh.value().vertexCount(), 4u);
+  EXPECT_EQ(mesh.value().positions[2], Eigen::Vector3d(1, 1, 0));
+  EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}, {0, 2, 1}}));
+  EXPECT_TRUE(mesh.value().groups.empty());
+}
+
+TEST(LoadPly, ReadsTextAndCutsPolygons) {
+  const Result<TriangleMesh> mesh = loadText(kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n");
+  expectPlate(mesh);
+  EXPECT_EQ(mesh.value().positions[3].z(), 0.1);  // as a double, whatever its property says
+  EXPECT_TRUE(mesh.value().normals.empty());
+  EXPECT_TRUE(mesh.value().texcoords.empty());
+}
+
+TEST(LoadPly, LineBreaksOfTheBodyMeanNothing) {
+  expectPlate(loadText(kHead + "0 0 0 1 0 0\n\n1 1 0\t0 1\n.1 4 0 1 2 3 3 0 2 1"));
+}
+
+TEST(LoadPly, ReadsTheLineEndsOfWindowsAndOldMacs) {
+  const std::string text = kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n";
+  std::string windows, mac = text;
+  for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  std::replace(mac.begin(), mac.end(), '\n', '\r');
+  expectPlate(loadText(windows));
+  expectPlate(loadText(mac));
+  mac.replace(mac.find("1 1 0"), 5, "1 x 0");
+  expectError(loadText(mac).status(), StatusCode::Malformed, {"m.ply:13:", "vertex 2"});
+}
+
+/// Bytes of a number in an order that the machine may not have.
+template <class Number>
+std::string bytes(Number value, bool big) {
+  std::string result(sizeof(value), '\0');
+  std::memcpy(&result[0], &value, sizeof(value));
+  const std::uint16_t one = 1;
+  unsigned char first = 0;
+  std::memcpy(&first, &one, 1);
+  if ((first == 0) != big) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+template <class Number>
+std::string all(std::initializer_list<double> values, bool big) {
+  std::string result;
+  for (const double value : values) result += bytes(static_cast<Number>(value), big);
+  return result;
+}
+
+std::string binaryText(bool big, const std::string& lineEnd = "\n") {
+  std::string text = header(big ? "binary_big_endian" : "binary_little_endian", "4\nproperty uchar red\n" + kXyz,
+                            "2\nproperty short material\nproperty list ushort uint vertex_index\n");
+  for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + lineEnd.size())) {
+    text.replace(at, 1, lineEnd);
+  }
+  for (const auto& p : {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1}}) {
+    text += '\n' + all<float>({p.x(), p.y(), p.z()}, big);
+  }
+  text += bytes(std::int16_t(-1), big) + bytes(std::uint16_t(4), big) + all<std::uint32_t>({0, 1, 2, 3}, big);
+  return text + bytes(std::int16_t(7), big) + bytes(std::uint16_t(3), big) + all<std::uint32_t>({0, 2, 1}, big);
+}
+
+TEST(LoadPly, ReadsBinaryOfEitherByteOrder) {
+  for (const bool big : {false, true}) {
+    for (const char* lineEnd : {"\n", "\r\n", "\r"}) {
+      const Result<TriangleMesh> mesh = loadText(binaryText(big, lineEnd));
+      expectPlate(mesh);
+      EXPECT_EQ(mesh.value().positions[3].z(), static_cast<double>(0.1f));
+    }
+  }
+}
+
+TEST(LoadPly, ReadsEveryTypeOfNumber) {
+  const std::pair<const char*, std::string> types[] = {{"char", bytes(std::int8_t(-2), false)},
+                                                       {"int8", bytes(std::int8_t(-2), false)},
+                                                       {"uchar", bytes(std::uint8_t(254), false)},
+                                                       {"uint8", bytes(std::uint8_t(254), false)},
+                                                       {"short", bytes(std::int16_t(-2), false)},
+                                                       {"int16", bytes(std::int16_t(-2), false)},
+                                                       {"ushort", bytes(std::uint16_t(254), false)},
+                                                       {"uint16", bytes(std::uint16_t(254), false)},
+                                                       {"int", bytes(std::int32_t(-2), false)},
+                                                       {"int32", bytes(std::int32_t(-2), false)},
+                                                       {"uint", bytes(std::uint32_t(254), false)},
+                                                       {"uint32", bytes(std::uint32_t(254), false)},
+                                                       {"float", bytes(-2.0f, false)},
+                                                       {"float32", bytes(-2.0f, false)},
+                                                       {"double", bytes(-2.0, false)},
+                                                       {"float64", bytes(-2.0, false)}};
+  for (const auto& [name, number] : types) {
+    const std::string xyz = std::string("property ") + name + " x\nproperty int y\nproperty int z\n";
+    const std::string yz(8, '\0'), face = '\3' + std::string(12, '\0');
+    const Result<TriangleMesh> mesh =
+        loadText(header("binary_little_endian", "1\n" + xyz, "1\n" + kList) + number + yz + face);
+    ASSERT_TRUE(mesh.ok()) << name << ": " << mesh.status().message;
+    EXPECT_EQ(mesh.value().positions[0].x(), name[0] == 'u' ? 254 : -2) << name;
+  }
+}
+
+TEST(LoadPly, ReadsNormalsAndTextureCoordinatesOfVertices) {
+  const std::string more =
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n";
+  const std::string text =
+      ascii("3\n" + kXyz + more, "1\n" + kList) + "0 0 0 0 0 3 0 0\n1 0 0 0 0 0 1 0\n0 1 0 nan 0 1 0.5 1\n3 0 1 2";
+  const Result<TriangleMesh> mesh = loadText(text);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().normals, (std::vector<Eigen::Vector3f>{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(mesh.value().texcoords, (std::vector<Eigen::Vector2f>{{0, 0}, {1, 0}, {0.5f, 1}}));
+}
+
+TEST(LoadPly, KeepsTextureCoordinatesOfCornersIfEveryVertexHasOneOfItsOwn) {
+  const std::string head = ascii("4\n" + kXyz, "2\n" + kList + "property list uchar float texcoord\n") + kCorners;
+  const std::string first = "3 0 1 2 6 0 0 1 0 1 1\n";
+  EXPECT_EQ(loadText(head + first + "3 0 2 3 6 0 0 1 1 0 1\n").value().texcoords,
+            (std::vector<Eigen::Vector2f>{{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
+  EXPECT_TRUE(loadText(head + first + "3 0 2 3 6 0 0 0.5 1 0 1\n").value().texcoords.empty());
+  EXPECT_TRUE(loadText(head + first + "3 0 2 3 0\n").value().texcoords.empty());
+}
+
+TEST(LoadPly, CutsStripsIntoTriangles) {
+  const std::string text = "ply\nformat ascii 1.0\nobj_info any\nelement vertex 4\n" + kXyz +
+                           "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + kCorners +
+                           "8 0 1 2 3 -1 3 2 1\n";
+  const Result<TriangleMesh> mesh = loadText(text);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}, {2, 1, 3}, {3, 2, 1}}));
+}
+
+TEST(LoadPly, ReadsOverOtherElementsAndSmallFaces) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement camera 2\nproperty list uchar float view\nproperty int id\n"
+      "element nothing 4000000000\nelement vertex 4\n" +
+      kXyz + "element face 5\n" + kList +
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n2 0.5 0.5 1\n0 2\n" + kCorners +
+      "4 0 1 2 3\n0\n2 0 1\n1 3\n3 0 2 1\n0 1\n";
+  expectPlate(loadText(text));
+}
+
+TEST(LoadPly, RefusesCountsThatTheFileCannotHold) {
+  const std::string list4 = "property list uint int vertex_indices\n";
+  const std::string body = all<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false) + '\3' + all<std::int32_t>({0, 1, 2}, false);
+  const std::string text = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const std::string few = "3\n" + kXyz, one = "1\n" + kList;
+  for (const char* count : {"2000000000", "60000000", "4294967295", "4294967299", "18446744073709551615"}) {
+    const std::string vertices = std::string(count) + "\n" + kXyz, faces = std::string(count) + "\n" + kList;
+    for (const std::string format : {"binary_little_endian", "binary_big_endian"}) {
+      expectError(loadText(header(format, vertices, one) + body).status(), StatusCode::Malformed,
+                  {"m.ply:4:", std::string("states ") + count + " of element 'vertex', at least 12 bytes each",
+                   "only 49 bytes are left", "complete"});
+      expectError(loadText(header(format, few, faces) + body).status(), StatusCode::Malformed,
+                  {"m.ply:8:", "element 'face', at least 1 bytes each", "only 13 bytes are left"});
+    }
+    expectError(loadText(ascii(vertices, one) + text).status(), StatusCode::Malformed,
+                {"m.ply:4:", "at least 6 bytes each", "only 26 bytes are left"});
+    expectError(loadText(ascii(few, faces) + text).status(), StatusCode::Malformed, {"m.ply:8:", "element 'face'"});
+  }
+  const std::string corners = all<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false);
+  for (const double count : {2e9, 6e7, 4.0}) {
+    const std::string face = bytes(static_cast<std::uint32_t>(count), false) + all<std::int32_t>({0, 1, 2}, false);
+    expectError(loadText(header("binary_little_endian", few, "1\n" + list4) + corners + face).status(),
+                StatusCode::Malformed, {"m.ply: face 0 of 1", "'vertex_indices'", "complete"});
+  }
+  expectError(loadText(ascii(few, "1\n" + list4) + "0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n").status(),
+              StatusCode::Malformed, {"m.ply:14:", "face 0 of 1", "'vertex_indices'"});
+  expectError(loadText(ascii("99999999999999999999\n" + kXyz, one)).status(), StatusCode::Malformed,
+              {"m.ply:4:", "'99999999999999999999'", "correct"});
+}
+
+TEST(LoadPly, RefusesBadHeaders) {
+  const StatusCode code = StatusCode::Malformed;
+  expectError(loadText("").status(), code, {"m.ply:1:", "'ply'"});
+  expectError(loadText("plyer\n").status(), code, {"m.ply:1:", "'ply'"});
+  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\n").status(), code,
+              {"m.ply:", "end_header", "complete"});
+  expectError(loadText("ply\nelement vertex 0\nend_header\n").status(), code, {"m.ply:", "no 'format'"});
+  expectError(loadText("ply\nformat ascii 1.0\nproperty int x\nend_header\n").status(), code, {"m.ply:3:", "before"});
+  expectError(loadText("ply\nformat ascii 1.0\nsolid\nend_header\n").status(), code, {"m.ply:3:", "'solid'"});
+  expectError(loadText("ply\nformat xml 1.0\n").status(), StatusCode::UnsupportedFormat, {"m.ply:2:", "'xml'"});
+  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n").status(),
+              StatusCode::UnsupportedFormat, {"m.ply:4:", "'half'"});
+  expectError(loadText(ascii("1\nproperty float x\nproperty float y\n", "0\n") + "0 0\n").status(), code,
+              {"m.ply:4:", "x, y or z"});
+}
+
+TEST(LoadPly, RefusesBadBodies) {
+  const std::string faces = "3 0 1 2\n3 0 1 2\n";
+  expectError(loadText(kHead + "0 0 0\n1 x 0\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::Malformed,
+              {"m.ply:12:", "vertex 1 of 4", "'y'"});
+  expectError(loadText(kHead + "0 0 0\n1 0 inf\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
+              {"m.ply:12:", "vertex 1", "not finite"});
+  expectError(loadText(kHead + "0 0 0\n1 0 0\n1 1e19 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
+              {"m.ply:13:", "vertex 2", "beyond 1e18"});
+  for (const char* bad : {"3 0 1 4", "3 0 1 -1", "3 0 1 0.5", "3 0 1 nan", "3 0 1 1e300"}) {
+    expectError(loadText(kHead + kCorners + "3 0 1 2\n" + bad).status(), StatusCode::IndexOutOfRange,
+                {"m.ply:16:", "face 1 names vertex ", "there are 4"});
+  }
+  expectError(loadText(kHead + kCorners + "3 0 1 2\n-3 0 1 2").status(), StatusCode::Malformed,
+              {"m.ply:16:", "face 1"});
+  expectError(loadText(kHead + kCorners + "3 0 1 2\n3 0 1").status(), StatusCode::Malformed, {"m.ply:16:", "face 1"});
+  expectError(loadText(ascii("4\n" + kXyz, "0\n" + kList) + kCorners).status(), StatusCode::Empty,
+              {"m.ply: ", "no triangles", "export"});
+  expectError(loadText("ply\nformat ascii 1.0\nend_header\n").status(), StatusCode::Empty, {"m.ply: ", "no vertices"});
+  std::string nan = binaryText(false);
+  nan.replace(nan.find("end_header\n") + 11 + 13 + 1, 4, bytes(std::numeric_limits<float>::quiet_NaN(), false));
+  expectError(loadText(nan).status(), StatusCode::NonFinite, {"m.ply: vertex 1"});
+}
+
+TEST(LoadPly, SurvivesDamage) {
+  std::mt19937 random(3);
+  const TempFolder folder;
+  std::size_t refused = 0;
+  for (const std::string& sound : {kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n", binaryText(false), binaryText(true)}) {
+    for (std::size_t length = 0; length < sound.size(); ++length) {
+      refused += !loadMesh(folder.write("m.ply", sound.substr(0, length))).ok();
+    }
+    for (int i = 0; i < 500; ++i) {
+      std::string damaged = sound;
+      for (unsigned k = 0; k <= random() % 3; ++k)
+        damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+      const Result<TriangleMesh> mesh = loadMesh(folder.write("m.ply", damaged));
+      EXPECT_TRUE(mesh.ok() ? checkTriangleMesh(mesh.value()).ok() : !mesh.status().message.empty());
+      refused += !mesh.ok();
+    }
+  }
+  EXPECT_GT(refused, 1000u);
+}
+
+}  // namespace
+}  // namespace tetskin
