@@ -63,6 +63,9 @@ struct SkinOutput {
   /// By run of the embedding: 0 leaves its points as they are, in the points if they are written directly, otherwise in
   /// the scratch, which must then be the one of the update before. Null: all are written. Not with bounds.
   const std::uint8_t* movedRuns = nullptr;
+  /// If not null, vertexCount x 4 scalars of the caller's that get the points besides, in the same order, each with one
+  /// that means nothing: for who has to read them. All points then go by the scratch.
+  Scalar* padded = nullptr;
 };
 
 }  // namespace tetskin
