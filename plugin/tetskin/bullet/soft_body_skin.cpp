@@ -98,15 +98,14 @@ const char* toString(UpdateStatus status) {
 
 EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
                                const SkinOptions& options) {
-  EmbedReport report;
-  report.vertexCount = report.unbound = mesh.vertexCount();
-  report.status = checkNodeCount(body, restCage.nodeCount());
-  if (!report.ok()) return report;
+  if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return refused(mesh, std::move(s));
+  if (Status s = checkNodes(nodePositions(body)); !s.ok()) return refused(mesh, std::move(s));
   std::shared_ptr<const SoftBodyBinding> binding;
   QuadraticReport quadratic;
-  report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
-  if (report.ok()) report.status = bind(body, std::move(binding), options);
-  if (report.ok()) quadraticReport_ = quadratic;
+  const EmbedReport report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
+  if (!report.ok()) return report;
+  if (Status s = bind(body, std::move(binding), options); !s.ok()) return refused(mesh, std::move(s));
+  quadraticReport_ = quadratic;
   return report;
 }
 
@@ -121,7 +120,9 @@ EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, 
 }
 
 EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options) {
-  return bind(body, tetMeshOf(body), mesh, options);
+  const TetMesh cage = tetMeshOf(body);
+  if (Status s = checkDangling(cage); !s.ok()) return refused(mesh, std::move(s));
+  return bind(body, cage, mesh, options);
 }
 
 Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding,
@@ -220,9 +221,10 @@ void SoftBodySkin::setVisible(bool visible) {
   skin_.hold();  // what happened meanwhile is no motion
 }
 
-void SoftBodySkin::setOrigin(const btVector3& origin) {
-  skin_.setOrigin(toEigen(origin));
+bool SoftBodySkin::setOrigin(const btVector3& origin) {
+  if (!skin_.setOrigin(toEigen(origin))) return false;
   moved_ = true;
+  return true;
 }
 
 void SoftBodySkin::sample() {

@@ -55,7 +55,8 @@ class SoftBodySkin {
   /// The same for vertices alone: no triangles, hence no recomputed normals.
   [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
                                  const SkinOptions& options = {});
-  /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is.
+  /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is. Refused once
+  /// Bullet's own tets dangle: see `checkDangling`.
   [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// The same with a binding made before, such as another skin's, under the same options.
   Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const SkinOptions& options = {});
@@ -96,8 +97,8 @@ class SoftBodySkin {
   const QuadraticReport& quadraticReport() const { return quadraticReport_; }
   /// The first such node when `update` last returned NonFinite.
   std::size_t firstBadNode() const { return firstBadNode_; }
-  /// Moves the origin for the updates to come.
-  void setOrigin(const btVector3& origin);
+  /// Moves the origin for the updates to come. Returns false, and leaves it, if it is not finite or beyond 1e18.
+  bool setOrigin(const btVector3& origin);
 
  private:
   /// A node of the last update.
