@@ -241,8 +241,12 @@ template <class Scalar>
 std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
   assert(bound() && nodes.size() == nodeCount());
   held_ = true;
-  if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) return bad;
+  // Compared before they are packed, which may be in place. Where none has moved, none has become bad.
   if (options_.skipStill && !moved_.update(binding_->embedding, stencils(), nodes)) return nodeCount();
+  if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) {
+    moved_.forget();  // the surface is not that of these nodes
+    return bad;
+  }
   if (stencils()) edges_.update(*stencils(), nodes_, options_.threads, moved_.gradients());
   if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
     skinTo(*single);
@@ -254,6 +258,13 @@ std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
     held_ = false;
   }
   return nodeCount();
+}
+
+template <class Scalar>
+std::size_t MeshSkin<Scalar>::update(const KeptSteps<Scalar>& steps, Scalar alpha) {
+  assert(bound() && steps.size() == nodeCount());
+  steps.nodesAt(alpha, nodes_.memory());
+  return update(PointView<const Scalar>(nodes_.memory()));
 }
 
 template <class Scalar>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/kept_steps.h>
 #include <tetskin/core/moved_parts.h>
 #include <tetskin/core/normals.h>
 #include <tetskin/core/parallel_for.h>
@@ -113,6 +114,8 @@ class MeshSkin {
   /// Returns the index of the first node that is not finite, or beyond kLargestCoordinate, and changes nothing then;
   /// nodeCount() if all is well.
   [[nodiscard]] std::size_t update(PointView<const Scalar> nodes);
+  /// The same for the nodes between two steps: see KeptSteps::nodesAt. `steps` are of nodeCount() nodes.
+  [[nodiscard]] std::size_t update(const KeptSteps<Scalar>& steps, Scalar alpha);
 
   bool bound() const { return binding_ != nullptr; }
   std::size_t nodeCount() const { return nodes_.size(); }

@@ -32,6 +32,9 @@ class PackedNodes {
   [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
 
   std::size_t size() const { return nodes_.size(); }
+  /// size() x 3, four scalars apart: positions that are made for packing may be written here, and then be packed from
+  /// here in place.
+  PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().data(), size(), 4 * sizeof(Scalar)}; }
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().data(); }
   const Point& mean() const { return mean_; }
