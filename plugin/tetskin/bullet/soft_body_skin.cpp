@@ -102,7 +102,7 @@ EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, 
   if (Status s = checkNodes(nodePositions(body)); !s.ok()) return refused(mesh, std::move(s));
   std::shared_ptr<const SoftBodyBinding> binding;
   QuadraticReport quadratic;
-  const EmbedReport report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
+  EmbedReport report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
   if (!report.ok()) return report;
   if (Status s = bind(body, std::move(binding), options); !s.ok()) return refused(mesh, std::move(s));
   quadraticReport_ = quadratic;
