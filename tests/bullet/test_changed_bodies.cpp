@@ -110,6 +110,30 @@ TEST_F(ChangedBody, BoundAgainItIsFollowedAgain) {
   EXPECT_NEAR(static_cast<double>(surface()[0] - good[0]), 1.0, 1e-5);
 }
 
+/// Bullet corrects its links and faces when its nodes have moved in memory, but not its tets.
+TEST_F(ChangedBody, BoundAgainWithoutACageItSaysThatBulletsTetsDangle) {
+  const auto expectRefusal = [&] {
+    const btSoftBody::Node* const before = &body->m_nodes[0];
+    const EmbedReport report = skin.bind(*body, mesh);
+    ASSERT_EQ(report.status.code, StatusCode::IndexOutOfRange);
+    for (const char* mentioned : {"appendNode", "cutLink", "48 of the body's 48 tets", "restCage"}) {
+      EXPECT_NE(report.status.message.find(mentioned), std::string::npos) << report.status.message;
+    }
+    EXPECT_EQ(report.unbound, mesh.vertexCount());
+    EXPECT_EQ(surface(), good);
+    EXPECT_EQ(&body->m_nodes[0], before);
+  };
+  const btSoftBody::Link& link = body->m_links[3];
+  ASSERT_TRUE(body->cutLink(static_cast<int>(link.m_n[0] - &body->m_nodes[0]),
+                            static_cast<int>(link.m_n[1] - &body->m_nodes[0]), btScalar(0.5)));
+  expectRefusal();
+  body.reset(makeSoftBody(cage, info));
+  bind();
+  const btSoftBody::Node* const before = &body->m_nodes[0];
+  while (&body->m_nodes[0] == before) body->appendNode(btVector3(0, 0, 0), 1);
+  expectRefusal();
+}
+
 TEST_F(ChangedBody, OneThatIsGoneIsNotReadByAnythingButUpdate) {
   const Box3 box = skin.bounds();
   body.reset();

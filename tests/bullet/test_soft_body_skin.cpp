@@ -176,6 +176,9 @@ TEST_F(Skin, OriginIsSubtracted) {
   skin.setOrigin(btVector3(9, 20, 30));
   ASSERT_EQ(skin.update(), UpdateStatus::Updated);
   EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
+  EXPECT_FALSE(skin.setOrigin(btVector3(9, std::numeric_limits<btScalar>::quiet_NaN(), 30)));
+  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
 }
 
 TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
@@ -184,6 +187,9 @@ TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
   const auto fails = [&](const EmbedReport& report, StatusCode code, const char* mentions) {
     EXPECT_EQ(report.status.code, code);
     EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    EXPECT_EQ(report.candidates, 0u) << "all of this is known before the mesh is embedded";
+    EXPECT_EQ(report.inside + report.outside, 0u);
+    EXPECT_EQ(report.unbound, report.vertexCount);
     EXPECT_EQ(skin.binding(), binding);
     EXPECT_EQ(skin.update(), UpdateStatus::Updated);
   };

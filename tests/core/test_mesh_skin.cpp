@@ -175,6 +175,23 @@ TEST_F(MeshSkins, BoundsAreThoseOfThePositions) {
   EXPECT_LT((skin.bounds().min() - box.min() - Eigen::Vector3d(3, -2, 1)).norm(), 2e-6);
 }
 
+TEST_F(MeshSkins, KeepTheirOriginWhereTheNewOneIsNotFinite) {
+  SkinOptions options;
+  options.origin = Eigen::Vector3d(3, -2, 1);
+  MeshSkin<float> skin;
+  ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
+  const Eigen::Vector3f before = at(skin.positions(), 9);
+  using Limits = std::numeric_limits<double>;
+  for (const double bad : {Limits::quiet_NaN(), Limits::infinity(), -1.1e18}) {
+    EXPECT_FALSE(skin.setOrigin({0, bad, 0}));
+    update(skin, rest);
+    EXPECT_EQ(at(skin.positions(), 9), before);
+  }
+  EXPECT_TRUE(skin.setOrigin({4, -2, 1}));
+  update(skin, rest);
+  EXPECT_NEAR(at(skin.positions(), 9).x(), before.x() - 1.0f, 1e-6f);
+}
+
 TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
   for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
     MeshSkin<float> skin;
@@ -254,6 +271,49 @@ TEST_F(MeshSkins, RefuseABindingThatLacksWhatTheOptionsAskFor) {
   refuses(options, StatusCode::SizeMismatch, "target for tangents");
   binding = nullptr;
   refuses({}, StatusCode::Empty, "no embedding");
+}
+
+TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
+  std::shared_ptr<const SkinBinding<float>> binding;
+  ASSERT_TRUE(makeSkinBinding(cage, mesh, everything(Normals::Recomputed), binding).ok());
+  const auto refuses = [&](const SkinOptions& options, StatusCode code, const char* mentions) {
+    MeshSkin<float> skin;
+    const EmbedReport report = skin.bind(cage, mesh, options);
+    EXPECT_EQ(report.status.code, code);
+    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    EXPECT_EQ(report.candidates, 0u);
+    EXPECT_EQ(report.inside + report.outside, 0u);
+    EXPECT_EQ(report.unbound, mesh.vertexCount());
+    const Status shared = skin.bind(binding, view(rest), options);
+    EXPECT_EQ(shared.message, report.status.message);
+    EXPECT_FALSE(skin.bound());
+  };
+  using Limits = std::numeric_limits<double>;
+  for (const double bad : {Limits::quiet_NaN(), Limits::infinity(), -1.1e18}) {
+    SkinOptions options = everything(Normals::Recomputed);
+    options.origin.y() = bad;
+    refuses(options, StatusCode::InvalidOption, "origin");
+  }
+  for (const double bad : {Limits::quiet_NaN(), -1.0, -Limits::infinity()}) {
+    SkinOptions options = everything(Normals::Recomputed);
+    options.hardEdgeDegrees = bad;
+    refuses(options, StatusCode::InvalidOption, "hardEdgeDegrees");
+  }
+  std::vector<Eigen::Vector3f> tooFew(7);
+  SkinOptions options = everything(Normals::Recomputed);
+  options.target = viewOf(tooFew);
+  refuses(options, StatusCode::SizeMismatch, "7 points");
+}
+
+TEST_F(MeshSkins, RefusedAfterEmbeddingReportNothingBound) {
+  for (Eigen::Vector3d& p : cage.nodes) p *= 1e20;  // more than the nodes of a body may be
+  for (Eigen::Vector3d& p : mesh.positions) p *= 1e20;
+  MeshSkin<float> skin;
+  const EmbedReport report = skin.bind(cage, mesh);
+  EXPECT_FALSE(report.ok());
+  EXPECT_EQ(report.inside + report.outside, 0u);
+  EXPECT_EQ(report.unbound, mesh.vertexCount());
+  EXPECT_EQ(report.vertexCount, mesh.vertexCount());
 }
 
 TEST_F(MeshSkins, RefuseNodesThatDoNotFitTheBinding) {

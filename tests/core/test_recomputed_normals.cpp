@@ -4,6 +4,7 @@
 
 #include <tetskin/core/instruction_set.h>
 
+#include <limits>
 #include <random>
 
 namespace tetskin {
@@ -66,8 +67,9 @@ TEST(RecomputedNormals, WithoutAuthoredNormalsTheCornersOfABoxAreSmooth) {
   }
 }
 
-/// Every triangle with vertices of its own, as in an STL file; normals of one position differ by a little.
-TEST(RecomputedNormals, SeamsAreSmoothToTheLastBit) {
+/// Every triangle with vertices of its own, as in an STL file; normals of one position differ by a little, and every
+/// fourth is of this length.
+void expectSmoothSeams(float length) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const TriangleMesh whole = authoredSphere(12, 0.52);
   TriangleMesh cut;
@@ -76,7 +78,8 @@ TEST(RecomputedNormals, SeamsAreSmoothToTheLastBit) {
       cut.positions.push_back(whole.positions[v]);
       // A degree or so off, as if from a coarse file.
       const float off = 0.01f * static_cast<float>(cut.normals.size() % 3);
-      cut.normals.push_back((whole.normals[v] + off * Eigen::Vector3f::UnitX()).normalized());
+      const float size = cut.normals.size() % 4 == 0 ? length : 1.0f;
+      cut.normals.push_back(size * (whole.normals[v] + off * Eigen::Vector3f::UnitX()).normalized());
     }
     const int last = static_cast<int>(cut.vertexCount());
     cut.triangles.push_back({last - 3, last - 2, last - 1});
@@ -93,6 +96,18 @@ TEST(RecomputedNormals, SeamsAreSmoothToTheLastBit) {
   }
 }
 
+TEST(RecomputedNormals, SeamsAreSmoothToTheLastBit) {
+  expectSmoothSeams(1.0f);
+}
+
+TEST(RecomputedNormals, SeamsAreSmoothWhereRestNormalsAreNotOfUnitLengthOrAbsent) {
+  for (const float length :
+       {0.99f, 1e-30f, 1e30f, 0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    SCOPED_TRACE(length);
+    expectSmoothSeams(length);
+  }
+}
+
 /// Triangles between random vertices: edges of one, two and many of them, turned either way, some twice, some without
 /// area, and vertices of none.
 TriangleMesh randomSoup(std::size_t vertexCount, std::size_t triangleCount, unsigned seed) {
@@ -106,11 +121,11 @@ TriangleMesh randomSoup(std::size_t vertexCount, std::size_t triangleCount, unsi
   return mesh;
 }
 
-template <class Scalar, class In>
-void expectSumsOfTriangles(const TriangleMesh& mesh, const Eigen::Vector3d& offset, double tolerance) {
+template <class Scalar>
+void expectSumsOfTriangles(const TriangleMesh& mesh, double tolerance) {
   const Eigen::Vector3f untouched(7, 8, 9);
-  std::vector<Eigen::Matrix<In, 3, 1>> positions;
-  for (const Eigen::Vector3d& p : mesh.positions) positions.push_back((p + offset).cast<In>());
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> positions;
+  for (const Eigen::Vector3d& p : mesh.positions) positions.push_back(p.cast<Scalar>());
   std::vector<Eigen::Vector3d> sums(mesh.vertexCount(), Eigen::Vector3d::Zero());
   for (const auto& t : mesh.triangles) {
     Eigen::Vector3d corner[3];
@@ -124,7 +139,8 @@ void expectSumsOfTriangles(const TriangleMesh& mesh, const Eigen::Vector3d& offs
   }
   std::vector<Eigen::Vector3f> normals(mesh.vertexCount(), untouched);
   std::vector<Scalar> padded(4 * mesh.vertexCount());
-  recomputeNormals(NormalTopology(mesh, {}), viewOf(std::as_const(positions)), padded, viewOf(normals));
+  padPoints(viewOf(std::as_const(positions)), padded);
+  recomputeNormals(NormalTopology(mesh, {}), padded, viewOf(normals));
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     if (sums[v].isZero()) {
       EXPECT_EQ(normals[v], untouched);
@@ -141,11 +157,8 @@ TEST(RecomputedNormals, AreSumsOfAllTrianglesOnAnySoup) {
     setInstructionSet(set);
     for (unsigned seed = 1; seed <= 4; ++seed) {
       const TriangleMesh mesh = randomSoup(50, 30 * seed, seed);
-      expectSumsOfTriangles<float, float>(mesh, Eigen::Vector3d::Zero(), 1e-5);
-      expectSumsOfTriangles<double, double>(mesh, Eigen::Vector3d::Zero(), 2e-7);
-      // What a conversion would round away at that distance is in the differences.
-      expectSumsOfTriangles<float, double>(mesh, {1e6, 2e6, -3e6}, 1e-5);
-      expectSumsOfTriangles<double, float>(mesh, Eigen::Vector3d::Zero(), 2e-7);
+      expectSumsOfTriangles<float>(mesh, 1e-5);
+      expectSumsOfTriangles<double>(mesh, 2e-7);
     }
   }
   setInstructionSet(before);
@@ -194,8 +207,34 @@ TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
   EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 2, 1, 3, 4}));
   EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 2, 4, 5}));
   EXPECT_EQ(NormalTopology(mesh, {}, 61.0).groupCount(), 2u);
+  EXPECT_EQ(NormalTopology(mesh, {}, 360.0).groupCount(), 1u);
   mesh.normals.clear();
   EXPECT_EQ(NormalTopology(mesh, {}).groupCount(), 1u);
+}
+
+/// It does not make hard edges of its own, and softens none: the others are grouped as if it were not there.
+TEST(NormalTopology, AVertexWithoutARestNormalJoinsTheFirstGroupOfItsPosition) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  TriangleMesh mesh;
+  mesh.positions.assign(5, {0.1, 0.2, 0.3});
+  mesh.normals = {{0, 0, 0}, {2, 0, 0}, {nan, 1, 0}, {0, 3, 0}, {0.5f, 0, 0}};
+  const NormalTopology topology(mesh, {});
+  EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 1, 2, 4, 3}));
+  EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 4, 5}));
+  mesh.normals.assign(5, {0, 0, 0});
+  EXPECT_EQ(NormalTopology(mesh, {}).groupCount(), 1u);
+}
+
+TEST(NormalTopology, EqualRestNormalsMakeNoEdgeWhateverTheAngle) {
+  TriangleMesh mesh;
+  mesh.positions.assign(1000, {0.1, 0.2, 0.3});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> any(0.1f, 1.0f);
+  const Eigen::Vector3f normal(any(random), any(random), any(random));
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) mesh.normals.push_back(normal * any(random));
+  EXPECT_EQ(NormalTopology(mesh, {}, 0.0).groupCount(), 1u);
+  mesh.normals[7] += Eigen::Vector3f(0.01f, 0, 0);
+  EXPECT_EQ(NormalTopology(mesh, {}, 0.0).groupCount(), 2u);
 }
 
 }  // namespace

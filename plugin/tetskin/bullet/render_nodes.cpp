@@ -29,6 +29,9 @@ EmbedReport bindRenderNodes(btSoftBody& body) {
     return report;
   }
   const TetMesh cage = tetMeshOf(body);
+  report.vertexCount = report.unbound = static_cast<std::size_t>(body.m_renderNodes.size());
+  report.status = checkDangling(cage);
+  if (!report.ok()) return report;
   EmbedOptions options;
   options.outside = OutsideRule::Barycentric;
   Embedding embedding;

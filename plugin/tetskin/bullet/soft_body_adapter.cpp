@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_adapter.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace tetskin {
@@ -34,6 +35,18 @@ TetMesh tetMeshOf(const btSoftBody& body) {
     for (int k = 0; k < 4; ++k) mesh.tets[t][k] = indexOf(body.m_tetras[t].m_n[k], body);
   }
   return mesh;
+}
+
+Status checkDangling(const TetMesh& read) {
+  const auto dangles = [](const Tet& tet) { return std::find(tet.begin(), tet.end(), -1) != tet.end(); };
+  const auto count = std::count_if(read.tets.begin(), read.tets.end(), dangles);
+  if (count == 0) return {};
+  const auto first = std::find_if(read.tets.begin(), read.tets.end(), dangles) - read.tets.begin();
+  return {StatusCode::IndexOutOfRange,
+          std::to_string(count) + " of the body's " + std::to_string(read.tetCount()) + " tets, tet " +
+              std::to_string(first) +
+              " the first, point to where its nodes were before Bullet moved them in memory (appendNode, refine, "
+              "cutLink); give SoftBodySkin::bind a restCage of all of the body's nodes, or make the body anew"};
 }
 
 PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount) {

@@ -24,6 +24,9 @@ PointView<const btScalar> nodePositions(const btSoftBody& body);
 /// nodes are appended after tets) gets the index -1, which every check reports. Cost O(nodes + tets).
 TetMesh tetMeshOf(const btSoftBody& body);
 
+/// IndexOutOfRange if there are such tets in what `tetMeshOf` has read: how many, why, and what to do.
+Status checkDangling(const TetMesh& read);
+
 /// The positions of a Bullet vertex buffer, as a target for skinning: vertexCount points, owned by the buffer's owner.
 PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount);
 

@@ -56,15 +56,14 @@ const char* toString(UpdateStatus status) {
 
 EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
                                const SkinOptions& options) {
-  EmbedReport report;
-  report.vertexCount = report.unbound = mesh.vertexCount();
-  report.status = checkNodeCount(body, restCage.nodeCount());
-  if (!report.ok()) return report;
+  if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return refused(mesh, std::move(s));
+  if (Status s = checkNodes(nodePositions(body)); !s.ok()) return refused(mesh, std::move(s));
   std::shared_ptr<const SoftBodyBinding> binding;
   QuadraticReport quadratic;
-  report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
-  if (report.ok()) report.status = bind(body, std::move(binding), options);
-  if (report.ok()) quadraticReport_ = quadratic;
+  EmbedReport report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
+  if (!report.ok()) return report;
+  if (Status s = bind(body, std::move(binding), options); !s.ok()) return refused(mesh, std::move(s));
+  quadraticReport_ = quadratic;
   return report;
 }
 
@@ -79,7 +78,9 @@ EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, 
 }
 
 EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options) {
-  return bind(body, tetMeshOf(body), mesh, options);
+  const TetMesh cage = tetMeshOf(body);
+  if (Status s = checkDangling(cage); !s.ok()) return refused(mesh, std::move(s));
+  return bind(body, cage, mesh, options);
 }
 
 Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding,
@@ -91,7 +92,9 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   body_ = &body;
   nodeCount_ = body.m_nodes.size();
   tetCount_ = body.m_tetras.size();
-  moved_ = false;
+  moved_ = between_ = teleported_ = false;
+  sleeps_ = !body.isActive();
+  steps_ = {};
   const PointView<const btScalar> nodes = nodePositions(body);
   const FourNodes four = nodesToSample(nodes.size(), nodes.strideBytes(), [&](std::size_t n) {
     return Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(nodes[n]).cast<double>().eval();
@@ -101,45 +104,79 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   return {};
 }
 
-UpdateStatus SoftBodySkin::update() {
-  const UpdateStatus status = decide();
-  return status == UpdateStatus::Updated ? compute() : status;
+UpdateStatus SoftBodySkin::update(btScalar alpha) {
+  const UpdateStatus status = decide(alpha);
+  return status == UpdateStatus::Updated ? compute(alpha) : status;
 }
 
 /// What the update is to be, as far as can be told without computing anything.
-UpdateStatus SoftBodySkin::decide() {
+UpdateStatus SoftBodySkin::decide(btScalar alpha) {
   if (!skin_.bound()) return UpdateStatus::Unbound;
   skin_.hold();  // unless it is updated
   if (!visible_) return UpdateStatus::Hidden;
-  if (body_->m_nodes.size() != nodeCount_) return UpdateStatus::TopologyChanged;
-  if (!body_->isActive() && !moved_ && samplesUnmoved()) return UpdateStatus::Asleep;
-  if (body_->m_tetras.size() != tetCount_) return UpdateStatus::TopologyChanged;
+  if (body_->m_nodes.size() != nodeCount_) return topologyChanged();
+  if (!body_->isActive() && !moved_ && !isBetween(alpha) && samplesUnmoved()) return UpdateStatus::Asleep;
+  if (body_->m_tetras.size() != tetCount_) return topologyChanged();
   return UpdateStatus::Updated;
 }
 
-UpdateStatus SoftBodySkin::compute() {
-  const std::size_t bad = skin_.update(nodePositions(*body_));
+UpdateStatus SoftBodySkin::compute(btScalar alpha) {
+  const bool between = isBetween(alpha);
+  const std::size_t bad = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
   if (bad < skin_.nodeCount()) {
     firstBadNode_ = bad;
     moved_ = true;  // there are no good nodes to compare with
     return UpdateStatus::NonFinite;
   }
-  moved_ = false;
+  if (teleported_) skin_.hold();
+  teleported_ = false;
+  moved_ = between;  // the surface is not yet where the body is
   sample();
   return UpdateStatus::Updated;
 }
 
-std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses) {
+/// A step of other nodes, or tets, is not the one before the next.
+UpdateStatus SoftBodySkin::topologyChanged() {
+  between_ = false;
+  steps_.forget();
+  return UpdateStatus::TopologyChanged;
+}
+
+void SoftBodySkin::keepStep() {
+  if (!skin_.bound() || !visible_) return;
+  between_ = false;
+  const bool slept = std::exchange(sleeps_, !body_->isActive());
+  if (slept && sleeps_) return;  // where it was
+  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return steps_.forget();
+  if (slept) steps_.forget();
+  between_ = steps_.keep(nodePositions(*body_));
+}
+
+void SoftBodySkin::markTeleported() {
+  moved_ = teleported_ = true;
+  if (visible_) beginAnew();
+}
+
+/// The next step kept begins where the body is now.
+void SoftBodySkin::beginAnew() {
+  between_ = false;
+  if (steps_.empty()) return;
+  steps_.forget();
+  if (body_->m_nodes.size() == nodeCount_) (void)steps_.keep(nodePositions(*body_));
+}
+
+std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses,
+                                    btScalar alpha) {
   // First all decisions, then all work: the pages that decisions touch would slow each update in between by a tenth.
   std::array<UpdateStatus, kTogether> done;
   std::size_t updated = 0;
   for (std::size_t first = 0; first < count; first += kTogether) {
     const std::size_t size = std::min(kTogether, count - first);
     for (std::size_t k = 0; k < size; k += kInFlight) {
-      decideAll(skins + first + k, std::min(kInFlight, size - k), done.data() + k);
+      decideAll(skins + first + k, std::min(kInFlight, size - k), done.data() + k, alpha);
     }
     for (std::size_t k = 0; k < size; ++k) {
-      if (done[k] == UpdateStatus::Updated) done[k] = skins[first + k]->compute();
+      if (done[k] == UpdateStatus::Updated) done[k] = skins[first + k]->compute(alpha);
       updated += done[k] == UpdateStatus::Updated;
     }
     if (statuses) std::copy_n(done.data(), size, statuses + first);
@@ -148,11 +185,11 @@ std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t coun
 }
 
 /// Decides on a few skins. Each step reads what the one before has asked memory for.
-void SoftBodySkin::decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses) {
+void SoftBodySkin::decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses, btScalar alpha) {
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetch();
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetchBody();
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetchNodes();
-  for (std::size_t k = 0; k < count; ++k) statuses[k] = skins[k]->decide();
+  for (std::size_t k = 0; k < count; ++k) statuses[k] = skins[k]->decide(alpha);
 }
 
 void SoftBodySkin::fetch() const {
@@ -177,13 +214,17 @@ void SoftBodySkin::setVisible(bool visible) {
   if (visible == visible_) return;
   visible_ = visible;
   moved_ = true;  // whatever has happened meanwhile
-  if (visible) (void)update();
+  if (visible) {
+    beginAnew();
+    (void)update();
+  }
   skin_.hold();  // what happened meanwhile is no motion
 }
 
-void SoftBodySkin::setOrigin(const btVector3& origin) {
-  skin_.setOrigin(toEigen(origin));
+bool SoftBodySkin::setOrigin(const btVector3& origin) {
+  if (!skin_.setOrigin(toEigen(origin))) return false;
   moved_ = true;
+  return true;
 }
 
 void SoftBodySkin::sample() {

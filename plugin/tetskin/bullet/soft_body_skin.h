@@ -35,8 +35,15 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 /// Works in every Bullet world and for a body in none; a skin only reads its body. Update after stepSimulation, not in
 /// a tick callback: there is no callback at which the positions are final in all worlds. A body that was moved, scaled
 /// or teleported by hand simply needs the next update. Several skins may share a body, and several bodies a binding.
-/// The body must outlive the skin's last update: once it is gone, `update` and `setVisible(true)` would read freed
-/// memory, while all else may be called, `bind` to another body included. A skin may be moved, not copied.
+/// The body must outlive the skin's last update: once it is gone, `update`, `keepStep`, `markTeleported` and
+/// `setVisible(true)` would read freed memory, while all else may be called, `bind` to another body included. A skin
+/// may be moved, not copied.
+///
+/// An application that draws at another rate than it steps keeps each step, and draws between the last two; the time
+/// is its own, and the surface is then a step behind it:
+///
+///     if (world->stepSimulation(step, 4, step / 4) > 0) skin.keepStep();   // as often as time asks for
+///     skin.update(alpha);                                                  // each frame
 class SoftBodySkin {
  public:
   SoftBodySkin() = default;
@@ -55,25 +62,47 @@ class SoftBodySkin {
   /// The same for vertices alone: no triangles, hence no recomputed normals.
   [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
                                  const SkinOptions& options = {});
-  /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is.
+  /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is. Refused once
+  /// Bullet's own tets dangle: see `checkDangling`.
   [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// The same with a binding made before, such as another skin's, under the same options.
   Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const SkinOptions& options = {});
 
   /// Computes the current positions, and normals if asked for. Cost O(vertexCount + nodeCount); allocates nothing. A
   /// sleeping body costs a look at a few of its nodes, a hidden skin nothing.
-  UpdateStatus update();
+  /// alpha  how far between the last two steps kept: from 0, the one before, to 1, the body's nodes as they are now.
+  ///        Counts as the nearer of the two beyond them, and as 1 if it is not a number, or if nothing is in between:
+  ///        see `keepStep`
+  UpdateStatus update(btScalar alpha = 1);
 
   /// `update` for several skins in turn, which asks memory early for what the next ones will read: with many sleeping
   /// bodies, waiting for that is most of the cost. Returns how many were updated.
   /// skins     `count` of them, not null, of any bodies
   /// statuses  if given, receives as many: what `update` did
-  static std::size_t updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses = nullptr);
+  static std::size_t updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses = nullptr,
+                               btScalar alpha = 1);
+
+  /// Keeps the nodes for updates between this step and the next: call it once after each stepSimulation that returned
+  /// above 0, before any update. Any number of updates may follow, in any order of their alphas.
+  ///
+  /// Whatever alpha is, updates show the body as it is now: after the first step kept; from `bind`, `markTeleported`
+  /// and `setVisible(true)` on, until the next; after the one that finds a sleeping body awake, as nobody has watched
+  /// it meanwhile; once an update has returned TopologyChanged, until two more; and where the nodes of this step, or of
+  /// the one before, are not finite. A body that falls asleep is drawn on its way there until the next step is kept,
+  /// and is skipped as soon as an update has shown it where it lies.
+  ///
+  /// Cost: O(nodeCount), and two copies of the nodes from the first call on; nothing for a body that sleeps on, nor for
+  /// a hidden skin. Without it, nothing is kept, and alpha does not matter.
+  void keepStep();
 
   /// A sleeping body is looked at in four nodes only, not in one plane, one of which at least moves in every teleport,
   /// turn, stretch or other affine motion of the whole body. After moving other nodes by hand, say so: the next update
   /// will not skip.
   void markMoved() { moved_ = true; }
+  /// After moving a body by hand to where it shall appear at once, asleep or awake: updates do not show it on the way,
+  /// and the next one's motion is none (see `previousPositions`). Without it, the next step kept is drawn as if the
+  /// body had gone there in that step. Cost that of `keepStep`.
+  void markTeleported();
   /// A skin that is not visible is not updated; shown again, it is at once. Visible to begin with.
   void setVisible(bool visible);
   bool visible() const { return visible_; }
@@ -81,9 +110,9 @@ class SoftBodySkin {
   /// vertexCount current positions, world space minus origin, in the options' order: the skin's own array. Empty where
   /// the target is the caller's.
   PointView<const btScalar> positions() const { return skin_.positions(); }
-  /// Of the update before, if asked for: see MeshSkin. The current ones after bind, after any update that was skipped
-  /// (a sleeping body has no motion) and when shown again; on frames without a call of `update`, nothing has moved
-  /// either.
+  /// Of the update before, whatever its alpha, if asked for: see MeshSkin. The current ones after bind, after any
+  /// update that was skipped (a sleeping body has no motion), after the one that follows a teleport, and when shown
+  /// again; on frames without a call of `update`, nothing has moved either.
   PointView<const btScalar> previousPositions() const { return skin_.previousPositions(); }
   /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
   PointView<const float> normals() const { return skin_.normals(); }
@@ -96,8 +125,8 @@ class SoftBodySkin {
   const QuadraticReport& quadraticReport() const { return quadraticReport_; }
   /// The first such node when `update` last returned NonFinite.
   std::size_t firstBadNode() const { return firstBadNode_; }
-  /// Moves the origin for the updates to come.
-  void setOrigin(const btVector3& origin);
+  /// Moves the origin for the updates to come. Returns false, and leaves it, if it is not finite or beyond 1e18.
+  bool setOrigin(const btVector3& origin);
 
  private:
   /// A node of the last update.
@@ -106,9 +135,12 @@ class SoftBodySkin {
     btScalar position[3] = {};
   };
 
-  UpdateStatus decide();
-  static void decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses);
-  UpdateStatus compute();
+  bool isBetween(btScalar alpha) const { return between_ && alpha < 1; }
+  UpdateStatus decide(btScalar alpha);
+  static void decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses, btScalar alpha);
+  UpdateStatus compute(btScalar alpha);
+  UpdateStatus topologyChanged();
+  void beginAnew();
   void sample();
   bool samplesUnmoved() const;
   void fetch() const;
@@ -120,11 +152,15 @@ class SoftBodySkin {
   int nodeCount_ = 0;
   int tetCount_ = 0;
   bool visible_ = true;
-  bool moved_ = false;
+  bool moved_ = false;       ///< or, for all that samples_ tell, may have: the next update does not skip
+  bool between_ = false;     ///< there is something between the steps kept
+  bool sleeps_ = false;      ///< did when the last step was kept
+  bool teleported_ = false;  ///< the next update is no motion
   std::array<Sample, 4> samples_;
   std::size_t firstBadNode_ = 0;
   MeshSkin<btScalar> skin_;
   QuadraticReport quadraticReport_;
+  KeptSteps<btScalar> steps_;
 };
 
 }  // namespace tetskin

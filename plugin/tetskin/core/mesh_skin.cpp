@@ -31,7 +31,19 @@ std::vector<std::uint32_t> slotsOf(const Embedding& embedding) {
   return slots;
 }
 
-Status checkTargets(const SkinOptions& options, std::size_t vertexCount) {
+bool isUsable(const Eigen::Vector3d& origin) {
+  return firstUnusable(PointView<const double>(origin.data(), 1)) == 1;
+}
+
+/// All that can be known of them before anything is embedded.
+Status checkOptions(const SkinOptions& options, std::size_t vertexCount) {
+  if (!isUsable(options.origin)) {
+    return {StatusCode::InvalidOption, "the origin is not finite, or farther than 1e18 from the world's"};
+  }
+  if (!(options.hardEdgeDegrees >= 0.0)) {
+    return {StatusCode::InvalidOption, "hardEdgeDegrees is " + std::to_string(options.hardEdgeDegrees) +
+                                           "; give an angle of 0 or more, in degrees"};
+  }
   if (options.previousPositions && !std::holds_alternative<std::monostate>(options.target)) {
     return {StatusCode::InvalidOption,
             "previous positions are kept of the skin's own array only; leave out the target, or keep them yourself"};
@@ -102,18 +114,33 @@ Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedd
 
 }  // namespace
 
+EmbedReport refused(const TriangleMesh& mesh, Status status) {
+  assert(!status.ok());
+  EmbedReport report;
+  report.vertexCount = report.unbound = mesh.vertexCount();
+  report.status = std::move(status);
+  return report;
+}
+
+template <class Scalar>
+Status checkNodes(PointView<const Scalar> nodes) {
+  const std::size_t bad = firstUnusable(nodes);
+  if (bad == nodes.size()) return {};
+  return {StatusCode::NonFinite, "node " + std::to_string(bad) +
+                                     " is not finite, or farther than 1e18 from the origin; bind before the body "
+                                     "explodes"};
+}
+
 template <class Scalar>
 EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
                             std::shared_ptr<const SkinBinding<Scalar>>& binding, QuadraticReport* quadratic) {
-  EmbedReport report;
-  report.vertexCount = report.unbound = mesh.vertexCount();
-  report.status = checkAttributes(mesh);
-  if (!report.ok()) return report;
+  if (Status status = checkAttributes(mesh); !status.ok()) return refused(mesh, std::move(status));
+  if (Status status = checkOptions(options, mesh.vertexCount()); !status.ok()) return refused(mesh, std::move(status));
   auto made = std::make_shared<SkinBinding<Scalar>>();
   EmbedOptions embedOptions;
   embedOptions.outside = options.outside;
   embedOptions.maxDistance = options.maxDistance;
-  report = embed(cage, mesh, embedOptions, made->embedding);
+  EmbedReport report = embed(cage, mesh, embedOptions, made->embedding);
   if (!report.ok()) return report;
   addParts(cage, mesh, options, *made, quadratic);
   binding = std::move(made);
@@ -125,6 +152,7 @@ Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const Skin
                        const Embedding& embedding, std::shared_ptr<const SkinBinding<Scalar>>& binding,
                        QuadraticReport* quadratic) {
   if (Status status = checkAttributes(mesh); !status.ok()) return status;
+  if (Status status = checkOptions(options, mesh.vertexCount()); !status.ok()) return status;
   if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
   if (Status status = checkEmbedded(cage, mesh, embedding); !status.ok()) return status;
   auto made = std::make_shared<SkinBinding<Scalar>>();
@@ -142,8 +170,8 @@ EmbedReport MeshSkin<Scalar>::bind(const TetMesh& cage, const TriangleMesh& mesh
   std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
   nodes.reserve(cage.nodeCount());
   for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(p.cast<Scalar>());
-  report.status = bind(std::move(binding), viewOf(std::as_const(nodes)), options);
-  return report;
+  Status status = bind(std::move(binding), viewOf(std::as_const(nodes)), options);
+  return status.ok() ? report : refused(mesh, std::move(status));
 }
 
 template <class Scalar>
@@ -156,12 +184,8 @@ Status MeshSkin<Scalar>::bind(std::shared_ptr<const SkinBinding<Scalar>> binding
                                           std::to_string(binding->embedding.nodeCount())};
   }
   if (Status status = checkParts(*binding, options); !status.ok()) return status;
-  if (Status status = checkTargets(options, vertexCount); !status.ok()) return status;
-  if (const std::size_t bad = firstUnusable(nodes); bad < nodes.size()) {
-    return {StatusCode::NonFinite, "node " + std::to_string(bad) +
-                                       " is not finite, or farther than 1e18 from the origin; bind before the body "
-                                       "explodes"};
-  }
+  if (Status status = checkOptions(options, vertexCount); !status.ok()) return status;
+  if (Status status = checkNodes(nodes); !status.ok()) return status;
 
   MeshSkin made;
   made.options_ = options;
@@ -181,10 +205,11 @@ template <class Scalar>
 void MeshSkin<Scalar>::prepareArrays(std::size_t vertexCount) {
   const auto direct = [&](auto points) { return skin_tasks::isDirect<Scalar>(points, options_.order); };
   bool positionsDirect = false;
+  const bool readAgain = options_.normals == Normals::Recomputed;  // which the caller's memory must not be
   if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
-    positionsDirect = direct(*single);
+    positionsDirect = direct(*single) && !readAgain;
   } else if (const auto* twice = std::get_if<PointView<double>>(&options_.target)) {
-    positionsDirect = direct(*twice);
+    positionsDirect = direct(*twice) && !readAgain;
   } else {
     positions_.resize(vertexCount);
     positionsDirect = direct(viewOf(positions_));
@@ -216,8 +241,12 @@ template <class Scalar>
 std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
   assert(bound() && nodes.size() == nodeCount());
   held_ = true;
-  if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) return bad;
+  // Compared before they are packed, which may be in place. Where none has moved, none has become bad.
   if (options_.skipStill && !moved_.update(binding_->embedding, stencils(), nodes)) return nodeCount();
+  if (const std::size_t bad = nodes_.pack(nodes); bad < nodeCount()) {
+    moved_.forget();  // the surface is not that of these nodes
+    return bad;
+  }
   if (stencils()) edges_.update(*stencils(), nodes_, options_.threads, moved_.gradients());
   if (const auto* single = std::get_if<PointView<float>>(&options_.target)) {
     skinTo(*single);
@@ -232,10 +261,30 @@ std::size_t MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
 }
 
 template <class Scalar>
+std::size_t MeshSkin<Scalar>::update(const KeptSteps<Scalar>& steps, Scalar alpha) {
+  assert(bound() && steps.size() == nodeCount());
+  steps.nodesAt(alpha, nodes_.memory());
+  return update(PointView<const Scalar>(nodes_.memory()));
+}
+
+template <class Scalar>
+bool MeshSkin<Scalar>::setOrigin(const Eigen::Vector3d& origin) {
+  if (!isUsable(origin)) return false;
+  options_.origin = origin;
+  moved_.forget();
+  return true;
+}
+
+template <class Scalar>
 template <class Out>
 void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
-  const SkinOutput<Scalar, Out> output{out, options_.order, options_.origin.template cast<Scalar>(),
-                                       scratch_.empty() ? nullptr : scratch_.data(), moved_.runs()};
+  const bool recomputed = options_.normals == Normals::Recomputed, byScratch = !scratch_.empty();
+  const SkinOutput<Scalar, Out> output{out,
+                                       options_.order,
+                                       options_.origin.template cast<Scalar>(),
+                                       byScratch ? scratch_.data() : nullptr,
+                                       moved_.runs(),
+                                       recomputed && byScratch ? padded_.data() : nullptr};
   Box3* bounds = options_.bounds ? &bounds_ : nullptr;
   const Embedding& embedding = binding_->embedding;
   if (stencils()) {
@@ -244,9 +293,9 @@ void MeshSkin<Scalar>::skinTo(PointView<Out> out) {
     skinLinear(embedding, nodes_, output, bounds, options_.threads);
   }
   if (options_.normals == Normals::Transformed) skinDirections();
-  if (options_.normals == Normals::Recomputed) {
-    recomputeNormals(*binding_->recomputed, PointView<const Out>(out), padded_, normalsOut(), options_.threads);
-  }
+  if (!recomputed) return;
+  if (!byScratch) padPoints(positions(), padded_, options_.threads);
+  recomputeNormals(*binding_->recomputed, padded_, normalsOut(), options_.threads);
 }
 
 template <class Scalar>
@@ -276,6 +325,8 @@ PointView<float> MeshSkin<Scalar>::tangentsOut() {
   return options_.tangentTarget.empty() ? viewOf(tangents_) : options_.tangentTarget;
 }
 
+template Status checkNodes(PointView<const float>);
+template Status checkNodes(PointView<const double>);
 template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,
                                      std::shared_ptr<const SkinBinding<float>>&, QuadraticReport*);
 template EmbedReport makeSkinBinding(const TetMesh&, const TriangleMesh&, const SkinOptions&,

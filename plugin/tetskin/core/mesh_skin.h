@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/kept_steps.h>
 #include <tetskin/core/moved_parts.h>
 #include <tetskin/core/normals.h>
 #include <tetskin/core/parallel_for.h>
@@ -23,7 +24,7 @@ namespace tetskin {
 /// How the surface follows the nodes.
 enum class Interpolation {
   Linear,     ///< barycentric in each tet: continuous, but bent surfaces show the cage's faces
-  Quadratic,  ///< smooth to the eye, an order more accurate, at three to four times the cost
+  Quadratic,  ///< smooth to the eye, an order more accurate, at 2.4 to 3 times the cost of an update
 };
 
 /// Where the positions go: nowhere else (the skin's own array, the default), or to the caller's buffer of float or
@@ -39,7 +40,7 @@ struct SkinOptions {
   double maxDistance = std::numeric_limits<double>::infinity();
   /// Of positions, normals and tangents.
   VertexOrder order = VertexOrder::Mesh;
-  /// Angle between rest normals at one position above which recomputed normals keep a hard edge.
+  /// Angle between rest normals at one position above which recomputed normals keep a hard edge; not below 0.
   double hardEdgeDegrees = kHardEdgeDegrees;
   /// Keep the box of the positions up to date.
   bool bounds = true;
@@ -51,10 +52,12 @@ struct SkinOptions {
   bool skipStill = false;
   SkinTarget target;
   /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
-  /// the sign that belongs to them (TriangleMesh::tangents) does not change.
+  /// the sign that belongs to them (TriangleMesh::tangents) does not change. No target is ever read. `bind` fills these
+  /// two with unit vectors, and where a direction collapses to nothing, an update may leave what it last wrote there.
   PointView<float> normalTarget;
   PointView<float> tangentTarget;
-  /// World space; subtracted from every position. Near the body, it keeps float positions exact far from the origin.
+  /// World space, within kLargestCoordinate; subtracted from every position. Near the body, it keeps float positions
+  /// exact far from the origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   /// Lends its threads to updates of large meshes; must outlive the binding.
   ParallelFor* threads = nullptr;
@@ -71,8 +74,17 @@ struct SkinBinding {
   std::optional<NormalTopology> recomputed;  ///< of recomputed normals
 };
 
+/// The report of a mesh that could not be bound: the status says why, and no vertex is.
+EmbedReport refused(const TriangleMesh& mesh, Status status);
+
+/// Ok if a surface can follow these nodes: NonFinite names the first that is not finite, or beyond kLargestCoordinate.
+template <class Scalar>
+Status checkNodes(PointView<const Scalar> nodes);
+
 /// Embeds the mesh in the cage at rest, with all that the options' interpolation, normals and order need.
-/// Errors in the report's status, as `embed`'s; SizeMismatch if the mesh's normals or tangents are not one a vertex.
+/// Errors in the report's status, as `embed`'s; before anything is embedded, SizeMismatch if the mesh's normals or
+/// tangents, or the points of a target, are not one a vertex, and InvalidOption for options that make no sense, or do
+/// not go together.
 template <class Scalar>
 [[nodiscard]] EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
                                           std::shared_ptr<const SkinBinding<Scalar>>& binding,
@@ -93,8 +105,8 @@ class MeshSkin {
   /// Embeds the mesh, and updates once with the cage's rest nodes. On an error this skin is left as it was.
   [[nodiscard]] EmbedReport bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// Takes a binding made before; `nodes` are the current ones, finite.
-  /// Errors: InvalidOption if it lacks what the options ask for, or they do not go together; SizeMismatch for a target,
-  /// or nodes, of another size.
+  /// Errors: InvalidOption if it lacks what the options ask for, or they make no sense, or do not go together;
+  /// SizeMismatch for a target, or nodes, of another size; NonFinite as `checkNodes`.
   Status bind(std::shared_ptr<const SkinBinding<Scalar>> binding, PointView<const Scalar> nodes,
               const SkinOptions& options = {});
 
@@ -102,6 +114,8 @@ class MeshSkin {
   /// Returns the index of the first node that is not finite, or beyond kLargestCoordinate, and changes nothing then;
   /// nodeCount() if all is well.
   [[nodiscard]] std::size_t update(PointView<const Scalar> nodes);
+  /// The same for the nodes between two steps: see KeptSteps::nodesAt. `steps` are of nodeCount() nodes.
+  [[nodiscard]] std::size_t update(const KeptSteps<Scalar>& steps, Scalar alpha);
 
   bool bound() const { return binding_ != nullptr; }
   std::size_t nodeCount() const { return nodes_.size(); }
@@ -123,11 +137,9 @@ class MeshSkin {
   /// Box of the positions, for culling. An extrapolated vertex may lie outside the cage's own box.
   const Box3& bounds() const { return bounds_; }
   const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
-  /// For the updates to come.
-  void setOrigin(const Eigen::Vector3d& origin) {
-    options_.origin = origin;
-    moved_.forget();
-  }
+  /// For the updates to come. Returns false, and keeps the one there is, if it is not finite or beyond
+  /// kLargestCoordinate.
+  bool setOrigin(const Eigen::Vector3d& origin);
 
  private:
   template <class Out>

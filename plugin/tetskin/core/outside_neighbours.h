@@ -23,7 +23,9 @@ namespace tetskin {
 /// triangles  of the mesh; a vertex in none is left alone
 /// tetOf      by vertex: its tet, or ~tet if it lies outside of it; changed
 /// Returns    the number of vertices that changed their tet
-/// Cost       O(vertexCount + triangleCount) if any vertex is outside
+/// Cost       O(vertexCount + triangleCount + tetCount) if any vertex is outside. Besides, for each of these whose tet
+///            shares no node with any of its neighbours', all connected tets as near to it as its neighbours are, or as
+///            its own tet and an edge of that: for a mesh far outside, that may be the whole cage for every vertex
 std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
                                const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf);
 

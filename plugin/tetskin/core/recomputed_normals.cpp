@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <type_traits>
 
 namespace tetskin {
 namespace {
@@ -21,28 +20,41 @@ constexpr std::size_t kWindow = 256;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
+/// Of the cosine of an angle between two floats' directions.
+constexpr double kRounding = 1e-12;
+
+/// Of the rest normal, whatever its length; zero where there is none, or one without a direction.
+Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
+  if (mesh.normals.size() != mesh.vertexCount()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d normal = mesh.normals[v].cast<double>();
+  const double length = normal.norm();
+  return length > 0.0 && std::isfinite(length) ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+}
+
 /// Vertices that share a normal, as lists: those at one position whose rest normals are within an angle of each other.
 std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first,
                                         double hardEdgeDegrees, std::size_t& groupCount) {
-  const bool authored = mesh.normals.size() == mesh.vertexCount();
-  const auto limit = static_cast<float>(std::cos(hardEdgeDegrees * kDegree));
+  const double limit = std::cos(std::min(hardEdgeDegrees, 180.0) * kDegree) - kRounding;
   // The groups at one position are chained by their first vertices.
-  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNone), next(mesh.vertexCount(), kNone);
+  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNone), firstGroup(groupOf), next(groupOf);
   groupCount = 0;
+  const auto join = [&](std::uint32_t v, auto&& isWith) {
+    std::uint32_t* other = &firstGroup[first[v]];
+    while (*other != kNone && !isWith(*other)) other = &next[*other];
+    if (*other == kNone) {
+      *other = v;
+      groupOf[v] = static_cast<std::uint32_t>(groupCount++);
+    } else {
+      groupOf[v] = groupOf[*other];
+    }
+  };
   for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
-    std::uint32_t other = first[v];
-    std::uint32_t lastOther = kNone;
-    while (other != kNone && other != v) {
-      if (!authored || mesh.normals[v].dot(mesh.normals[other]) >= limit) break;
-      lastOther = other;
-      other = next[other];
-    }
-    if (other != kNone && other != v) {
-      groupOf[v] = groupOf[other];
-      continue;
-    }
-    if (lastOther != kNone) next[lastOther] = v;
-    groupOf[v] = static_cast<std::uint32_t>(groupCount++);
+    const Eigen::Vector3d direction = restDirection(mesh, v);
+    if (direction.isZero(0.0)) continue;
+    join(v, [&](std::uint32_t other) { return direction.dot(restDirection(mesh, other)) >= limit; });
+  }
+  for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (groupOf[v] == kNone) join(v, [](std::uint32_t) { return true; });  // after those that know where they belong
   }
   return groupOf;
 }
@@ -107,24 +119,14 @@ void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& me
   for (std::uint32_t& group : groupOf) group = numberOf[group];
 }
 
-/// Positions [first, last), each to four scalars; the fourth stays as it is where it is not another position's.
-template <class Scalar, class In>
-void pad(PointView<const In> positions, std::size_t first, std::size_t last, Scalar* to) {
-  if constexpr (std::is_same_v<Scalar, In>) {
-    std::size_t k = first;
-    if (positions.strideBytes() == 3 * sizeof(Scalar)) {
-      for (; k + 1 < last; ++k) std::memcpy(to + 4 * k, positions[k], 4 * sizeof(Scalar));
-    }
-    for (; k < last; ++k) std::memcpy(to + 4 * k, positions[k], 3 * sizeof(Scalar));
-  } else {
-    // Relative to one of them, so that far from the origin nothing is lost.
-    using Wider = std::common_type_t<Scalar, In>;
-    const In* origin = positions[0];
-    for (std::size_t k = first; k < last; ++k) {
-      for (std::size_t i = 0; i < 3; ++i)
-        to[4 * k + i] = static_cast<Scalar>(Wider(positions[k][i]) - Wider(origin[i]));
-    }
+/// Points [first, last), each to four scalars; the fourth stays as it is where it is not another point's.
+template <class Scalar>
+void pad(PointView<const Scalar> points, std::size_t first, std::size_t last, Scalar* to) {
+  std::size_t k = first;
+  if (points.strideBytes() == 3 * sizeof(Scalar)) {
+    for (; k + 1 < last; ++k) std::memcpy(to + 4 * k, points[k], 4 * sizeof(Scalar));
   }
+  for (; k < last; ++k) std::memcpy(to + 4 * k, points[k], 3 * sizeof(Scalar));
 }
 
 /// Starts of lists from their lengths, which come one place late.
@@ -176,18 +178,21 @@ NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::
   }
 }
 
-template <class Scalar, class In>
-void recomputeNormals(const NormalTopology& topology, PointView<const In> positions, std::vector<Scalar>& padded,
-                      PointView<float> out, ParallelFor* threads) {
-  assert(positions.size() == topology.places().size() && out.size() == positions.size());
-  assert(padded.size() == 4 * positions.size());
-  if (positions.empty()) return;
-  std::size_t tasks = taskCount(positions.size());
+template <class Scalar>
+void padPoints(PointView<const Scalar> points, std::vector<Scalar>& padded, ParallelFor* threads) {
+  assert(padded.size() == 4 * points.size());
+  if (points.empty()) return;
+  const std::size_t tasks = taskCount(points.size());
   runTasks(threads, tasks, [&](std::size_t task) {
-    pad(positions, firstItem(positions.size(), tasks, task), firstItem(positions.size(), tasks, task + 1),
-        padded.data());
+    pad(points, firstItem(points.size(), tasks, task), firstItem(points.size(), tasks, task + 1), padded.data());
   });
+}
 
+template <class Scalar>
+void recomputeNormals(const NormalTopology& topology, const std::vector<Scalar>& padded, PointView<float> out,
+                      ParallelFor* threads) {
+  assert(out.size() == topology.places().size() && padded.size() == 4 * out.size());
+  if (out.empty()) return;
   kernels::PathWork<Scalar> work;
   work.groupPaths = topology.groupPaths().data();
   work.paths = topology.paths().data();
@@ -196,7 +201,7 @@ void recomputeNormals(const NormalTopology& topology, PointView<const In> positi
   work.points = padded.data();
   work.out = out.data();
   work.outStride = out.strideBytes();
-  tasks = taskCount(topology.groupCount(), kGroupsPerTask);
+  const std::size_t tasks = taskCount(topology.groupCount(), kGroupsPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {
     kernels::PathWork<Scalar> part = work;
     part.firstGroup = firstItem(topology.groupCount(), tasks, task);
@@ -205,13 +210,11 @@ void recomputeNormals(const NormalTopology& topology, PointView<const In> positi
   });
 }
 
-#define TETSKIN_INSTANTIATE(Scalar, In)                                                                              \
-  template void recomputeNormals(const NormalTopology&, PointView<const In>, std::vector<Scalar>&, PointView<float>, \
-                                 ParallelFor*);
-TETSKIN_INSTANTIATE(float, float)
-TETSKIN_INSTANTIATE(float, double)
-TETSKIN_INSTANTIATE(double, float)
-TETSKIN_INSTANTIATE(double, double)
+#define TETSKIN_INSTANTIATE(Scalar)                                                     \
+  template void padPoints(PointView<const Scalar>, std::vector<Scalar>&, ParallelFor*); \
+  template void recomputeNormals(const NormalTopology&, const std::vector<Scalar>&, PointView<float>, ParallelFor*);
+TETSKIN_INSTANTIATE(float)
+TETSKIN_INSTANTIATE(double)
 #undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

@@ -16,13 +16,15 @@ namespace tetskin {
 constexpr double kHardEdgeDegrees = 5.0;
 
 /// Which vertices around make the normal of which vertices: vertices at one position share theirs, unless their rest
-/// normals differ by more than an angle (a hard edge). A group of vertices that share a normal has a path: around them,
+/// normals differ by more than an angle (a hard edge), whatever their lengths; one that is zero or not finite counts as
+/// absent, and makes no edge. A group of vertices that share a normal has a path: around them,
 /// from each of their triangles into the next. Immutable, shared like an Embedding.
 /// Memory: some 40 bytes a vertex of a closed surface.
 class NormalTopology {
  public:
   NormalTopology() = default;
-  /// places  by vertex, where it is written (its slot, for VertexOrder::Sorted); empty for the mesh's order
+  /// places           by vertex, where it is written (its slot, for VertexOrder::Sorted); empty for the mesh's order
+  /// hardEdgeDegrees  not below 0; from 180 on there is no hard edge
   NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
                  double hardEdgeDegrees = kHardEdgeDegrees);
 
@@ -41,16 +43,21 @@ class NormalTopology {
   std::vector<std::uint32_t> paths_;
 };
 
+/// Copies points to four scalars each, of which the last means nothing.
+/// points  vertexCount x 3, read
+/// padded  vertexCount x 4
+template <class Scalar>
+void padPoints(PointView<const Scalar> points, std::vector<Scalar>& padded, ParallelFor* threads = nullptr);
+
 /// Writes the unit normals of the deformed triangles, weighted by area: for a vertex at x with p_i and p_i+1 the far
 /// side of a triangle, the sum of (p_i - x) x (p_i+1 - x). Gathered per vertex in a fixed order, so that the bits
 /// depend on no number of threads. Where all triangles have collapsed, what is there is left.
 ///
-/// positions  vertexCount x 3, as just written; those of vertices at one position in the mesh are the same
-/// padded     vertexCount x 4, scratch of the caller; its type is that of the arithmetic
-/// out        vertexCount x 3, caller-owned, any stride
-/// Cost       O(triangleCount + vertexCount), no allocation
-template <class Scalar, class In>
-void recomputeNormals(const NormalTopology& topology, PointView<const In> positions, std::vector<Scalar>& padded,
-                      PointView<float> out, ParallelFor* threads = nullptr);
+/// padded  vertexCount x 4, current positions; those of vertices at one position in the mesh are the same
+/// out     vertexCount x 3, caller-owned, any stride; never read
+/// Cost    O(triangleCount + vertexCount), no allocation
+template <class Scalar>
+void recomputeNormals(const NormalTopology& topology, const std::vector<Scalar>& padded, PointView<float> out,
+                      ParallelFor* threads = nullptr);
 
 }  // namespace tetskin

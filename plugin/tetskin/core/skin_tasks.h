@@ -109,17 +109,37 @@ void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t 
   std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 3 * sizeof(Scalar));
 }
 
-/// From the order of the slots, in `scratchSize` scalars, to where the points shall be. To read at random and write in
-/// order is much the faster way round: a processor need not wait for what it reads ahead.
+/// To points of four scalars, of which the last is whatever lies behind.
+template <class Scalar>
+void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
+                 Scalar* padded) {
+  const auto copy = [&](std::size_t slot, std::size_t k) {
+    std::memcpy(padded + 4 * k, sorted + 3 * slot, 4 * sizeof(Scalar));
+  };
+  if (!slots) {
+    for (std::size_t k = first; k < last; ++k) copy(k, k);
+  } else {
+    for (std::size_t k = first; k < last; ++k) copy(slots[k], k);
+  }
+}
+
+/// From the order of the slots, in `scratchSize` scalars, to where the points shall be, and to `padded` if it is not
+/// null. To read at random and write in order is much the faster way round: a processor need not wait for what it reads
+/// ahead.
 template <class From, class Out>
 void place(const Embedding& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
-           ParallelFor* threads) {
+           ParallelFor* threads, From* padded = nullptr) {
   const std::uint32_t* slots = order == VertexOrder::Mesh ? embedding.vertexSlots().data() : nullptr;
   const std::size_t tasks = taskCount(points.size());
   runTasks(threads, tasks, [&](std::size_t task) {
     const std::size_t first = firstItem(points.size(), tasks, task), last = firstItem(points.size(), tasks, task + 1);
+    if (padded) placePadded(slots, sorted, first, last, padded);
     if constexpr (std::is_same_v<From, Out>) {
-      if (slots && points.strideBytes() == 3 * sizeof(Out)) return placeTightly(slots, sorted, first, last, points[0]);
+      if (points.strideBytes() == 3 * sizeof(Out)) {
+        if (slots) return placeTightly(slots, sorted, first, last, points[0]);
+        std::memcpy(points[first], sorted + 3 * first, 3 * (last - first) * sizeof(Out));
+        return;
+      }
     }
     for (std::size_t k = first; k < last; ++k) {
       const From* from = sorted + 3 * (slots ? static_cast<std::size_t>(slots[k]) : k);
@@ -148,7 +168,7 @@ void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const P
   constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
   std::array<kernels::Extent<Scalar>, kMostTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
-  const bool direct = isDirect<Scalar>(output.points, output.order);
+  const bool direct = isDirect<Scalar>(output.points, output.order) && !output.padded;
   assert(!output.movedRuns || (!bounds && (direct || output.scratch)));
   std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : scratchSize(output.points.size()));
   Scalar* scratch = output.scratch ? output.scratch : ownScratch.data();
@@ -157,7 +177,7 @@ void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const P
   forAllRuns(embedding, work, output.movedRuns, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
     table.positions(part, shift.data(), sorted, bounds ? &extents[task] : nullptr);
   });
-  if (!direct) place(embedding, sorted, output.points, output.order, threads);
+  if (!direct) place(embedding, sorted, output.points, output.order, threads, output.padded);
   if (!bounds) return;
   *bounds = Box3();
   for (const kernels::Extent<Scalar>& e : extents) {

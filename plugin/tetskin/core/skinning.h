@@ -32,6 +32,9 @@ class PackedNodes {
   [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
 
   std::size_t size() const { return nodes_.size(); }
+  /// size() x 3, four scalars apart: positions that are made for packing may be written here, and then be packed from
+  /// here in place.
+  PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().data(), size(), 4 * sizeof(Scalar)}; }
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().scalars; }
   const Point& mean() const { return mean_; }
@@ -67,6 +70,9 @@ struct SkinOutput {
   /// By run of the embedding: 0 leaves its points as they are, in the points if they are written directly, otherwise in
   /// the scratch, which must then be the one of the update before. Null: all are written. Not with bounds.
   const std::uint8_t* movedRuns = nullptr;
+  /// If not null, vertexCount x 4 scalars of the caller's that get the points besides, in the same order, each with one
+  /// that means nothing: for who has to read them. All points then go by the scratch.
+  Scalar* padded = nullptr;
 };
 
 }  // namespace tetskin

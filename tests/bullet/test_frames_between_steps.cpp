@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Frames that are drawn between two steps.
+#include "skin_test.h"
+#include "support/allocation_count.h"
+#include "worlds.h"
+
+#include <functional>
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+using test::kRounding;
+using Surface = std::vector<btScalar>;
+
+Surface surfaceOf(const SoftBodySkin& skin) {
+  Surface all;
+  for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+    all.insert(all.end(), skin.positions()[v], skin.positions()[v] + 3);
+  }
+  return all;
+}
+
+/// Largest difference to the surface at `alpha` between two others.
+double distance(const Surface& surface, const Surface& before, const Surface& after, double alpha) {
+  double largest = surface.size() == before.size() ? 0.0 : 1e9;
+  for (std::size_t i = 0; i < surface.size() && i < before.size(); ++i) {
+    const double expected = (1.0 - alpha) * double(before[i]) + alpha * double(after[i]);
+    largest = std::max(largest, std::abs(double(surface[i]) - expected));
+  }
+  return largest;
+}
+
+class FramesBetweenSteps : public test::SkinTest {
+ protected:
+  /// The body at rest, then bent, each kept as after a step.
+  void bindAndKeepTwo(const SkinOptions& options = {}) {
+    ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+    rest = surfaceOf(skin);
+    skin.keepStep();
+    bend();
+    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    bent = surfaceOf(skin);
+    skin.keepStep();
+  }
+  void moveUp() { body->translate(btVector3(0, 1, 0)); }
+  Surface at(btScalar alpha) {
+    EXPECT_EQ(skin.update(alpha), UpdateStatus::Updated);
+    return surfaceOf(skin);
+  }
+  /// Every update shows the body as it is now.
+  void expectNothingBetween() {
+    SoftBodySkin now;
+    ASSERT_TRUE(now.bind(*body, skin.binding()).ok());
+    for (const btScalar alpha : {btScalar(0.0), btScalar(0.5)}) {
+      (void)skin.update(alpha);
+      EXPECT_EQ(surfaceOf(skin), surfaceOf(now));
+    }
+  }
+
+  Surface rest, bent;
+};
+
+TEST_F(FramesBetweenSteps, AreSkinsOfTheNodesBetweenThem) {
+  bindAndKeepTwo();
+  for (const btScalar alpha : {btScalar(0.5), btScalar(0.125), btScalar(0.9), btScalar(0.0)}) {
+    EXPECT_LT(distance(at(alpha), rest, bent, double(alpha)), kRounding);
+  }
+  EXPECT_EQ(at(0), rest);
+  skin.keepStep();  // a step in which nothing moved
+  for (const btScalar alpha : {btScalar(0.0), btScalar(0.5)}) EXPECT_EQ(at(alpha), bent);
+}
+
+TEST_F(FramesBetweenSteps, AtOneAreTheBodyItselfToTheBit) {
+  bindAndKeepTwo();
+  using Limits = std::numeric_limits<btScalar>;
+  for (const btScalar alpha : {btScalar(1), btScalar(1.5), Limits::infinity(), Limits::quiet_NaN()}) {
+    EXPECT_NE(at(btScalar(0.5)), bent);
+    EXPECT_EQ(at(alpha), bent) << alpha;
+  }
+  EXPECT_EQ(at(btScalar(-0.5)), rest);
+  EXPECT_EQ(at(-Limits::infinity()), rest);
+}
+
+TEST_F(FramesBetweenSteps, MayBeDrawnInAnyOrderAndAnyNumber) {
+  SkinOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  bindAndKeepTwo(options);
+  const Surface early = at(btScalar(0.3)), late = at(btScalar(0.8));
+  EXPECT_NE(early, late);
+  EXPECT_EQ(at(btScalar(0.8)), late);
+  EXPECT_EQ(at(btScalar(0.3)), early);
+  EXPECT_EQ(at(1), bent);
+  EXPECT_EQ(at(btScalar(0.3)), early);
+}
+
+TEST_F(FramesBetweenSteps, CostTwoCopiesOfTheNodesAndOnlyIfStepsAreKept) {
+  const std::size_t bound = test::allocatedBytes();
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  const std::size_t count = test::allocationCount();
+  bend();
+  skin.markTeleported();
+  (void)skin.update(btScalar(0.5));
+  EXPECT_EQ(test::allocationCount(), count) << "no step is kept";
+  const std::size_t before = test::allocatedBytes();
+  skin.keepStep();
+  EXPECT_EQ(test::allocatedBytes() - before, 6 * sizeof(btScalar) * cage.nodeCount());
+  const std::size_t kept = test::allocationCount();
+  moveUp();
+  skin.keepStep();
+  (void)skin.update(btScalar(0.5));
+  skin.markTeleported();
+  EXPECT_EQ(test::allocationCount(), kept);
+  skin = SoftBodySkin();
+  EXPECT_EQ(test::allocatedBytes(), bound);
+}
+
+TEST_F(FramesBetweenSteps, WithoutAStepKeptOrWithOneShowTheBodyAsItIs) {
+  skin.keepStep();
+  skin.markTeleported();  // unbound, there is nothing to do
+  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
+  bend();
+  expectNothingBetween();
+  skin.keepStep();
+  expectNothingBetween();
+}
+
+TEST_F(FramesBetweenSteps, DoNotShowATeleportedBodyOnItsWay) {
+  bindAndKeepTwo();
+  body->translate(btVector3(0, 100, 0));
+  skin.markTeleported();
+  expectNothingBetween();
+  const Surface there = at(1);
+  moveUp();
+  skin.keepStep();
+  const Surface next = at(1);
+  EXPECT_LT(distance(at(btScalar(0.5)), there, next, 0.5), 100 * kRounding);  // and goes on from there
+  body->translate(btVector3(0, 100, 0));
+  skin.keepStep();
+  skin.markTeleported();  // said after the step
+  expectNothingBetween();
+  body->setActivationState(ISLAND_SLEEPING);
+  skin.keepStep();
+  skin.keepStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);
+  body->translate(btVector3(0, 100, 0));
+  skin.markTeleported();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);
+}
+
+TEST_F(FramesBetweenSteps, ReachTheLastStepOfABodyThatFallsAsleepAndThenCostNothing) {
+  bindAndKeepTwo();
+  const Surface before = at(1);
+  moveUp();
+  body->setActivationState(ISLAND_SLEEPING);  // in this step
+  skin.keepStep();
+  bent = at(1);
+  for (const btScalar alpha : {btScalar(0.75), btScalar(0.25), btScalar(0.25)}) {
+    EXPECT_LT(distance(at(alpha), before, bent, double(alpha)), kRounding);
+  }
+  skin.keepStep();
+  EXPECT_EQ(at(btScalar(0.1)), bent);
+  for (const btScalar alpha : {btScalar(0.1), btScalar(0.9), btScalar(1)}) {
+    EXPECT_EQ(skin.update(alpha), UpdateStatus::Asleep);
+    skin.keepStep();
+  }
+  EXPECT_EQ(surfaceOf(skin), bent);
+}
+
+TEST_F(FramesBetweenSteps, FollowATeleportOfASleepingBodyWithoutAWord) {
+  bindAndKeepTwo();
+  body->setActivationState(ISLAND_SLEEPING);
+  skin.keepStep();
+  skin.keepStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);  // it was drawn there before
+  moveUp();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(btScalar(0.7)), UpdateStatus::Asleep);
+  expectNothingBetween();
+}
+
+TEST_F(FramesBetweenSteps, DoNotComeFromWhereABodyFellAsleepWhenItWakes) {
+  bindAndKeepTwo();
+  body->setActivationState(ISLAND_SLEEPING);
+  skin.keepStep();
+  skin.keepStep();
+  body->forceActivationState(ACTIVE_TAG);
+  moveUp();
+  skin.keepStep();
+  expectNothingBetween();
+  const Surface awake = at(1);
+  moveUp();
+  skin.keepStep();
+  const Surface next = at(1);
+  EXPECT_LT(distance(at(btScalar(0.5)), awake, next, 0.5), 4 * kRounding);
+}
+
+TEST_F(FramesBetweenSteps, BeginAnewWithAnotherBindingAndForAnotherNumberOfNodes) {
+  bindAndKeepTwo();
+  const TetMesh small = test::latticeCage(2, 2, 2, 0.5);
+  const std::unique_ptr<btSoftBody> other(makeSoftBody(small, info));
+  ASSERT_TRUE(skin.bind(*other, small, mesh).ok());
+  other->translate(btVector3(0, 1, 0));
+  const btScalar height = surfaceOf(skin)[1];
+  EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.0, 4 * kRounding);
+  skin.keepStep();
+  EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.0, 4 * kRounding);
+  other->translate(btVector3(0, 1, 0));
+  skin.keepStep();
+  EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.5, 4 * kRounding);
+  other->appendNode(btVector3(0, 0, 0), 1);
+  const Surface good = surfaceOf(skin);
+  EXPECT_EQ(skin.update(btScalar(0.2)), UpdateStatus::TopologyChanged);
+  skin.keepStep();
+  skin.markTeleported();
+  EXPECT_EQ(skin.update(btScalar(0.2)), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(surfaceOf(skin), good);
+  other->m_nodes.pop_back();
+  EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 2.0, 4 * kRounding);
+  skin.keepStep();
+  EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 2.0, 4 * kRounding);
+}
+
+TEST_F(FramesBetweenSteps, KeepTheLastGoodSurfaceWhileNodesAreNotFinite) {
+  bindAndKeepTwo();
+  const Surface good = at(btScalar(0.5));
+  const btScalar x = body->m_nodes[20].m_x.x();
+  body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
+  skin.keepStep();
+  for (const btScalar alpha : {btScalar(0), btScalar(0.5), btScalar(1)}) {
+    EXPECT_EQ(skin.update(alpha), UpdateStatus::NonFinite);
+    EXPECT_EQ(skin.firstBadNode(), 20u);
+    EXPECT_EQ(surfaceOf(skin), good);
+  }
+  body->m_nodes[20].m_x.setX(x);
+  skin.keepStep();
+  expectNothingBetween();
+  moveUp();
+  skin.keepStep();
+  EXPECT_LT(distance(at(0), bent, bent, 0.0), kRounding);
+}
+
+TEST_F(FramesBetweenSteps, OfAHiddenSkinAreNotKeptAndBeginWhereItIsShown) {
+  bindAndKeepTwo();
+  skin.setVisible(false);
+  moveUp();
+  skin.keepStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Hidden);
+  moveUp();
+  skin.setVisible(true);
+  const Surface shown = surfaceOf(skin);
+  expectNothingBetween();
+  moveUp();
+  skin.keepStep();
+  const Surface next = at(1);
+  EXPECT_LT(distance(at(btScalar(0.5)), shown, next, 0.5), 4 * kRounding);
+}
+
+TEST_F(FramesBetweenSteps, HaveTheMotionSinceTheFrameBefore) {
+  SkinOptions options;
+  options.previousPositions = true;
+  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+  const auto motion = [&] { return double(skin.positions()[9][1] - skin.previousPositions()[9][1]); };
+  skin.keepStep();
+  moveUp();
+  skin.keepStep();
+  (void)at(btScalar(0.25));
+  EXPECT_NEAR(motion(), 0.25, 8 * kRounding);
+  (void)at(btScalar(0.75));
+  EXPECT_NEAR(motion(), 0.5, 8 * kRounding);
+  moveUp();
+  skin.keepStep();
+  (void)at(btScalar(0.5));
+  EXPECT_NEAR(motion(), 0.75, 8 * kRounding);
+  body->translate(btVector3(0, 100, 0));
+  skin.markTeleported();
+  (void)at(btScalar(0.75));
+  EXPECT_EQ(motion(), 0.0);
+  moveUp();
+  skin.keepStep();
+  (void)at(btScalar(0.25));
+  EXPECT_NEAR(motion(), 0.25, 100 * kRounding);
+}
+
+TEST_F(FramesBetweenSteps, AreEachSkinsOwn) {
+  bindAndKeepTwo();
+  SoftBodySkin late, never;
+  ASSERT_TRUE(late.bind(*body, skin.binding()).ok());
+  ASSERT_TRUE(never.bind(*body, skin.binding()).ok());
+  late.keepStep();
+  moveUp();
+  const Surface before = surfaceOf(late);
+  late.keepStep();
+  (void)never.update(btScalar(0.5));
+  (void)late.update(btScalar(0.5));
+  EXPECT_LT(distance(surfaceOf(late), before, surfaceOf(never), 0.5), 4 * kRounding);
+  EXPECT_LT(distance(at(btScalar(0.5)), rest, bent, 0.5), kRounding);  // has not kept this step
+}
+
+TEST_F(FramesBetweenSteps, AreAMovedSkinsStill) {
+  bindAndKeepTwo();
+  const Surface half = at(btScalar(0.5));
+  SoftBodySkin other = std::move(skin);
+  EXPECT_EQ(other.update(btScalar(0.25)), UpdateStatus::Updated);
+  EXPECT_EQ(other.update(btScalar(0.5)), UpdateStatus::Updated);
+  EXPECT_EQ(surfaceOf(other), half);
+  skin = SoftBodySkin();
+  skin.keepStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Unbound);
+}
+
+TEST_F(FramesBetweenSteps, TakeANewOrigin) {
+  bindAndKeepTwo();
+  const Surface half = at(btScalar(0.5));
+  ASSERT_TRUE(skin.setOrigin(btVector3(0, 3, 0)));
+  const Surface shifted = at(btScalar(0.5));
+  for (std::size_t i = 0; i < half.size(); ++i) {
+    ASSERT_NEAR(double(half[i] - shifted[i]), i % 3 == 1 ? 3.0 : 0.0, 8 * kRounding);
+  }
+}
+
+TEST_F(FramesBetweenSteps, LeaveOutWhatIsStill) {
+  SkinOptions options;
+  options.skipStill = true;
+  options.bounds = false;
+  bindAndKeepTwo(options);
+  for (const btScalar alpha : {btScalar(0.5), btScalar(0.5), btScalar(1), btScalar(0)}) {
+    EXPECT_LT(distance(at(alpha), rest, bent, double(alpha)), kRounding);
+  }
+}
+
+TEST_F(FramesBetweenSteps, OfManySkinsAreThoseOfEach) {
+  bindAndKeepTwo();
+  SoftBodySkin plain;
+  ASSERT_TRUE(plain.bind(*body, skin.binding()).ok());
+  const Surface half = at(btScalar(0.5));
+  (void)at(btScalar(0.75));
+  SoftBodySkin* const both[] = {&skin, &plain};
+  EXPECT_EQ(SoftBodySkin::updateAll(both, 2, nullptr, btScalar(0.5)), 2u);
+  EXPECT_EQ(surfaceOf(skin), half);
+  EXPECT_EQ(surfaceOf(plain), bent);
+  EXPECT_EQ(SoftBodySkin::updateAll(both, 2), 2u);
+  EXPECT_EQ(surfaceOf(skin), bent);
+}
+
+using MakeWorld = std::function<std::unique_ptr<test::TestWorld>(const TetMesh&)>;
+
+template <class World>
+std::unique_ptr<test::TestWorld> makeWorld(const TetMesh& cage) {
+  return std::make_unique<World>(cage);
+}
+
+/// Steps of 1/60 s, four frames each.
+TEST(FramesInEveryWorld, GoFromEachStepToTheNext) {
+  const btScalar step = btScalar(1) / 60;
+  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  const TriangleMesh mesh = test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5));
+  for (const MakeWorld& make :
+       {MakeWorld(makeWorld<test::RigidWorld>), MakeWorld(makeWorld<test::MultiBodyWorld>),
+        MakeWorld(makeWorld<test::DeformableWorld>), MakeWorld(makeWorld<test::ReducedWorld>)}) {
+    const auto world = make(cage);
+    SoftBodySkin skin, now;
+    ASSERT_TRUE(skin.bind(world->body(), cage, mesh).ok());
+    ASSERT_TRUE(now.bind(world->body(), skin.binding()).ok());
+    skin.keepStep();
+    double travelled = 0.0;
+    for (int k = 0; k < 20; ++k) {
+      const Surface before = surfaceOf(now);
+      ASSERT_GT(world->world->stepSimulation(step, 4, step / 4), 0);
+      ASSERT_EQ(now.update(), UpdateStatus::Updated);
+      skin.keepStep();
+      for (const btScalar alpha : {btScalar(0.125), btScalar(0.375), btScalar(0.625), btScalar(0.875)}) {
+        ASSERT_EQ(skin.update(alpha), UpdateStatus::Updated);
+        EXPECT_LT(distance(surfaceOf(skin), before, surfaceOf(now), double(alpha)), 4 * kRounding);
+      }
+      travelled += distance(before, surfaceOf(now), before, 0.0);
+    }
+    EXPECT_GT(travelled, 0.01);
+  }
+}
+
+TEST(FramesInTheDeformableWorld, ReachTheStepInWhichABodyFallsAsleep) {
+  const btScalar step = btScalar(1) / 60;
+  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  test::DeformableWorld world(cage);
+  SoftBodySkin skin, now;
+  ASSERT_TRUE(skin.bind(world.body(), cage, test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5))).ok());
+  ASSERT_TRUE(now.bind(world.body(), skin.binding()).ok());
+  Surface before;
+  const auto advance = [&] {
+    world.world->stepSimulation(step, 4, step / 4);
+    skin.keepStep();
+    before = surfaceOf(now);
+    (void)now.update();
+  };
+  for (int k = 0; world.body().isActive() && k < 3000; ++k) {
+    advance();
+    ASSERT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+  }
+  ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
+  EXPECT_LT(distance(surfaceOf(skin), before, surfaceOf(now), 0.5), kRounding);
+  advance();
+  ASSERT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+  EXPECT_EQ(surfaceOf(skin), surfaceOf(now));
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(skin.update(btScalar(0.9)), UpdateStatus::Asleep);
+    advance();
+  }
+}
+
+}  // namespace
+}  // namespace tetskin
