@@ -6,7 +6,6 @@
 #include "support/allocation_count.h"
 #include "worlds.h"
 
-#include <functional>
 #include <limits>
 
 namespace tetskin {
@@ -344,42 +343,6 @@ TEST_F(FramesBetweenSteps, OfManySkinsAreThoseOfEach) {
   EXPECT_EQ(surfaceOf(plain), bent);
   EXPECT_EQ(SoftBodySkin::updateAll(both, 2), 2u);
   EXPECT_EQ(surfaceOf(skin), bent);
-}
-
-using MakeWorld = std::function<std::unique_ptr<test::TestWorld>(const TetMesh&)>;
-
-template <class World>
-std::unique_ptr<test::TestWorld> makeWorld(const TetMesh& cage) {
-  return std::make_unique<World>(cage);
-}
-
-/// Steps of 1/60 s, four frames each.
-TEST(FramesInEveryWorld, GoFromEachStepToTheNext) {
-  const btScalar step = btScalar(1) / 60;
-  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
-  const TriangleMesh mesh = test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5));
-  for (const MakeWorld& make :
-       {MakeWorld(makeWorld<test::RigidWorld>), MakeWorld(makeWorld<test::MultiBodyWorld>),
-        MakeWorld(makeWorld<test::DeformableWorld>), MakeWorld(makeWorld<test::ReducedWorld>)}) {
-    const auto world = make(cage);
-    SoftBodySkin skin, now;
-    ASSERT_TRUE(skin.bind(world->body(), cage, mesh).ok());
-    ASSERT_TRUE(now.bind(world->body(), skin.binding()).ok());
-    skin.keepStep();
-    double travelled = 0.0;
-    for (int k = 0; k < 20; ++k) {
-      const Surface before = surfaceOf(now);
-      ASSERT_GT(world->world->stepSimulation(step, 4, step / 4), 0);
-      ASSERT_EQ(now.update(), UpdateStatus::Updated);
-      skin.keepStep();
-      for (const btScalar alpha : {btScalar(0.125), btScalar(0.375), btScalar(0.625), btScalar(0.875)}) {
-        ASSERT_EQ(skin.update(alpha), UpdateStatus::Updated);
-        EXPECT_LT(distance(surfaceOf(skin), before, surfaceOf(now), double(alpha)), 4 * kRounding);
-      }
-      travelled += distance(before, surfaceOf(now), before, 0.0);
-    }
-    EXPECT_GT(travelled, 0.01);
-  }
 }
 
 TEST(FramesInTheDeformableWorld, ReachTheStepInWhichABodyFallsAsleep) {

@@ -99,6 +99,27 @@ TEST_P(Worlds, NothingMovesWithoutASubstep) {
   EXPECT_EQ(surface(), before);
 }
 
+TEST_P(Worlds, FramesBetweenStepsGoFromEachStepToTheNext) {
+  SoftBodySkin between;
+  ASSERT_TRUE(between.bind(world->body(), skin.binding()).ok());
+  between.keepStep();
+  for (int step = 0; step < 20; ++step) {
+    const auto before = surface();
+    ASSERT_GT(world->world->stepSimulation(4 * kStep, 4, kStep), 0);
+    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    between.keepStep();
+    const auto after = surface();
+    for (const double alpha : {0.125, 0.375, 0.625, 0.875}) {
+      ASSERT_EQ(between.update(static_cast<btScalar>(alpha)), UpdateStatus::Updated);
+      for (std::size_t v = 0; v < after.size(); ++v) {
+        const btScalar* p = between.positions()[v];
+        ASSERT_LT((Eigen::Vector3d(p[0], p[1], p[2]) - before[v] - alpha * (after[v] - before[v])).norm(), 1e-5);
+      }
+    }
+  }
+  EXPECT_LT(skin.bounds().min().y(), 0.25);
+}
+
 TEST_P(Worlds, FallingBodyReachesTheFloorAndStaysAboveIt) {
   for (int step = 0; step < 240; ++step) {
     world->world->stepSimulation(kStep, 1, kStep);
