@@ -34,7 +34,7 @@ class PackedNodes {
   std::size_t size() const { return nodes_.size(); }
   /// size() x 3, four scalars apart: positions that are made for packing may be written here, and then be packed from
   /// here in place.
-  PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().data(), size(), 4 * sizeof(Scalar)}; }
+  PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().scalars, size(), 4 * sizeof(Scalar)}; }
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().scalars; }
   const Point& mean() const { return mean_; }
