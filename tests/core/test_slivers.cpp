@@ -133,9 +133,9 @@ TEST(Slivers, AreAvoidedAsTestingAllPairsWould) {
 
 /// Surfaces 1 % outside of cages without slivers: as well carried as by the nearest tets alone.
 TEST(Slivers, MakeNoDifferenceWhereThereAreNone) {
-  std::vector<TetMesh> cages{ballCage(5), test::thinLayerCage(0.125), test::latticeCage(2, 9, 2, 0.25),
+  std::vector<TetMesh> cages{ballCage(4), test::thinLayerCage(0.125), test::latticeCage(2, 9, 2, 0.25),
                              test::singleTet()};
-  for (const test::LatticeKind& kind : test::latticeKinds()) cages.push_back(kind.make(5));
+  for (const test::LatticeKind& kind : test::latticeKinds()) cages.push_back(kind.make(3));
   ASSERT_EQ(cages.size(), 10u);
   for (std::size_t c = 0; c < cages.size(); ++c) {
     const double diagonal = diagonalOf(cages[c]);

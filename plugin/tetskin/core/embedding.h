@@ -74,7 +74,7 @@ constexpr double kLargestBarycentric = 1e15;
 constexpr double kNearestTie = 1e-6;
 /// A vertex whose distance to the nearest tet is at most this fraction of the cage's largest coordinate (4 to 8 units
 /// in its last place) is inside: one computed to lie on a face is as far off.
-constexpr double kRounding = 0x1p-49;
+constexpr double kInsideTolerance = 0x1p-49;
 /// Absolute weight above which a vertex outside looks for a better tet than the nearest, which is thin or far away.
 constexpr double kLargestWeight = 4.0;
 
@@ -174,7 +174,7 @@ class Embedding {
 /// - any other to the nearest under `options.outside`. `Nearest`: of the tets whose distance is within kNearestTie of
 ///   their size of the shortest, the one of smallest barycentric distance, then of lowest index. `Barycentric`: of
 ///   smallest barycentric distance, then of lowest index. Its weights extrapolate, so rest is reproduced. Within
-///   kRounding, it counts as inside;
+///   kInsideTolerance, it counts as inside;
 /// - under `Nearest`, a vertex outside with an absolute weight above kLargestWeight is rescued: of the tets no farther
 ///   than the shortest distance plus one mean edge (see `meanEdge`), it takes the one of smallest largest absolute
 ///   weight, then of lowest index. Slivers carry no vertex that another tet near it carries well.

@@ -57,7 +57,7 @@ double farthestBest(const OpenPoints& open) {
 
 /// A point whose tet was found outside of it is inside if it is as near as rounding errors are large.
 void settle(const SearchCage& cage, std::uint32_t point, double distance, TetSearch& search) {
-  if (distance <= kRounding * largestCoordinate(cage.box())) {
+  if (distance <= kInsideTolerance * largestCoordinate(cage.box())) {
     search.tetOf[point] = ~search.tetOf[point];
   } else if (distance > search.farthestDistance || (distance == search.farthestDistance && point < search.farthest)) {
     search.farthestDistance = distance;
