@@ -90,6 +90,17 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
   EXPECT_EQ(report.outside, 10u);
 }
 
+TEST(EmbedReport, NamesTheLargestWeight) {
+  const TetMesh cage = test::singleTet();
+  Embedding embedding;
+  EXPECT_EQ(embed(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).largestWeight, 1.0);
+  EXPECT_EQ(embed(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).largestWeight, 1.0);
+  const EmbedReport report = embed(cage, viewOf(Points{{-2.0, -3.0, 0.0}}), {}, embedding);
+  EXPECT_EQ(report.largestWeight, 6.0);
+  EXPECT_EQ(report.rescued, 0u);  // there is no other tet
+  EXPECT_NE(report.describe().find("largest weight 6"), std::string::npos) << report.describe();
+}
+
 TEST(EmbedReport, RefusesBadInputAndLeavesTheEmbeddingAlone) {
   const TetMesh cage = test::latticeCage(1, 1, 1);
   const Points good{{0.5, 0.5, 0.5}};
@@ -107,7 +118,8 @@ TEST(EmbedReport, RefusesBadInputAndLeavesTheEmbeddingAlone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   fails(cage, {}, StatusCode::Empty, "no vertices");
   fails(cage, {{0, 0, 0}, {0, nan, 0}}, StatusCode::NonFinite, "vertex 1");
-  fails(cage, {{1e31, 0, 0}}, StatusCode::NonFinite, "1e30");
+  fails(cage, {{0, 0, 0}, {0, -1.01e18, 0}}, StatusCode::NonFinite,
+        "vertex 1 of the mesh has a coordinate beyond 1e+18");
   fails({}, good, StatusCode::Empty, "no tets");
   TetMesh bad = cage;
   bad.tets[2][1] = 8;
@@ -120,7 +132,64 @@ TEST(EmbedReport, RefusesBadInputAndLeavesTheEmbeddingAlone) {
   fails(bad, good, StatusCode::Degenerate, "flat");
   bad = cage;
   for (Eigen::Vector3d& p : bad.nodes) p *= 1e-20;
-  fails(bad, {{1e29, 0, 0}, {0, 0, 0}}, StatusCode::Degenerate, "unit");
+  fails(bad, {{1e17, 0, 0}, {0, 0, 0}}, StatusCode::Degenerate, "unit");
+  for (Eigen::Vector3d& p : bad.nodes) p *= 1e40;
+  fails(bad, good, StatusCode::NonFinite, "node 1 of the cage has a coordinate beyond 1e+18");
+}
+
+TEST(EmbedReport, RefusesALargestDistanceThatIsNone) {
+  const TetMesh cage = test::latticeCage(1, 1, 1);
+  const Points inside{{0.5, 0.5, 0.5}};
+  for (const double none : {std::numeric_limits<double>::quiet_NaN(), -1.0, -1e-300}) {
+    Embedding embedding;
+    const EmbedReport report = embed(cage, viewOf(inside), {OutsideRule::Nearest, none}, embedding);
+    EXPECT_EQ(report.status.code, StatusCode::InvalidOption) << none;
+    EXPECT_NE(report.status.message.find("maxDistance is "), std::string::npos) << report.status.message;
+    EXPECT_EQ(report.unbound, 1u);
+    EXPECT_TRUE(embedding.empty());
+  }
+}
+
+/// Points of the boundary, computed from its nodes.
+Points onBoundary(const TetMesh& cage) {
+  Points points;
+  for (const auto& face : boundaryFaces(cage)) {
+    const Eigen::Vector3d &a = cage.nodes[face[0]], &b = cage.nodes[face[1]], &c = cage.nodes[face[2]];
+    for (const Eigen::Vector3d& p : Points{a, (a + b) / 2.0, (a + b + c) / 3.0, 0.1 * a + 0.2 * b + 0.7 * c}) {
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+
+TEST(EmbedReport, VerticesComputedToLieOnAFaceAreInside) {
+  for (const test::LatticeKind& kind : test::latticeKinds()) {
+    for (const Eigen::Vector3d& offset : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1000.1, -3.3, 70.7)}) {
+      TetMesh cage = kind.make(4);
+      cage.nodes = test::scaledAndMoved(cage.nodes, 0.7, offset);
+      for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
+        Embedding embedding;
+        const EmbedReport report = embed(cage, viewOf(onBoundary(cage)), {rule, 0.0}, embedding);
+        EXPECT_TRUE(report.ok()) << kind.name << ": " << report.status.message;
+        EXPECT_EQ(report.outside, 0u) << kind.name;
+        EXPECT_EQ(report.worstDistance, 0.0);
+        EXPECT_LT(report.worstBarycentric, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(EmbedReport, VerticesAHairOffAFaceAreOutside) {
+  const TetMesh cage = test::jittered(test::bodyCentredCage(4, 4, 4, 0.25), 0.05, 3);
+  Points vertices;
+  for (const auto& face : boundaryFaces(cage)) {
+    const Eigen::Vector3d &a = cage.nodes[face[0]], &b = cage.nodes[face[1]], &c = cage.nodes[face[2]];
+    vertices.push_back((a + b + c) / 3.0 + 1e-14 * (b - a).cross(c - a).normalized());
+  }
+  for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
+    Embedding embedding;
+    EXPECT_EQ(embed(cage, viewOf(vertices), {rule}, embedding).inside, 0u);
+  }
 }
 
 }  // namespace

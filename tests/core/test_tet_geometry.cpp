@@ -25,6 +25,23 @@ TEST(TetGeometry, SizeIsTheLongestEdge) {
   EXPECT_DOUBLE_EQ(tetSize(kUnit), std::sqrt(2.0));
 }
 
+TEST(TetGeometry, MeanEdgeIsThatOfTheTetsWithAVolume) {
+  TetMesh mesh = test::singleTet();
+  EXPECT_DOUBLE_EQ(meanEdge(mesh), (1.0 + std::sqrt(2.0)) / 2.0);
+  mesh.nodes.insert(mesh.nodes.end(), {{7, 0, 0}, {0, 9, 0}, {7, 9, 0}});
+  mesh.tets.push_back({0, 4, 5, 6});  // flat
+  EXPECT_DOUBLE_EQ(meanEdge(mesh), (1.0 + std::sqrt(2.0)) / 2.0);
+  mesh.tets.push_back({0, 1, 2, 3});  // counts once more
+  mesh.nodes.emplace_back(0, 0, 3);
+  mesh.tets.push_back({0, 1, 2, 7});
+  EXPECT_DOUBLE_EQ(meanEdge(mesh), (2 * (3 + 3 * std::sqrt(2.0)) + 5 + std::sqrt(2.0) + 2 * std::sqrt(10.0)) / 18);
+}
+
+TEST(TetGeometry, TheLargestWeightIsAbsolute) {
+  EXPECT_EQ(largestWeight({0.25, 0.25, 0.25, 0.25}), 0.25);
+  EXPECT_EQ(largestWeight({-5.0, 4.0, 1.5, 0.5}), 5.0);
+}
+
 TEST(TetGeometry, WeightsReproduceThePointAndSumToOne) {
   for (unsigned seed = 1; seed < 200; ++seed) {
     const TetCorners p = randomTet(seed);

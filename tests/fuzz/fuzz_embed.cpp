@@ -52,6 +52,7 @@ void expectSound(const Embedding& embedding, const EmbedReport& report) {
   TETSKIN_FUZZ_EXPECT(report.inside + report.outside == report.vertexCount && report.unbound == 0);
   TETSKIN_FUZZ_EXPECT(embedding.vertexCount() == report.vertexCount);
   TETSKIN_FUZZ_EXPECT(std::isfinite(report.restErrorMax) && std::isfinite(report.worstDistance));
+  TETSKIN_FUZZ_EXPECT(std::isfinite(report.largestWeight) && report.rescued <= report.outside);
   for (const VertexBinding& binding : embedding.bindings()) {
     float sum = 0.0f, largest = 1.0f;
     for (const float w : binding.weights) {

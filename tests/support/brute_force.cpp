@@ -5,7 +5,7 @@
 #include <tetskin/core/tet_geometry.h>
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 namespace tetskin::test {
 namespace {
@@ -14,6 +14,7 @@ struct Candidate {
   int tet;
   double size;
   double barycentric;
+  double weight;
   double distance;
 };
 
@@ -23,31 +24,69 @@ std::vector<Candidate> candidatesOf(const TetMesh& cage, const Eigen::Vector3d& 
     const TetCorners p = cornersOf(cage, cage.tets[t]);
     if (isFlat(p)) continue;
     const Eigen::Vector4d b = BarycentricMap(p)(v);
-    all.push_back({static_cast<int>(t), tetSize(p), barycentricDistance(b), distanceToTet(v, p, b)});
+    all.push_back({static_cast<int>(t), tetSize(p), -b.minCoeff(), std::max(b.maxCoeff(), -b.minCoeff()),
+                   distanceToTet(v, p, b)});
   }
   return all;
 }
 
-BruteHit choose(const std::vector<Candidate>& all, OutsideRule rule) {
-  for (const Candidate& c : all) {
-    if (c.barycentric <= 0.0) return {c.tet, c.barycentric, 0.0, true};
+/// What the rules need to know of a cage.
+struct CageScale {
+  double edge = 0.0;      ///< mean, of the tets' six edges each
+  double rounding = 0.0;  ///< distance that counts as none
+
+  explicit CageScale(const TetMesh& cage) {
+    std::size_t edges = 0;
+    for (const Tet& t : cage.tets) {
+      const TetCorners p = cornersOf(cage, t);
+      if (isFlat(p)) continue;
+      double sum = 0.0;
+      for (const auto& [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) sum += (p[a] - p[b]).norm();
+      edge += sum;
+      edges += 6;
+      for (const Eigen::Vector3d& corner : p) rounding = std::max(rounding, kInsideTolerance * corner.cwiseAbs().maxCoeff());
+    }
+    edge /= static_cast<double>(edges);
   }
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Candidate& c : all) nearest = std::min(nearest, c.distance);
+};
+
+/// The first of those for which `in` holds that has the least of a property; there must be one.
+template <class In>
+const Candidate& least(const std::vector<Candidate>& all, double Candidate::*property, In&& in) {
   const Candidate* best = nullptr;
   for (const Candidate& c : all) {
-    if (rule == OutsideRule::Nearest && c.distance > nearest + kNearestTie * c.size) continue;
-    if (!best || c.barycentric < best->barycentric) best = &c;
+    if (in(c) && (!best || c.*property < best->*property)) best = &c;
   }
-  return {best->tet, best->barycentric, best->distance, false};
+  return *best;
+}
+
+BruteHit choose(const std::vector<Candidate>& all, const CageScale& cage, OutsideRule rule) {
+  for (const Candidate& c : all) {
+    if (c.barycentric <= 0.0) return {c.tet, c.tet, c.barycentric, c.weight, 0.0, true};
+  }
+  const auto any = [](const Candidate&) { return true; };
+  if (rule == OutsideRule::Barycentric) {
+    const Candidate& best = least(all, &Candidate::barycentric, any);
+    return {best.tet, best.tet, best.barycentric, best.weight, best.distance, best.distance <= cage.rounding};
+  }
+  const double distance = least(all, &Candidate::distance, any).distance;
+  const Candidate& nearest = least(all, &Candidate::barycentric,
+                                   [&](const Candidate& c) { return c.distance <= distance + kNearestTie * c.size; });
+  const bool inside = distance <= cage.rounding;
+  const bool rescue = !inside && nearest.weight > kLargestWeight;
+  const Candidate& best =
+      !rescue ? nearest
+              : least(all, &Candidate::weight, [&](const Candidate& c) { return c.distance <= distance + cage.edge; });
+  return {best.tet, nearest.tet, best.barycentric, best.weight, distance, inside};
 }
 
 }  // namespace
 
 std::vector<BruteHit> bruteForce(const TetMesh& cage, const std::vector<Eigen::Vector3d>& vertices, OutsideRule rule) {
+  const CageScale scale(cage);
   std::vector<BruteHit> hits(vertices.size());
   std::transform(vertices.begin(), vertices.end(), hits.begin(),
-                 [&](const Eigen::Vector3d& v) { return choose(candidatesOf(cage, v), rule); });
+                 [&](const Eigen::Vector3d& v) { return choose(candidatesOf(cage, v), scale, rule); });
   return hits;
 }
 

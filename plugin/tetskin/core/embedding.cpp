@@ -18,12 +18,24 @@ namespace {
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Coordinates beyond this are refused: their squares, which distances need, must stay well inside a double.
-constexpr double kLargestCoordinate = 1e30;
+/// Names the first point beyond kLargestCoordinate; there must be one.
+Status tooLarge(const char* point, const char* owner, PointReader points) {
+  std::size_t p = 0;
+  while (points[p].lpNorm<Eigen::Infinity>() <= kLargestCoordinate) ++p;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%s %zu of the %s has a coordinate beyond %g, the largest that is possible; is the file damaged?",
+                point, p, owner, kLargestCoordinate);
+  return {StatusCode::NonFinite, text};
+}
 
 /// Everything that can be known before the search. Boxes too, so that they are reported even for a mesh that fails.
-Status checkInputs(const TetMesh& cage, PointReader vertices, EmbedReport& report) {
+Status checkInputs(const TetMesh& cage, PointReader vertices, const EmbedOptions& options, EmbedReport& report) {
   report.vertexCount = report.unbound = vertices.size();
+  if (!(options.maxDistance >= 0.0)) {
+    return {StatusCode::InvalidOption, "maxDistance is " + std::to_string(options.maxDistance) +
+                                           "; it must be 0 or more (infinity: any distance)"};
+  }
   if (vertices.empty()) return {StatusCode::Empty, "the mesh has no vertices"};
   if (vertices.size() >= 0xFFFFFFFFu) return {StatusCode::SizeMismatch, "the mesh has more than 2^32 - 2 vertices"};
   Box3 meshBox;
@@ -38,16 +50,13 @@ Status checkInputs(const TetMesh& cage, PointReader vertices, EmbedReport& repor
   if (Status cageStatus = usable(cage, checkForUse(cage)); !cageStatus.ok()) return cageStatus;
   report.meshBox = meshBox;
   report.cageBox = boundingBox(cage.nodes);
-  const Box3 both = report.meshBox.merged(report.cageBox);
-  if (std::max(both.max().maxCoeff(), -both.min().minCoeff()) > kLargestCoordinate) {
-    return {StatusCode::NonFinite, "mesh or cage has coordinates beyond 1e30; is the file damaged?"};
-  }
+  if (largestCoordinate(meshBox) > kLargestCoordinate) return tooLarge("vertex", "mesh", vertices);
+  if (largestCoordinate(report.cageBox) > kLargestCoordinate) return tooLarge("node", "cage", viewOf(cage.nodes));
   return {};
 }
 
 void reportFit(const Embedding::Fit& fit, EmbedReport& report) {
-  report.worstDistance = fit.worstDistance;
-  report.worstVertex = fit.worstVertex;
+  report.largestWeight = fit.largestWeight;
   report.worstBarycentric = fit.worstBarycentric;
   const double diagonal = report.meshBox.diagonal().norm(), restError = std::sqrt(fit.restErrorSquared);
   // One point, or all at one place: compare with the cage instead of dividing by nothing.
@@ -76,20 +85,23 @@ std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, cons
   report.flatTets = mesh.tetCount() - cage.size();
   report.overlapping = search.overlapping;
   report.candidates = search.candidates;
+  report.rescued = search.rescued.size();
+  report.worstDistance = search.farthestDistance;
+  report.worstVertex = search.farthest;
+  report.worstPosition = vertices[search.farthest];
   if (triangles && rule == OutsideRule::Nearest) {
-    report.keptWithNeighbours = keepWithNeighbours(mesh, vertices, first, *triangles, search.tetOf);
+    report.keptWithNeighbours = keepWithNeighbours(mesh, vertices, first, *triangles, search.rescued, search.tetOf);
   }
   return std::move(search.tetOf);
 }
 
 Status embedVertices(const TetMesh& cage, PointReader vertices, const Triangles* triangles, const EmbedOptions& options,
                      Embedding& embedding, EmbedReport& report) {
-  if (Status status = checkInputs(cage, vertices, report); !status.ok()) return status;
+  if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
   const std::vector<std::int32_t> tetOf = tetsOf(cage, vertices, triangles, options.outside, report);
   Embedding::Fit fit;
   Embedding made = Embedding::fromTets(cage, vertices, tetOf, &fit);
   reportFit(fit, report);
-  report.worstPosition = vertices[report.worstVertex];
   if (!std::isfinite(report.restErrorMax) || !(report.worstBarycentric <= kLargestBarycentric)) {
     return {StatusCode::Degenerate,
             "some vertices are so many times the size of their tet away from it that weighted sums would overflow; are "
@@ -135,6 +147,14 @@ std::string EmbedReport::describe() const {
   if (keptWithNeighbours > 0) {
     std::snprintf(text, sizeof text, "%zu vertices outside kept from another part of the cage, nearer than their own\n",
                   keptWithNeighbours);
+    result += text;
+  }
+  if (rescued > 0 || largestWeight > kLargestWeight) {
+    std::snprintf(
+        text, sizeof text,
+        "%zu vertices outside taken from a nearest tet that would extrapolate them more than %g times; largest "
+        "weight %.3g\n",
+        rescued, kLargestWeight, largestWeight);
     result += text;
   }
   if (unitsDiffer()) {
@@ -238,17 +258,14 @@ void Embedding::bindRun(std::size_t run, const std::array<Eigen::Vector3d, 4>& c
 /// What a vertex outside has besides: its closest point.
 void Embedding::bindOutside(std::uint32_t slot, const std::array<Eigen::Vector3d, 4>& corners,
                             const BarycentricMap& map, const Eigen::Vector3d& vertex, Fit& fit) {
-  const Eigen::Vector3d closest = closestPointInTet(vertex, corners, map(vertex));
+  const Eigen::Vector4d weights = map(vertex);
+  fit.largestWeight = std::max(fit.largestWeight, largestWeight(weights));
+  const Eigen::Vector3d closest = closestPointInTet(vertex, corners, weights);
   const Eigen::Vector4d c = map(closest);
   for (std::size_t k = 0; k < 3; ++k) {
     const double clamped = std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding is a hair off the face
     closestWeights_[k][slot - insideCount_] = static_cast<float>(clamped);
   }
-  const double distance = (vertex - closest).norm();
-  const std::size_t v = slotVertices_[slot];
-  if (distance < fit.worstDistance || (distance == fit.worstDistance && v > fit.worstVertex)) return;
-  fit.worstDistance = distance;
-  fit.worstVertex = v;
 }
 
 /// A counting sort with two bins a tet: the vertices inside, and after all of those the ones outside.

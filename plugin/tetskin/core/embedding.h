@@ -20,13 +20,14 @@ struct BarycentricMap;
 
 /// Which tet carries a vertex that lies in none. Vertices inside are bound the same under both.
 enum class OutsideRule {
-  Nearest,      ///< the tet closest in distance: a thin layer of tets keeps the vertices just above it
+  Nearest,      ///< the tet closest in distance, but for slivers: a thin layer of tets keeps the vertices just above it
   Barycentric,  ///< the tet of the smallest barycentric distance: the tutorial's rule, and Bullet's
 };
 
 struct EmbedOptions {
   OutsideRule outside = OutsideRule::Nearest;
-  /// In rest units: a vertex farther than this from every tet is refused, with a message, and nothing is embedded.
+  /// In rest units, 0 or more: a vertex farther than this from every tet (under Barycentric, from its own) is refused,
+  /// with a message, and nothing is embedded.
   double maxDistance = std::numeric_limits<double>::infinity();
 };
 
@@ -40,16 +41,18 @@ struct EmbedReport {
   std::size_t overlapping = 0;  ///< vertices deeper than kOverlapDepth in two tets or more: the cage overlaps itself
   std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
   std::size_t flatTets = 0;     ///< tets without volume, never used
-  double worstDistance = 0.0;   ///< longest distance from a vertex to its tet
+  double worstDistance = 0.0;   ///< longest distance from a vertex to the nearest tet; under Barycentric, to its own
   std::size_t worstVertex = 0;  ///< which vertex that is
   Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
   std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
-  double worstBarycentric = 0.0;       ///< largest barycentric distance, dimensionless; not above 0 if all are inside
-  Box3 meshBox;                        ///< of the vertices
-  Box3 cageBox;                        ///< of the nodes
-  double restErrorMax = 0.0;   ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
-  std::size_t candidates = 0;  ///< pairs of vertex and tet that were tested
-  double milliseconds = 0.0;   ///< wall time of the whole embedding
+  std::size_t rescued = 0;             ///< vertices outside that their nearest tet would have extrapolated too far
+  double largestWeight = 1.0;     ///< largest absolute weight of a vertex, or 1: how much a node's motion is amplified
+  double worstBarycentric = 0.0;  ///< largest barycentric distance, dimensionless; 0 or below if all are inside
+  Box3 meshBox;                   ///< of the vertices
+  Box3 cageBox;                   ///< of the nodes
+  double restErrorMax = 0.0;      ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
+  std::size_t candidates = 0;     ///< pairs of vertex and tet that were tested
+  double milliseconds = 0.0;      ///< wall time of the whole embedding
 
   bool ok() const { return status.ok(); }
   /// Mesh and cage apart from each other, or one more than kUnitRatio times the size of the other: they are most
@@ -69,6 +72,11 @@ constexpr double kUnitRatio = 30.0;
 constexpr double kLargestBarycentric = 1e15;
 /// Tets whose distances differ by less than this fraction of their size are equally near.
 constexpr double kNearestTie = 1e-6;
+/// A vertex whose distance to the nearest tet is at most this fraction of the cage's largest coordinate (4 to 8 units
+/// in its last place) is inside: one computed to lie on a face is as far off.
+constexpr double kInsideTolerance = 0x1p-49;
+/// Absolute weight above which a vertex outside looks for a better tet than the nearest, which is thin or far away.
+constexpr double kLargestWeight = 4.0;
 
 /// Tet and weights of one vertex.
 struct VertexBinding {
@@ -129,8 +137,7 @@ class Embedding {
 
   /// How closely the weights of an embedding reproduce the vertices; see EmbedReport.
   struct Fit {
-    double worstDistance = 0.0;      ///< rest space
-    std::size_t worstVertex = 0;     ///< the first, if there are several
+    double largestWeight = 1.0;      ///< absolute
     double worstBarycentric = -1.0;  ///< dimensionless
     double restErrorSquared = 0.0;   ///< rest space; infinite where weights overflow a float
   };
@@ -166,7 +173,11 @@ class Embedding {
 /// - a vertex in one tet or more belongs to the one with the lowest index;
 /// - any other to the nearest under `options.outside`. `Nearest`: of the tets whose distance is within kNearestTie of
 ///   their size of the shortest, the one of smallest barycentric distance, then of lowest index. `Barycentric`: of
-///   smallest barycentric distance, then of lowest index. Its weights extrapolate, so rest is reproduced.
+///   smallest barycentric distance, then of lowest index. Its weights extrapolate, so rest is reproduced. Within
+///   kInsideTolerance, it counts as inside;
+/// - under `Nearest`, a vertex outside with an absolute weight above kLargestWeight is rescued: of the tets no farther
+///   than the shortest distance plus one mean edge (see `meanEdge`), it takes the one of smallest largest absolute
+///   weight, then of lowest index. Slivers carry no vertex that another tet near it carries well.
 /// Vertices at the same position get identical weights. Decisions are made in double; nothing depends on the unit.
 ///
 /// cage       usable (see `usable`), rest space; orientation does not matter
@@ -174,14 +185,16 @@ class Embedding {
 /// embedding  written on success only
 /// Cost       about proportional to vertexCount + tetCount; some tens of tested pairs a vertex, most of them in float
 /// Memory     at most 64 bytes a vertex beyond the input while it works, the result included, and about 40 a tet
-/// Errors     in the report's status: an empty or non-finite mesh, an unusable cage, a vertex beyond maxDistance
+/// Errors     in the report's status: an empty or non-finite mesh, an unusable cage, coordinates beyond
+///            kLargestCoordinate, a maxDistance below 0 or NaN, a vertex beyond it
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                                 Embedding& embedding);
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
                                 Embedding& embedding);
 /// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of
 /// the cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn
-/// together. Takes some 150 bytes more for each vertex outside while it works.
+/// together. Not either where that would extrapolate its weights more than kLargestWeight times as far. Takes some 150
+/// bytes more for each vertex outside while it works.
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options,
                                 Embedding& embedding);
 

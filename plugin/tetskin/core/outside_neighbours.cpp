@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/embedding.h>
 #include <tetskin/core/outside_neighbours.h>
 #include <tetskin/core/tet_geometry.h>
 
 #include <algorithm>
 #include <queue>
+#include <tuple>
 
 namespace tetskin {
 namespace {
@@ -85,108 +87,183 @@ class TetsAroundNodes {
   std::vector<std::uint32_t> starts_, tets_;
 };
 
-double distanceFrom(const Eigen::Vector3d& v, const TetCorners& corners) {
-  return distanceToTet(v, corners, BarycentricMap(corners)(v));
-}
+/// A tet as a vertex sees it.
+struct Seen {
+  std::int32_t tet;
+  double size;
+  double distance;
+  double weight;  ///< largest absolute
+};
 
 /// One vertex and the tets around it that are connected to its neighbours'.
 class LocalSearch {
  public:
-  LocalSearch(const TetMesh& cage, TetsAroundNodes& adjacency)
-      : cage_(cage), adjacency_(adjacency), visited_(cage.tetCount(), 0) {}
+  explicit LocalSearch(const TetMesh& cage) : cage_(cage), adjacency_(cage), visited_(cage.tetCount(), 0) {}
 
   /// The tet for a vertex that the nearest rule gives to `nearest`, with neighbours in the tets `others`, at most
   /// `reach` away.
   std::int32_t tetFor(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
                       double reach) {
-    ++round_;
-    std::vector<std::int32_t> open;
-    for (const std::int32_t t : others) push(t, open);
-    const TetCorners nearestCorners = cornersOf(cage_, cage_.tets[nearest]);
-    const double shortest = distanceFrom(v, nearestCorners);
-    const double radius = std::max(reach, shortest + tetSize(nearestCorners));
-    std::int32_t best = -1;
-    double bestDistance = std::numeric_limits<double>::infinity();
-    while (!open.empty()) {
-      const std::int32_t t = open.back();
-      open.pop_back();
-      if (t == nearest) return nearest;
-      const TetCorners corners = cornersOf(cage_, cage_.tets[t]);
-      if (isFlat(corners)) continue;
-      const double distance = distanceFrom(v, corners);
-      if (distance < bestDistance || (distance == bestDistance && t < best)) {
-        bestDistance = distance;
-        best = t;
-      }
-      if (distance > radius) continue;
-      adjacency_.around(cage_.tets[t], [&](std::uint32_t next) { push(static_cast<std::int32_t>(next), open); });
-    }
-    if (best < 0) return nearest;
-    return bestDistance <= shortest + tetSize(cornersOf(cage_, cage_.tets[best])) ? best : nearest;
+    const Seen theirs = look(v, cornersOf(cage_, cage_.tets[nearest]), nearest);
+    if (connects(v, nearest, others, std::max(reach, theirs.distance + theirs.size)) || seen_.empty()) return nearest;
+    const Seen own = *std::min_element(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
+      return std::tie(a.distance, a.tet) < std::tie(b.distance, b.tet);
+    });
+    if (own.distance > theirs.distance + own.size) return nearest;
+    if (own.weight <= kLargestWeight) return own.tet;
+    const Seen rescuer = leastWeightWithin(own.distance + reachOfRescues());
+    return rescuer.weight <= kLargestWeight * std::max(1.0, theirs.weight) ? rescuer.tet : nearest;
   }
 
  private:
-  void push(std::int32_t tet, std::vector<std::int32_t>& open) {
+  static Seen look(const Eigen::Vector3d& v, const TetCorners& corners, std::int32_t tet) {
+    const Eigen::Vector4d weights = BarycentricMap(corners)(v);
+    return {tet, tetSize(corners), distanceToTet(v, corners, weights), largestWeight(weights)};
+  }
+
+  /// Goes from the tets `others` to what is connected to them within a radius. Returns whether that includes `nearest`;
+  /// if not, all of it is in `seen_`.
+  bool connects(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
+                double radius) {
+    ++round_;
+    seen_.clear();
+    open_.clear();
+    for (const std::int32_t t : others) push(t);
+    while (!open_.empty()) {
+      const std::int32_t t = open_.back();
+      open_.pop_back();
+      if (t == nearest) return true;
+      const TetCorners corners = cornersOf(cage_, cage_.tets[t]);
+      if (isFlat(corners)) continue;
+      seen_.push_back(look(v, corners, t));
+      if (seen_.back().distance > radius) continue;
+      adjacency_.around(cage_.tets[t], [&](std::uint32_t next) { push(static_cast<std::int32_t>(next)); });
+    }
+    return false;
+  }
+
+  Seen leastWeightWithin(double distance) const {
+    Seen least{-1, 0.0, 0.0, std::numeric_limits<double>::infinity()};
+    for (const Seen& s : seen_) {
+      if (s.distance <= distance && std::tie(s.weight, s.tet) < std::tie(least.weight, least.tet)) least = s;
+    }
+    return least;
+  }
+
+  /// Made when first asked for, like the tets around nodes.
+  double reachOfRescues() {
+    if (meanEdge_ == 0.0) meanEdge_ = meanEdge(cage_);
+    return meanEdge_;
+  }
+
+  void push(std::int32_t tet) {
     if (visited_[tet] == round_) return;
     visited_[tet] = round_;
-    open.push_back(tet);
+    open_.push_back(tet);
   }
 
   const TetMesh& cage_;
-  TetsAroundNodes& adjacency_;
+  TetsAroundNodes adjacency_;
+  double meanEdge_ = 0.0;
   std::vector<std::uint32_t> visited_;
   std::uint32_t round_ = 0;
+  std::vector<std::int32_t> open_;
+  std::vector<Seen> seen_;
+};
+
+/// Goes through the vertices outside, ring by ring.
+class Walk {
+ public:
+  Walk(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
+       const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf)
+      : cage_(cage),
+        vertices_(vertices),
+        tetOf_(tetOf),
+        edges_(first, triangles, tetOf),
+        search_(cage),
+        state_(edges_.vertices.size(), State::Untouched) {}
+
+  /// From what is settled outwards, to all that is connected. Returns how many vertices changed their tet.
+  std::size_t run() {
+    for (std::uint32_t place = 0; place < state_.size(); ++place) {
+      if (state_[place] != State::Untouched) continue;
+      const auto begin = edges_.ends.begin() + edges_.starts[place],
+                 end = edges_.ends.begin() + edges_.starts[place + 1];
+      if (std::any_of(begin, end, [&](std::uint32_t v) { return settled(v); })) push(place);
+    }
+    std::size_t changed = 0;
+    for (; !queue_.empty(); queue_.pop()) changed += settle(queue_.front());
+    return changed;
+  }
+
+  /// Settles what no run has reached, where it is, but for these vertices.
+  void settleAllBut(const std::vector<std::uint32_t>& vertices) {
+    std::vector<bool> excepted(state_.size(), false);
+    for (const std::uint32_t v : vertices) excepted[edges_.placeOf[v]] = true;
+    for (std::size_t place = 0; place < state_.size(); ++place) {
+      if (state_[place] == State::Untouched && !excepted[place]) state_[place] = State::Settled;
+    }
+  }
+
+ private:
+  enum class State : char { Untouched, Queued, Settled };
+
+  bool settled(std::uint32_t v) const {
+    const std::uint32_t place = edges_.placeOf[v];
+    return place == OutsideEdges::kInside || state_[place] == State::Settled;
+  }
+  void push(std::uint32_t place) {
+    state_[place] = State::Queued;
+    queue_.push(place);
+  }
+
+  /// Returns whether the vertex changes its tet.
+  bool settle(std::uint32_t place) {
+    const std::uint32_t v = edges_.vertices[place];
+    const std::int32_t nearest = ~tetOf_[v];
+    const Eigen::Vector3d point = vertices_[v];
+    others_.clear();
+    double reach = 0.0;
+    bool local = false;
+    for (std::uint32_t k = edges_.starts[place]; k < edges_.starts[place + 1]; ++k) {
+      const std::uint32_t other = edges_.ends[k];
+      if (settled(other)) {
+        others_.push_back(indexOf(tetOf_[other]));
+        reach = std::max(reach, (vertices_[other] - point).norm());
+        local = local || shareNode(cage_.tets[others_.back()], cage_.tets[nearest]);
+      } else if (state_[edges_.placeOf[other]] == State::Untouched) {
+        push(edges_.placeOf[other]);
+      }
+    }
+    state_[place] = State::Settled;
+    if (local) return false;
+    const std::int32_t tet = search_.tetFor(point, nearest, others_, reach);
+    tetOf_[v] = ~tet;
+    return tet != nearest;
+  }
+
+  const TetMesh& cage_;
+  PointReader vertices_;
+  std::vector<std::int32_t>& tetOf_;
+  OutsideEdges edges_;
+  LocalSearch search_;
+  std::vector<State> state_;          ///< by place
+  std::queue<std::uint32_t> queue_;   ///< of places
+  std::vector<std::int32_t> others_;  ///< scratch memory
 };
 
 }  // namespace
 
 std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
-                               const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf) {
+                               const std::vector<std::array<int, 3>>& triangles,
+                               const std::vector<std::uint32_t>& rescued, std::vector<std::int32_t>& tetOf) {
   assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
   if (std::all_of(tetOf.begin(), tetOf.end(), [](std::int32_t tet) { return tet >= 0; })) return 0;
-  const OutsideEdges edges(first, triangles, tetOf);
-  TetsAroundNodes adjacency(cage);
-  LocalSearch search(cage, adjacency);
-
-  enum class State : char { Untouched, Queued, Settled };
-  std::vector<State> state(edges.vertices.size(), State::Untouched);
-  std::queue<std::uint32_t> queue;  // places, ring by ring from the inside
-  const auto settled = [&](std::uint32_t v) {
-    const std::uint32_t place = edges.placeOf[v];
-    return place == OutsideEdges::kInside || state[place] == State::Settled;
-  };
-  for (std::uint32_t place = 0; place < state.size(); ++place) {
-    const auto begin = edges.ends.begin() + edges.starts[place], end = edges.ends.begin() + edges.starts[place + 1];
-    if (!std::any_of(begin, end, settled)) continue;
-    state[place] = State::Queued;
-    queue.push(place);
-  }
-
-  std::size_t changed = 0;
-  std::vector<std::int32_t> others;
-  for (; !queue.empty(); queue.pop()) {
-    const std::uint32_t place = queue.front(), v = edges.vertices[place];
-    const std::int32_t nearest = ~tetOf[v];
-    const Eigen::Vector3d point = vertices[v];
-    others.clear();
-    double reach = 0.0;
-    bool local = false;
-    for (std::uint32_t k = edges.starts[place]; k < edges.starts[place + 1]; ++k) {
-      const std::uint32_t other = edges.ends[k];
-      if (settled(other)) {
-        others.push_back(indexOf(tetOf[other]));
-        reach = std::max(reach, (vertices[other] - point).norm());
-        local = local || shareNode(cage.tets[others.back()], cage.tets[nearest]);
-      } else if (state[edges.placeOf[other]] == State::Untouched) {
-        state[edges.placeOf[other]] = State::Queued;
-        queue.push(edges.placeOf[other]);
-      }
-    }
-    state[place] = State::Settled;
-    if (local) continue;
-    const std::int32_t tet = search.tetFor(point, nearest, others, reach);
-    changed += tet != nearest;
-    tetOf[v] = ~tet;
+  Walk walk(cage, vertices, first, triangles, tetOf);
+  std::size_t changed = walk.run();
+  if (!rescued.empty()) {
+    walk.settleAllBut(rescued);
+    changed += walk.run();
   }
   for (std::size_t v = 0; v < first.size(); ++v) {
     if (tetOf[v] < 0) tetOf[v] = tetOf[first[v]];

@@ -17,6 +17,9 @@ namespace {
 /// and each round costs a look at all tets.
 constexpr double kFirstBorder = 0.2;
 constexpr double kGrowth = 4.0;
+/// A barycentric distance d that makes no weight larger than kLargestWeight: no weight is below -d, so none is above
+/// 1 + 3 d, either.
+constexpr double kSafeDistance = 0.999 * (kLargestWeight - 1.0) / 3.0;
 /// First barycentric border; then doubled.
 constexpr double kFirstBarycentricBorder = 0.25;
 /// Points are searched this many at a time, or an eighth of all if that is more: what is known of a point that is not
@@ -52,6 +55,75 @@ double farthestBest(const OpenPoints& open) {
   return open.best.empty() ? 0.0 : *std::max_element(open.best.begin(), open.best.end());
 }
 
+/// A point whose tet was found outside of it is inside if it is as near as rounding errors are large.
+void settle(const SearchCage& cage, std::uint32_t point, double distance, TetSearch& search) {
+  if (distance <= kInsideTolerance * largestCoordinate(cage.box())) {
+    search.tetOf[point] = ~search.tetOf[point];
+  } else if (distance > search.farthestDistance || (distance == search.farthestDistance && point < search.farthest)) {
+    search.farthestDistance = distance;
+    search.farthest = point;
+  }
+}
+
+/// A tet, and an open point that is perhaps within its limit of it.
+struct NearPair {
+  int tet;
+  double tetSize;
+  std::uint32_t open;
+  std::uint32_t entry;
+  Eigen::Vector4d weights;
+  double distance;
+};
+
+/// One round of a search by distance: all tets whose boxes, grown by a border, hold the point.
+class DistanceRound {
+ public:
+  /// limitOf  of an open point: a distance, not above the border
+  template <class LimitOf>
+  DistanceRound(const SearchCage& cage, const OpenPoints& open, double border, double cellSize, std::size_t tableSize,
+                LimitOf&& limitOf)
+      : cage_(cage),
+        open_(open),
+        border_(border),
+        hash_(viewOf(open.positions), grown(cage.box(), border + cage.largestSlack()),
+              std::max(cellSize, 0.5 * cage.medianSide() + border), {}, tableSize),
+        limits_(hash_.size() + SpatialHash::kPadding) {
+    for (std::uint32_t e = 0; e < hash_.size(); ++e) limits_[e] = inFrame(limitOf(hash_.ids()[e]));
+  }
+
+  /// Calls decide(pair) for tets in ascending order.
+  template <class Decide>
+  void run(std::size_t& candidates, Decide&& decide) {
+    for (std::size_t i = 0; i < cage_.size(); ++i) {
+      const SearchTet tet = cage_[i];
+      candidates += hash_.findRanges(grown(tet.box, border_ + tet.slack()), ranges_);
+      if (ranges_.empty()) continue;
+      const BarycentricMap map(tet.corners);
+      const double size = tetSize(tet.corners);
+      const TetFilter filter = TetFilter::ofDistance(map, hash_.frame());
+      const std::size_t count = filter.select(hash_, ranges_, limits_.data(), passed_);
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::uint32_t k = hash_.ids()[passed_[n]];
+        const Eigen::Vector4d weights = map(open_.positions[k]);
+        decide({tet.index, size, k, passed_[n], weights, distanceToTet(open_.positions[k], tet.corners, weights)});
+      }
+    }
+  }
+  void lowerLimit(std::uint32_t entry, double limit) { limits_[entry] = std::min(limits_[entry], inFrame(limit)); }
+
+ private:
+  /// A distance in the frame's unit, rounded up.
+  float inFrame(double distance) const { return static_cast<float>(distance * hash_.frame().scale * (1.0 + 0x1p-20)); }
+
+  const SearchCage& cage_;
+  const OpenPoints& open_;
+  double border_;
+  SpatialHash hash_;
+  std::vector<float> limits_;               ///< by entry
+  std::vector<SpatialHash::Range> ranges_;  ///< scratch memory, as is the next
+  std::vector<std::uint32_t> passed_;
+};
+
 /// A tet that may be the nearest of an open point.
 struct NearTet {
   std::uint32_t open;
@@ -61,60 +133,28 @@ struct NearTet {
   double distance;
 };
 
-/// One round of the search for nearest tets: all tets whose boxes, grown by a border, hold the point.
-class NearestRound {
- public:
-  NearestRound(const SearchCage& cage, OpenPoints& open, double border, double cellSize, std::size_t tableSize)
-      : open_(open),
-        border_(border),
-        hash_(viewOf(std::as_const(open.positions)), grown(cage.box(), border + cage.largestSlack()), cellSize, {},
-              tableSize),
-        widestTie_(kNearestTie * cage.largestSize()),
-        limits_(hash_.size() + SpatialHash::kPadding) {
-    for (std::uint32_t e = 0; e < hash_.size(); ++e)
-      limits_[e] = toLimit(std::min(open.best[hash_.ids()[e]], border) + widestTie_);
-  }
-
-  void test(const SearchTet& tet, std::size_t& candidates) {
-    candidates += hash_.findRanges(grown(tet.box, border_ + tet.slack()), ranges_);
-    if (ranges_.empty()) return;
-    const BarycentricMap map(tet.corners);
-    const double tie = kNearestTie * tetSize(tet.corners);
-    const TetFilter filter = TetFilter::ofDistance(map, hash_.frame());
-    const std::size_t count = filter.select(hash_, ranges_, limits_.data(), passed_);
-    for (std::size_t k = 0; k < count; ++k) decide(tet, map, tie, passed_[k]);
-  }
-
-  const std::vector<NearTet>& near() const { return near_; }
-
- private:
-  /// A distance in the frame's unit, rounded up.
-  float toLimit(double distance) const { return static_cast<float>(distance * hash_.frame().scale * (1.0 + 0x1p-20)); }
-
-  void decide(const SearchTet& tet, const BarycentricMap& map, double tie, std::uint32_t entry) {
-    const std::uint32_t k = hash_.ids()[entry];
-    const Eigen::Vector3d& v = open_.positions[k];
-    const Eigen::Vector4d weights = map(v);
-    const double distance = distanceToTet(v, tet.corners, weights);
-    if (distance > open_.best[k] + tie) return;
-    near_.push_back({k, tet.index, tie, barycentricDistance(weights), distance});
-    if (distance >= open_.best[k]) return;
-    open_.best[k] = distance;
-    limits_[entry] = std::min(limits_[entry], toLimit(distance + widestTie_));
-  }
-
-  OpenPoints& open_;
-  double border_;
-  SpatialHash hash_;
-  double widestTie_;
-  std::vector<float> limits_;  ///< by entry: the point's best or the border, see `toLimit`
-  std::vector<NearTet> near_;
-  std::vector<SpatialHash::Range> ranges_;  ///< scratch memory, as is the next
-  std::vector<std::uint32_t> passed_;
-};
+std::vector<NearTet> nearTets(const SearchCage& cage, OpenPoints& open, double border, double cellSize,
+                              std::size_t tableSize, std::size_t& candidates) {
+  const double widestTie = kNearestTie * cage.largestSize();
+  DistanceRound round(cage, open, border, cellSize, tableSize,
+                      [&](std::uint32_t k) { return std::min(open.best[k], border) + widestTie; });
+  std::vector<NearTet> near;
+  round.run(candidates, [&](const NearPair& pair) {
+    double& best = open.best[pair.open];
+    const double tie = kNearestTie * pair.tetSize;
+    if (pair.distance > best + tie) return;
+    near.push_back({pair.open, pair.tet, tie, barycentricDistance(pair.weights), pair.distance});
+    if (pair.distance >= best) return;
+    best = pair.distance;
+    round.lowerLimit(pair.entry, best + widestTie);
+  });
+  return near;
+}
 
 /// Of the tets tied for nearest, the smallest barycentric distance wins, then the lowest index (tets come in order).
-void settleNearest(const OpenPoints& open, double searched, const std::vector<NearTet>& near, TetSearch& search) {
+/// Returns the points that would be extrapolated too far.
+OpenPoints settleNearest(const SearchCage& cage, const OpenPoints& open, double searched,
+                         const std::vector<NearTet>& near, TetSearch& search) {
   std::vector<double> barycentric(open.size(), kInfinity);
   for (const NearTet& n : near) {
     if (open.best[n.open] > searched) continue;
@@ -123,17 +163,48 @@ void settleNearest(const OpenPoints& open, double searched, const std::vector<Ne
     barycentric[n.open] = n.barycentric;
     search.tetOf[open.ids[n.open]] = ~n.tet;
   }
+  OpenPoints extrapolated;
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    if (open.best[k] > searched) continue;
+    settle(cage, open.ids[k], open.best[k], search);
+    const std::int32_t tet = search.tetOf[open.ids[k]];
+    if (tet >= 0 || barycentric[k] <= kSafeDistance) continue;
+    if (largestWeight(BarycentricMap(cage.corners(~tet))(open.positions[k])) <= kLargestWeight) continue;
+    extrapolated.add(open.ids[k], open.positions[k], open.best[k]);
+  }
+  return extrapolated;
+}
+
+/// Gives points whose nearest tets, at their best distances, would extrapolate them too far the tets near them that do
+/// so least.
+void rescue(const SearchCage& cage, const OpenPoints& points, double cellSize, std::size_t tableSize,
+            TetSearch& search) {
+  if (points.size() == 0) return;
+  const double reach = meanEdge(cage.mesh());
+  DistanceRound round(cage, points, farthestBest(points) + reach, cellSize, tableSize,
+                      [&](std::uint32_t k) { return points.best[k] + reach; });
+  std::vector<double> smallest(points.size(), kInfinity);
+  std::vector<std::int32_t> tets(points.size(), TetSearch::kNone);
+  round.run(search.candidates, [&](const NearPair& pair) {
+    const double weight = largestWeight(pair.weights);
+    if (pair.distance > points.best[pair.open] + reach || weight >= smallest[pair.open]) return;
+    smallest[pair.open] = weight;
+    tets[pair.open] = ~pair.tet;
+  });
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    std::int32_t& tet = search.tetOf[points.ids[k]];
+    if (tet != tets[k]) search.rescued.push_back(points.ids[k]);
+    tet = tets[k];
+  }
 }
 
 void findNearest(const SearchCage& cage, OpenPoints open, double cellSize, std::size_t tableSize, TetSearch& search) {
   const double widestTie = kNearestTie * cage.largestSize();
-  const double side = cage.medianSide();
-  double border = kFirstBorder * side;
+  double border = kFirstBorder * cage.medianSide();
   while (open.size() > 0) {
-    NearestRound round(cage, open, border, std::max(cellSize, 0.5 * side + border), tableSize);
-    for (std::size_t i = 0; i < cage.size(); ++i) round.test(cage[i], search.candidates);
+    const std::vector<NearTet> near = nearTets(cage, open, border, cellSize, tableSize, search.candidates);
     const double searched = border - widestTie;
-    settleNearest(open, searched, round.near(), search);
+    rescue(cage, settleNearest(cage, open, searched, near, search), cellSize, tableSize, search);
     open = above(open, searched);
     // If all that is left is far away, go there at once; if it is known to be near, no farther than that.
     double nearestLeft = kInfinity;
@@ -168,6 +239,12 @@ void findBarycentric(const SearchCage& cage, OpenPoints open, double cellSize, s
     const SpatialHash hash(viewOf(std::as_const(open.positions)), boundingBox(open.positions),
                            cellSize * (1.0 + 4.0 * delta), {}, tableSize);
     for (std::size_t i = 0; i < cage.size(); ++i) testBarycentric(cage[i], delta, hash, open, search);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (open.best[k] > delta) continue;
+      const TetCorners corners = cage.corners(~search.tetOf[open.ids[k]]);
+      const Eigen::Vector3d& v = open.positions[k];
+      settle(cage, open.ids[k], distanceToTet(v, corners, BarycentricMap(corners)(v)), search);
+    }
     open = above(open, delta);
   }
 }

@@ -9,6 +9,7 @@
 #include <tetskin/core/types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace tetskin {
@@ -40,8 +41,11 @@ class SearchCage {
   /// The cage must be usable and outlive this.
   explicit SearchCage(const TetMesh& mesh);
 
+  const TetMesh& mesh() const { return mesh_; }
   std::size_t size() const { return solid_.size(); }
   SearchTet operator[](std::size_t i) const { return {mesh_, solid_[i]}; }
+  /// Of any tet of the cage's, by its index there.
+  TetCorners corners(std::int32_t tet) const { return cornersOf(mesh_, mesh_.tets[static_cast<std::size_t>(tet)]); }
 
   const Box3& box() const { return box_; }
   /// Of all tets.

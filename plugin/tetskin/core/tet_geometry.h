@@ -42,6 +42,15 @@ inline double tetSize(const TetCorners& p) {
   return std::sqrt(squared);
 }
 
+/// Sum of the lengths of the six edges.
+inline double edgeSum(const TetCorners& p) {
+  double sum = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 4; ++b) sum += (p[a] - p[b]).norm();
+  }
+  return sum;
+}
+
 /// True where the tet has no volume worth the name, see kFlatTet.
 inline bool isFlat(const TetCorners& p) {
   const double size = tetSize(p);
@@ -90,6 +99,11 @@ inline double barycentricDistance(const Eigen::Vector4d& weights) {
   return -weights.minCoeff();
 }
 
+/// How far weights extrapolate: the largest of their absolute values. Negative ones amplify a node's motion as much.
+inline double largestWeight(const Eigen::Vector4d& weights) {
+  return weights.cwiseAbs().maxCoeff();
+}
+
 /// Closest point of triangle abc to p.
 inline Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                               const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
@@ -134,6 +148,20 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
 /// Distance from v to the tet, 0 inside; see `closestPointInTet`.
 inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const Eigen::Vector4d& weights) {
   return (v - closestPointInTet(v, p, weights)).norm();
+}
+
+/// Mean length of the edges of the tets that are not flat, one that several share counted for each: how far from its
+/// nearest tet a vertex may be taken. There must be such a tet. Cost O(T).
+inline double meanEdge(const TetMesh& mesh) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Tet& tet : mesh.tets) {
+    const TetCorners p = cornersOf(mesh, tet);
+    if (isFlat(p)) continue;
+    sum += edgeSum(p);
+    count += 6;
+  }
+  return sum / static_cast<double>(count);
 }
 
 }  // namespace tetskin

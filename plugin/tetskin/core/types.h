@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <string>
@@ -125,8 +126,13 @@ inline Box3 boundingBox(const std::vector<Eigen::Vector3d>& points) {
 }
 
 /// Largest coordinate of a node that a surface can follow, in any unit: beyond, squares and weighted sums leave float's
-/// range. Bodies that get there have exploded.
+/// range. Meshes and cages that start there are refused, bodies that get there have exploded.
 constexpr double kLargestCoordinate = 1e18;
+
+/// Largest absolute coordinate of the points in a box, which must not be empty.
+inline double largestCoordinate(const Box3& box) {
+  return std::max(box.max().maxCoeff(), -box.min().minCoeff());
+}
 
 /// Index of the first point with a coordinate that is not finite or beyond kLargestCoordinate, or `points.size()`.
 template <class Scalar>
