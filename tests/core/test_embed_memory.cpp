@@ -47,6 +47,13 @@ TEST(EmbedMemory, IsBoundedPerVertexOutside) {
   }
 }
 
+TEST(EmbedMemory, IsBoundedPerVertexRescued) {
+  const TetMesh cage = test::thinLayerCage(0.001);  // its nearest tets carry none of these
+  const auto vertices =
+      test::randomPoints(600000, {Eigen::Vector3d(0.0, 0.52, 0.0), Eigen::Vector3d(1.0, 0.55, 1.0)}, 45);
+  EXPECT_LE(peakPerVertex(cage, vertices, OutsideRule::Nearest), kMostBytes);
+}
+
 TEST(EmbedMemory, IsBoundedPerVertexWhereManyCoincide) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   auto vertices = test::randomPoints(300000, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 44);

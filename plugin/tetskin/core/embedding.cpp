@@ -85,7 +85,7 @@ std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, cons
   report.flatTets = mesh.tetCount() - cage.size();
   report.overlapping = search.overlapping;
   report.candidates = search.candidates;
-  report.rescued = search.rescued.size();
+  report.rescued = static_cast<std::size_t>(std::count(search.rescued.begin(), search.rescued.end(), true));
   report.worstDistance = search.farthestDistance;
   report.worstVertex = search.farthest;
   report.worstPosition = vertices[search.farthest];

@@ -46,13 +46,14 @@ struct EmbedReport {
   Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
   std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
   std::size_t rescued = 0;             ///< vertices outside that their nearest tet would have extrapolated too far
-  double largestWeight = 1.0;     ///< largest absolute weight of a vertex, or 1: how much a node's motion is amplified
-  double worstBarycentric = 0.0;  ///< largest barycentric distance, dimensionless; 0 or below if all are inside
-  Box3 meshBox;                   ///< of the vertices
-  Box3 cageBox;                   ///< of the nodes
-  double restErrorMax = 0.0;      ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
-  std::size_t candidates = 0;     ///< pairs of vertex and tet that were tested
-  double milliseconds = 0.0;      ///< wall time of the whole embedding
+  double largestWeight = 1.0;  ///< largest absolute weight of a vertex, or 1: how much a node's motion is amplified
+  double worstBarycentric =
+      0.0;       ///< largest barycentric distance, dimensionless; above 0 by rounding only if all are inside
+  Box3 meshBox;  ///< of the vertices
+  Box3 cageBox;  ///< of the nodes
+  double restErrorMax = 0.0;   ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
+  std::size_t candidates = 0;  ///< pairs of vertex and tet that were tested
+  double milliseconds = 0.0;   ///< wall time of the whole embedding
 
   bool ok() const { return status.ok(); }
   /// Mesh and cage apart from each other, or one more than kUnitRatio times the size of the other: they are most
@@ -177,7 +178,7 @@ class Embedding {
 ///   kInsideTolerance, it counts as inside;
 /// - under `Nearest`, a vertex outside with an absolute weight above kLargestWeight is rescued: of the tets no farther
 ///   than the shortest distance plus one mean edge (see `meanEdge`), it takes the one of smallest largest absolute
-///   weight, then of lowest index. Slivers carry no vertex that another tet near it carries well.
+///   weight, then of lowest index: slivers carry no vertex that another tet near it carries well.
 /// Vertices at the same position get identical weights. Decisions are made in double; nothing depends on the unit.
 ///
 /// cage       usable (see `usable`), rest space; orientation does not matter
@@ -193,8 +194,9 @@ class Embedding {
                                 Embedding& embedding);
 /// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of
 /// the cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn
-/// together. Not either where that would extrapolate its weights more than kLargestWeight times as far. Takes some 150
-/// bytes more for each vertex outside while it works.
+/// together. It does not stay where all tets of that part would extrapolate it: its largest weight may be no more than
+/// kLargestWeight times what it is otherwise, or times 1. Takes some 150 bytes more for each vertex outside while it
+/// works.
 [[nodiscard]] EmbedReport embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options,
                                 Embedding& embedding);
 

@@ -196,12 +196,10 @@ class Walk {
     return changed;
   }
 
-  /// Settles what no run has reached, where it is, but for these vertices.
-  void settleAllBut(const std::vector<std::uint32_t>& vertices) {
-    std::vector<bool> excepted(state_.size(), false);
-    for (const std::uint32_t v : vertices) excepted[edges_.placeOf[v]] = true;
+  /// Settles what no run has reached, where it is, but for some vertices.
+  void settleAllBut(const std::vector<bool>& excepted) {
     for (std::size_t place = 0; place < state_.size(); ++place) {
-      if (state_[place] == State::Untouched && !excepted[place]) state_[place] = State::Settled;
+      if (state_[place] == State::Untouched && !excepted[edges_.vertices[place]]) state_[place] = State::Settled;
     }
   }
 
@@ -255,9 +253,10 @@ class Walk {
 }  // namespace
 
 std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
-                               const std::vector<std::array<int, 3>>& triangles,
-                               const std::vector<std::uint32_t>& rescued, std::vector<std::int32_t>& tetOf) {
+                               const std::vector<std::array<int, 3>>& triangles, const std::vector<bool>& rescued,
+                               std::vector<std::int32_t>& tetOf) {
   assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
+  assert(rescued.empty() || rescued.size() == vertices.size());
   if (std::all_of(tetOf.begin(), tetOf.end(), [](std::int32_t tet) { return tet >= 0; })) return 0;
   Walk walk(cage, vertices, first, triangles, tetOf);
   std::size_t changed = walk.run();

@@ -193,8 +193,10 @@ void rescue(const SearchCage& cage, const OpenPoints& points, double cellSize, s
   });
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::int32_t& tet = search.tetOf[points.ids[k]];
-    if (tet != tets[k]) search.rescued.push_back(points.ids[k]);
+    if (tet == tets[k]) continue;
     tet = tets[k];
+    search.rescued.resize(search.tetOf.size());
+    search.rescued[points.ids[k]] = true;
   }
 }
 
@@ -202,10 +204,11 @@ void findNearest(const SearchCage& cage, OpenPoints open, double cellSize, std::
   const double widestTie = kNearestTie * cage.largestSize();
   double border = kFirstBorder * cage.medianSide();
   while (open.size() > 0) {
-    const std::vector<NearTet> near = nearTets(cage, open, border, cellSize, tableSize, search.candidates);
     const double searched = border - widestTie;
-    rescue(cage, settleNearest(cage, open, searched, near, search), cellSize, tableSize, search);
+    const OpenPoints extrapolated = settleNearest(
+        cage, open, searched, nearTets(cage, open, border, cellSize, tableSize, search.candidates), search);
     open = above(open, searched);
+    rescue(cage, extrapolated, cellSize, tableSize, search);
     // If all that is left is far away, go there at once; if it is known to be near, no farther than that.
     double nearestLeft = kInfinity;
     for (const Eigen::Vector3d& v : open.positions) nearestLeft = std::min(nearestLeft, cage.box().exteriorDistance(v));

@@ -18,12 +18,12 @@ namespace tetskin {
 struct TetSearch {
   static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 
-  std::vector<std::int32_t> tetOf;     ///< by point: its tet, or ~tet if it lies outside of it; kNone: not yet found
-  std::size_t overlapping = 0;         ///< points deeper than kOverlapDepth in two tets or more
-  std::size_t candidates = 0;          ///< pairs tested
-  double farthestDistance = 0.0;       ///< longest distance of a point outside to the nearest tet; see `worstDistance`
-  std::uint32_t farthest = 0;          ///< which point that is: the first, if there are several
-  std::vector<std::uint32_t> rescued;  ///< points outside that do not have the nearest tet because of its weights
+  std::vector<std::int32_t> tetOf;  ///< by point: its tet, or ~tet if it lies outside of it; kNone: not yet found
+  std::size_t overlapping = 0;      ///< points deeper than kOverlapDepth in two tets or more
+  std::size_t candidates = 0;       ///< pairs tested
+  double farthestDistance = 0.0;    ///< longest distance of a point outside to the nearest tet; see `worstDistance`
+  std::uint32_t farthest = 0;       ///< which point that is: the first, if there are several
+  std::vector<bool> rescued;  ///< by point: outside, and not in the nearest tet because of its weights; empty if none
 };
 
 /// Finds the tet of every point by the rule that `embed` states. There must be a tet; points must be finite.
