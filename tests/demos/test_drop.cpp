@@ -267,7 +267,7 @@ TEST_F(Drop, RefusesAMissingCage) {
 TEST_F(Drop, RefusesATruncatedCage) {
   folder.write("box.obj", boxObj());
   folder.write("cut.vtk", cubeVtk().substr(0, cubeVtk().find("4 0 6 4")));
-  expectRefused({"--mesh", "box.obj", "--cage", "cut.vtk"}, {"cut.vtk:14", "complete"});
+  expectRefused({"--mesh", "box.obj", "--cage", "cut.vtk"}, {"cut.vtk:18", "complete"});
 }
 
 TEST_F(Drop, RefusesATruncatedMesh) {

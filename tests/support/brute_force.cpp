@@ -44,7 +44,8 @@ struct CageScale {
       for (const auto& [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) sum += (p[a] - p[b]).norm();
       edge += sum;
       edges += 6;
-      for (const Eigen::Vector3d& corner : p) rounding = std::max(rounding, kInsideTolerance * corner.cwiseAbs().maxCoeff());
+      for (const Eigen::Vector3d& corner : p)
+        rounding = std::max(rounding, kInsideTolerance * corner.cwiseAbs().maxCoeff());
     }
     edge /= static_cast<double>(edges);
   }

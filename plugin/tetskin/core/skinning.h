@@ -40,8 +40,8 @@ class PackedNodes {
   const Point& mean() const { return mean_; }
 
  private:
-  /// Not an Eigen type: how those are aligned, and how Eigen frees them, depends on the flags that each file is compiled
-  /// with, the application's and ours.
+  /// Not an Eigen type: how those are aligned, and how Eigen frees them, depends on the flags that each file is
+  /// compiled with, the application's and ours.
   struct alignas(4 * sizeof(Scalar)) Node {
     Scalar scalars[4] = {};
   };

@@ -256,7 +256,8 @@ Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) 
     if (good) continue;
     return fileError(StatusCode::Malformed, path_, line,
                      "cell " + std::to_string(cell) + " of " + std::to_string(cellCount) +
-                         " is not the number of its nodes and as many indices; correct the cell or the counts");
+                         " is not the number of its nodes and as many indices; is the file complete? Save it again, or "
+                         "correct the cell");
   }
   if (taken == numbers.size()) return {};
   return error(StatusCode::Malformed,
