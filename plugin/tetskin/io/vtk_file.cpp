@@ -257,7 +257,7 @@ Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) 
     return fileError(StatusCode::Malformed, path_, line,
                      "cell " + std::to_string(cell) + " of " + std::to_string(cellCount) +
                          " is not the number of its nodes and as many indices; is the file complete? Save it again, or "
-                         "correct the cell");
+                         "correct the cell or the counts");
   }
   if (taken == numbers.size()) return {};
   return error(StatusCode::Malformed,
