@@ -191,6 +191,31 @@ TEST(BodyTrees, LeftOutInAClassicWorldMeetTheTets) {
   expectRaysAsByBruteForce(*world.world, world.body(), 2);
 }
 
+TYPED_TEST(ClassicTrees, AreThereAgainAfterAStepThatDeletesThem) {
+  TypeParam world(twoParts(smallCageAbove(3)));
+  btSoftBody& body = world.body();
+  body.setTotalMass(5);  // Bullet's own: the next step deletes the tree of faces, and they keep pointing into it
+  world.world->stepSimulation(btScalar(1) / 60);
+  expectRaysAsByBruteForce(*world.world, body, 1);
+  ASSERT_EQ(body.m_nodes.size(), body.m_nodes.capacity());
+  body.appendNode(btVector3(0, 9, 0), 1);  // moves the nodes, and tells every leaf
+  for (int f = 0; f < body.m_faces.size(); ++f) ASSERT_EQ(body.m_faces[f].m_leaf->data, &body.m_faces[f]);
+}
+
+TEST(BodyTrees, LeftOutStayLeftOutWhereNodesAreAppended) {
+  btSoftBodyWorldInfo info;
+  SoftBodyOptions options;
+  options.faceTree = false;
+  const std::unique_ptr<btSoftBody> body(makeSoftBody(smallCageAbove(0), info, options).value());
+  body->appendNode(btVector3(0, 9, 0), 1);
+  for (const Ray& ray : raysAround(*body, 1)) {
+    btSoftBody::sRayCast hit;
+    EXPECT_FALSE(body->rayFaceTest(ray.from, ray.to, hit));
+  }
+  updateConstants(*body);
+  EXPECT_TRUE(body->m_fdbvt.m_root->isleaf());
+}
+
 TEST(BodyTrees, OfAnExplodedBodyAreBuilt) {
   btSoftBodyWorldInfo info;
   const std::unique_ptr<btSoftBody> body(makeSoftBody(smallCageAbove(0), info).value());

@@ -82,9 +82,23 @@ TEST(DeformableBody, RefusesAMaterialThatMakesNoSenseAndKeepsItsOwn) {
   for (const double bad : {-0.1, HUGE_VAL, std::nan("")}) {
     EXPECT_EQ(body->setDamping(bad).code, StatusCode::InvalidOption) << bad;
   }
+  if (sizeof(btScalar) == sizeof(float)) {
+    EXPECT_EQ(body->setYoungsModulus(1e39).code, StatusCode::InvalidOption);  // infinite as a float
+  }
   EXPECT_EQ(body->youngsModulus(), stiffness);
   EXPECT_EQ(body->poissonRatio(), 0.3);
   EXPECT_EQ(body->damping(), 0.02);
+}
+
+TEST(DeformableBody, IsNotMadeOfAMaterialBeyondBulletsNumbers) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.youngsModulus = HUGE_VAL;
+  EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
+  options = {};
+  options.damping = HUGE_VAL;
+  EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
 TEST(DeformableBody, GravityFollowsTheWorldsUnlessSet) {

@@ -197,6 +197,17 @@ TEST(LoadMesh, RefusesCountsThatTheFileCannotHold) {
     }
   }
   EXPECT_EQ(loadText("m.stl", stl(1, "solid")).value().triangleCount(), 1u);
+  // A reader that takes the digits at its beginning for a number would take this for two thousand million faces.
+  expectError(loadText("m.off", "OFF\n1 2000000000.5 0\n0 0 0\n").status(), StatusCode::Malformed,
+              {"m.off: has '2000000000.5'", "whole number"});
+}
+
+TEST(LoadMesh, ReadsStlTextThatBeginsWithABlank) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid part\n";
+  for (const char* begin : {"solid part\n", " solid part\n", "\t solid part\n"}) {
+    EXPECT_EQ(loadText("m.stl", begin + facet).value().triangleCount(), 1u) << begin;
+  }
 }
 
 TEST(LoadMesh, NamesAMissingFileAndAFolder) {

@@ -25,7 +25,7 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
 /// A force of Bullet's for one body, in a list where nobody's body joins it. It leaves the list when the application
-/// takes the body out of the world, and when it is destroyed.
+/// takes the body out of the world; otherwise its owner takes it out.
 template <class Force>
 class OwnForce : public Force {
  public:

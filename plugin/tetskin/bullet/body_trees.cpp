@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btSoftBodyInternals.h>
 #include <tetskin/bullet/body_trees.h>
 
 #include <algorithm>
@@ -112,11 +113,6 @@ btSoftBody::Face* nowhere() {
   return &face;
 }
 
-bool faceTreeIsLeftOut(const btSoftBody& body) {
-  const btDbvtNode* root = body.m_fdbvt.m_root;
-  return root && root->isleaf() && root->data == nowhere();
-}
-
 /// Every item has a leaf that points back at it, as is no longer so once Bullet has moved the array.
 template <class Item>
 bool isTreeOf(const btDbvt& tree, const btAlignedObjectArray<Item>& items) {
@@ -134,35 +130,70 @@ void buildTrees(btSoftBody& body) {
   buildFaceTree(body);
 }
 
-void leaveOutFaceTree(btSoftBody& body) {
-  std::vector<Leaf> leaves = {makeLeaf(nowhere(), btVector3(0, 0, 0))};
-  // In the classic worlds Bullet moves the leaf of each face in which the face no longer fits: all fit into this one.
-  const btVector3 everywhere(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
-  leaves[0].node->volume = btDbvtVolume::FromMM(-everywhere, everywhere);
-  for (int i = 0; i < body.m_faces.size(); ++i) body.m_faces[i].m_leaf = leaves[0].node;
-  setFaceTree(body, leaves);
-}
-
 void updateConstants(btSoftBody& body) {
   if (!body.m_bUpdateRtCst) return;
   body.updateConstants();
   if (!isTreeOf(body.m_ndbvt, body.m_nodes)) buildNodeTree(body);
-  if (faceTreeIsLeftOut(body)) {
-    leaveOutFaceTree(body);
+  auto* own = dynamic_cast<BodyWithTrees*>(&body);
+  const bool leftOut = own && own->faceTreeIsLeftOut();
+  if (leftOut) {
+    own->renewFaceTree();
   } else if (!isTreeOf(body.m_fdbvt, body.m_faces)) {
     buildFaceTree(body);
   }
   body.m_bUpdateRtCst = false;
 }
 
+/// Bullet asks for the margin in each step, right after it has cleared the tree.
+class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
+ public:
+  explicit Shape(BodyWithTrees& body) : btSoftBodyCollisionShape(&body), body_(body) {}
+  btScalar getMargin() const override {
+    body_.keepFaceTree();
+    return btSoftBodyCollisionShape::getMargin();
+  }
+
+ private:
+  BodyWithTrees& body_;
+};
+
+BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes)
+    : btSoftBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr) {
+  delete m_collisionShape;  // as its destructor does
+  m_collisionShape = new Shape(*this);
+}
+
+void BodyWithTrees::makeTrees(bool faces) {
+  buildNodeTree(*this);
+  kind_ = faces ? Kind::Faces : Kind::LeftOut;
+  renewFaceTree();
+}
+
+void BodyWithTrees::renewFaceTree() {
+  if (kind_ == Kind::Faces) return buildFaceTree(*this);
+  std::vector<Leaf> leaves = {makeLeaf(nowhere(), btVector3(0, 0, 0))};
+  // In the classic worlds Bullet moves the leaf of each face in which the face no longer fits: all fit into this one.
+  const btVector3 everywhere(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  leaves[0].node->volume = btDbvtVolume::FromMM(-everywhere, everywhere);
+  for (int i = 0; i < m_faces.size(); ++i) m_faces[i].m_leaf = leaves[0].node;
+  setFaceTree(*this, leaves);
+}
+
+/// The tree may be gone; and where nodes are appended Bullet lets each leaf point at its face, also one that must not.
+void BodyWithTrees::keepFaceTree() {
+  if (kind_ == Kind::None) return;
+  if (!m_fdbvt.m_root) renewFaceTree();
+  if (kind_ == Kind::LeftOut) m_fdbvt.m_root->data = nowhere();
+}
+
 void BodyWithTrees::transform(const btTransform& transform) {
   btSoftBody::transform(transform);
-  if (!faceTreeIsLeftOut(*this)) updateFaceTree(false, false);
+  if (!faceTreeIsLeftOut()) updateFaceTree(false, false);
 }
 
 void BodyWithTrees::scale(const btVector3& factors) {
   btSoftBody::scale(factors);
-  if (!faceTreeIsLeftOut(*this)) updateFaceTree(false, false);
+  if (!faceTreeIsLeftOut()) updateFaceTree(false, false);
 }
 
 }  // namespace tetskin

@@ -11,29 +11,50 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
+#include <vector>
+
 namespace tetskin {
 
 /// Builds all three trees by median splits, for any number of parts, with boxes that fit the nodes where they are.
 /// Whatever trees there were are deleted; the new ones are the body's. Cost O(n log n) for n faces and nodes.
 void buildTrees(btSoftBody& body);
 
-/// Instead of the trees of faces a single leaf that no ray hits and no node touches, whatever moves the body: a ray
-/// misses, refits cost nothing, and Bullet's builder, which only looks whether there is a tree, is not called.
-void leaveOutFaceTree(btSoftBody& body);
-
 /// What Bullet would do in the next step where m_bUpdateRtCst is set, but with our trees; of faces only where they were
 /// not left out, and anew only if nodes or faces have been added or moved in memory. Cost O(links + faces + nodes)
 /// without that; nothing where the flag is not set.
 void updateConstants(btSoftBody& body);
 
-/// A soft body whose trees follow when it is moved or scaled by hand. In Bullet only that of the nodes does: until the
-/// next step, and for a sleeping body for good, a ray looks for the faces where they were.
+/// A soft body that keeps its trees.
+///
+/// They follow when it is moved or scaled by hand. In Bullet only that of the nodes does: until the next step, and for
+/// a sleeping body for good, a ray looks for the faces where they were.
+///
+/// And they are there again at once where a step in a classic world deletes that of the faces, as it does where
+/// m_bUpdateRtCst is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are
+/// appended.
 class BodyWithTrees : public btSoftBody {
  public:
-  using btSoftBody::btSoftBody;
+  BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes);
+
+  /// Builds the trees for the first time; before, the body is Bullet's own.
+  /// faces  or instead of those of faces a single leaf that no ray hits and no node touches, whatever moves the body: a
+  ///        ray misses, refits cost nothing, and Bullet's builder, which only looks whether there is a tree, is not
+  ///        called
+  void makeTrees(bool faces);
+  bool faceTreeIsLeftOut() const { return kind_ == Kind::LeftOut; }
+  /// Builds that of the faces, or what stands for it, anew.
+  void renewFaceTree();
+
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;
   void scale(const btVector3& factors) override;
+
+ private:
+  enum class Kind { None, Faces, LeftOut };
+  class Shape;
+  void keepFaceTree();
+
+  Kind kind_ = Kind::None;
 };
 
 }  // namespace tetskin

@@ -80,6 +80,14 @@ Status invalid(const char* message) {
   return {StatusCode::InvalidOption, message};
 }
 
+/// Ok if Bullet's scalars can hold it.
+Status checkRange(const Material& material) {
+  const auto [mu, lambda] = lame(material.youngsModulus, material.poissonRatio);
+  const auto held = [](double value) { return std::isfinite(static_cast<btScalar>(value)); };
+  if (held(mu) && held(lambda) && held(material.damping) && held(lambda * material.damping)) return {};
+  return invalid("a material so stiff, or so strongly damped, is beyond the range of Bullet's numbers");
+}
+
 }  // namespace
 
 /// The members of a DeformableBody, in an order in which forces go before the body that they are for.
@@ -102,15 +110,20 @@ struct DeformableBody::Parts {
     applyMaterial = [to = force.get()](const Material& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
   }
-  void set(const Material& now) {
+  void apply(const Material& now) {
     material = now;
     applyMaterial(now);
     body->activate();
   }
+  Status set(const Material& now) {
+    Status status = checkRange(now);
+    if (status.ok()) apply(now);
+    return status;
+  }
   Status checkNode(int node) const {
-    if (node >= 0 && node < body->m_nodes.size()) return {};
-    return {StatusCode::IndexOutOfRange, "there is no node " + std::to_string(node) + " in a body of " +
-                                             std::to_string(body->m_nodes.size()) + " nodes"};
+    if (node >= 0 && node < static_cast<int>(masses.size())) return {};
+    return {StatusCode::IndexOutOfRange,
+            "there is no node " + std::to_string(node) + " in a cage of " + std::to_string(masses.size()) + " nodes"};
   }
 };
 
@@ -127,6 +140,11 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   Result<btSoftBody*> made = makeSoftBody(cage, world.getWorldInfo(), options);
   if (!made.ok()) return made.status();
   std::unique_ptr<btSoftBody> body(made.value());
+  const double gravity = static_cast<double>(world.getGravity().length());
+  const double stiffness =
+      options.youngsModulus > 0.0 ? options.youngsModulus : defaultYoungsModulus(cage, options, gravity);
+  const Material material{stiffness, options.poissonRatio, options.damping};
+  if (Status status = checkRange(material); !status.ok()) return status;
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
@@ -143,10 +161,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   } else {
     parts->makeElasticity<btDeformableNeoHookeanForce>();
   }
-  const double gravity = static_cast<double>(world.getGravity().length());
-  const double stiffness =
-      options.youngsModulus > 0.0 ? options.youngsModulus : defaultYoungsModulus(cage, options, gravity);
-  parts->set({stiffness, options.poissonRatio, options.damping});
+  parts->apply(material);
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
     force->setIndices(solver->getIndices());
@@ -182,20 +197,17 @@ double DeformableBody::damping() const {
 
 Status DeformableBody::setYoungsModulus(double pressure) {
   if (!(pressure > 0.0 && std::isfinite(pressure))) return invalid("a Young's modulus must be above 0, and finite");
-  parts_->set({pressure, poissonRatio(), damping()});
-  return {};
+  return parts_->set({pressure, poissonRatio(), damping()});
 }
 
 Status DeformableBody::setPoissonRatio(double ratio) {
   if (!(ratio >= 0.0 && ratio < 0.5)) return invalid("a Poisson's ratio must be at least 0 and below 0.5");
-  parts_->set({youngsModulus(), ratio, damping()});
-  return {};
+  return parts_->set({youngsModulus(), ratio, damping()});
 }
 
 Status DeformableBody::setDamping(double seconds) {
   if (!(seconds >= 0.0 && std::isfinite(seconds))) return invalid("damping must not be negative, and must be finite");
-  parts_->set({youngsModulus(), poissonRatio(), seconds});
-  return {};
+  return parts_->set({youngsModulus(), poissonRatio(), seconds});
 }
 
 void DeformableBody::setGravity(const btVector3& gravity) {

@@ -50,7 +50,7 @@ FourNodes nodesToSample(std::size_t count, std::size_t strideBytes, At&& at) {
   bool any = false;
   for (std::size_t start = 0; start + 3 < count; start += 1 + count / kStarts) {
     const FourNodes four = independentFrom(start, count, at);
-    if (four[3] < 0) break;  // nor are there any farther on
+    if (four[3] < 0) continue;
     if (!any || cost(four) < cost(best)) best = four;
     any = true;
   }

@@ -26,9 +26,9 @@ Status checkOptions(const SoftBodyOptions& options) {
     return {StatusCode::InvalidOption, "a soft body's friction must not be negative, nor its margin NaN"};
   }
   if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
-      !(options.timeStep > 0.0)) {
+      !(options.timeStep > 0.0) || !std::isfinite(options.youngsModulus + options.damping)) {
     return {StatusCode::InvalidOption,
-            "a soft body's stiffness and damping must not be negative, and its time step must be above 0"};
+            "a soft body's stiffness and damping must not be negative, and finite, and its time step must be above 0"};
   }
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
     return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};
@@ -98,9 +98,9 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
 }
 
 /// What Bullet would do in the first step, but with our trees.
-void finish(const SoftBodyOptions& options, btSoftBody& body) {
+void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
   body.updateConstants();
-  options.faceTree ? buildTrees(body) : leaveOutFaceTree(body);
+  body.makeTrees(options.faceTree);
   body.m_bUpdateRtCst = false;
 }
 
@@ -139,7 +139,7 @@ Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& world
 
   std::vector<btVector3> nodes(positive.nodeCount());
   std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);
-  auto body = std::make_unique<BodyWithTrees>(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr);
+  auto body = std::make_unique<BodyWithTrees>(worldInfo, nodes);
   configure(positive, options, *body);
   appendElements(positive, *body);
   setMasses(positive, options, *body);

@@ -161,6 +161,7 @@ void SoftBodySkin::markTeleported() {
 void SoftBodySkin::beginAnew() {
   between_ = false;
   if (steps_.empty()) return;
+  sleeps_ = !body_->isActive();
   steps_.forget();
   if (body_->m_nodes.size() == nodeCount_) (void)steps_.keep(nodePositions(*body_));
 }

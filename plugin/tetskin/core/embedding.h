@@ -45,7 +45,7 @@ struct EmbedReport {
   std::size_t worstVertex = 0;  ///< which vertex that is
   Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
   std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
-  std::size_t rescued = 0;             ///< vertices outside that their nearest tet would have extrapolated too far
+  std::size_t rescued = 0;             ///< places of vertices that their nearest tet would have extrapolated too far
   double largestWeight = 1.0;  ///< largest absolute weight of a vertex, or 1: how much a node's motion is amplified
   double worstBarycentric =
       0.0;       ///< largest barycentric distance, dimensionless; above 0 by rounding only if all are inside

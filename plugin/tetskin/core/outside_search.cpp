@@ -78,7 +78,7 @@ struct NearPair {
 /// One round of a search by distance: all tets whose boxes, grown by a border, hold the point.
 class DistanceRound {
  public:
-  /// limitOf  of an open point: a distance, not above the border
+  /// limitOf  of an open point: a distance; what is beyond the border may be missed
   template <class LimitOf>
   DistanceRound(const SearchCage& cage, const OpenPoints& open, double border, double cellSize, std::size_t tableSize,
                 LimitOf&& limitOf)

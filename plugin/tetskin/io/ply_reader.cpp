@@ -95,7 +95,8 @@ Result<TriangleMesh> PlyReader::read() {
     return fileError(StatusCode::Empty, path_, 0, "has no triangles; export the model as a surface of polygons");
   }
   if (mesh_.normals.size() != mesh_.vertexCount()) mesh_.normals.clear();
-  if (mesh_.texcoords.size() != mesh_.vertexCount() || texcoordsDiffer_) mesh_.texcoords.clear();
+  const bool someHaveNone = std::find(hasTexcoord_.begin(), hasTexcoord_.end(), 0) != hasTexcoord_.end();
+  if (mesh_.texcoords.size() != mesh_.vertexCount() || texcoordsDiffer_ || someHaveNone) mesh_.texcoords.clear();
   return std::move(mesh_);
 }
 

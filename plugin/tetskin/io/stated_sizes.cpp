@@ -5,6 +5,7 @@
 #include <tetskin/io/stated_sizes.h>
 #include <tetskin/io/text_records.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -35,6 +36,9 @@ Status checkOff(const std::string& path) {
       std::uint64_t number = 0;
       if (parseInteger(word, number)) {
         numbers.push_back(number);
+      } else if (word.find("OFF") == word.npos) {
+        return fileError(StatusCode::Malformed, path, 0,
+                         "has '" + std::string(word.substr(0, 40)) + "' where a count belongs; write a whole number");
       } else if (word.find("nOFF") != word.npos) {
         first = 1;
       }
@@ -63,7 +67,8 @@ Status checkBinaryStl(const std::string& path) {
   constexpr std::size_t kHeaderBytes = 84, kTriangleBytes = 50;
   std::uint64_t size = 0;
   const std::string header = firstBytes(path, kHeaderBytes, size);
-  if (header.empty() || (header.substr(0, 5) == "solid" && header.find('\0') == header.npos)) return {};
+  const std::size_t word = std::min(header.find_first_not_of(" \t"), header.size());
+  if (header.empty() || (header.compare(word, 5, "solid") == 0 && header.find('\0') == header.npos)) return {};
   const std::uint64_t triangles = bitsAt(&header[80], 4, ByteOrder::Little);
   if (triangles <= (size - kHeaderBytes) / kTriangleBytes) return {};
   return lies(path, std::to_string(triangles) + " triangles, " + std::to_string(kTriangleBytes) + " bytes each",
