@@ -134,8 +134,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   if (options.forceModel == ForceModel::MassSpring) {
     return invalid(
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
-        "the "
-        "body to a btSoftRigidDynamicsWorld");
+        "the body to a btSoftRigidDynamicsWorld");
   }
   Result<btSoftBody*> made = makeSoftBody(cage, world.getWorldInfo(), options);
   if (!made.ok()) return made.status();

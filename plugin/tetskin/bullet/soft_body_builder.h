@@ -64,8 +64,9 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// node, but at least 0.3 of the mean: slivers' nodes would otherwise be too light to be stable.
 ///
 /// The body collides with rigid bodies by its nodes. Its trees of faces and nodes are ready: Bullet would build them in
-/// the first step or ray test, in quadratic time, and without end for a body of several parts. Bullet does so again
-/// after its own `setMass` and `setTotalMass`, so use those below (a `DeformableBody` may be given either).
+/// the first step or ray test, in quadratic time, and without end for a body of several parts. In the deformable world,
+/// and in the others with VF_SS, it does so again after its own `setMass` and `setTotalMass`: use those below (a
+/// `DeformableBody` may be given either).
 ///
 /// worldInfo  of the world that the body will be added to; must outlive the body
 /// Returns    the body, owned by the caller and in no world yet; null on error
