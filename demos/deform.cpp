@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
-#include <tetskin/io/atomic_file.h>
-#include <tetskin/io/file_text.h>
-#include <tetskin/io/number_text.h>
+#include <tetskin/io/src/text/atomic_file.h>
+#include <tetskin/io/src/text/file_text.h>
+#include <tetskin/io/src/text/number_text.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
 #include <chrono>

@@ -30,13 +30,13 @@ endfunction()
 
 # The parts that know of Bullet's precision; the others are templates, tested for both in one build.
 tetskin_test_configuration(double_precision TARGET test_bullet TESTS ^bullet OPTIONS
-  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
 # Without the demos, which take longer to build so than all the rest of it.
 tetskin_test_configuration(sanitized OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
 # The same code as in the whole build: that it configures, links and runs without the rest is what is tested.
 tetskin_test_configuration(optional_parts_off TARGET fuzzers TESTS ^fuzz OPTIONS
-  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_IO=OFF
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)
 
 # The fuzzers, a minute each: by libFuzzer if there is a clang with its runtime, otherwise by our random driver.
@@ -56,7 +56,7 @@ if(CLANG_CXX)
 endif()
 tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 3 OPTIONS ${fuzzed_compiler}
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
-  -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_DEMOS=OFF)
+  -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_DEMOS=OFF)
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 function(tetskin_test_consumer name)

@@ -4,8 +4,8 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/body_trees.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/src/body_trees.h>
 #include <tetskin/cage/cage_builder.h>
 
 #include <memory>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/cage/stiffness_calibration.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
+#include <tetskin/elastic/stiffness_calibration.h>
 
 #include <cstddef>
 #include <map>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/report_files.h"
 
-#include <tetskin/io/atomic_file.h>
-#include <tetskin/io/number_text.h>
+#include <tetskin/io/src/text/atomic_file.h>
+#include <tetskin/io/src/text/number_text.h>
 
 #include "report/advice.h"
 #include "scenes/counted.h"

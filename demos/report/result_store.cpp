@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/result_store.h"
 
-#include <tetskin/io/atomic_file.h>
+#include <tetskin/io/src/text/atomic_file.h>
 
 #include <cstring>
 #include <filesystem>

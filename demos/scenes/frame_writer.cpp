@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/frame_writer.h"
 
-#include <tetskin/io/atomic_file.h>
+#include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/tet_mesh_writer.h>
 
 #include <cstdio>

@@ -3,7 +3,7 @@
 #include "stress/models.h"
 
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <limits>

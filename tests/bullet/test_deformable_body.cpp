@@ -4,7 +4,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <cmath>
 

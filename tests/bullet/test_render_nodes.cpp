@@ -8,7 +8,7 @@
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body_adapter.h>
 #include <tetskin/bullet/soft_body_builder.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "cage_checks.h"
 
-#include <tetskin/cage/cage_quality.h>
+#include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/core/embedding.h>
 
 #include <algorithm>

@@ -4,10 +4,10 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/cage/bcc_lattice.h>
-#include <tetskin/cage/cage_joints.h>
-#include <tetskin/cage/cage_quality.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/cage/src/fit/cage_quality.h>
+#include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/cage/src/lattice/cage_joints.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <random>

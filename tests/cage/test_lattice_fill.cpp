@@ -6,10 +6,10 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/cage/bcc_lattice.h>
-#include <tetskin/cage/inside_fill.h>
-#include <tetskin/cage/surface_cover.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/cage/src/lattice/inside_fill.h>
+#include <tetskin/cage/src/lattice/surface_cover.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/cage/surface.h>
-#include <tetskin/cage/winding_number.h>
+#include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/cage/src/surface/winding_number.h>
 
 namespace tetskin::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/linear_skinning.h>
+#include <tetskin/core/src/skinning/linear_skinning.h>
 
 #include <cstdio>
 

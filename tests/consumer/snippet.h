@@ -11,7 +11,7 @@
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/cage/stiffness_calibration.h>
+#include <tetskin/elastic/stiffness_calibration.h>
 #include <tetskin/io/embedding_file.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/threads/thread_pool.h>

@@ -3,7 +3,7 @@
 //
 // An application that uses Eigen's matrices of any size itself, beside a part of the library that does.
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/cage/stiffness_calibration.h>
+#include <tetskin/elastic/stiffness_calibration.h>
 
 #include <Eigen/Dense>
 #include <cstdio>

@@ -4,7 +4,7 @@
 #include "support/smooth_maps.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/gradient_fit.h>
+#include <tetskin/core/src/skinning/gradient_fit.h>
 
 #include <algorithm>
 

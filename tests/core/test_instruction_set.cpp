@@ -4,8 +4,8 @@
 #include "support/smooth_maps.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/instruction_set.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/kernels/instruction_set.h>
 
 #include <algorithm>
 #include <cmath>

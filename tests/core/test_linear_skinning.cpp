@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/linear_skinning.h>
+#include <tetskin/core/src/skinning/linear_skinning.h>
 
 #include <limits>
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/linear_skinning.h>
+#include <tetskin/core/src/skinning/linear_skinning.h>
 
 #include <algorithm>
 

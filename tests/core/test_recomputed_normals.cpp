@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "carried_normals.h"
 
-#include <tetskin/core/instruction_set.h>
+#include <tetskin/core/src/kernels/instruction_set.h>
 
 #include <limits>
 #include <random>

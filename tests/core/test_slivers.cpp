@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <string>

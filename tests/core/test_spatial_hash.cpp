@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/spatial_hash.h>
+#include <tetskin/core/src/search/spatial_hash.h>
 
 #include <set>
 

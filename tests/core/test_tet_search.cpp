@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/tet_geometry.h>
-#include <tetskin/core/tet_search.h>
-#include <tetskin/core/weld.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/weld.h>
+#include <tetskin/core/src/search/tet_search.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/normals.h>
+#include <tetskin/core/src/normals/normals.h>
 #include <tetskin/io/mesh_loader.h>
 
 #include <Eigen/Geometry>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <tetskin/io/atomic_file.h>
+#include <tetskin/io/src/text/atomic_file.h>
 #include <unistd.h>
 
 #include <csignal>

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/obj_reader.h>
+#include <tetskin/io/src/mesh/obj_reader.h>
 
 #include <cmath>
 #include <random>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/io/number_text.h>
-#include <tetskin/io/text_scanner.h>
+#include <tetskin/io/src/text/number_text.h>
+#include <tetskin/io/src/text/text_scanner.h>
 
 #include <cmath>
 #include <cstring>

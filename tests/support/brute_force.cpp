@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/brute_force.h"
 
-#include <tetskin/core/tet_geometry.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <utility>

@@ -4,8 +4,8 @@
 // Points in a cage and what skinning makes of them.
 #pragma once
 
-#include <tetskin/core/linear_skinning.h>
-#include <tetskin/core/quadratic_skinning.h>
+#include <tetskin/core/src/skinning/linear_skinning.h>
+#include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <algorithm>
 #include <utility>

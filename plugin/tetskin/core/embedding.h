@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/kernels/skinning_kernels.h>
-#include <tetskin/core/point_reader.h>
+#include <tetskin/core/src/base/point_reader.h>
+#include <tetskin/core/src/kernels/skinning_kernels.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/kept_steps.h>
-#include <tetskin/core/moved_parts.h>
-#include <tetskin/core/normals.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/quadratic_skinning.h>
-#include <tetskin/core/recomputed_normals.h>
-#include <tetskin/core/skinning.h>
+#include <tetskin/core/src/normals/normals.h>
+#include <tetskin/core/src/normals/recomputed_normals.h>
+#include <tetskin/core/src/skinning/kept_steps.h>
+#include <tetskin/core/src/skinning/moved_parts.h>
+#include <tetskin/core/src/skinning/quadratic_skinning.h>
+#include <tetskin/core/src/skinning/skinning.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
 

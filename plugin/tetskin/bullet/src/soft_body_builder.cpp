@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/src/body_trees.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+namespace tetskin {
+namespace {
+
+/// Nodes lighter than this fraction of the mean explode on cages with slivers.
+constexpr double kLightestNode = 0.3;
+/// Default margin over the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
+constexpr double kMarginFraction = 0.02;
+/// Bullet's default of one pass over the links leaves a body of thousands of tets a puddle.
+constexpr int kMassSpringIterations = 8;
+
+Status checkOptions(const SoftBodyOptions& options) {
+  if (!(options.density >= 0.0) || (options.density == 0.0 && !(options.mass > 0.0))) {
+    return {StatusCode::InvalidOption, "a soft body needs a mass above 0, or a density above 0"};
+  }
+  if (!(options.friction >= 0.0) || std::isnan(options.margin)) {
+    return {StatusCode::InvalidOption, "a soft body's friction must not be negative, nor its margin NaN"};
+  }
+  if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
+      !(options.timeStep > 0.0) || !std::isfinite(options.youngsModulus + options.damping)) {
+    return {StatusCode::InvalidOption,
+            "a soft body's stiffness and damping must not be negative, and finite, and its time step must be above 0"};
+  }
+  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
+    return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};
+  }
+  if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
+    return {StatusCode::InvalidOption, "a soft body's link stiffness must be above 0 and at most 1"};
+  }
+  return {};
+}
+
+Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
+  if (Status status = usable(cage, report); !status.ok()) return status;
+  const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
+  if (flat.count == 0) return {};
+  return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
+                                      " tets of the cage are flat, the first is tet " + std::to_string(flat.first) +
+                                      "; Bullet divides by their volume, so remove them"};
+}
+
+btSoftBody::TetraScratch restScratch() {
+  btSoftBody::TetraScratch scratch;
+  scratch.m_F.setIdentity();
+  scratch.m_cofF.setIdentity();
+  scratch.m_corotation.setIdentity();
+  scratch.m_trace = 3;
+  scratch.m_J = 1;
+  return scratch;
+}
+
+void appendElements(const TetMesh& cage, btSoftBody& body) {
+  for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
+  // Bullet's own search for an existing link is linear; these are distinct already.
+  for (const auto& e : uniqueEdges(cage)) body.appendLink(e[0], e[1], nullptr, false);
+  for (const auto& f : boundaryFaces(cage)) body.appendFace(f[0], f[1], f[2]);
+  body.initializeDmInverse();
+  body.m_tetraScratches.resize(body.m_tetras.size(), restScratch());
+  body.m_tetraScratchesTn.resize(body.m_tetras.size(), restScratch());
+  for (int i = 0; i < body.m_nodes.size(); ++i) body.m_nodes[i].index = i;
+}
+
+void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
+  double mass = options.mass;
+  if (options.density > 0.0) {
+    mass = options.density * totalVolume(cage);
+  }
+  const std::vector<double> masses = lumpedMasses(cage, mass);
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
+    body.setMass(static_cast<int>(n), pinned ? btScalar(0) : static_cast<btScalar>(masses[n]));
+  }
+}
+
+void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
+  const double size = boundingBox(cage.nodes).sizes().maxCoeff();
+  const double margin = options.margin >= 0.0 ? options.margin : kMarginFraction * size;
+  body.getCollisionShape()->setMargin(static_cast<btScalar>(margin));
+  body.m_cfg.kDF = static_cast<btScalar>(options.friction);
+  body.m_cfg.kCHR = 1;  // hard contacts with rigid and with kinematic bodies
+  body.m_cfg.kKHR = 1;
+  if (options.forceModel == ForceModel::MassSpring) {
+    body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
+    body.m_cfg.piterations = kMassSpringIterations;
+    body.m_materials[0]->m_kLST = static_cast<btScalar>(options.linkStiffness);
+  } else {
+    body.m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+  }
+}
+
+/// What Bullet would do in the first step, but with our trees.
+void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
+  body.updateConstants();
+  body.makeTrees(options.faceTree);
+  body.m_bUpdateRtCst = false;
+}
+
+}  // namespace
+
+void setMass(btSoftBody& body, int node, btScalar mass) {
+  assert(node >= 0 && node < body.m_nodes.size());
+  body.setMass(node, mass);
+  updateConstants(body);
+}
+
+void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces) {
+  body.setTotalMass(mass, fromFaces);
+  updateConstants(body);
+}
+
+std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
+  std::vector<double> masses(cage.nodeCount(), 0.0);
+  double sum = 0.0;
+  for (const Tet& t : cage.tets) {
+    const double quarter = std::abs(signedVolume(cornersOf(cage, t))) / 4.0;
+    for (const int n : t) masses[n] += quarter;
+    sum += 4.0 * quarter;
+  }
+  const double lightest = kLightestNode * sum / static_cast<double>(cage.nodeCount());
+  for (double& m : masses) m = std::max(m, lightest);
+  const double scale = totalMass / std::accumulate(masses.begin(), masses.end(), 0.0);
+  for (double& m : masses) m *= scale;
+  return masses;
+}
+
+Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options) {
+  if (Status status = checkOptions(options); !status.ok()) return status;
+  TetMesh positive = cage;
+  if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
+
+  std::vector<btVector3> nodes(positive.nodeCount());
+  std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);
+  auto body = std::make_unique<BodyWithTrees>(worldInfo, nodes);
+  configure(positive, options, *body);
+  appendElements(positive, *body);
+  setMasses(positive, options, *body);
+  finish(options, *body);
+  return body.release();
+}
+
+}  // namespace tetskin

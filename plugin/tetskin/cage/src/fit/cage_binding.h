@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Which tet of the cage holds which point of the surface, kept up to date while nodes move.
+#pragma once
+
+#include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+
+#include <vector>
+
+namespace tetskin::cage_detail {
+
+/// Points that a cage has to hold: those of the surface first, then points on those of its triangles that are longer
+/// than `step`, in rows a step apart. Without these a cage pulled tight could cut through a large triangle. Count:
+/// O(points + area / step^2 + length / step).
+std::vector<Eigen::Vector3d> pointsToHold(const Surface& surface, double step);
+
+/// The tet of every point, evaluated exactly as `embed` does: barycentric distance at most 0 in double. -1 if there is
+/// none, which happens to points within rounding error of a face of the lattice only.
+std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const LatticeSet& set,
+                            const LatticeFrame& frame, const LatticeMesh& lattice);
+
+/// How many of the first `count` points are not in their tet. Cost O(count).
+std::size_t countOutside(const std::vector<Eigen::Vector3d>& points, std::size_t count, const TetMesh& mesh,
+                         const std::vector<int>& tetOf);
+
+}  // namespace tetskin::cage_detail

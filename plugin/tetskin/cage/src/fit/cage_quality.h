@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/tet_mesh.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace tetskin {
+
+/// Limits of a cage's dihedral angles, degrees. Outside them explicit integration needs smaller steps (a thin tet is
+/// stiff along its shortest altitude) and linear tets lock.
+constexpr double kMinDihedralDeg = 10.0;
+constexpr double kMaxDihedralDeg = 165.0;
+
+/// Smallest and largest dihedral angle, degrees.
+struct DihedralRange {
+  double minDeg = 180.0;
+  double maxDeg = 0.0;
+};
+/// Over all tets of a mesh, none of them flat. Cost O(tets).
+DihedralRange dihedralRange(const TetMesh& mesh);
+
+namespace cage_detail {
+
+/// Cosines of the six dihedral angles of a positive tet: of the edges between each two faces, in the order (0,1) (0,2)
+/// (0,3) (1,2) (1,3) (2,3) of the corners opposite to the faces.
+std::array<double, 6> dihedralCosines(const TetCorners& p);
+
+/// Number of parts connected by nodes. Cost O(tets).
+std::size_t connectedComponents(const TetMesh& mesh);
+
+}  // namespace cage_detail
+}  // namespace tetskin

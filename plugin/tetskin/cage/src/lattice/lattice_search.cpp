@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Martin Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the sequence of origins)
+#include <tetskin/cage/src/lattice/cage_joints.h>
+#include <tetskin/cage/src/lattice/inside_fill.h>
+#include <tetskin/cage/src/lattice/lattice_search.h>
+#include <tetskin/cage/src/lattice/surface_cover.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tetskin::cage_detail {
+namespace {
+
+/// A count this near the target ends the search at once. Nearer would cost more lattices than it is worth.
+constexpr double kGoodCount = 0.03;
+/// Spacings tried at one origin before a count within kCountTolerance is accepted, and before the next origin is tried.
+constexpr std::size_t kSpacingsPerOrigin = 7;
+/// Origins tried. A box of a dozen tets needs most of them, everything else one or two.
+constexpr std::size_t kOrigins = 12;
+/// Counting stops at this many times the target, plus a constant for small targets: memory stays in bounds and a bad
+/// first guess costs little.
+constexpr std::size_t kCountLimit = 3;
+constexpr std::size_t kCountLimitMore = 200;
+/// Mean width of a tet in lattice coordinates: the volume of tets that a plane touches, per area.
+constexpr double kMeanWidth = 1.65;
+/// How the count depends on the spacing, as a power: between 2 for sheets and 3 for bulk. Only for the first steps.
+constexpr double kCountPower = 2.5;
+/// Steps without a bracket go a little too far, so that the next count is likely to be on the other side.
+constexpr double kOvershoot = 1.02;
+/// Change of the spacing after a count that was stopped.
+constexpr double kStoppedFactor = 1.5;
+/// Share of the bracket that a step leaves at each end, so that it shrinks from both sides.
+constexpr double kBracketMargin = 0.1;
+/// Spacing in units of the rounding error of the coordinates; below, tets would be visibly distorted.
+constexpr double kRoundingRoom = 1e5;
+
+/// Origin number i in cubes: additive recurrence with the powers of the plastic number of three dimensions. All are
+/// irrational, so no face of a mesh with round coordinates lies in a lattice plane.
+Eigen::Vector3d originOf(std::size_t i) {
+  constexpr double kPlastic = 1.2207440846057596;
+  Eigen::Vector3d origin;
+  double step = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    step /= kPlastic;
+    const double x = 0.5 + static_cast<double>(i + 1) * step;
+    origin[axis] = x - std::floor(x);
+  }
+  return origin;
+}
+
+/// Estimated tets at a spacing: the volume, and half the tets that touch the surface; whole for sheets, whose area
+/// counts once.
+double estimatedCount(const Surface& surface, double half) {
+  const double volume = surface.volume + 0.5 * kMeanWidth * half * surface.area;
+  return volume / (kLatticeTetVolume * half * half * half);
+}
+
+double firstSpacing(const Surface& surface, double target) {
+  const double size = surface.box.sizes().maxCoeff();
+  // Of a wire, each tet covers a good part of its size.
+  if (!(surface.area > 0.0)) return 3.0 * size / target;
+  double low = 1e-9 * size, high = 10.0 * size;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(low * high);
+    (estimatedCount(surface, middle) > target ? low : high) = middle;
+  }
+  return high;
+}
+
+class Search {
+ public:
+  Search(const Surface& surface, std::size_t target)
+      : surface_(surface),
+        winding_(surface),
+        target_(static_cast<double>(target)),
+        limit_(kCountLimit * target + kCountLimitMore) {}
+
+  LatticeCage run(std::size_t firstOrigin) {
+    double half = firstSpacing(surface_, target_);
+    for (std::size_t i = 0; i < kOrigins && error(best_) > kCountTolerance; ++i) {
+      half = bracket(originOf(firstOrigin + i), half);
+    }
+    best_.lattices = lattices_;
+    return std::move(best_);
+  }
+
+ private:
+  struct Sample {
+    double logHalf = 0.0, logCount = 0.0;
+    bool known = false;
+  };
+
+  /// Deviation from the target as a fraction of it; infinite for an empty cage.
+  double error(const LatticeCage& cage) const {
+    const auto count = static_cast<double>(cage.set.tetCount());
+    return count > 0.0 ? std::abs(count - target_) / target_ : std::numeric_limits<double>::infinity();
+  }
+
+  /// Searches the spacing at one origin; returns the one to start with at the next.
+  double bracket(const Eigen::Vector3d& origin, double half) {
+    Sample low, high;  // of the spacing: low has too many tets, high too few
+    for (std::size_t i = 0; i < kSpacingsPerOrigin; ++i) {
+      half = std::max(half, smallestSpacing(surface_));
+      const double count = keepTets(origin, half);
+      if (std::abs(count - target_) <= kGoodCount * target_) break;
+      const bool stopped = count > static_cast<double>(limit_);
+      (count > target_ ? low : high) = {std::log(half), std::log(count), true};
+      half = nextSpacing(low, high, half, count, stopped);
+    }
+    return half;
+  }
+
+  double nextSpacing(const Sample& low, const Sample& high, double half, double count, bool stopped) const {
+    if (!low.known || !high.known) {
+      const double factor = std::pow(count / target_, 1.0 / kCountPower);
+      return half * (stopped ? kStoppedFactor : factor * (count > target_ ? kOvershoot : 1.0 / kOvershoot));
+    }
+    const double slope = (high.logCount - low.logCount) / (high.logHalf - low.logHalf);
+    const double guess = slope < 0.0 ? low.logHalf + (std::log(target_) - low.logCount) / slope : low.logHalf;
+    const double margin = kBracketMargin * (high.logHalf - low.logHalf);
+    const double least = std::min(low.logHalf, high.logHalf) + std::abs(margin);
+    const double most = std::max(low.logHalf, high.logHalf) - std::abs(margin);
+    return std::exp(std::clamp(guess, least, most));
+  }
+
+  /// Builds the cage of one lattice and remembers it if it is the best. Returns its count.
+  double keepTets(const Eigen::Vector3d& origin, double half) {
+    ++lattices_;
+    LatticeCage cage;
+    cage.frame.half = half;
+    cage.frame.origin = surface_.box.center() + 2.0 * half * origin;
+    const bool complete = coverSurface(surface_, cage.frame, limit_, cage.set) &&
+                          fillInside(surface_, winding_, cage.frame, limit_, cage.set);
+    if (!complete) return static_cast<double>(limit_ + 1);
+    cage.joiningTets = joinPinches(cage.set);
+    const auto count = static_cast<double>(cage.set.tetCount());
+    if (error(cage) < error(best_)) best_ = std::move(cage);
+    return count;
+  }
+
+  const Surface& surface_;
+  WindingTree winding_;
+  double target_;
+  std::size_t limit_;
+  LatticeCage best_;
+  std::size_t lattices_ = 0;
+};
+
+}  // namespace
+
+double smallestSpacing(const Surface& surface) {
+  const double farthest = std::max(surface.box.min().cwiseAbs().maxCoeff(), surface.box.max().cwiseAbs().maxCoeff());
+  return std::max(kRoundingRoom * std::numeric_limits<double>::epsilon() * farthest,
+                  surface.box.sizes().maxCoeff() / kLargestCube);
+}
+
+LatticeCage searchLattice(const Surface& surface, std::size_t target, std::size_t firstOrigin) {
+  return Search(surface, target).run(firstOrigin);
+}
+
+}  // namespace tetskin::cage_detail

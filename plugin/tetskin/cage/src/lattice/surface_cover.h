@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/cage/src/surface/surface.h>
+
+namespace tetskin::cage_detail {
+
+/// How near, in lattice coordinates, a triangle has to come to touch a tet. Far above the rounding error of lattice
+/// coordinates (2e-7 for the farthest cubes), so that no touching tet is missed, and enough for vertices to stay inside
+/// when they or the cage are rounded to single precision; far below anything that would show in the count.
+constexpr double kTouch = 2e-5;
+
+/// Adds to an empty set all tets that a triangle or a loose point of the surface touches. Triangle by triangle: from
+/// the tet of a corner to its neighbours, as long as they are touched too; so the cost is proportional to the number of
+/// pairs of triangle and touched tet, whatever the triangles' size.
+/// limit   stop at more tets than that
+/// Returns false if stopped.
+bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set);
+
+}  // namespace tetskin::cage_detail

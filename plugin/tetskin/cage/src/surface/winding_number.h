@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/cage/src/surface/surface.h>
+
+#include <array>
+#include <vector>
+
+namespace tetskin::cage_detail {
+
+/// Generalised winding number of the surface's solid triangles: 1 inside a closed surface, 0 outside, and in between,
+/// smoothly, near holes. Far groups of triangles count as one dipole, which costs an error of up to 0.03.
+class WindingTree {
+ public:
+  /// Cost O(n log n) for n triangles. The surface may go away afterwards.
+  explicit WindingTree(const Surface& surface);
+
+  /// Cost about O(log n). 0 if there are no triangles.
+  double windingNumber(const Eigen::Vector3d& p) const;
+
+ private:
+  struct Node {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< area-weighted
+    Eigen::Vector3d dipole = Eigen::Vector3d::Zero();  ///< sum of the area vectors
+    double area = 0.0;
+    double radius = 0.0;      ///< of a ball about the centre that holds all corners
+    int first = 0, last = 0;  ///< triangles
+    int right = 0;            ///< second child, 0 in a leaf; the first child is the next node
+  };
+  using Corners = std::array<Eigen::Vector3d, 3>;
+  /// What the splits look at: small, because it is moved about a lot.
+  struct Item {
+    Eigen::Vector3f middle;
+    int triangle = 0;
+  };
+
+  void build(const Surface& surface, std::vector<Item>& items, int first, int last);
+  void fillLeaf(Node& node);
+  void fillFromChildren(std::size_t index);
+  double walk(int node, const Eigen::Vector3d& p) const;
+
+  std::vector<Node> nodes_;
+  std::vector<Corners> triangles_;  ///< in the order of the leaves
+};
+
+}  // namespace tetskin::cage_detail

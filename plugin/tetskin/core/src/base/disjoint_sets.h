@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace tetskin {
+
+/// Disjoint sets over 0 .. count-1 with path halving; the lowest member represents a set. Each member also has a parity
+/// relative to its representative, for sets whose members agree or disagree in a yes-no property.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count), parity_(count, 0) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  int find(int i) {
+    while (parent_[i] != i) {
+      const int up = parent_[i];
+      parity_[i] = static_cast<char>(parity_[i] ^ parity_[up]);
+      parent_[i] = parent_[up];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  /// 1 if i differs from its representative.
+  int parity(int i) {
+    int odd = 0;
+    for (; parent_[i] != i; i = parent_[i]) odd ^= parity_[i];
+    return odd;
+  }
+
+  /// Joins the sets of a and b; `differ` is 1 if a and b differ. Nothing happens if they are joined already.
+  void unite(int a, int b, int differ = 0) {
+    const int odd = parity(a) ^ parity(b) ^ differ;
+    int rootA = find(a), rootB = find(b);
+    if (rootA == rootB) return;
+    if (rootA > rootB) std::swap(rootA, rootB);
+    parent_[rootB] = rootA;
+    parity_[rootB] = static_cast<char>(odd);
+  }
+
+ private:
+  std::vector<int> parent_;
+  std::vector<char> parity_;  ///< relative to the parent
+};
+
+}  // namespace tetskin

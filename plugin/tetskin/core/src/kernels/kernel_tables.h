@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal: the kernels for this processor, those of `instructionSet()`.
+#pragma once
+
+#include <tetskin/core/src/kernels/search_kernels.h>
+#include <tetskin/core/src/kernels/skinning_kernels.h>
+
+namespace tetskin::kernels {
+
+template <class Scalar>
+const Table<Scalar>& tableInUse();
+SelectEntries selectInUse();
+
+}  // namespace tetskin::kernels

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/src/skinning/quadratic_skinning.h>
+#include <tetskin/core/src/skinning/skinning.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetskin {
+
+/// Where a skin's normals come from.
+enum class Normals {
+  None,         ///< nowhere: no memory, no time
+  Transformed,  ///< the rest normals, carried by the gradient of the map: keeps all detail of authored normals
+  Recomputed,   ///< the deformed triangles, weighted by area: also right where the surface folds within a tet
+};
+
+/// The mesh's authored normals; where there are none, or one is not of unit length, those of its triangles, weighted by
+/// area and smooth across coincident vertices. vertexCount unit vectors, of (0, 1, 0) for vertices without triangles.
+std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh);
+
+/// Directions on the rest surface, prepared to be carried by the map's gradient G: normals by its cofactor matrix (not
+/// its inverse transpose: no division, and the right side out when a tet is inverted), tangents by G itself.
+/// Immutable, shared like an Embedding. Memory: 12 bytes a vertex.
+class DirectionFactors {
+ public:
+  DirectionFactors() = default;
+  /// cage       of the embedding, rest space
+  /// normals    vertexCount unit vectors, rest space
+  static DirectionFactors ofNormals(const TetMesh& cage, const Embedding& embedding,
+                                    const std::vector<Eigen::Vector3d>& normals);
+  /// tangents   likewise, tangent to the surface
+  static DirectionFactors ofTangents(const TetMesh& cage, const Embedding& embedding,
+                                     const std::vector<Eigen::Vector3d>& tangents);
+
+  bool areNormals() const { return normals_; }
+  /// By slot, padded like the weights.
+  const float* plane(int k) const { return planes_[static_cast<std::size_t>(k)].data(); }
+
+ private:
+  template <class Factor>
+  DirectionFactors(const TetMesh& cage, const Embedding& embedding, bool normals, Factor&& factor);
+
+  bool normals_ = true;
+  std::array<std::vector<float>, 3> planes_;
+};
+
+/// Writes the current unit normal (or tangent) of every vertex, for a linear surface or a quadratic one; outside, the
+/// gradient is that of the closest point. A direction that has collapsed to nothing leaves what is there, so the
+/// caller's memory should hold unit vectors to begin with.
+///
+/// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
+/// out              vertexCount x 3, caller-owned, any stride; world space
+/// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
+///                  writes; not needed for `out` side by side in sorted order; without it, some is allocated, and `out`
+///                  is read
+/// movedRuns        as in SkinOutput
+/// Cost             O(vertexCount), no allocation
+template <class Scalar>
+void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
+                         const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
+                         const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
+                         float* scratch = nullptr, ParallelFor* threads = nullptr,
+                         const std::uint8_t* movedRuns = nullptr);
+
+}  // namespace tetskin

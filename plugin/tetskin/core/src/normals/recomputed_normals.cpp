@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/mesh/weld.h>
+#include <tetskin/core/src/normals/recomputed_normals.h>
+#include <tetskin/core/src/skinning/skin_tasks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace tetskin {
+namespace {
+
+using skin_tasks::firstItem;
+using skin_tasks::taskCount;
+
+constexpr std::size_t kGroupsPerTask = 8192;
+constexpr std::size_t kWindow = 256;
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+/// Of the cosine of an angle between two floats' directions.
+constexpr double kRounding = 1e-12;
+
+/// Of the rest normal, whatever its length; zero where there is none, or one without a direction.
+Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
+  if (mesh.normals.size() != mesh.vertexCount()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d normal = mesh.normals[v].cast<double>();
+  const double length = normal.norm();
+  return length > 0.0 && std::isfinite(length) ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+}
+
+/// Vertices that share a normal, as lists: those at one position whose rest normals are within an angle of each other.
+std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first,
+                                        double hardEdgeDegrees, std::size_t& groupCount) {
+  const double limit = std::cos(std::min(hardEdgeDegrees, 180.0) * kDegree) - kRounding;
+  // The groups at one position are chained by their first vertices.
+  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNone), firstGroup(groupOf), next(groupOf);
+  groupCount = 0;
+  const auto join = [&](std::uint32_t v, auto&& isWith) {
+    std::uint32_t* other = &firstGroup[first[v]];
+    while (*other != kNone && !isWith(*other)) other = &next[*other];
+    if (*other == kNone) {
+      *other = v;
+      groupOf[v] = static_cast<std::uint32_t>(groupCount++);
+    } else {
+      groupOf[v] = groupOf[*other];
+    }
+  };
+  for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d direction = restDirection(mesh, v);
+    if (direction.isZero(0.0)) continue;
+    join(v, [&](std::uint32_t other) { return direction.dot(restDirection(mesh, other)) >= limit; });
+  }
+  for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (groupOf[v] == kNone) join(v, [](std::uint32_t) { return true; });  // after those that know where they belong
+  }
+  return groupOf;
+}
+
+/// The far side of a triangle, as seen from one of its corners: two vertices, and their positions' numbers.
+struct FarSide {
+  std::uint32_t from, to;
+  std::uint32_t fromPosition, toPosition;
+};
+
+/// Appends the sides as one path, from each into one that goes on where it ends; `centre` where there is none. It
+/// begins with the first, and prefers earlier ones: the same path for a mesh whatever its vertices' numbers.
+void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::vector<std::uint32_t>& path) {
+  std::vector<std::size_t> byStart(sides.size());
+  std::iota(byStart.begin(), byStart.end(), std::size_t{0});
+  std::stable_sort(byStart.begin(), byStart.end(),
+                   [&](auto a, auto b) { return sides[a].fromPosition < sides[b].fromPosition; });
+  // Of the sides that begin at one position the first is taken first: how many are, is counted at its place.
+  std::vector<std::size_t> taken(sides.size(), 0);
+  std::vector<bool> used(sides.size(), false);
+  const auto take = [&](std::uint32_t position) -> const FarSide* {
+    const auto first = std::partition_point(byStart.begin(), byStart.end(),
+                                            [&](std::size_t s) { return sides[s].fromPosition < position; });
+    if (first == byStart.end()) return nullptr;
+    const auto place = static_cast<std::size_t>(first - byStart.begin());
+    const std::size_t next = place + taken[place];
+    if (next == sides.size() || sides[byStart[next]].fromPosition != position) return nullptr;
+    ++taken[place];
+    used[byStart[next]] = true;
+    return &sides[byStart[next]];
+  };
+  for (std::size_t start = 0; start < sides.size(); ++start) {
+    if (used[start]) continue;
+    if (start > 0) path.push_back(centre);
+    path.push_back(sides[start].from);
+    for (const FarSide* side = take(sides[start].fromPosition); side; side = take(side->toPosition)) {
+      path.push_back(side->to);
+    }
+  }
+}
+
+/// Numbers groups in the order of their places, so that neighbours in memory are mostly neighbours on the surface; but
+/// within a window by their triangles, as a loop of another length each time is mispredicted each time.
+void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& mesh, std::size_t groups,
+              std::vector<std::uint32_t>& groupOf) {
+  std::vector<std::uint32_t> triangles(groups, 0), order, numberOf(groups, kNone);
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) ++triangles[groupOf[static_cast<std::size_t>(v)]];
+  }
+  for (const std::uint32_t v : vertexAt) {
+    if (numberOf[groupOf[v]] != kNone) continue;
+    numberOf[groupOf[v]] = 0;
+    order.push_back(groupOf[v]);
+  }
+  for (std::size_t first = 0; first < groups; first += kWindow) {
+    const std::size_t last = std::min(first + kWindow, groups);
+    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
+                     order.begin() + static_cast<std::ptrdiff_t>(last),
+                     [&](std::uint32_t a, std::uint32_t b) { return triangles[a] < triangles[b]; });
+  }
+  for (std::size_t k = 0; k < groups; ++k) numberOf[order[k]] = static_cast<std::uint32_t>(k);
+  for (std::uint32_t& group : groupOf) group = numberOf[group];
+}
+
+/// Points [first, last), each to four scalars; the fourth stays as it is where it is not another point's.
+template <class Scalar>
+void pad(PointView<const Scalar> points, std::size_t first, std::size_t last, Scalar* to) {
+  std::size_t k = first;
+  if (points.strideBytes() == 3 * sizeof(Scalar)) {
+    for (; k + 1 < last; ++k) std::memcpy(to + 4 * k, points[k], 4 * sizeof(Scalar));
+  }
+  for (; k < last; ++k) std::memcpy(to + 4 * k, points[k], 3 * sizeof(Scalar));
+}
+
+/// Starts of lists from their lengths, which come one place late.
+void accumulate(std::vector<std::uint32_t>& starts) {
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+}
+
+}  // namespace
+
+NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
+                               double hardEdgeDegrees) {
+  assert(places.empty() || places.size() == mesh.vertexCount());
+  const std::size_t count = mesh.vertexCount();
+  const auto placeOf = [&](std::size_t v) { return places.empty() ? static_cast<std::uint32_t>(v) : places[v]; };
+  const std::vector<std::uint32_t> firstAt = weldCoincident(viewOf(mesh.positions));
+  std::size_t groups = 0;
+  std::vector<std::uint32_t> groupOf = smoothGroups(mesh, firstAt, hardEdgeDegrees, groups);
+
+  std::vector<std::uint32_t> vertexAt(count);
+  for (std::size_t v = 0; v < count; ++v) vertexAt[placeOf(v)] = static_cast<std::uint32_t>(v);
+  renumber(vertexAt, mesh, groups, groupOf);
+
+  groupPlaces_.assign(groups + 1, 0);
+  for (const std::uint32_t group : groupOf) ++groupPlaces_[group + 1];
+  accumulate(groupPlaces_);
+  places_.resize(count);
+  std::vector<std::uint32_t> next(groupPlaces_.begin(), groupPlaces_.end() - 1);
+  for (const std::uint32_t v : vertexAt) places_[next[groupOf[v]]++] = placeOf(v);
+
+  std::vector<std::uint32_t> groupSides(groups + 1, 0);
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) ++groupSides[groupOf[static_cast<std::size_t>(v)] + 1];
+  }
+  accumulate(groupSides);
+  std::vector<FarSide> sides(3 * mesh.triangleCount());
+  next.assign(groupSides.begin(), groupSides.end() - 1);
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto from = static_cast<std::size_t>(t[(k + 1) % 3]), to = static_cast<std::size_t>(t[(k + 2) % 3]);
+      sides[next[groupOf[static_cast<std::size_t>(t[k])]]++] = {placeOf(from), placeOf(to), firstAt[from], firstAt[to]};
+    }
+  }
+  std::vector<FarSide> ofGroup;
+  paths_.reserve(sides.size() + 2 * groups);
+  for (std::size_t g = 0; g < groups; ++g) {
+    ofGroup.assign(sides.begin() + groupSides[g], sides.begin() + groupSides[g + 1]);
+    appendPath(ofGroup, places_[groupPlaces_[g]], paths_);
+    groupPaths_.push_back(static_cast<std::uint32_t>(paths_.size()));
+  }
+}
+
+template <class Scalar>
+void padPoints(PointView<const Scalar> points, std::vector<Scalar>& padded, ParallelFor* threads) {
+  assert(padded.size() == 4 * points.size());
+  if (points.empty()) return;
+  const std::size_t tasks = taskCount(points.size());
+  runTasks(threads, tasks, [&](std::size_t task) {
+    pad(points, firstItem(points.size(), tasks, task), firstItem(points.size(), tasks, task + 1), padded.data());
+  });
+}
+
+template <class Scalar>
+void recomputeNormals(const NormalTopology& topology, const std::vector<Scalar>& padded, PointView<float> out,
+                      ParallelFor* threads) {
+  assert(out.size() == topology.places().size() && padded.size() == 4 * out.size());
+  if (out.empty()) return;
+  kernels::PathWork<Scalar> work;
+  work.groupPaths = topology.groupPaths().data();
+  work.paths = topology.paths().data();
+  work.groupPlaces = topology.groupPlaces().data();
+  work.places = topology.places().data();
+  work.points = padded.data();
+  work.out = out.data();
+  work.outStride = out.strideBytes();
+  const std::size_t tasks = taskCount(topology.groupCount(), kGroupsPerTask);
+  runTasks(threads, tasks, [&](std::size_t task) {
+    kernels::PathWork<Scalar> part = work;
+    part.firstGroup = firstItem(topology.groupCount(), tasks, task);
+    part.lastGroup = firstItem(topology.groupCount(), tasks, task + 1);
+    kernels::tableInUse<Scalar>().pathNormals(part);
+  });
+}
+
+#define TETSKIN_INSTANTIATE(Scalar)                                                     \
+  template void padPoints(PointView<const Scalar>, std::vector<Scalar>&, ParallelFor*); \
+  template void recomputeNormals(const NormalTopology&, const std::vector<Scalar>&, PointView<float>, ParallelFor*);
+TETSKIN_INSTANTIATE(float)
+TETSKIN_INSTANTIATE(double)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/search/outside_neighbours.h>
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+namespace tetskin {
+namespace {
+
+std::int32_t indexOf(std::int32_t tet) {
+  return tet >= 0 ? tet : ~tet;
+}
+
+bool shareNode(const Tet& a, const Tet& b) {
+  return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
+}
+
+/// Edges from vertices outside, by the first vertex at a position: entries of the k-th outside vertex.
+struct OutsideEdges {
+  std::vector<std::uint32_t> vertices;  ///< outside, ascending, one a position
+  std::vector<std::uint32_t> starts;
+  std::vector<std::uint32_t> ends;
+  std::vector<std::uint32_t> placeOf;  ///< by vertex; kInside if it is not outside
+
+  static constexpr std::uint32_t kInside = 0xFFFFFFFFu;
+
+  OutsideEdges(const std::vector<std::uint32_t>& first, const std::vector<std::array<int, 3>>& triangles,
+               const std::vector<std::int32_t>& tetOf)
+      : placeOf(tetOf.size(), kInside) {
+    for (std::uint32_t v = 0; v < tetOf.size(); ++v) {
+      if (tetOf[v] >= 0 || first[v] != v) continue;
+      placeOf[v] = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back(v);
+    }
+    std::vector<std::array<std::uint32_t, 2>> pairs;  // of each edge twice, once from either triangle
+    for (const auto& t : triangles) {
+      for (int k = 0; k < 3; ++k) {
+        if (tetOf[static_cast<std::size_t>(t[k])] >= 0) continue;
+        const std::uint32_t a = first[static_cast<std::size_t>(t[k])];
+        for (int step = 1; step <= 2; ++step) {
+          const std::uint32_t b = first[static_cast<std::size_t>(t[(k + step) % 3])];
+          if (b != a) pairs.push_back({placeOf[a], b});
+        }
+      }
+    }
+    starts.assign(vertices.size() + 1, 0);
+    for (const auto& pair : pairs) ++starts[pair[0]];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : starts) start = sum += start;  // now one past each vertex's last
+    ends.resize(pairs.size());
+    for (std::size_t k = pairs.size(); k-- > 0;) ends[--starts[pairs[k][0]]] = pairs[k][1];
+  }
+};
+
+/// The tets around each node, made when first asked for: most meshes never need them.
+class TetsAroundNodes {
+ public:
+  explicit TetsAroundNodes(const TetMesh& cage) : cage_(cage) {}
+
+  template <class Visit>
+  void around(const Tet& tet, Visit&& visit) {
+    if (starts_.empty()) build();
+    for (const int n : tet) {
+      for (std::uint32_t k = starts_[n]; k < starts_[n + 1]; ++k) visit(tets_[k]);
+    }
+  }
+
+ private:
+  void build() {
+    starts_.assign(cage_.nodeCount() + 1, 0);
+    for (const Tet& tet : cage_.tets) {
+      for (const int n : tet) ++starts_[n + 1];
+    }
+    for (std::size_t n = 0; n < cage_.nodeCount(); ++n) starts_[n + 1] += starts_[n];
+    tets_.resize(4 * cage_.tetCount());
+    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+    for (std::uint32_t t = 0; t < cage_.tetCount(); ++t) {
+      for (const int n : cage_.tets[t]) tets_[next[n]++] = t;
+    }
+  }
+
+  const TetMesh& cage_;
+  std::vector<std::uint32_t> starts_, tets_;
+};
+
+/// A tet as a vertex sees it.
+struct Seen {
+  std::int32_t tet;
+  double size;
+  double distance;
+  double weight;  ///< largest absolute
+};
+
+/// One vertex and the tets around it that are connected to its neighbours'.
+class LocalSearch {
+ public:
+  explicit LocalSearch(const TetMesh& cage) : cage_(cage), adjacency_(cage), visited_(cage.tetCount(), 0) {}
+
+  /// The tet for a vertex that the nearest rule gives to `nearest`, with neighbours in the tets `others`, at most
+  /// `reach` away.
+  std::int32_t tetFor(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
+                      double reach) {
+    const Seen theirs = look(v, cornersOf(cage_, cage_.tets[nearest]), nearest);
+    if (connects(v, nearest, others, std::max(reach, theirs.distance + theirs.size)) || seen_.empty()) return nearest;
+    const Seen own = *std::min_element(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
+      return std::tie(a.distance, a.tet) < std::tie(b.distance, b.tet);
+    });
+    if (own.distance > theirs.distance + own.size) return nearest;
+    if (own.weight <= kLargestWeight) return own.tet;
+    const Seen rescuer = leastWeightWithin(own.distance + reachOfRescues());
+    return rescuer.weight <= kLargestWeight * std::max(1.0, theirs.weight) ? rescuer.tet : nearest;
+  }
+
+ private:
+  static Seen look(const Eigen::Vector3d& v, const TetCorners& corners, std::int32_t tet) {
+    const Eigen::Vector4d weights = BarycentricMap(corners)(v);
+    return {tet, tetSize(corners), distanceToTet(v, corners, weights), largestWeight(weights)};
+  }
+
+  /// Goes from the tets `others` to what is connected to them within a radius. Returns whether that includes `nearest`;
+  /// if not, all of it is in `seen_`.
+  bool connects(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
+                double radius) {
+    ++round_;
+    seen_.clear();
+    open_.clear();
+    for (const std::int32_t t : others) push(t);
+    while (!open_.empty()) {
+      const std::int32_t t = open_.back();
+      open_.pop_back();
+      if (t == nearest) return true;
+      const TetCorners corners = cornersOf(cage_, cage_.tets[t]);
+      if (isFlat(corners)) continue;
+      seen_.push_back(look(v, corners, t));
+      if (seen_.back().distance > radius) continue;
+      adjacency_.around(cage_.tets[t], [&](std::uint32_t next) { push(static_cast<std::int32_t>(next)); });
+    }
+    return false;
+  }
+
+  Seen leastWeightWithin(double distance) const {
+    Seen least{-1, 0.0, 0.0, std::numeric_limits<double>::infinity()};
+    for (const Seen& s : seen_) {
+      if (s.distance <= distance && std::tie(s.weight, s.tet) < std::tie(least.weight, least.tet)) least = s;
+    }
+    return least;
+  }
+
+  /// Made when first asked for, like the tets around nodes.
+  double reachOfRescues() {
+    if (meanEdge_ == 0.0) meanEdge_ = meanEdge(cage_);
+    return meanEdge_;
+  }
+
+  void push(std::int32_t tet) {
+    if (visited_[tet] == round_) return;
+    visited_[tet] = round_;
+    open_.push_back(tet);
+  }
+
+  const TetMesh& cage_;
+  TetsAroundNodes adjacency_;
+  double meanEdge_ = 0.0;
+  std::vector<std::uint32_t> visited_;
+  std::uint32_t round_ = 0;
+  std::vector<std::int32_t> open_;
+  std::vector<Seen> seen_;
+};
+
+/// Goes through the vertices outside, ring by ring.
+class Walk {
+ public:
+  Walk(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
+       const std::vector<std::array<int, 3>>& triangles, std::vector<std::int32_t>& tetOf)
+      : cage_(cage),
+        vertices_(vertices),
+        tetOf_(tetOf),
+        edges_(first, triangles, tetOf),
+        search_(cage),
+        state_(edges_.vertices.size(), State::Untouched) {}
+
+  /// From what is settled outwards, to all that is connected. Returns how many vertices changed their tet.
+  std::size_t run() {
+    for (std::uint32_t place = 0; place < state_.size(); ++place) {
+      if (state_[place] != State::Untouched) continue;
+      const auto begin = edges_.ends.begin() + edges_.starts[place],
+                 end = edges_.ends.begin() + edges_.starts[place + 1];
+      if (std::any_of(begin, end, [&](std::uint32_t v) { return settled(v); })) push(place);
+    }
+    std::size_t changed = 0;
+    for (; !queue_.empty(); queue_.pop()) changed += settle(queue_.front());
+    return changed;
+  }
+
+  /// Settles what no run has reached, where it is, but for some vertices.
+  void settleAllBut(const std::vector<bool>& excepted) {
+    for (std::size_t place = 0; place < state_.size(); ++place) {
+      if (state_[place] == State::Untouched && !excepted[edges_.vertices[place]]) state_[place] = State::Settled;
+    }
+  }
+
+ private:
+  enum class State : char { Untouched, Queued, Settled };
+
+  bool settled(std::uint32_t v) const {
+    const std::uint32_t place = edges_.placeOf[v];
+    return place == OutsideEdges::kInside || state_[place] == State::Settled;
+  }
+  void push(std::uint32_t place) {
+    state_[place] = State::Queued;
+    queue_.push(place);
+  }
+
+  /// Returns whether the vertex changes its tet.
+  bool settle(std::uint32_t place) {
+    const std::uint32_t v = edges_.vertices[place];
+    const std::int32_t nearest = ~tetOf_[v];
+    const Eigen::Vector3d point = vertices_[v];
+    others_.clear();
+    double reach = 0.0;
+    bool local = false;
+    for (std::uint32_t k = edges_.starts[place]; k < edges_.starts[place + 1]; ++k) {
+      const std::uint32_t other = edges_.ends[k];
+      if (settled(other)) {
+        others_.push_back(indexOf(tetOf_[other]));
+        reach = std::max(reach, (vertices_[other] - point).norm());
+        local = local || shareNode(cage_.tets[others_.back()], cage_.tets[nearest]);
+      } else if (state_[edges_.placeOf[other]] == State::Untouched) {
+        push(edges_.placeOf[other]);
+      }
+    }
+    state_[place] = State::Settled;
+    if (local) return false;
+    const std::int32_t tet = search_.tetFor(point, nearest, others_, reach);
+    tetOf_[v] = ~tet;
+    return tet != nearest;
+  }
+
+  const TetMesh& cage_;
+  PointReader vertices_;
+  std::vector<std::int32_t>& tetOf_;
+  OutsideEdges edges_;
+  LocalSearch search_;
+  std::vector<State> state_;          ///< by place
+  std::queue<std::uint32_t> queue_;   ///< of places
+  std::vector<std::int32_t> others_;  ///< scratch memory
+};
+
+}  // namespace
+
+std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
+                               const std::vector<std::array<int, 3>>& triangles, const std::vector<bool>& rescued,
+                               std::vector<std::int32_t>& tetOf) {
+  assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
+  assert(rescued.empty() || rescued.size() == vertices.size());
+  if (std::all_of(tetOf.begin(), tetOf.end(), [](std::int32_t tet) { return tet >= 0; })) return 0;
+  Walk walk(cage, vertices, first, triangles, tetOf);
+  std::size_t changed = walk.run();
+  if (!rescued.empty()) {
+    walk.settleAllBut(rescued);
+    changed += walk.run();
+  }
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (tetOf[v] < 0) tetOf[v] = tetOf[first[v]];
+  }
+  return changed;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/skinning/gradient_fit.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace tetskin {
+namespace {
+
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+constexpr int kMostRings = 4;
+constexpr std::size_t kFewestNeighbours = 12;
+/// So many of the nearest are enough where they make a fit: beside all of two rings, a third less work every step, and
+/// a surface a sixth closer to smooth maps, as what is far away tells less of the gradient here. Those at the same
+/// distance come along, so that the stencils of a lattice are as symmetric as it is.
+constexpr std::size_t kNearNeighbours = 18;
+constexpr double kSameDistance = 1.0 + 1e-6;
+/// Smallest over largest singular value from which a fit counts as well conditioned. Where none is, smaller singular
+/// values are taken for 0: kept down to 1e-3, those of an uneven layer one cell thick make errors of four times the
+/// linear surface's; 0.05 would cost regular cages half of their gain.
+constexpr double kWellConditioned = 0.02;
+/// Below this, the offsets themselves lie in a plane, and there is no linear fit either.
+constexpr double kFlatOffsets = 1e-3;
+
+/// Terms of a map's Taylor series: gradient, then second derivatives.
+Vector9 taylorTerms(const Eigen::Vector3d& d) {
+  Vector9 t;
+  t << d, 0.5 * d.cwiseProduct(d), d.y() * d.z(), d.x() * d.z(), d.x() * d.y();
+  return t;
+}
+
+/// The least-squares problem around one node, each neighbour weighted by 1 / distance, in units of the mean distance.
+struct Fit {
+  std::vector<Eigen::Vector3d> offsets;
+  double unit = 0.0;
+  Eigen::SelfAdjointEigenSolver<Matrix9> solver;
+
+  explicit Fit(std::vector<Eigen::Vector3d> restOffsets) : offsets(std::move(restOffsets)) {
+    for (const Eigen::Vector3d& d : offsets) unit += d.norm();
+    unit /= static_cast<double>(offsets.size());
+    Matrix9 normal = Matrix9::Zero();
+    for (const Eigen::Vector3d& d : offsets) {
+      const Vector9 row = weightedRow(d);
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    }
+    solver.compute(normal);
+  }
+
+  double weight(const Eigen::Vector3d& d) const { return unit / d.norm(); }
+  Vector9 weightedRow(const Eigen::Vector3d& d) const { return weight(d) * taylorTerms(d / unit); }
+
+  /// Eigenvalues of the normal matrix are squares of singular values.
+  bool wellConditioned() const {
+    return solver.eigenvalues()[0] >= kWellConditioned * kWellConditioned * solver.eigenvalues()[8];
+  }
+
+  /// By neighbour: how the gradient depends on it.
+  std::vector<Eigen::Vector3d> gradientFactors() const {
+    Vector9 inverse = Vector9::Zero();
+    for (int i = 0; i < 9; ++i) {
+      const double lambda = solver.eigenvalues()[i];
+      if (lambda > kWellConditioned * kWellConditioned * solver.eigenvalues()[8]) inverse[i] = 1.0 / lambda;
+    }
+    const Eigen::Matrix<double, 3, 9> gradientRows =
+        solver.eigenvectors().topRows<3>() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+    std::vector<Eigen::Vector3d> factors;
+    for (const Eigen::Vector3d& d : offsets) factors.push_back(gradientRows * weightedRow(d) * (weight(d) / unit));
+    return factors;
+  }
+
+  /// Truncation costs affine exactness, sum_j d_j g_j^T = I; this gives it back by the smallest change. False where the
+  /// offsets lie in a plane.
+  bool makeAffineExact(std::vector<Eigen::Vector3d>& factors) const {
+    Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero(), moment = Eigen::Matrix3d::Zero();
+    for (std::size_t j = 0; j < offsets.size(); ++j) {
+      const Eigen::Vector3d d = offsets[j] / unit;
+      weighted += weight(offsets[j]) * weight(offsets[j]) * d * d.transpose();
+      moment += offsets[j] * factors[j].transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(weighted);
+    if (!(axes.eigenvalues()[0] > kFlatOffsets * kFlatOffsets * axes.eigenvalues()[2])) return false;
+    const Eigen::Matrix3d missing = (Eigen::Matrix3d::Identity() - moment).transpose() * weighted.inverse();
+    for (std::size_t j = 0; j < offsets.size(); ++j) {
+      const double w = weight(offsets[j]);
+      factors[j] += w * w / (unit * unit) * (missing * offsets[j]);
+    }
+    return true;
+  }
+};
+
+/// Lists by key, packed: entries of key k are [starts[k], starts[k + 1]).
+void pack(const std::vector<std::array<std::uint32_t, 2>>& pairs, std::size_t keys, std::vector<std::uint32_t>& starts,
+          std::vector<std::uint32_t>& values) {
+  starts.assign(keys + 1, 0);
+  for (const auto& [key, value] : pairs) ++starts[key + 1];
+  for (std::size_t k = 0; k < keys; ++k) starts[k + 1] += starts[k];
+  values.resize(pairs.size());
+  std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
+  for (const auto& [key, value] : pairs) values[next[key]++] = value;
+}
+
+}  // namespace
+
+CageNeighbours::CageNeighbours(const TetMesh& cage) : cage_(cage), foundFor_(cage.nodeCount(), 0) {
+  TetMesh solid;  // without flat tets, which may tie together what is far apart
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    if (isFlat(cornersOf(cage, cage.tets[t]))) continue;
+    solid.tets.push_back(cage.tets[t]);
+    for (const int n : cage.tets[t]) pairs.push_back({static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(t)});
+  }
+  pack(pairs, cage.nodeCount(), tetStarts_, tets_);
+  pairs.clear();
+  for (const auto& edge : uniqueEdges(solid)) {
+    const auto a = static_cast<std::uint32_t>(edge[0]), b = static_cast<std::uint32_t>(edge[1]);
+    pairs.push_back({a, b});
+    pairs.push_back({b, a});
+  }
+  pack(pairs, cage.nodeCount(), edgeStarts_, edgeEnds_);
+}
+
+GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
+  assert(tetStarts_[node] < tetStarts_[node + 1]);
+  found_.assign(1, node);
+  foundFor_[node] = node + 1;
+  std::size_t ringStart = 0;
+  for (int ring = 1; ring <= kMostRings; ++ring) {
+    const std::size_t before = found_.size();
+    addRing(ringStart);
+    ringStart = before;
+    const bool last = ring == kMostRings || found_.size() == before;
+    if (!last && found_.size() <= kFewestNeighbours) continue;
+
+    std::vector<std::uint32_t> neighbours = nearNeighbours();
+    Fit fit(offsetsOf(neighbours));
+    if (!fit.wellConditioned() && neighbours.size() + 1 < found_.size()) {
+      neighbours.assign(found_.begin() + 1, found_.end());
+      fit = Fit(offsetsOf(neighbours));
+    }
+    const bool full = fit.wellConditioned() && neighbours.size() >= kFewestNeighbours;
+    if (!last && !full) continue;
+
+    GradientStencil stencil;
+    stencil.factors = fit.gradientFactors();
+    if (!fit.makeAffineExact(stencil.factors)) break;
+    stencil.kind = full ? GradientStencil::Kind::Full : GradientStencil::Kind::Thin;
+    stencil.nodes = std::move(neighbours);
+    Eigen::Vector3d own = Eigen::Vector3d::Zero();  // offsets are from the node itself
+    for (const Eigen::Vector3d& g : stencil.factors) own -= g;
+    stencil.nodes.push_back(node);
+    stencil.factors.push_back(own);
+    return stencil;
+  }
+  return plainStencil(node);
+}
+
+/// Of those found, the nearest ones.
+std::vector<std::uint32_t> CageNeighbours::nearNeighbours() const {
+  std::vector<std::pair<double, std::uint32_t>> byDistance;
+  for (std::size_t k = 1; k < found_.size(); ++k) {
+    byDistance.emplace_back((cage_.nodes[found_[k]] - cage_.nodes[found_[0]]).norm(), found_[k]);
+  }
+  std::sort(byDistance.begin(), byDistance.end());
+  std::vector<std::uint32_t> near;
+  for (const auto& [distance, other] : byDistance) {
+    if (near.size() >= kNearNeighbours && distance > kSameDistance * byDistance[kNearNeighbours - 1].first) break;
+    near.push_back(other);
+  }
+  return near;
+}
+
+std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::uint32_t>& neighbours) const {
+  std::vector<Eigen::Vector3d> offsets;
+  offsets.reserve(neighbours.size());
+  for (const std::uint32_t other : neighbours) offsets.push_back(cage_.nodes[other] - cage_.nodes[found_[0]]);
+  return offsets;
+}
+
+/// Appends the nodes that share an edge with those found from place `from` on. A node at the very place of the first
+/// (a crack) tells nothing, and is passed by.
+void CageNeighbours::addRing(std::size_t from) {
+  const std::uint32_t centre = found_.front();
+  for (std::size_t k = from, end = found_.size(); k < end; ++k) {
+    for (std::uint32_t e = edgeStarts_[found_[k]]; e < edgeStarts_[found_[k] + 1]; ++e) {
+      const std::uint32_t other = edgeEnds_[e];
+      if (foundFor_[other] == centre + 1 || cage_.nodes[other] == cage_.nodes[centre]) continue;
+      foundFor_[other] = centre + 1;
+      found_.push_back(other);
+    }
+  }
+}
+
+GradientStencil CageNeighbours::plainStencil(std::uint32_t node) const {
+  std::map<std::uint32_t, Eigen::Vector3d> factors;
+  double volume = 0.0;
+  for (std::uint32_t k = tetStarts_[node]; k < tetStarts_[node + 1]; ++k) {
+    const Tet& tet = cage_.tets[tets_[k]];
+    const TetCorners corners = cornersOf(cage_, tet);
+    const BarycentricMap map(corners);
+    const double v = std::abs(signedVolume(corners));
+    volume += v;
+    const Eigen::Vector3d gradients[4] = {map.rows[0], map.rows[1], map.rows[2],
+                                          -(map.rows[0] + map.rows[1] + map.rows[2])};
+    for (int n = 0; n < 4; ++n) {
+      const auto [entry, isNew] = factors.try_emplace(static_cast<std::uint32_t>(tet[n]), Eigen::Vector3d::Zero());
+      entry->second += v * gradients[n];
+    }
+  }
+  GradientStencil stencil;
+  stencil.kind = GradientStencil::Kind::Plain;
+  for (const auto& [n, factor] : factors) {
+    stencil.nodes.push_back(n);
+    stencil.factors.push_back(factor / volume);
+  }
+  return stencil;
+}
+
+}  // namespace tetskin

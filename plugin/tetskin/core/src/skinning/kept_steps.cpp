@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/skinning/kept_steps.h>
+
+#include <algorithm>
+
+namespace tetskin {
+
+template <class Scalar>
+bool KeptSteps<Scalar>::keep(PointView<const Scalar> nodes) {
+  if (nodes.size() != size()) forget();
+  before_.swap(last_);
+  for (auto* copy : {&before_, &last_}) copy->resize(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) std::copy_n(nodes[i], 3, last_[i].data());
+  const bool begun = usable_;
+  usable_ = firstUnusable(viewOf(std::as_const(last_))) == size();
+  between_ = begun && usable_;
+  return between_;
+}
+
+template <class Scalar>
+void KeptSteps<Scalar>::nodesAt(Scalar alpha, PointView<Scalar> out) const {
+  assert(out.size() == size());
+  if (!between_ || !(alpha < 1)) {
+    for (std::size_t i = 0; i < size(); ++i) std::copy_n(last_[i].data(), 3, out[i]);
+    return;
+  }
+  const Scalar share = std::max(alpha, Scalar(0));
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Eigen::Matrix<Scalar, 3, 1> node = before_[i] + share * (last_[i] - before_[i]);
+    std::copy_n(node.data(), 3, out[i]);
+  }
+}
+
+template class KeptSteps<float>;
+template class KeptSteps<double>;
+
+}  // namespace tetskin

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/src/kernels/skinning_kernels.h>
+#include <tetskin/core/src/skinning/skinning.h>
+
+#include <string>
+#include <vector>
+
+namespace tetskin {
+
+/// How well the cage supports a quadratic surface. Where the neighbourhood of a node does not tell some second
+/// derivatives apart (a cage one cell thick, a fin, a single tet), the surface is linear in those directions.
+struct QuadraticReport {
+  std::size_t nodes = 0;       ///< nodes that need a gradient: those of the tets that carry vertices
+  std::size_t thinNodes = 0;   ///< of these, with a neighbourhood too thin for all second derivatives
+  std::size_t plainNodes = 0;  ///< of these, without even a linear fit: the mean of the tets' gradients instead
+  std::size_t edges = 0;       ///< cage edges that carry a vector
+  double meanNeighbours = 0.0;
+  double milliseconds = 0.0;  ///< wall time of the build
+
+  /// One line for people.
+  std::string describe() const;
+};
+
+/// All that quadratic skinning needs of the rest shape: computed once, immutable, shared like an Embedding.
+///
+///     x(v) = sum_i b_i x_i + sum_{i<j} b_i b_j e_ij,   e_ij = (F_i - F_j) (X_j - X_i) / 2
+///
+/// with X rest and x current nodes (D. James, "Phong Deformation", 2020, doi 10.1145/3386569.3392371, written with one
+/// vector per cage edge). The published node gradients F_i, averages of the tets' gradients, are not exact for
+/// quadratic maps; these are, wherever the cage allows: least-squares fits of first and second derivatives over the
+/// nearest nodes around node i, corrected so that every affine map is exact.
+///
+/// Memory: some 20 x 16 bytes a node that carries vertices (28 in double), 40 bytes an edge of such a tet.
+template <class Scalar>
+class QuadraticStencils {
+ public:
+  QuadraticStencils() = default;
+  /// cage  usable, rest space; that of the embedding
+  /// Cost  some 20 to 50 microseconds a node that carries vertices
+  QuadraticStencils(const TetMesh& cage, const Embedding& embedding, QuadraticReport* report = nullptr);
+
+  std::size_t gradientCount() const { return starts_.size() - 1; }
+  std::size_t edgeCount() const { return restLengths_.size(); }
+
+  /// By gradient, and one more: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
+  const std::vector<std::uint32_t>& starts() const { return starts_; }
+  const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
+  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry and 1, 1 / length
+  const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 an edge
+  /// 4 an edge: half the rest vector from its first node to its second, and the square of that half's length.
+  const std::vector<Scalar>& halfRest() const { return halfRest_; }
+  const std::vector<Scalar>& restLengths() const { return restLengths_; }
+  /// 6 a run of the embedding: its edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3).
+  const std::vector<std::uint32_t>& runEdges() const { return runEdges_; }
+
+ private:
+  std::vector<std::uint32_t> starts_ = {0};
+  std::vector<std::uint32_t> entryNodes_;
+  std::vector<Scalar> entryFactors_;
+  std::vector<std::uint32_t> edgeGradients_;
+  std::vector<Scalar> halfRest_;
+  std::vector<Scalar> restLengths_;
+  std::vector<std::uint32_t> runEdges_;
+};
+
+/// The cage's current edge vectors: each body has its own.
+template <class Scalar>
+class EdgeVectors {
+ public:
+  EdgeVectors() = default;
+  explicit EdgeVectors(const QuadraticStencils<Scalar>& stencils);
+
+  /// Computes them for the current nodes. No vector is longer than half its edge's rest length. Cost O(nodes x
+  /// neighbours + edges), no allocation.
+  /// movedGradients  by gradient: 0 where it stays as it is; null: all are computed
+  void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
+              ParallelFor* threads = nullptr, const std::uint8_t* movedGradients = nullptr);
+
+  /// 4 an edge: its vector, and its rest length
+  const Scalar* data() const { return edges_.data(); }
+
+ private:
+  /// One a cache line, or two.
+  struct alignas(64) Gradient {
+    Scalar columns[kernels::kGradientStride];
+  };
+  std::vector<Gradient> gradients_;
+  std::vector<Scalar> edges_;
+};
+
+/// Writes the current position of every vertex by the formula above; outside, the map is continued to first order from
+/// the closest point of the tet. Everything else as in `skinLinear`.
+/// edges  updated for these nodes
+template <class Scalar, class Out>
+void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,
+                   const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
+                   const SkinOutput<Scalar, Out>& output, Box3* bounds = nullptr, ParallelFor* threads = nullptr);
+
+}  // namespace tetskin

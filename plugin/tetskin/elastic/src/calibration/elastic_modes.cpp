@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/elastic/src/calibration/elastic_modes.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// Stiffness added for solving, in proportion to mass, over the mean stiffness to mass: without it rigid motions have
+/// none. They are taken out of every result, so that it only has to be small beside the softest vibration.
+constexpr double kShift = 1e-9;
+/// Vectors of the subspace beyond those that are wanted: the more, the faster it converges.
+constexpr int kGuardModes = 6;
+constexpr int kMostIterations = 20;
+/// Relative change of the wanted frequencies' squares at which they count as found.
+constexpr double kConverged = 1e-4;
+
+Eigen::SparseMatrix<double> shifted(const ElasticBody& body) {
+  Eigen::SparseMatrix<double> matrix = body.stiffness;
+  const double shift = kShift * body.stiffness.diagonal().sum() / body.masses.sum();
+  matrix.diagonal() += shift * body.masses;
+  return matrix;
+}
+
+/// Numbers that look random and are the same on every machine.
+Eigen::MatrixXd startVectors(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd start(rows, columns);
+  std::uint32_t state = 1;
+  for (Eigen::Index k = 0; k < start.size(); ++k) {
+    state = 1664525u * state + 1013904223u;
+    start.data()[k] = static_cast<double>(state >> 8) / (1 << 24) - 0.5;
+  }
+  return start;
+}
+
+}  // namespace
+
+DirectSolver::DirectSolver(const ElasticBody& body) : body_(body), factors_(shifted(body)) {}
+
+Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& load) const {
+  Eigen::VectorXd displacement = factors_.solve(load);
+  body_.rigid.removeFrom(displacement);
+  return displacement;
+}
+
+Eigen::MatrixXd softestModes(const ElasticBody& body, const DirectSolver& solver, int count) {
+  const Eigen::Index size = body.masses.size();
+  const Eigen::Index columns = std::min<Eigen::Index>(count + kGuardModes, size);
+  const Eigen::Index wanted = std::min<Eigen::Index>(count, columns);
+  Eigen::MatrixXd modes = startVectors(size, columns);
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(wanted);
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      Eigen::VectorXd load = modes.col(k).cwiseProduct(body.masses);
+      body.rigid.balance(load);
+      modes.col(k) = solver.solve(load);
+    }
+    // Rayleigh-Ritz: the eigenvectors of the body within the subspace.
+    const Eigen::MatrixXd forces = body.stiffness.selfadjointView<Eigen::Lower>() * modes;
+    const Eigen::MatrixXd stiffness = modes.transpose() * forces;
+    const Eigen::MatrixXd mass = modes.transpose() * body.masses.asDiagonal() * modes;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, mass);
+    modes *= ritz.eigenvectors();
+    const Eigen::VectorXd now = ritz.eigenvalues().head(wanted);
+    if (((now - before).array().abs() <= kConverged * now.array()).all()) break;
+    before = now;
+  }
+  return modes.leftCols(wanted);
+}
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Linear elasticity of a tet mesh at rest, by linear finite elements: what Bullet's elastic forces are for small
+// displacements. Vectors hold three displacements a node: 3 x nodeCount.
+#pragma once
+
+#include <tetskin/core/tet_mesh.h>
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// Forces over displacements for a Young's modulus of 1, 3N x 3N, symmetric, lower triangle only; positive but for
+/// rigid motions. The tets must not be flat.
+Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio);
+
+/// Masses for a density of 1, a quarter of each tet's at its nodes; 3N, each node's mass three times.
+Eigen::VectorXd lumpedVolumes(const TetMesh& mesh);
+
+/// The rigid motions of each part of a mesh: elasticity does not resist them.
+class RigidMotions {
+ public:
+  /// masses  as `lumpedVolumes`
+  RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses);
+
+  /// Takes the rigid motions out of a displacement, so that it neither moves nor turns any part's masses.
+  void removeFrom(Eigen::VectorXd& displacement) const;
+  /// Takes the resultant and the moment of a load out of it: `removeFrom` of the accelerations that it causes.
+  void balance(Eigen::VectorXd& load) const;
+
+ private:
+  struct Part {
+    double mass = 0.0;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  };
+
+  const TetMesh& mesh_;
+  const Eigen::VectorXd& masses_;
+  std::vector<int> partOf_;  ///< by node
+  std::vector<Part> parts_;
+};
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+#include <tetskin/io/src/text/binary_numbers.h>
+#include <tetskin/io/src/text/text_scanner.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetskin::io {
+
+/// A number of each instance of an element, or a list of numbers.
+struct PlyProperty {
+  std::string_view name;
+  NumberType type;
+  NumberType countType;  ///< of a list: of how many it has
+  bool isList = false;
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+  std::size_t line = 0;  ///< in the header
+
+  /// Place of the first property that has one of these names and is a list or is none; properties.size() if there is
+  /// none such.
+  std::size_t find(std::initializer_list<std::string_view> names, bool list = false) const;
+};
+
+/// What a PLY file says it holds. Its names are views into the text.
+struct PlyHeader {
+  bool binary = false;
+  ByteOrder order = ByteOrder::Little;
+  std::vector<PlyElement> elements;
+};
+
+/// Reads a header from the front of a file, to the line break that ends it. Errors: UnsupportedFormat, Malformed
+Result<PlyHeader> readPlyHeader(const std::string& path, TextScanner& in);
+
+}  // namespace tetskin::io

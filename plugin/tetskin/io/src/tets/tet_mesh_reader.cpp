@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/io/src/tets/gmsh_file.h>
+#include <tetskin/io/src/tets/tetgen_file.h>
+#include <tetskin/io/src/tets/vtk_file.h>
+#include <tetskin/io/src/text/file_text.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+namespace tetskin {
+
+namespace {
+
+Result<TetMesh> readByExtension(const std::string& path, TetFileReport& report) {
+  const std::string extension = io::lowerExtension(path);
+  if (extension == ".vtk") return io::readVtkFile(path, report);
+  if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path, report);
+  if (extension == ".msh") return io::readGmshFile(path, report);
+  const std::string what = extension == ".vtu" || extension == ".pvtu"
+                               ? "is an XML file of VTK, which is not read; save it as legacy VTK (.vtk)"
+                               : "is of a format that is not read; convert it to legacy VTK (.vtk), TetGen (.node and "
+                                 ".ele) or Gmsh (.msh)";
+  return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
+}
+
+}  // namespace
+
+std::string TetFileReport::describe() const {
+  if (skippedCells == 0) return {};
+  return std::to_string(skippedCells) + " cells that are no linear tets were skipped" +
+         (skippedHighOrder > 0 ? ", " + std::to_string(skippedHighOrder) + " of them tets of higher order" : "");
+}
+
+Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
+  TetFileReport skipped;
+  Result<TetMesh> mesh = readByExtension(path, skipped);
+  if (report) *report = skipped;
+  if (!mesh.ok() || !mesh.value().tets.empty()) return mesh;
+  return io::fileError(StatusCode::Empty, path, 0,
+                       "has no linear tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
+                           "; export a volume mesh of tets with 4 nodes each");
+}
+
+}  // namespace tetskin

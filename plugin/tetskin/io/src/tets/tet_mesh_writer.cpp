@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/io/src/text/atomic_file.h>
+#include <tetskin/io/src/text/file_text.h>
+#include <tetskin/io/src/text/number_text.h>
+#include <tetskin/io/tet_mesh_writer.h>
+
+#include <filesystem>
+
+namespace tetskin {
+
+namespace {
+
+void appendPoint(std::string& text, const Eigen::Vector3d& p) {
+  for (int i = 0; i < 3; ++i) {
+    io::appendNumber(text, p[i]);
+    text += i < 2 ? ' ' : '\n';
+  }
+}
+
+/// The nodes of a tet, counted from `base`.
+void appendCorners(std::string& text, const Tet& tet, std::size_t base) {
+  for (int i = 0; i < 4; ++i) {
+    io::appendNumber(text, static_cast<std::size_t>(tet[i]) + base);
+    text += i < 3 ? ' ' : '\n';
+  }
+}
+
+std::string vtkText(const TetMesh& mesh) {
+  const std::string tetCount = std::to_string(mesh.tetCount());
+  std::string text = "# vtk DataFile Version 2.0\ntetrahedral mesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                     std::to_string(mesh.nodeCount()) + " double\n";
+  for (const Eigen::Vector3d& node : mesh.nodes) appendPoint(text, node);
+  text += "CELLS " + tetCount + " " + std::to_string(5 * mesh.tetCount()) + "\n";
+  for (const Tet& tet : mesh.tets) {
+    text += "4 ";
+    appendCorners(text, tet, 0);
+  }
+  text += "CELL_TYPES " + tetCount + "\n";
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) text += "10\n";
+  return text;
+}
+
+std::string gmshText(const TetMesh& mesh) {
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.nodeCount()) + "\n";
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    io::appendNumber(text, n + 1);
+    text += ' ';
+    appendPoint(text, mesh.nodes[n]);
+  }
+  text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tetCount()) + "\n";
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    io::appendNumber(text, t + 1);
+    text += " 4 2 0 1 ";
+    appendCorners(text, mesh.tets[t], 1);
+  }
+  return text + "$EndElements\n";
+}
+
+std::string nodeText(const TetMesh& mesh) {
+  std::string text = std::to_string(mesh.nodeCount()) + " 3 0 0\n";
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    io::appendNumber(text, n);
+    text += ' ';
+    appendPoint(text, mesh.nodes[n]);
+  }
+  return text;
+}
+
+std::string eleText(const TetMesh& mesh) {
+  std::string text = std::to_string(mesh.tetCount()) + " 4 0\n";
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    io::appendNumber(text, t);
+    text += ' ';
+    appendCorners(text, mesh.tets[t], 0);
+  }
+  return text;
+}
+
+/// Ok if a reader would take the mesh.
+Status checkWritable(const TetMesh& mesh, const std::string& path) {
+  if (mesh.tets.empty()) {
+    return io::fileError(StatusCode::Empty, path, 0,
+                         "cannot be written from a mesh without tets; build the mesh first");
+  }
+  const std::size_t bad = firstNonFinite(viewOf(mesh.nodes));
+  if (bad < mesh.nodeCount()) {
+    return io::fileError(StatusCode::NonFinite, path, 0,
+                         "cannot be written, as node " + std::to_string(bad) +
+                             " has a coordinate that is not finite; check where the mesh comes from");
+  }
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    for (const int node : mesh.tets[t]) {
+      if (node >= 0 && static_cast<std::size_t>(node) < mesh.nodeCount()) continue;
+      return io::fileError(StatusCode::IndexOutOfRange, path, 0,
+                           "cannot be written, as tet " + std::to_string(t) + " names node " + std::to_string(node) +
+                               " of " + std::to_string(mesh.nodeCount()) + "; check where the mesh comes from");
+    }
+  }
+  return {};
+}
+
+std::string withExtension(const std::string& path, const char* extension) {
+  return std::filesystem::path(path).replace_extension(extension).string();
+}
+
+}  // namespace
+
+Status saveTetMesh(const TetMesh& mesh, const std::string& path) {
+  const std::string extension = io::lowerExtension(path);
+  const bool tetgen = extension == ".node" || extension == ".ele";
+  if (!tetgen && extension != ".vtk" && extension != ".msh") {
+    return io::fileError(StatusCode::UnsupportedFormat, path, 0,
+                         "is of a format that is not written; use .vtk, .node, .ele or .msh");
+  }
+  Status status = checkWritable(mesh, path);
+  if (!status.ok()) return status;
+  if (extension == ".vtk") return io::writeFile(path, vtkText(mesh));
+  if (extension == ".msh") return io::writeFile(path, gmshText(mesh));
+  status = io::writeFile(extension == ".node" ? path : withExtension(path, ".node"), nodeText(mesh));
+  if (!status.ok()) return status;
+  return io::writeFile(extension == ".ele" ? path : withExtension(path, ".ele"), eleText(mesh));
+}
+
+}  // namespace tetskin
