@@ -17,7 +17,8 @@
 #include <memory>
 
 #include "bench/body_cases.h"
-#include "scenes/options.h"
+#include "scenes/command_line.h"
+#include "scenes/input_error.h"
 #include "scenes/serpent.h"
 
 namespace {
@@ -29,9 +30,9 @@ using benchmark::State;
 /// A body made of the model's cage, with Bullet's own render nodes at the model's vertices.
 struct Bench {
   explicit Bench(Model made, bool renderNodes = true) : model(std::move(made)) {
-    Result<btSoftBody*> result = makeSoftBody(model.cage, worldInfo);
+    auto result = makeSoftBody(model.cage, worldInfo);
     require(result.status());
-    body.reset(result.value());
+    body = std::unique_ptr<btSoftBody>(std::move(result).value());
     if (!renderNodes) return;
     btSoftBody::RenderNode node;
     node.m_uv1.setZero();
@@ -169,7 +170,7 @@ void updateTriad(State& state, const Bench& bench) {
 }
 
 void buildBodyTetskin(State& state, Bench& bench) {
-  for (auto _ : state) delete makeSoftBody(bench.model.cage, bench.worldInfo).value();
+  for (auto _ : state) std::unique_ptr<btSoftBody>(makeSoftBody(bench.model.cage, bench.worldInfo).value());
 }
 
 void buildBodyBullet(State& state, Bench& bench) {
@@ -224,7 +225,7 @@ std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t coun
 TetMesh cageOf(const TriangleMesh& mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  return buildCage(mesh, options);
+  return buildCage(mesh, options).value();
 }
 
 /// Attaching to a cage of a tenth as many tets. Time per vertex should not depend on the size.
@@ -336,11 +337,11 @@ int main(int argc, char** argv) {
   const bool help = std::any_of(argv, argv + argc, [](const char* text) { return std::string(text) == "--help"; });
   if (!help) benchmark::Initialize(&argc, argv);
   ModelOptions options;
-  CLI::App app(
+  CommandLine line(
       "Benchmarks of attaching, updating, building and writing, each beside Bullet's own. Takes Google "
       "Benchmark's flags, too: --benchmark_filter=REGEX, --benchmark_out=FILE, ...");
-  addModelOptions(app, options);
-  return runDemo(app, argc, argv, [&] {
+  line.addModelOptions(options);
+  return line.run(argc, argv, [&] {
     registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);
     if (options.mesh.empty()) {
       registerUpdateSizes(options.tets);

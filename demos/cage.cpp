@@ -7,7 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/options.h"
+#include "scenes/command_line.h"
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/summary.h"
 
 namespace {
 
@@ -68,13 +71,12 @@ int run(CageCommand command) {
 
 int main(int argc, char** argv) {
   CageCommand command;
-  CLI::App app("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
-  addMeshOptions(app, command.model);
-  app.add_option("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node")
-      ->required()
-      ->check(isFileName());
-  addSummaryOption(app, command.json, "File of the summary");
-  app.add_flag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
-  app.add_flag("--quiet", command.quiet, "Print nothing but errors");
-  return runDemo(app, argc, argv, [&] { return run(command); });
+  CommandLine line("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
+  line.addMeshOptions(command.model);
+  line.addFile("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node",
+               CommandLine::Need::Required);
+  line.addSummaryOption(command.json, "File of the summary");
+  line.addFlag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
+  line.addQuietOption(command.quiet);
+  return line.run(argc, argv, [&] { return run(command); });
 }

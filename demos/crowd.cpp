@@ -6,22 +6,29 @@
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <deque>
+#include <nlohmann/json.hpp>
 
-#include "scenes/crowd_scene.h"
-#include "scenes/options.h"
+#include "scenes/command_line.h"
+#include "scenes/crowd.h"
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/memory.h"
 #include "scenes/progress.h"
+#include "scenes/statistics.h"
+#include "scenes/summary.h"
+#include "scenes/table.h"
+#include "scenes/timer.h"
 
 namespace {
 
 using namespace tetskin;
 using namespace tetskin::scenes;
-using Clock = std::chrono::steady_clock;
 
 /// Simulated before anything is measured: sleeping bodies must stay asleep, and where they are.
 constexpr int kSimulatedFrames = 2;
+constexpr int kSubsteps = 4;  ///< of a frame
 
 struct CrowdOptions {
   ModelOptions model;
@@ -35,16 +42,6 @@ struct CrowdOptions {
 struct CheckFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-double microsecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A skin for each of some bodies.
 struct Skins {
@@ -68,7 +65,7 @@ SkinOptions leastOptions() {
 Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const SkinOptions& options,
               bool bindingEach) {
   const std::size_t before = heapBytes();
-  const auto start = Clock::now();
+  const WallTimer timer;
   Skins skins;
   skins.all.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -79,7 +76,7 @@ Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const 
       require(skins.all[i].bind(*bodies[i], skins.all[0].binding(), options));
     }
   }
-  skins.bindMs = microsecondsSince(start) / 1000.0;
+  skins.bindMs = timer.milliseconds();
   skins.bytes = heapBytes() - before;
   return skins;
 }
@@ -91,33 +88,31 @@ struct Variant {
   bool asleep = false;  ///< nine of ten bodies
   bool hidden = false;  ///< the skins of as many
   bool everySubstep = false;
-  bool stepped = true;     ///< false: the frame had no substep
-  bool halfStill = false;  ///< one half of every body has not moved
+  bool stepped = true;  ///< false: the frame had no substep
   std::vector<double> microseconds = {};
   std::size_t updates = 0;  ///< in one frame
 };
 
 /// Brings bodies and skins into the variant's state, and does all that is to be done once: the last update of a body
 /// that fell asleep, the update of a skin that is shown again.
-void prepare(Variant& variant, Crowd& crowd) {
-  crowd.setAsleep(variant.asleep);
+void prepare(Variant& variant, Scene& crowd) {
+  setAsleep(crowd, variant.asleep);
   for (std::size_t i = 0; i < variant.skins->all.size(); ++i) {
-    variant.skins->all[i].setVisible(Crowd::alwaysAwake(i) || !variant.hidden);
+    variant.skins->all[i].setVisible(alwaysAwake(i) || !variant.hidden);
   }
   (void)variant.skins->update();
 }
 
-void timeOnce(Variant& variant, Crowd& crowd, CacheEviction& caches) {
+void timeOnce(Variant& variant, Scene& crowd, CacheEviction& caches) {
   prepare(variant, crowd);
-  if (variant.halfStill) crowd.moveHalf();
-  const int substeps = variant.stepped ? Crowd::kSubsteps : crowd.stepNothing();
+  const int substeps = variant.stepped ? kSubsteps : crowd.world().step(0.0);
   variant.updates = 0;
   double total = 0.0;
   for (int k = 0; k < (variant.everySubstep ? substeps : 1); ++k) {
     caches.evict();
-    const auto start = Clock::now();
+    const WallTimer timer;
     if (substeps > 0) variant.updates += variant.skins->update();
-    total += microsecondsSince(start);
+    total += timer.microseconds();
   }
   variant.microseconds.push_back(total);
 }
@@ -126,8 +121,8 @@ void timeOnce(Variant& variant, Crowd& crowd, CacheEviction& caches) {
 std::size_t expectedUpdates(const Variant& variant) {
   const std::size_t bodies = variant.skins->all.size();
   if (!variant.stepped) return 0;
-  return (variant.asleep || variant.hidden ? Crowd::awakeAmong(bodies) : bodies) *
-         (variant.everySubstep ? Crowd::kSubsteps : 1);
+  return (variant.asleep || variant.hidden ? awakeAmong(bodies) : bodies) *
+         (variant.everySubstep ? kSubsteps : 1);
 }
 
 /// A line of the table: a measured variant under the name of what it leaves out, and the one that does not.
@@ -157,19 +152,22 @@ constexpr Row kRows[] = {
     {"bounds off", "alone", "bounds on"},
     {"previous positions on", "previous", nullptr},
     {"previous positions off", "alone", "previous positions on"},
-    {"half still, all computed", "half still", nullptr},
-    {"half still, skipped", "half skipped", "half still, all computed"},
 };
 
 class Measurement {
  public:
   explicit Measurement(const CrowdOptions& options) : options_(options), model_(loadModel(options.model)) {
     requireFit(checkFit(), options.model);
-    scaleToCrowd(model_.cage, model_.mesh);
-    crowd_ = std::make_unique<Crowd>(model_.cage, options.bodies);
-    for (std::size_t i = 0; i < crowd_->size(); ++i) {
+    const Placement place = placementOf(boundingBox(model_.cage.nodes));
+    place.toWorld(model_.cage.nodes);
+    place.toWorld(model_.mesh.positions);
+    SceneOptions scene;
+    scene.bodies = options.bodies;
+    scene.substeps = kSubsteps;
+    crowd_ = sceneNamed("crowd").make(model_.cage, scene);
+    for (std::size_t i = 0; i < crowd_->bodyCount(); ++i) {
       everybody_.push_back(&crowd_->body(i));
-      if (Crowd::alwaysAwake(i)) awake_.push_back(&crowd_->body(i));
+      if (alwaysAwake(i)) awake_.push_back(&crowd_->body(i));
     }
   }
 
@@ -222,27 +220,23 @@ class Measurement {
     aloneWith("mesh order", [](SkinOptions& skin) { skin.order = VertexOrder::Mesh; });
     aloneWith("bounds", [](SkinOptions& skin) { skin.bounds = true; });
     aloneWith("previous", [](SkinOptions& skin) { skin.previousPositions = true; });
-    aloneWith("half still", [](SkinOptions&) {});
-    variants_.back().halfStill = true;
-    aloneWith("half skipped", [](SkinOptions& skin) { skin.skipStill = true; });
-    variants_.back().halfStill = true;
   }
 
   /// Bullet's own cost, and the proof that sleep is Bullet's: its steps leave sleeping bodies asleep and in place.
   void simulate() {
     Skins& everybody = *variants_.front().skins;
-    crowd_->setAsleep(true);
+    setAsleep(*crowd_, true);
     (void)everybody.update();
-    const std::size_t awake = Crowd::awakeAmong(crowd_->size());
-    const auto start = Clock::now();
-    for (int frame = 0; frame < kSimulatedFrames; ++frame) {
-      if (crowd_->step() == 0) throw CheckFailed("Bullet made no substep in a frame");
+    const std::size_t awake = awakeAmong(crowd_->bodyCount());
+    const WallTimer timer;
+    for (int frame = 1; frame <= kSimulatedFrames; ++frame) {
+      if (crowd_->step(frame) == 0) throw CheckFailed("Bullet made no substep in a frame");
     }
-    simulationMs_ = microsecondsSince(start) / 1000.0 / kSimulatedFrames;
-    if (crowd_->asleepCount() != crowd_->size() - awake || everybody.update() != awake) {
+    simulationMs_ = timer.milliseconds() / kSimulatedFrames;
+    if (asleepCount(*crowd_) != crowd_->bodyCount() - awake || everybody.update() != awake) {
       throw CheckFailed("bodies that were put to sleep did not stay so");
     }
-    if (crowd_->stepNothing() != 0) throw CheckFailed("Bullet made a substep though no time passed");
+    if (crowd_->world().step(0.0) != 0) throw CheckFailed("Bullet made a substep though no time passed");
   }
 
   const Variant& measured(const std::string& name) const {
@@ -264,7 +258,7 @@ class Measurement {
     nlohmann::ordered_json json;
     json["variant"] = row.name;
     json["bodies"] = variant.skins->all.size();
-    json["bodies_updated"] = variant.updates / (variant.everySubstep ? Crowd::kSubsteps : 1);
+    json["bodies_updated"] = variant.updates / (variant.everySubstep ? kSubsteps : 1);
     json["updates"] = variant.updates;
     json["us_per_frame"] = microseconds;
     json["compared_with"] = row.against ? nlohmann::ordered_json(row.against) : nullptr;
@@ -281,9 +275,9 @@ class Measurement {
 
   nlohmann::ordered_json summarise() const {
     nlohmann::ordered_json json = summaryOf(model_);
-    json["bodies"] = crowd_->size();
+    json["bodies"] = crowd_->bodyCount();
     json["asleep"] = everybody_.size() - awake_.size();
-    json["substeps"] = Crowd::kSubsteps;
+    json["substeps"] = kSubsteps;
     json["frames"] = options_.frames;
     json["evicted_bytes"] = caches_.bytes();
     json["simulation_ms_per_frame"] = simulationMs_;
@@ -294,7 +288,7 @@ class Measurement {
 
   const CrowdOptions& options_;
   Model model_;
-  std::unique_ptr<Crowd> crowd_;
+  std::unique_ptr<Scene> crowd_;
   std::vector<btSoftBody*> everybody_, awake_;  ///< the always awake ones
   std::deque<Skins> skins_;                     // gone before the bodies
   std::vector<Variant> variants_;
@@ -345,15 +339,13 @@ int run(const CrowdOptions& options) {
 int main(int argc, char** argv) {
   CrowdOptions options;
   options.model.tets = 200;
-  CLI::App app(
+  CommandLine line(
       "Many bodies in Bullet's deformable world share one binding, nine of ten of them asleep or hidden. Prints what "
       "their skins cost a frame, with cold caches and apart from Bullet, and what each part that is left out saves.");
-  addModelOptions(app, options.model);
-  app.add_option("--bodies", options.bodies, "Bodies")->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--frames", options.frames, "Timed frames of every variant; the median counts")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  addSummaryOption(app, options.json, "File of the results");
-  app.add_flag("--quiet", options.quiet, "Print nothing but errors");
-  return runDemo(app, argc, argv, [&] { return run(options); });
+  line.addModelOptions(options.model);
+  line.addCount("--bodies", options.bodies, "Bodies", 100000);
+  line.addCount("--frames", options.frames, "Timed frames of every variant; the median counts", 1000000);
+  line.addSummaryOption(options.json, "File of the results");
+  line.addQuietOption(options.quiet);
+  return line.run(argc, argv, [&] { return run(options); });
 }

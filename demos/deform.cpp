@@ -2,16 +2,20 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
-#include <tetskin/io/src/text/atomic_file.h>
-#include <tetskin/io/src/text/file_text.h>
-#include <tetskin/io/src/text/number_text.h>
 #include <tetskin/io/tet_mesh_reader.h>
 
-#include <chrono>
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "scenes/command_line.h"
+#include "scenes/files.h"
 #include "scenes/frame_writer.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
+#include "scenes/summary.h"
+#include "scenes/timer.h"
 
 namespace {
 
@@ -50,12 +54,12 @@ std::string embeddingText(const Embedding& embedding) {
   std::string text = "vertex,tet,b0,b1,b2,b3,inside\n";
   std::size_t vertex = 0;
   for (const VertexBinding& binding : embedding.bindings()) {
-    io::appendNumber(text, vertex++);
+    appendNumber(text, vertex++);
     text += ',';
-    io::appendNumber(text, binding.tet);
+    appendNumber(text, binding.tet);
     for (const float weight : binding.weights) {
       text += ',';
-      io::appendNumber(text, weight);
+      appendNumber(text, weight);
     }
     text += binding.inside ? ",1\n" : ",0\n";
   }
@@ -84,8 +88,15 @@ nlohmann::ordered_json summarise(const Model& model, const DeformCommand& comman
   return json;
 }
 
+bool isObj(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".obj";
+}
+
 int run(const DeformCommand& command) {
-  if (io::lowerExtension(command.output) != ".obj") {
+  if (!isObj(command.output)) {
     throw InputError(command.output + ": is of a format that is not written; use .obj");
   }
   if (!command.json.empty()) requireWritable(command.json);
@@ -101,13 +112,13 @@ int run(const DeformCommand& command) {
   const EmbedReport fit = makeSkinBinding(model.cage, model.mesh, command.skin, binding, &quadratic);
   requireFit(fit, command.model);
   MeshSkin<double> skin;
-  const auto start = std::chrono::steady_clock::now();
+  const WallTimer timer;
   const Status bound = skin.bind(binding, viewOf(deformed.nodes), command.skin);
-  const double updateUs = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  const double updateUs = timer.microseconds();
   if (!bound.ok()) throw InputError(command.deformed + ": " + bound.message);
 
   writeSurface(skin, layoutWith(command.skin.normals, layout.value()), command.output);
-  if (!command.embedding.empty()) require(io::writeFile(command.embedding, embeddingText(binding->embedding)));
+  if (!command.embedding.empty()) writeFile(command.embedding, embeddingText(binding->embedding));
   if (!command.json.empty()) writeJson(summarise(model, command, fit, quadratic, updateUs), command.json);
   if (command.quiet) return kDone;
   std::printf("%s", fit.describe().c_str());
@@ -120,19 +131,17 @@ int run(const DeformCommand& command) {
 
 int main(int argc, char** argv) {
   DeformCommand command;
-  CLI::App app("Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.");
-  const auto addFile = [&](const char* name, std::string& file, const char* description) {
-    return app.add_option(name, file, description)->check(isFileName());
-  };
-  addFile("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads")->required();
-  addFile("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh")->required();
-  addFile("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order")
-      ->required();
-  addFile("-o,--output", command.output, "Deformed mesh to write: .obj")->required();
-  addInterpolationOption(app, command.skin);
-  addSkinOptions(app, command.skin);
-  addFile("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
-  addSummaryOption(app, command.json, "File of the summary");
-  app.add_flag("--quiet", command.quiet, "Print nothing but errors");
-  return runDemo(app, argc, argv, [&] { return run(command); });
+  constexpr auto kRequired = CommandLine::Need::Required;
+  CommandLine line("Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.");
+  line.addFile("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads", kRequired);
+  line.addFile("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh", kRequired);
+  line.addFile("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order",
+               kRequired);
+  line.addFile("-o,--output", command.output, "Deformed mesh to write: .obj", kRequired);
+  line.addInterpolationOption(command.skin);
+  line.addSkinOptions(command.skin);
+  line.addFile("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
+  line.addSummaryOption(command.json, "File of the summary");
+  line.addQuietOption(command.quiet);
+  return line.run(argc, argv, [&] { return run(command); });
 }

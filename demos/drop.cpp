@@ -2,15 +2,18 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
-#include "scenes/drop_scene.h"
+#include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 #include "scenes/progress.h"
+#include "scenes/summary.h"
+#include "scenes/table.h"
+#include "scenes/timer.h"
 
 namespace {
 
@@ -24,11 +27,6 @@ struct DropOptions {
   bool writeCage = false;
 };
 
-/// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
-constexpr double kExploded = 20.0;
-/// The surface may pass the floor by the collision margin and this fraction of its size: contacts are at the cage's
-/// nodes.
-constexpr double kFloorTolerance = 0.01;
 /// Slower than this many sizes a second over the last half second is at rest.
 constexpr double kRestSpeed = 0.05;
 
@@ -40,73 +38,126 @@ struct Totals {
   double skinUs = 0.0;
   double writeMs = 0.0;
   bool finite = true;
+  bool aboveFloor = true;
   double extentMax = 1.0;
   double lowest = HUGE_VAL;
   std::vector<double> speeds;  ///< a frame, in sizes a second
 
   double restSpeed() const {
-    const std::size_t half = std::min(speeds.size(), static_cast<std::size_t>(DropScene::kFrameRate / 2));
+    const std::size_t half = std::min(speeds.size(), static_cast<std::size_t>(kFrameRate / 2));
     double squared = 0.0;
     for (std::size_t k = speeds.size() - half; k < speeds.size(); ++k) squared += speeds[k] * speeds[k];
     return half == 0 ? 0.0 : std::sqrt(squared / static_cast<double>(half));
   }
 };
 
-void writeFrame(const DropScene& scene, const DropOptions& options, int frame, FrameWriter& writer, Totals& totals) {
-  const auto start = std::chrono::steady_clock::now();
-  writer.write(frame, scene.surface(), scene.bounds(), scene.normals());
-  if (options.writeCage) writer.writeCage(frame, scene.currentCage());
-  totals.writeMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (totals.written++ == 0 && !options.output.quiet) std::printf("%s\n", writer.announcement().c_str());
+/// The model in the scene. It may have any size and be anywhere: results are in its own space. Frame 0 is the model at
+/// rest.
+class Drop {
+ public:
+  explicit Drop(const DropOptions& options)
+      : options_(options),
+        model_(loadModel(options.model)),
+        place_(placementOf(boundingBox(model_.cage.nodes))),
+        scene_(sceneNamed("obstacles").make(place_.toWorld(model_.cage))),
+        fit_(skin_.bind(scene_->body(), model_.cage, model_.mesh, options.skin)) {
+    requireFit(fit_, options.model);
+    place_.offset = scene_->offset;
+  }
+
+  const ObjLayout& layout() const { return model_.layout; }
+  TriangleMesh obstacles() const {
+    TriangleMesh mesh = scene_->world().obstacles();
+    place_.toModel(mesh.positions);
+    return mesh;
+  }
+  double floorY() const { return place_.toModel(Eigen::Vector3d(0.0, scene_->floorY, 0.0)).y(); }
+
+  Totals simulate(FrameWriter& writer);
+  nlohmann::ordered_json summarise(const Totals& totals) const;
+
+ private:
+  bool step(int frame, Totals& totals);
+  void measure(double restExtent, Totals& totals);
+  void write(int frame, FrameWriter& writer, Totals& totals);
+  Box3 bounds() const { return {place_.toModel(skin_.bounds().min()), place_.toModel(skin_.bounds().max())}; }
+
+  const DropOptions& options_;
+  const Model model_;
+  Placement place_;
+  const std::unique_ptr<Scene> scene_;
+  SoftBodySkin skin_;
+  const EmbedReport fit_;
+  std::vector<Eigen::Vector3d> surface_;
+};
+
+/// Returns false if the skin found node positions that are not finite.
+bool Drop::step(int frame, Totals& totals) {
+  const WallTimer simulation;
+  const int substeps = scene_->step(frame);
+  totals.simulationMs += simulation.milliseconds();
+  const WallTimer skin;
+  const UpdateStatus status = substeps > 0 ? skin_.update() : UpdateStatus::Asleep;
+  totals.skinUs += skin.microseconds();
+  return status == UpdateStatus::Updated || status == UpdateStatus::Asleep;
 }
 
-void measure(const DropScene& scene, double restExtent, Totals& totals) {
-  const Box3 bounds = scene.bounds();
-  totals.extentMax = std::max(totals.extentMax, bounds.sizes().maxCoeff() / restExtent);
-  totals.lowest = std::min(totals.lowest, bounds.min().y());
-  totals.speeds.push_back(scene.nodeSpeed());
+void Drop::measure(double restExtent, Totals& totals) {
+  const Findings found = scene_->check(skin_.positions());
+  totals.finite = !found.exploded;
+  totals.aboveFloor = totals.aboveFloor && found.aboveFloor;
+  totals.extentMax = std::max(totals.extentMax, bounds().sizes().maxCoeff() / restExtent);
+  totals.lowest = std::min(totals.lowest, bounds().min().y());
+  totals.speeds.push_back(scene_->nodeSpeed());
 }
 
-Totals simulate(DropScene& scene, const DropOptions& options, FrameWriter& writer) {
+void Drop::write(int frame, FrameWriter& writer, Totals& totals) {
+  const WallTimer timer;
+  place_.readSurface(skin_, surface_);
+  writer.write(frame, surface_, bounds(), skin_.normals());
+  if (options_.writeCage) {
+    TetMesh cage = tetMeshOf(scene_->body());
+    place_.toModel(cage.nodes);
+    writer.writeCage(frame, cage);
+  }
+  totals.writeMs += timer.milliseconds();
+  if (totals.written++ == 0 && !options_.output.quiet) std::printf("%s\n", writer.announcement().c_str());
+}
+
+Totals Drop::simulate(FrameWriter& writer) {
+  const OutputOptions& output = options_.output;
+  const double restExtent = bounds().sizes().maxCoeff();
   Totals totals;
-  const double restExtent = scene.bounds().sizes().maxCoeff();
-  Progress progress("simulating", options.output.frames, options.output.quiet);
-  for (int frame = 0; frame < options.output.frames; ++frame) {
-    if (frame > 0) {
-      totals.finite = scene.step();
-      totals.simulationMs += scene.simulationMs();
-      totals.skinUs += scene.skinUs();
-    }
-    if (totals.finite) measure(scene, restExtent, totals);
-    totals.finite = totals.finite && totals.extentMax < kExploded;
+  Progress progress("simulating", output.frames, output.quiet);
+  for (int frame = 0; frame < output.frames; ++frame) {
+    if (frame > 0) totals.finite = step(frame, totals);
+    if (totals.finite) measure(restExtent, totals);
     if (!totals.finite) break;
-    if (frame % options.output.every == 0) writeFrame(scene, options, frame, writer, totals);
+    if (frame % output.every == 0) write(frame, writer, totals);
     totals.frames = frame + 1;
     progress.show(frame + 1);
   }
   return totals;
 }
 
-nlohmann::ordered_json summarise(const Model& model, const DropScene& scene, const DropOptions& options,
-                                 const Totals& totals) {
-  const double steps = std::max(1, totals.frames - 1);
-  const double tolerance = scene.margin() + kFloorTolerance * scene.size();
-  nlohmann::ordered_json json = summaryOf(model, scene.fit());
+nlohmann::ordered_json Drop::summarise(const Totals& totals) const {
+  const double steps = std::max(1, totals.frames - 1), margin = scene_->margin() / place_.scale;
+  nlohmann::ordered_json json = summaryOf(model_, fit_);
   json["simulation_ms_per_frame"] = totals.simulationMs / steps;
   json["skin_us_per_frame"] = totals.skinUs / steps;
   json["write_ms_per_frame"] = totals.writeMs / std::max(1, totals.written);
   json["frames"] = totals.frames;
   json["frames_written"] = totals.written;
-  json["floor_y"] = scene.floorY();
-  json["margin"] = scene.margin();
+  json["floor_y"] = floorY();
+  json["margin"] = margin;
   json["lowest_y"] = totals.lowest;
-  json["floor_tolerance"] = tolerance;
-  json["above_floor"] = totals.lowest >= scene.floorY() - tolerance;
+  json["floor_tolerance"] = margin + kFloorTolerance * (kSize / place_.scale);
+  json["above_floor"] = totals.aboveFloor;
   json["extent_max"] = totals.extentMax;
   json["rest_speed"] = totals.restSpeed();
   json["at_rest"] = totals.restSpeed() < kRestSpeed;
   json["finite"] = totals.finite;
-  json["out"] = options.output.out;
+  json["out"] = options_.output.out;
   return json;
 }
 
@@ -139,28 +190,26 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 }
 
 int run(const DropOptions& options) {
-  const Model model = loadModel(options.model);
-  DropScene scene(model.mesh, model.cage, options.skin);
-  requireFit(scene.fit(), options.model);
+  Drop drop(options);
   const OutputOptions& output = options.output;
   FrameWriter writer({output.out, output.frames, output.every, options.writeCage},
-                     layoutWith(options.skin.normals, model.layout));
+                     layoutWith(options.skin.normals, drop.layout()));
   const std::string path = summaryPath(output);
-  const TriangleMesh obstacles = scene.obstacles();
+  const TriangleMesh obstacles = drop.obstacles();
   const std::string obstaclesPath = (std::filesystem::path(output.out) / "obstacles.obj").string();
   require(ObjLayout::fromMesh(obstacles).writeTo(obstaclesPath, viewOf(obstacles.positions)));
 
-  const Totals totals = simulate(scene, options, writer);
-  const nlohmann::ordered_json json = summarise(model, scene, options, totals);
+  const Totals totals = drop.simulate(writer);
+  const nlohmann::ordered_json json = drop.summarise(totals);
   writeJson(json, path);
   if (!output.quiet) printTable(json, path);
   if (!totals.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", totals.frames - 1);
     return kRunFailed;
   }
-  if (!json.at("above_floor").get<bool>()) {
+  if (!totals.aboveFloor) {
     std::fprintf(stderr, "tetskin_drop: the surface passed through the floor at y = %g, down to y = %g\n",
-                 scene.floorY(), totals.lowest);
+                 drop.floorY(), totals.lowest);
     return kRunFailed;
   }
   return kDone;
@@ -170,11 +219,11 @@ int run(const DropOptions& options) {
 
 int main(int argc, char** argv) {
   DropOptions options;
-  CLI::App app("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
-  addModelOptions(app, options.model);
-  addInterpolationOption(app, options.skin);
-  addSkinOptions(app, options.skin);
-  addOutputOptions(app, options.output);
-  app.add_flag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
-  return runDemo(app, argc, argv, [&] { return run(options); });
+  CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
+  line.addModelOptions(options.model);
+  line.addInterpolationOption(options.skin);
+  line.addSkinOptions(options.skin);
+  line.addOutputOptions(options.output);
+  line.addFlag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
+  return line.run(argc, argv, [&] { return run(options); });
 }

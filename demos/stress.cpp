@@ -5,9 +5,12 @@
 // promises.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <nlohmann/json.hpp>
 
-#include "scenes/options.h"
+#include "scenes/command_line.h"
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/summary.h"
 #include "stress/report.h"
 #include "stress/run_case.h"
 
@@ -35,12 +38,6 @@ std::vector<StressCase> chosenCases(const StressOptions& options) {
   return cases;
 }
 
-void writeText(const std::string& text, const std::string& path) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw InputError(path + ": cannot be written; does its folder exist?");
-}
-
 int run(const StressOptions& options) {
   const std::vector<StressCase> cases = chosenCases(options);
   for (const std::string& path : {options.json, options.markdown}) {
@@ -53,7 +50,7 @@ int run(const StressOptions& options) {
   }
   const auto broken = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.verdict.held(); });
   if (!options.json.empty()) writeJson(toJson(rows), options.json);
-  if (!options.markdown.empty()) writeText(toMarkdown(rows), options.markdown);
+  if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(rows));
   if (!options.quiet) {
     printMap(rows);
     std::printf("\n%zu cases, %td of which did not hold\n", rows.size(), broken);
@@ -65,11 +62,11 @@ int run(const StressOptions& options) {
 
 int main(int argc, char** argv) {
   StressOptions options;
-  CLI::App app("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
-  app.add_flag("--quick", options.quick, "A part of the cases, in some 15 s");
-  app.add_option("--only", options.only, "Only the cases with this in their names");
-  addSummaryOption(app, options.json, "File of the results, a list of cases");
-  app.add_option("--markdown", options.markdown, "File of the results, as tables")->check(isFileName());
-  app.add_flag("--quiet", options.quiet, "Print nothing but errors");
-  return runDemo(app, argc, argv, [&] { return run(options); });
+  CommandLine line("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
+  line.addFlag("--quick", options.quick, "A part of the cases, in some 15 s");
+  line.addText("--only", options.only, "Only the cases with this in their names");
+  line.addSummaryOption(options.json, "File of the results, a list of cases");
+  line.addFile("--markdown", options.markdown, "File of the results, as tables");
+  line.addQuietOption(options.quiet);
+  return line.run(argc, argv, [&] { return run(options); });
 }

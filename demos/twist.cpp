@@ -3,14 +3,21 @@
 //
 // A bar held at both ends in Bullet's deformable world, twisted a full turn and released; a linear and a quadratic
 // surface on the same coarse cage, side by side, and the errors of both.
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
+#include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
-#include "scenes/options.h"
+#include "scenes/input_error.h"
 #include "scenes/progress.h"
-#include "scenes/serpent_spine.h"
-#include "scenes/twist_scene.h"
+#include "scenes/summary.h"
+#include "scenes/table.h"
+#include "scenes/timer.h"
+#include "scenes/wring.h"
 
 namespace {
 
@@ -18,21 +25,12 @@ using namespace tetskin;
 using namespace tetskin::scenes;
 
 constexpr double kFullTurn = 6.28318530717958647692;
-/// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
-constexpr double kExploded = 20.0;
 
 struct TwistOptions {
   ModelOptions model;
   SkinOptions skin;
   OutputOptions output{"out/twist", "", 240, 1, false};
 };
-
-/// When what happens, in frames. Twice as fast, and the twist gathers at the moved end: see kDamping of the scene.
-constexpr int kTurned = 120, kReleased = 150;
-
-double turnAt(int frame) {
-  return kFullTurn * smoothStep(0.0, kTurned, frame);
-}
 
 /// How far a surface is from the exact image of the mesh under a map that its cage's nodes follow exactly.
 struct Accuracy {
@@ -69,6 +67,12 @@ Accuracy measure(const Model& model, SkinOptions options, Interpolation interpol
   return result;
 }
 
+/// A skin, and its surface in the model's space.
+struct Carried {
+  SoftBodySkin skin;
+  std::vector<Eigen::Vector3d> surface;
+};
+
 /// Two copies of a mesh in one, as the groups `linear` and `quadratic`, the second beside the first.
 class SideBySide {
  public:
@@ -83,11 +87,11 @@ class SideBySide {
 
   ObjLayout layout() const { return ObjLayout::fromMesh(mesh_); }
 
-  void write(const TwistScene& scene, int frame, FrameWriter& writer) {
-    surface_ = scene.linear();
-    for (const Eigen::Vector3d& p : scene.quadratic()) surface_.push_back(p + offset_);
+  void write(const Carried& linear, const Carried& quadratic, int frame, FrameWriter& writer) {
+    surface_ = linear.surface;
+    for (const Eigen::Vector3d& p : quadratic.surface) surface_.push_back(p + offset_);
     normals_.clear();
-    for (const PointView<const float>& half : {scene.linearNormals(), scene.quadraticNormals()}) {
+    for (const PointView<const float>& half : {linear.skin.normals(), quadratic.skin.normals()}) {
       for (std::size_t v = 0; v < half.size(); ++v) normals_.emplace_back(half[v]);
     }
     writer.write(frame, surface_, boundingBox(surface_), viewOf(std::as_const(normals_)));
@@ -121,39 +125,98 @@ struct Totals {
   bool finite = true;
 };
 
-void compareSurfaces(const TwistScene& scene, double diagonal, Totals& totals) {
-  totals.nodesOffTwist = scene.nodesOffTwist();
+/// The model in the scene, with a linear and a quadratic surface. It may have any size and be anywhere: results are in
+/// its own space.
+class Wringing {
+ public:
+  explicit Wringing(const TwistOptions& options)
+      : options_(options),
+        model_(loadModel(options.model)),
+        box_(boundingBox(model_.mesh.positions)),
+        place_(placementOf(boundingBox(model_.cage.nodes))),
+        scene_(sceneNamed("wring").make(place_.toWorld(model_.cage))) {
+    SkinOptions skin = options.skin;
+    skin.interpolation = Interpolation::Quadratic;
+    fit_ = quadratic_.skin.bind(scene_->body(), model_.cage, model_.mesh, skin);
+    requireFit(fit_, options.model);
+    skin.interpolation = Interpolation::Linear;
+    require(linear_.skin.bind(scene_->body(), quadratic_.skin.binding(), skin));
+    for (Carried* carried : {&linear_, &quadratic_}) place_.readSurface(carried->skin, carried->surface);
+  }
+
+  const Model& model() const { return model_; }
+  const EmbedReport& fit() const { return fit_; }
+  Totals simulate(FrameWriter& writer, SideBySide& pair);
+
+ private:
+  bool step(int frame, Totals& totals);
+  bool update(Carried& carried, double& microseconds) const;
+  double nodesOffTwist(int frame) const;
+  void compareSurfaces(int frame, Totals& totals) const;
+
+  const TwistOptions& options_;
+  const Model model_;
+  const Box3 box_;  ///< of the mesh
+  const Placement place_;
+  const std::unique_ptr<Scene> scene_;
+  Carried linear_, quadratic_;
+  EmbedReport fit_;
+};
+
+/// Returns false if node positions are not finite.
+bool Wringing::step(int frame, Totals& totals) {
+  const WallTimer timer;
+  scene_->step(frame);
+  totals.simulationMs += timer.milliseconds();
+  const bool linear = update(linear_, totals.linearUs), quadratic = update(quadratic_, totals.quadraticUs);
+  return linear && quadratic;
+}
+
+bool Wringing::update(Carried& carried, double& microseconds) const {
+  const WallTimer timer;
+  const UpdateStatus status = carried.skin.update();
+  microseconds += timer.microseconds();
+  place_.readSurface(carried.skin, carried.surface);
+  return status == UpdateStatus::Updated;
+}
+
+/// Root mean square distance of the nodes to an even twist between the held ends, in diagonals of the mesh's box.
+double Wringing::nodesOffTwist(int frame) const {
+  const std::vector<Eigen::Vector3d>& rest = model_.cage.nodes;
+  const Twist twist = wringAt(boundingBox(rest), frame);
+  double squared = 0.0;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    const Eigen::Vector3d now = place_.toModel(toEigen(scene_->body().m_nodes[static_cast<int>(n)].m_x));
+    squared += (now - twist.point(rest[n])).squaredNorm();
+  }
+  return std::sqrt(squared / static_cast<double>(rest.size())) / box_.diagonal().norm();
+}
+
+void Wringing::compareSurfaces(int frame, Totals& totals) const {
+  totals.nodesOffTwist = nodesOffTwist(frame);
   double squared = 0.0, farthest = 0.0;
-  for (std::size_t v = 0; v < scene.linear().size(); ++v) {
-    const double distance = (scene.linear()[v] - scene.quadratic()[v]).norm() / diagonal;
+  for (std::size_t v = 0; v < linear_.surface.size(); ++v) {
+    const double distance = (linear_.surface[v] - quadratic_.surface[v]).norm() / box_.diagonal().norm();
     squared += distance * distance;
     farthest = std::max(farthest, distance);
   }
-  totals.differenceRms = std::sqrt(squared / static_cast<double>(scene.linear().size()));
+  totals.differenceRms = std::sqrt(squared / static_cast<double>(linear_.surface.size()));
   totals.differenceMax = farthest;
 }
 
-Totals simulate(TwistScene& scene, const Model& model, const TwistOptions& options, FrameWriter& writer,
-                SideBySide& pair) {
+Totals Wringing::simulate(FrameWriter& writer, SideBySide& pair) {
+  const OutputOptions& output = options_.output;
   Totals totals;
-  const Box3 rest = boundingBox(model.mesh.positions);
-  Progress progress("twisting", options.output.frames, options.output.quiet);
-  for (int frame = 0; frame < options.output.frames; ++frame) {
-    if (frame == kReleased) scene.release();
-    if (frame > 0) {
-      totals.finite = scene.step(turnAt(frame));
-      totals.simulationMs += scene.simulationMs();
-      totals.linearUs += scene.linearUs();
-      totals.quadraticUs += scene.quadraticUs();
-    }
-    const double extent = boundingBox(scene.linear()).sizes().maxCoeff() / rest.sizes().maxCoeff();
+  Progress progress("twisting", output.frames, output.quiet);
+  for (int frame = 0; frame < output.frames; ++frame) {
+    totals.finite = (frame == 0 || step(frame, totals)) && !scene_->check(linear_.skin.positions()).exploded;
+    const double extent = boundingBox(linear_.surface).sizes().maxCoeff() / box_.sizes().maxCoeff();
     totals.extentMax = std::max(totals.extentMax, extent);
-    totals.finite = totals.finite && totals.extentMax < kExploded;
     if (!totals.finite) break;
-    if (frame < kReleased) compareSurfaces(scene, rest.diagonal().norm(), totals);
-    if (frame % options.output.every == 0) {
-      pair.write(scene, frame, writer);
-      if (totals.written++ == 0 && !options.output.quiet) std::printf("%s\n", writer.announcement().c_str());
+    if (frame < kReleased) compareSurfaces(frame, totals);
+    if (frame % output.every == 0) {
+      pair.write(linear_, quadratic_, frame, writer);
+      if (totals.written++ == 0 && !output.quiet) std::printf("%s\n", writer.announcement().c_str());
     }
     totals.frames = frame + 1;
     progress.show(frame + 1);
@@ -161,10 +224,10 @@ Totals simulate(TwistScene& scene, const Model& model, const TwistOptions& optio
   return totals;
 }
 
-nlohmann::ordered_json summarise(const Model& model, const TwistScene& scene, const TwistOptions& options,
-                                 const Accuracy& linear, const Accuracy& quadratic, const Totals& totals) {
+nlohmann::ordered_json summarise(const Wringing& wringing, const TwistOptions& options, const Accuracy& linear,
+                                 const Accuracy& quadratic, const Totals& totals) {
   const double steps = std::max(1, totals.frames - 1);
-  nlohmann::ordered_json json = summaryOf(model, scene.fit());
+  nlohmann::ordered_json json = summaryOf(wringing.model(), wringing.fit());
   json["error_linear_rms"] = linear.rms;
   json["error_quadratic_rms"] = quadratic.rms;
   json["error_linear_max"] = linear.max;
@@ -218,17 +281,15 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 }
 
 int run(const TwistOptions& options) {
-  const Model model = loadModel(options.model);
-  TwistScene scene(model, options.skin);
-  requireFit(scene.fit(), options.model);
-  const Accuracy linear = measure(model, options.skin, Interpolation::Linear);
-  const Accuracy quadratic = measure(model, options.skin, Interpolation::Quadratic);
-  SideBySide pair(model.mesh);
+  Wringing wringing(options);
+  const Accuracy linear = measure(wringing.model(), options.skin, Interpolation::Linear);
+  const Accuracy quadratic = measure(wringing.model(), options.skin, Interpolation::Quadratic);
+  SideBySide pair(wringing.model().mesh);
   FrameWriter writer({options.output.out, options.output.frames, options.output.every},
                      layoutWith(options.skin.normals, pair.layout()));
   const std::string path = summaryPath(options.output);
-  const Totals totals = simulate(scene, model, options, writer, pair);
-  const nlohmann::ordered_json json = summarise(model, scene, options, linear, quadratic, totals);
+  const Totals totals = wringing.simulate(writer, pair);
+  const nlohmann::ordered_json json = summarise(wringing, options, linear, quadratic, totals);
   writeJson(json, path);
   if (!options.output.quiet) printTable(json, path);
   if (totals.finite) return kDone;
@@ -243,11 +304,11 @@ int main(int argc, char** argv) {
   options.model.builtIn = BuiltIn::Bar;
   options.model.tets = 600;
   options.skin.normals = Normals::Transformed;
-  CLI::App app(
+  CommandLine line(
       "A body held at both ends of its longest side is twisted a full turn and released, in Bullet's deformable "
       "world. One cage carries a linear and a quadratic surface; the errors of both are printed.");
-  addModelOptions(app, options.model);
-  addSkinOptions(app, options.skin);
-  addOutputOptions(app, options.output);
-  return runDemo(app, argc, argv, [&] { return run(options); });
+  line.addModelOptions(options.model);
+  line.addSkinOptions(options.skin);
+  line.addOutputOptions(options.output);
+  return line.run(argc, argv, [&] { return run(options); });
 }

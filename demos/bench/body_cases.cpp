@@ -4,22 +4,19 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/src/body_trees.h>
 #include <tetskin/cage/cage_builder.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "scenes/deformable_world.h"
 #include "scenes/serpent.h"
+#include "scenes/table.h"
 
 namespace tetskin::bench {
 namespace {
 
 using benchmark::State;
-using scenes::DeformableWorld;
 using scenes::makeSerpent;
 
 /// Trees of a body whose faces are a serpent's triangles.
@@ -34,52 +31,45 @@ void buildFaceTree(State& state, std::size_t triangles) {
   state.counters["faces"] = static_cast<double>(body.m_faces.size());
 }
 
-TetMesh serpentCage(std::size_t tets, double shift = 0.0) {
+TetMesh serpentCage(std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  TetMesh cage = buildCage(makeSerpent(), options).value();
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += shift;
-  return cage;
+  return buildCage(makeSerpent(), options).value();
 }
 
 /// A cage of two parts that share no node.
 TetMesh twoSerpents(std::size_t tets) {
   TetMesh cage = serpentCage(tets);
-  const TetMesh other = serpentCage(tets, 10.0);
+  const TetMesh other = cage;
   const int first = static_cast<int>(cage.nodeCount());
-  cage.nodes.insert(cage.nodes.end(), other.nodes.begin(), other.nodes.end());
+  for (const Eigen::Vector3d& p : other.nodes) cage.nodes.emplace_back(p.x(), p.y() + 10.0, p.z());
   for (const Tet& t : other.tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
   return cage;
 }
 
 /// The first ray after a step through a body of two parts, for which Bullet's own builder would never come back.
 void castRay(State& state) {
-  DeformableWorld world(btVector3(0, 0, 0));
-  const auto body = DeformableBody::add(world.world(), twoSerpents(3000)).value();
-  const btVector3 node = body->body().m_nodes[0].m_x, aside(btScalar(0.01), 50, btScalar(0.02));
+  const auto scene = scenes::sceneNamed("float").make(twoSerpents(3000));
+  const btVector3 node = scene->body().m_nodes[0].m_x, aside(btScalar(0.01), 50, btScalar(0.02));
   const btVector3 from = node + aside, to = node - aside;
-  world.world().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+  scene->step(1);
   bool met = false;
   for (auto _ : state) {
     btCollisionWorld::ClosestRayResultCallback hit(from, to);
-    world.world().rayTest(from, to, hit);
+    scene->world().bullet().rayTest(from, to, hit);
     met = hit.hasHit();
   }
   state.counters["met"] = met;
-  state.counters["faces"] = static_cast<double>(body->body().m_faces.size());
+  state.counters["faces"] = static_cast<double>(scene->body().m_faces.size());
 }
 
 /// A frame of four substeps of bodies that float beside each other.
 void step(State& state, int bodies, bool faceTree) {
-  DeformableWorld world(btVector3(0, 0, 0));
-  SoftBodyOptions options;
-  options.faceTree = faceTree;
-  std::vector<std::unique_ptr<DeformableBody>> floating;
-  for (int k = 0; k < bodies; ++k) {
-    floating.push_back(DeformableBody::add(world.world(), serpentCage(3000, 0.1 * k), options).value());
-    floating.back()->body().setActivationState(DISABLE_DEACTIVATION);
-  }
-  for (auto _ : state) world.world().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  scenes::SceneOptions options;
+  options.bodies = static_cast<std::size_t>(bodies);
+  options.body.faceTree = faceTree;
+  const auto scene = scenes::sceneNamed("float").make(serpentCage(3000), options);
+  for (auto _ : state) scene->step(1);
 }
 
 }  // namespace

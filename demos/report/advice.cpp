@@ -91,13 +91,4 @@ double referenceError(const std::vector<Row>& rows) {
   return fine.errorTotalRms * std::pow(reference->edge, low) / gap(fine, low);
 }
 
-const Row* cheapest(const std::vector<Row>& rows, double targetError) {
-  const Row* best = nullptr;
-  for (const Row& row : rows) {
-    if (!row.isChoice() || row.errorTotalRms > targetError) continue;
-    if (!best || row.totalMs < best->totalMs) best = &row;
-  }
-  return best;
-}
-
 }  // namespace tetskin::report

@@ -31,7 +31,4 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
 /// C and p (which is kept between 1 and 3). 0 if there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
 
-/// The fastest choice of at most this total error (RMS); null if there is none.
-const Row* cheapest(const std::vector<Row>& rows, double targetError);
-
 }  // namespace tetskin::report

@@ -5,16 +5,16 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <tetskin/bullet/soft_body_builder.h>
 
-#include "scenes/cpu_timer.h"
-#include "scenes/crowd_scene.h"
 #include "scenes/input_error.h"
+#include "scenes/memory.h"
+#include "scenes/timer.h"
 
 namespace tetskin::report {
 
 BulletSurface::BulletSurface(const TetMesh& cage, const TriangleMesh& mesh) {
-  Result<btSoftBody*> body = makeSoftBody(cage, worldInfo_);
+  auto body = makeSoftBody(cage, worldInfo_);
   scenes::require(body.status());
-  body_.reset(body.value());
+  body_ = std::unique_ptr<btSoftBody>(std::move(body).value());
   const std::size_t before = scenes::heapBytes();
   body_->m_renderNodes.reserve(static_cast<int>(mesh.vertexCount()));
   for (const Eigen::Vector3d& p : mesh.positions) {

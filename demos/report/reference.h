@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "report/scene_setup.h"
 #include "report/simulation.h"
+#include "scenes/twist.h"
 
 namespace tetskin::report {
 

@@ -7,6 +7,7 @@
 
 #include "report/advice.h"
 #include "report/report_files.h"
+#include "scenes/files.h"
 #include "scenes/progress.h"
 
 namespace tetskin::report {
@@ -17,12 +18,13 @@ ReportModel loadReportModel(const ReportOptions& options) {
   ReportModel model;
   model.name = std::move(surface.name);
   model.modelDiagonal = boundingBox(surface.mesh.positions).diagonal().norm();
-  model.mesh = placed(std::move(surface.mesh));
+  model.mesh = std::move(surface.mesh);
+  scenes::placementOf(boundingBox(model.mesh.positions)).toWorld(model.mesh.positions);
   model.diagonal = boundingBox(model.mesh.positions).diagonal().norm();
   const auto& positions = model.mesh.positions;
   const auto& triangles = model.mesh.triangles;
-  model.hash = hashOf(positions.data(), positions.size() * sizeof(positions[0]));
-  model.hash = hashOf(triangles.data(), triangles.size() * sizeof(triangles[0]), model.hash);
+  model.hash = scenes::hashOf(positions.data(), positions.size() * sizeof(positions[0]));
+  model.hash = scenes::hashOf(triangles.data(), triangles.size() * sizeof(triangles[0]), model.hash);
   return model;
 }
 
@@ -73,10 +75,10 @@ ReportResult makeReport(const ReportOptions& options) {
   CageShelf cages(model.mesh);
   std::vector<std::unique_ptr<SceneRunner>> runners;
   double cost = 0.0;
-  for (const SceneKind kind : options.sceneKinds) {
+  for (const std::string& scene : options.scenes) {
     for (const bool implicit : {false, true}) {
-      if (implicit && (!options.implicit || kind == SceneKind::Exact)) continue;
-      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, kind, implicit));
+      if (implicit && (!options.implicit || scene == kExact)) continue;
+      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, scene, implicit));
       for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
     }
   }

@@ -3,14 +3,14 @@
 //
 // The report of error against run time.
 //
-//   scene_setup        the scenes, as the mesh alone defines them
-//   body_scene         a cage in one of them, in Bullet
-//   simulation         its motion, and what step and surfaces cost
+//   material           what cages are made of (scenes/table.h: the scenes)
+//   simulation         a cage's motion in a scene, and what step and surfaces cost
 //   reference          what is compared with
 //   surface_errors     how far surfaces and nodes are from it
 //   scene_runner       all cages of a scene, or what an earlier run has left of them (result_store)
-//   advice             orders, Pareto front, the reference's own error, the cheapest setting
-//   report_files       tables
+//   advice             orders, Pareto front, the reference's own error
+//   report_files       results for programs
+//   plot_program       has demos/plots make tables and plots of them
 #pragma once
 
 #include <memory>

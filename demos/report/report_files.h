@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 
@@ -15,12 +17,7 @@ std::string csvOf(const ReportResult& result);
 /// All of it.
 nlohmann::ordered_json jsonOf(const ReportResult& result);
 
-/// Tables for people, with what they say: orders, the reference's own error, the cheapest setting for a target error
-/// (0: none).
-std::string markdownOf(const ReportResult& result, double targetError);
-
-/// Writes error_vs_time.csv, .json and .md, and the coloured mesh of the last scene, if there is one. Throws
-/// InputError.
+/// Writes error_vs_time.csv and .json, and the coloured mesh of the last scene, if there is one. Throws InputError.
 void writeReport(const ReportResult& result, const ReportOptions& options,
                  const std::optional<std::string>& colouredMesh);
 

@@ -4,55 +4,53 @@
 
 #include <algorithm>
 
+#include "scenes/input_error.h"
+#include "scenes/table.h"
+
 namespace tetskin::report {
 namespace {
 
 constexpr std::size_t kFullTets = 300000;
-constexpr SceneKind kAllScenes[] = {SceneKind::Sag, SceneKind::Twist, SceneKind::Drop, SceneKind::Exact};
+
+/// Known to the table, and in its order.
+std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
+  for (const std::string& name : wanted) (void)scenes::sceneNamed(name);
+  std::vector<std::string> sorted;
+  for (const scenes::SceneEntry& entry : scenes::sceneTable()) {
+    if (std::count(wanted.begin(), wanted.end(), entry.name) > 0) sorted.push_back(entry.name);
+  }
+  return sorted;
+}
 
 }  // namespace
 
-ReportCommandLine::ReportCommandLine(CLI::App& app) : app_(app) {
+ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   ReportOptions& o = options_;
-  std::vector<std::string> names;
-  for (const SceneKind kind : kAllScenes) names.push_back(nameOf(kind));
-  scenes::addSurfaceOptions(app, o.model);
-  app.add_option("--scene", scenes_, "sag, twist, drop, exact, with commas (default: all)")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
-  app.add_option("--tets", o.tets, "Tets of the cages, with commas")
-      ->delimiter(',')
-      ->check(scenes::isCount())
-      ->capture_default_str();
-  app.add_option("--reference-tets", o.referenceTets, "Tets of the cage that counts as right")
-      ->check(scenes::isCount())
-      ->capture_default_str();
-  app.add_flag("--full", full_, "A reference of 300,000 tets");
-  app.add_flag("--quick", quick_, "A small report, in half a minute");
-  app.add_option("--interpolation", interpolation_, "Only linear, or only quadratic (default: both, and Bullet's own)")
-      ->check(CLI::IsMember({"linear", "quadratic"}));
-  app.add_flag("--implicit", o.implicit, "Implicit elasticity as well, beside the explicit one");
-  app.add_flag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
-  app.add_option("--frames", o.frames, "Frames of 1/60 s (default: the scene's)")->check(CLI::Range(1, 100000));
-  app.add_option("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)")
-      ->check(scenes::isPositive());
-  app.add_option("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals")
-      ->check(scenes::isPositive());
-  app.add_option("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors")
-      ->check(scenes::isCount())
-      ->capture_default_str();
-  app.add_option("--out", o.out, "Folder of the report, and of what an interrupted run had finished")
-      ->check(scenes::isFileName())
-      ->capture_default_str();
-  scenes::addSummaryOption(app, o.json, "File of the results (default: error_vs_time.json in the folder)");
-  app.add_flag("--quiet", o.quiet, "Print nothing but errors");
+  line.addSurfaceOptions(o.model);
+  line.addWords("--scene", o.scenes, "Scenes, with commas (default: sag,twist,drop,exact)");
+  line.addCounts("--tets", o.tets, "Tets of the cages, with commas");
+  line.addCount("--reference-tets", o.referenceTets, "Tets of the cage that counts as right");
+  line.addFlag("--full", full_, "A reference of 300,000 tets");
+  line.addFlag("--quick", quick_, "A small report, in half a minute");
+  line.addWord("--interpolation", interpolation_, {"linear", "quadratic"},
+               "Only linear, or only quadratic (default: both, and Bullet's own)");
+  line.addFlag("--implicit", o.implicit, "Implicit elasticity as well, beside the explicit one");
+  line.addFlag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
+  line.addCount("--frames", o.frames, "Frames of 1/60 s (default: the scene's)", 100000);
+  line.addPositive("--stiffness", o.stiffness,
+                   "Young's modulus over density x gravity x size (default: the scene's)");
+  line.addPositive("--target-error", o.targetError, "Tell the cheapest setting below this, in box diagonals");
+  line.addCount("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors");
+  line.addFile("--out", o.out, "Folder of the report, and of what an interrupted run had finished");
+  line.addSummaryOption(o.json, "File of the results (default: error_vs_time.json in the folder)");
+  line.addQuietOption(o.quiet);
 }
 
 const ReportOptions& ReportCommandLine::finish() {
   ReportOptions& o = options_;
   if (quick_ && full_) throw scenes::InputError("--quick and --full exclude each other");
   const auto preset = [&](const char* option, auto& value, const auto& instead) {
-    if (app_.count(option) == 0) value = instead;
+    if (!line_.given(option)) value = instead;
   };
   if (full_) preset("--reference-tets", o.referenceTets, kFullTets);
   if (quick_) {
@@ -61,12 +59,7 @@ const ReportOptions& ReportCommandLine::finish() {
     preset("--reference-tets", o.referenceTets, std::size_t{8000});
     preset("--frames", o.frames, 24);
   }
-  if (!scenes_.empty()) {
-    o.sceneKinds.clear();
-    for (const SceneKind kind : kAllScenes) {
-      if (std::count(scenes_.begin(), scenes_.end(), nameOf(kind)) > 0) o.sceneKinds.push_back(kind);
-    }
-  }
+  o.scenes = inOrder(o.scenes);
   if (interpolation_ == "linear") o.surfaces = {SurfaceKind::Linear};
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
   o.calibrated = !noCalibration_;

@@ -6,16 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "report/scene_setup.h"
 #include "report/simulation.h"
-#include "scenes/options.h"
+#include "scenes/command_line.h"
 
 namespace tetskin::report {
 
 /// What is to be measured, and where it goes.
 struct ReportOptions {
   scenes::ModelOptions model;
-  std::vector<SceneKind> sceneKinds = {SceneKind::Sag, SceneKind::Twist, SceneKind::Drop, SceneKind::Exact};
+  std::vector<std::string> scenes = {"sag", "twist", "drop", "exact"};
   std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
   std::size_t referenceTets = 30000;
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
@@ -32,14 +31,13 @@ struct ReportOptions {
 /// The command line's options, among them --quick and --full, which preset others. Call `finish` after parsing.
 class ReportCommandLine {
  public:
-  explicit ReportCommandLine(CLI::App& app);
+  explicit ReportCommandLine(scenes::CommandLine& line);
   /// Throws InputError.
   const ReportOptions& finish();
 
  private:
   ReportOptions options_;
-  CLI::App& app_;
-  std::vector<std::string> scenes_;
+  scenes::CommandLine& line_;
   std::string interpolation_;
   bool quick_ = false, full_ = false, noCalibration_ = false;
 };

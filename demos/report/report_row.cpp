@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/counted.h"
-
 namespace tetskin::report {
 
 const std::vector<Column>& columns() {
@@ -55,11 +53,6 @@ Row rowFrom(const nlohmann::ordered_json& json) {
   row.pareto = json.at("pareto");
   row.errorByFrame = json.at("error_total_rms_by_frame").get<std::vector<double>>();
   return row;
-}
-
-std::string describe(const Row& row) {
-  std::string text = scenes::withThousands(static_cast<std::size_t>(row.tets)) + " tets, " + row.interpolation;
-  return row.material == "calibrated" ? text + ", calibrated" : text;
 }
 
 }  // namespace tetskin::report

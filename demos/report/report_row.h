@@ -49,7 +49,4 @@ const std::vector<Column>& columns();
 nlohmann::ordered_json toJson(const Row& row);
 Row rowFrom(const nlohmann::ordered_json& json);
 
-/// The name of a setting, for people: "3,025 tets, quadratic, calibrated".
-std::string describe(const Row& row);
-
 }  // namespace tetskin::report

@@ -2,34 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/result_store.h"
 
-#include <tetskin/io/src/text/atomic_file.h>
-
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "scenes/files.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::report {
-namespace {
 
-std::optional<std::string> contentsOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {};
-  std::ostringstream text;
-  text << file.rdbuf();
-  return std::move(text).str();
-}
-
-}  // namespace
-
-std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed) {
-  const auto* data = static_cast<const unsigned char*>(bytes);
-  for (std::size_t i = 0; i < count; ++i) seed = (seed ^ data[i]) * 1099511628211ull;
-  return seed;
-}
+using scenes::contentsOf;
+using scenes::writeFile;
 
 ResultStore::ResultStore(std::string folder) : folder_(std::move(folder)) {
   std::error_code error;
@@ -40,7 +23,7 @@ ResultStore::ResultStore(std::string folder) : folder_(std::move(folder)) {
 std::string ResultStore::path(const nlohmann::ordered_json& settings, const char* extension) const {
   const std::string text = settings.dump();
   char name[17];
-  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(hashOf(text.data(), text.size())));
+  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(scenes::hashOf(text.data(), text.size())));
   return (std::filesystem::path(folder_) / (std::string(name) + extension)).string();
 }
 
@@ -63,7 +46,7 @@ void ResultStore::keep(const nlohmann::ordered_json& settings, const std::vector
   json["settings"] = settings;
   json["rows"] = nlohmann::ordered_json::array();
   for (const Row& row : rows) json["rows"].push_back(toJson(row));
-  scenes::require(io::writeFile(path(settings, ".json"), json.dump(1)));
+  writeFile(path(settings, ".json"), json.dump(1));
 }
 
 std::optional<Trajectory> ResultStore::trajectory(const nlohmann::ordered_json& settings) const {
@@ -88,7 +71,7 @@ void ResultStore::keep(const nlohmann::ordered_json& settings, const Trajectory&
   for (const auto& frame : trajectory) {
     bytes.append(reinterpret_cast<const char*>(frame.front().data()), frame.size() * sizeof(Eigen::Vector3f));
   }
-  scenes::require(io::writeFile(path(settings, ".nodes"), bytes));
+  writeFile(path(settings, ".nodes"), bytes);
 }
 
 std::optional<std::string> ResultStore::text(const nlohmann::ordered_json& settings) const {
@@ -96,7 +79,7 @@ std::optional<std::string> ResultStore::text(const nlohmann::ordered_json& setti
 }
 
 void ResultStore::keep(const nlohmann::ordered_json& settings, const std::string& text) const {
-  scenes::require(io::writeFile(path(settings, ".ply"), text));
+  writeFile(path(settings, ".ply"), text);
 }
 
 }  // namespace tetskin::report

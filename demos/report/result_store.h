@@ -4,7 +4,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +12,6 @@
 #include "report/simulation.h"
 
 namespace tetskin::report {
-
-/// 64 bits of FNV-1a over bytes.
-std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed = 14695981039346656037ull);
 
 /// Finished work, kept in a folder under a hash of all settings that its result depends on, so that an interrupted run
 /// goes on where it stopped. Files are complete or not there at all. Throws InputError if the folder cannot be written.

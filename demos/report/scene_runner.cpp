@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
+#include "report/build_id.h"
 #include "report/coloured_mesh.h"
-#include "scenes/options.h"
+#include "report/material.h"
 
 namespace tetskin::report {
 namespace {
@@ -25,9 +28,8 @@ std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
   return kinds;
 }
 
-std::vector<Job> jobsOf(SceneKind kind, const ReportOptions& options, std::size_t vertexCount) {
+std::vector<Job> jobsOf(bool exact, const ReportOptions& options, std::size_t vertexCount) {
   std::vector<Job> jobs;
-  const bool exact = kind == SceneKind::Exact;
   const std::size_t level = options.referenceTets / kCoarserLevel;
   std::vector<std::size_t> sizes = options.tets;
   if (exact) sizes.push_back(options.referenceTets);
@@ -50,36 +52,38 @@ std::vector<Job> jobsOf(SceneKind kind, const ReportOptions& options, std::size_
 }  // namespace
 
 SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store,
-                         const ReportOptions& options, SceneKind kind, bool implicit)
+                         const ReportOptions& options, const std::string& scene, bool implicit)
     : model_(model),
       cages_(cages),
       store_(store),
       options_(options),
-      setup_(setupOf(kind, model.mesh, options.frames)),
+      entry_(scenes::sceneNamed(scene)),
+      frames_(options.frames > 0 && !isExact() ? options.frames : entry_.frames),
       implicit_(implicit),
-      jobs_(jobsOf(kind, options, model.mesh.vertexCount())) {}
+      jobs_(jobsOf(isExact(), options, model.mesh.vertexCount())) {}
 
 std::string SceneRunner::integrator() const {
-  if (setup_.kind == SceneKind::Exact) return "none";
+  if (isExact()) return "none";
   return implicit_ ? "implicit" : "explicit";
 }
 
 double SceneRunner::costOf(const Job& job) const {
   constexpr double kImplicit = 5.0, kCompareOneFrame = 30000.0;  // in tets stepped once
   const auto tets = static_cast<double>(job.tets);
-  if (setup_.kind == SceneKind::Exact) return kCompareOneFrame;
-  return setup_.frames * (tets * (implicit_ ? kImplicit : 1.0) + (isReference(job) ? 0.0 : kCompareOneFrame));
+  if (isExact()) return kCompareOneFrame;
+  return frames_ * (tets * (implicit_ ? kImplicit : 1.0) + (isReference(job) ? 0.0 : kCompareOneFrame));
 }
 
 nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   nlohmann::ordered_json json;
   json["version"] = kVersion;
+  json["build"] = buildId();
   json["mesh"] = model_.hash;
   json["scene"] = scene();
-  json["frames"] = setup_.frames;
+  json["frames"] = frames_;
   json["integrator"] = integrator();
   json["stiffness"] = options_.stiffness;
-  json["reference_tets"] = setup_.kind == SceneKind::Exact ? 0 : options_.referenceTets;
+  json["reference_tets"] = isExact() ? 0 : options_.referenceTets;
   json["tets"] = job.tets;
   json["calibrated"] = job.calibrated;
   json["coloured"] = job.coloured;
@@ -98,9 +102,11 @@ std::optional<std::string> SceneRunner::colouredMesh() const {
   return job == jobs_.end() ? std::nullopt : store_.text(settings(*job));
 }
 
-const Material& SceneRunner::material() {
+const scenes::SceneOptions& SceneRunner::material() {
   if (!material_) {
-    material_ = materialOf(setup_.kind, cages_.cage(options_.referenceTets), options_.stiffness, implicit_);
+    material_ = materialOf(entry_, cages_.cage(options_.referenceTets), options_.stiffness, implicit_);
+    material_->frames = frames_;
+    material_->box = boundingBox(model_.mesh.positions);
   }
   return *material_;
 }
@@ -122,7 +128,7 @@ std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& s
   const TetMesh& cage = cages_.cage(job.tets);
   int frame = 0;
   Simulation simulation =
-      simulate(setup_, cage, material(), model_.mesh, {}, [&] { share(static_cast<double>(++frame) / setup_.frames); });
+      simulate(entry_, cage, material(), model_.mesh, {}, [&] { share(static_cast<double>(++frame) / frames_); });
   Row row = rowOf(job, cage);
   row.interpolation = "reference";
   row.simulationMs = row.totalMs = simulation.milliseconds;
@@ -138,8 +144,8 @@ std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& s
 
 Reference& SceneRunner::reference() {
   if (reference_) return *reference_;
-  if (setup_.kind == SceneKind::Exact) {
-    reference_ = std::make_unique<ExactReference>(model_.mesh, *setup_.twist);
+  if (isExact()) {
+    reference_ = std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
     return *reference_;
   }
   if (referenceTrajectory_.empty()) {
@@ -163,20 +169,20 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const
   Motion motion;
   motion.row = rowOf(job, cage);
   motion.driven = reference_->drive(cage);
-  if (setup_.kind == SceneKind::Exact) {
+  if (isExact()) {
     motion.nodes = motion.driven;
     motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
   } else {
-    Material own = material();
+    scenes::SceneOptions own = material();
     if (job.calibrated) {
-      const StiffnessCalibration& calibration = cages_.calibration(job.tets, own.poissonRatio);
+      const StiffnessCalibration& calibration = cages_.calibration(job.tets, own.body.poissonRatio);
       motion.row.stiffnessFactor = calibration.factor;
       motion.row.calibrateMs = calibration.milliseconds;
-      own.youngsModulus *= calibration.factor;
+      own.body.youngsModulus *= calibration.factor;
     }
     int frame = 0;
-    Simulation simulation = simulate(setup_, cage, own, model_.mesh, job.surfaces,
-                                     [&] { share(0.5 * static_cast<double>(++frame) / setup_.frames); });
+    Simulation simulation = simulate(entry_, cage, own, model_.mesh, job.surfaces,
+                                     [&] { share(0.5 * static_cast<double>(++frame) / frames_); });
     motion.nodes = std::move(simulation.trajectory);
     motion.costs = simulation.surfaces;
     motion.row.simulationMs = simulation.milliseconds;

@@ -13,6 +13,7 @@
 #include "report/report_row.h"
 #include "report/result_store.h"
 #include "report/surface_errors.h"
+#include "scenes/table.h"
 
 namespace tetskin::report {
 
@@ -27,20 +28,23 @@ struct Job {
 /// The mesh of the report.
 struct ReportModel {
   std::string name;
-  TriangleMesh mesh;           ///< as `placed`
+  TriangleMesh mesh;           ///< of kSize, centred at the origin
   double diagonal = 0.0;       ///< of its box
   double modelDiagonal = 0.0;  ///< the same, in the unit of its file
   std::uint64_t hash = 0;
 };
+
+/// The control, in which nothing is simulated.
+constexpr const char* kExact = "exact";
 
 /// Measures the cages of one scene with one integrator, or takes what an earlier run had measured.
 class SceneRunner {
  public:
   /// All outlive this object.
   SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store, const ReportOptions& options,
-              SceneKind kind, bool implicit);
+              const std::string& scene, bool implicit);
 
-  std::string scene() const { return nameOf(setup_.kind); }
+  const std::string& scene() const { return entry_.name; }
   std::string integrator() const;
   /// The reference first (there is none in the exact scene), then the cages, coarsest first.
   const std::vector<Job>& jobs() const { return jobs_; }
@@ -62,9 +66,10 @@ class SceneRunner {
     SurfaceCosts costs;
   };
 
+  bool isExact() const { return entry_.name == kExact; }
   bool isReference(const Job& job) const { return job.surfaces.empty(); }
   nlohmann::ordered_json settings(const Job& job) const;
-  const Material& material();
+  const scenes::SceneOptions& material();
   Reference& reference();
   Motion move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share);
   std::vector<Row> referenceRows(const std::function<void(double)>& share);
@@ -75,10 +80,11 @@ class SceneRunner {
   CageShelf& cages_;
   const ResultStore& store_;
   const ReportOptions& options_;
-  SceneSetup setup_;
+  const scenes::SceneEntry& entry_;
+  int frames_;
   bool implicit_;
   std::vector<Job> jobs_;
-  std::optional<Material> material_;
+  std::optional<scenes::SceneOptions> material_;
   Trajectory referenceTrajectory_;
   std::unique_ptr<Reference> reference_;
 };

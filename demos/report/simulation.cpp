@@ -4,19 +4,16 @@
 
 #include <tetskin/bullet/soft_body_skin.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "report/bullet_surface.h"
-#include "scenes/cpu_timer.h"
-#include "scenes/crowd_scene.h"
 #include "scenes/input_error.h"
+#include "scenes/memory.h"
+#include "scenes/statistics.h"
+#include "scenes/timer.h"
 
 namespace tetskin::report {
 namespace {
-
-/// Bullet clamps an exploded body to finite coordinates: beyond this many sizes from where it was a body has exploded.
-constexpr double kExploded = 20.0;
 
 /// Frames in which the surfaces of a body that nothing moves are timed.
 constexpr int kTimedFrames = 15;
@@ -64,7 +61,7 @@ class TimedSurfaces {
   }
   SurfaceCosts costs() const {
     SurfaceCosts costs = costs_;
-    for (std::size_t k = 0; k < costs.size(); ++k) costs[k].updateUs = median(times_[k]);
+    for (std::size_t k = 0; k < costs.size(); ++k) costs[k].updateUs = scenes::median(times_[k]);
     return costs;
   }
 
@@ -96,12 +93,6 @@ std::vector<Eigen::Vector3f> nodesOf(const btSoftBody& body) {
   return nodes;
 }
 
-bool exploded(const std::vector<Eigen::Vector3f>& nodes) {
-  return !std::all_of(nodes.begin(), nodes.end(), [](const Eigen::Vector3f& p) {
-    return p.norm() < static_cast<float>(kExploded * kSize);  // false if not finite
-  });
-}
-
 }  // namespace
 
 const char* nameOf(SurfaceKind kind) {
@@ -113,43 +104,35 @@ Interpolation interpolationOf(SurfaceKind kind) {
   return kind == SurfaceKind::Quadratic ? Interpolation::Quadratic : Interpolation::Linear;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Simulation simulate(const SceneSetup& setup, const TetMesh& cage, const Material& material, const TriangleMesh& mesh,
-                    const std::vector<SurfaceKind>& kinds, const FrameDone& done) {
+Simulation simulate(const scenes::SceneEntry& entry, const TetMesh& cage, const scenes::SceneOptions& options,
+                    const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds, const FrameDone& done) {
   Simulation result;
   const std::size_t before = scenes::heapBytes();
-  BodyScene scene(setup, cage, material);
-  TimedSurfaces surfaces(scene.body(), cage, mesh, kinds);
+  const std::unique_ptr<scenes::Scene> scene = entry.make(cage, options);
+  TimedSurfaces surfaces(scene->body(), cage, mesh, kinds);
   std::vector<double> milliseconds;
-  result.trajectory.push_back(nodesOf(scene.body()));
-  for (int frame = 1; frame <= setup.frames && result.finite; ++frame) {
+  result.trajectory.push_back(nodesOf(scene->body()));
+  for (int frame = 1; frame <= scene->options().frames; ++frame) {
     const scenes::CpuTimer timer;
-    scene.step(frame);
+    scene->step(frame);
     milliseconds.push_back(timer.milliseconds());
     if (frame == 1) result.bytes = scenes::heapBytes() - before - surfaces.bytes();
-    std::vector<Eigen::Vector3f> nodes = nodesOf(scene.body());
-    result.finite = !exploded(nodes);
+    result.finite = !scene->check().exploded;
     if (!result.finite) break;
-    surfaces.update(frame, material.substeps);
-    result.trajectory.push_back(std::move(nodes));
+    surfaces.update(frame, options.substeps);
+    result.trajectory.push_back(nodesOf(scene->body()));
     done();
   }
-  result.milliseconds = median(std::move(milliseconds));
+  result.milliseconds = scenes::median(std::move(milliseconds));
   result.surfaces = surfaces.costs();
   return result;
 }
 
 SurfaceCosts surfaceCosts(const TetMesh& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds) {
   btSoftBodyWorldInfo worldInfo;
-  Result<btSoftBody*> body = makeSoftBody(cage, worldInfo);
+  auto body = makeSoftBody(cage, worldInfo);
   scenes::require(body.status());
-  const std::unique_ptr<btSoftBody> owned(body.value());
+  const std::unique_ptr<btSoftBody> owned(std::move(body).value());
   TimedSurfaces surfaces(*owned, cage, mesh, kinds);
   for (int frame = 0; frame < kTimedFrames; ++frame) surfaces.update(frame, 1);
   return surfaces.costs();

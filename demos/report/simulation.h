@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "report/body_scene.h"
+#include "scenes/table.h"
 
 namespace tetskin::report {
 
@@ -52,13 +52,10 @@ using FrameDone = std::function<void()>;
 /// Runs a scene with a cage.
 /// kinds  the mesh is carried in these ways, to see what each costs; with none it is not looked at
 /// Throws InputError if cage or mesh cannot be used
-Simulation simulate(const SceneSetup& setup, const TetMesh& cage, const Material& material, const TriangleMesh& mesh,
-                    const std::vector<SurfaceKind>& kinds, const FrameDone& done);
+Simulation simulate(const scenes::SceneEntry& entry, const TetMesh& cage, const scenes::SceneOptions& options,
+                    const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds, const FrameDone& done);
 
 /// What surfaces cost on a body that is in no world.
 SurfaceCosts surfaceCosts(const TetMesh& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds);
-
-/// Median of some numbers, at least one.
-double median(std::vector<double> values);
 
 }  // namespace tetskin::report

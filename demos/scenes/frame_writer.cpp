@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/frame_writer.h"
 
-#include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/tet_mesh_writer.h>
 
 #include <cstdio>
@@ -10,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "scenes/files.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::scenes {
@@ -95,7 +95,7 @@ void FrameWriter::replaceEarlierRun() const {
     if (isOurs(name) && names.count(name) == 0) fs::remove(fs::path(plan_.folder) / name, error);
     if (error) throw InputError(plan_.folder + ": " + name + " of an earlier run cannot be removed");
   }
-  require(io::writeFile(listPath.string(), list));
+  writeFile(listPath.string(), list);
 }
 
 }  // namespace tetskin::scenes

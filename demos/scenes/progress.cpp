@@ -35,7 +35,7 @@ void Progress::skip(int done) {
 }
 
 std::string Progress::timeLeft(int done) const {
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double elapsed = timer_.seconds();
   const int worked = done - skipped_;
   if (elapsed < 1.0 || worked <= 0 || done == total_) return {};
   const auto seconds = static_cast<long long>(elapsed * (total_ - done) / worked + 0.5);

@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <chrono>
 #include <cstdio>
 #include <string>
+
+#include "scenes/timer.h"
 
 namespace tetskin::scenes {
 
@@ -26,7 +27,7 @@ class Progress {
   bool quiet_;
   std::FILE* stream_;
   bool terminal_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  WallTimer timer_;
   int shown_ = 0;
   int skipped_ = 0;
   int lastTenth_ = 0;

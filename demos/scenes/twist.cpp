@@ -25,4 +25,22 @@ Vector3d Twist::normal(const Vector3d& p, const Vector3d& n) const {
   return (Eigen::AngleAxisd(angleAt(p), a) * sheared).normalized();
 }
 
+Twist twistOf(const Box3& box, double turn) {
+  Twist twist;
+  box.sizes().maxCoeff(&twist.axis);
+  twist.centre = box.center();
+  twist.from = box.min()[twist.axis];
+  twist.to = box.max()[twist.axis];
+  twist.turn = turn;
+  return twist;
+}
+
+Twist smoothTwistOf(const Box3& box) {
+  constexpr double kTurn = 4.5;  // radians, over three times the body's length
+  Twist twist = twistOf(box, kTurn);
+  twist.from -= box.sizes()[twist.axis];
+  twist.to += box.sizes()[twist.axis];
+  return twist;
+}
+
 }  // namespace tetskin::scenes

@@ -20,4 +20,10 @@ struct Twist {
   Eigen::Vector3d normal(const Eigen::Vector3d& p, const Eigen::Vector3d& n) const;
 };
 
+/// The twist of a whole body along the longest side of its box, from one end to the other.
+Twist twistOf(const Box3& box, double turn);
+
+/// The map of the scene "exact", smooth beyond the body as well: cages are larger.
+Twist smoothTwistOf(const Box3& box);
+
 }  // namespace tetskin::scenes

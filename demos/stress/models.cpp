@@ -3,9 +3,9 @@
 #include "stress/models.h"
 
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scenes/bar.h"
@@ -32,11 +32,9 @@ BarModel makeBarModel(std::size_t triangles, std::size_t tets) {
   Result<TetMesh> cage = buildCage(bar.mesh, options);
   scenes::require(cage.status());
   bar.cage = std::move(cage).value();
-  const Box3 box = boundingBox(bar.cage.nodes);
-  const double scale = kSize / box.sizes().maxCoeff();
-  for (auto* points : {&bar.cage.nodes, &bar.mesh.positions}) {
-    for (Eigen::Vector3d& p : *points) p = scale * (p - box.center());
-  }
+  const scenes::Placement place = scenes::placementOf(boundingBox(bar.cage.nodes));
+  place.toWorld(bar.cage.nodes);
+  place.toWorld(bar.mesh.positions);
   return bar;
 }
 
@@ -67,6 +65,18 @@ void addFlatTets(TetMesh& cage) {
     flat.push_back({tet[0], tet[1], tet[2], middle});
   }
   cage.tets.insert(cage.tets.begin(), flat.begin(), flat.end());
+}
+
+/// As `makeSoftBody` decides: six-fold volume below a billionth of the longest edge's cube.
+bool isFlat(const TetMesh& cage, const Tet& tet) {
+  constexpr double kFlat = 1e-9;
+  const Eigen::Vector3d p[4] = {cage.nodes[tet[0]], cage.nodes[tet[1]], cage.nodes[tet[2]], cage.nodes[tet[3]]};
+  double longest = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 4; ++b) longest = std::max(longest, (p[a] - p[b]).norm());
+  }
+  const double volume = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
+  return !(std::abs(volume) > kFlat * longest * longest * longest);
 }
 
 void scale(StressModel& model, const Eigen::Vector3d& factors) {
@@ -100,10 +110,10 @@ void applyCage(Cage cage, StressModel& model) {
       for (int k = 0; k < 10; ++k) model.cage.nodes.emplace_back(0.1 * k - 0.5, 0.3, 0.0);
       return;
     case Cage::Far1e5:
-      model.offset = Eigen::Vector3d(1e5 * kSize, 0, 0);
+      model.offset = Eigen::Vector3d(1e5 * scenes::kSize, 0, 0);
       return;
     case Cage::Far1e7:
-      model.offset = Eigen::Vector3d(1e7 * kSize, 0, 0);
+      model.offset = Eigen::Vector3d(1e7 * scenes::kSize, 0, 0);
       return;
     case Cage::Tiny:
       return scale(model, Eigen::Vector3d::Constant(1e-4));
@@ -160,7 +170,7 @@ StressModel makeModel(Cage cage, Surface surface) {
   applyCage(cage, model);
   model.bodyCage = model.cage;
   auto& tets = model.bodyCage.tets;
-  const auto flat = [&](const Tet& tet) { return isFlat(cornersOf(model.cage, tet)); };
+  const auto flat = [&](const Tet& tet) { return isFlat(model.cage, tet); };
   if (cage != Cage::AllFlat) tets.erase(std::remove_if(tets.begin(), tets.end(), flat), tets.end());
   return model;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace tetskin::stress {
 namespace {
@@ -71,7 +72,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["damping"] = stressCase.damping;
     row["time_step"] = stressCase.timeStep;
     row["substeps"] = stressCase.substeps;
-    row["event"] = toString(stressCase.event);
+    row["event"] = stressCase.scene;
     row["cage"] = toString(stressCase.cage);
     row["mesh"] = toString(stressCase.surface);
     row["interpolation"] = toString(stressCase.interpolation);

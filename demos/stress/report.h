@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>

@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "stress/run_case.h"
 
-#include <chrono>
-
-#include "stress/events.h"
+#include "scenes/table.h"
+#include "scenes/timer.h"
 
 namespace tetskin::stress {
 namespace {
@@ -20,18 +19,35 @@ void expectOfBullet(const StressCase& stressCase, Verdict& verdict) {
                  bounded ? "Bullet stays bounded" : "Bullet does not stay bounded");
 }
 
-void simulate(const StressCase& stressCase, const StressModel& model, StressWorld& world, SoftBodySkin& skin,
+scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressModel& model) {
+  scenes::SceneOptions options;
+  options.force = stressCase.force;
+  options.frameSeconds = stressCase.timeStep;
+  options.substeps = stressCase.substeps;
+  options.frames = stressCase.frames;
+  options.size = model.size;
+  options.offset = model.offset;
+  SoftBodyOptions& body = options.body;
+  body.youngsModulus = stressCase.stiffness;
+  if (stressCase.force == scenes::Force::MassSpring && stressCase.stiffness > 0.0) {
+    body.linkStiffness = stressCase.stiffness;
+  }
+  body.poissonRatio = stressCase.poisson;
+  body.damping = stressCase.damping;
+  body.timeStep = stressCase.substep();
+  body.implicit = stressCase.implicit;
+  return options;
+}
+
+void simulate(const StressCase& stressCase, const StressModel& model, scenes::Scene& scene, SoftBodySkin& skin,
               Verdict& verdict) {
-  EventScript event(stressCase, model, world);
-  SkinJudge judge(stressCase, model, world.body(), skin, verdict);
-  for (int frame = 0; frame < stressCase.frames; ++frame) {
-    if (event.before(frame)) judge.update();
-    if (event.takeBack()) judge.update();
-    world.step(stressCase);
+  SkinJudge judge(stressCase, model, scene, skin, verdict);
+  for (int frame = 1; frame <= stressCase.frames; ++frame) {
+    scene.step(frame, [&] { judge.update(); });
     judge.update();
   }
   judge.judgeShape();
-  event.restore();
+  scene.restore();
   judge.judgeRest();
 }
 
@@ -46,8 +62,8 @@ void expectRefusal(const StressCase& stressCase, const EmbedReport& fit, SoftBod
 void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   const StressModel model = makeModel(stressCase.cage, stressCase.surface);
   btSoftBodyWorldInfo info;
-  const Result<btSoftBody*> probe = makeSoftBody(model.bodyCage, info);
-  std::unique_ptr<btSoftBody> owned(probe.value());
+  auto probe = makeSoftBody(model.bodyCage, info);
+  const std::unique_ptr<btSoftBody> owned(std::move(probe).value());
   if (!probe.ok()) {
     verdict.status = "refused: " + std::string(toString(probe.status().code));
     verdict.expect(probe.status().code == stressCase.refusal, "the cage is refused with the right status");
@@ -55,26 +71,26 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
     verdict.expect(skin.bind(model.cage, model.mesh).status.code == stressCase.refusal, "the skin refuses it likewise");
     return;
   }
-  const std::unique_ptr<StressWorld> world = StressWorld::make(stressCase, model);
+  const std::unique_ptr<scenes::Scene> scene =
+      scenes::sceneNamed(stressCase.scene).make(model.bodyCage, sceneOptions(stressCase, model));
   SkinOptions options;
   options.interpolation = stressCase.interpolation;
   options.normals = stressCase.normals;
   options.origin = model.offset;
   SoftBodySkin skin;
-  const EmbedReport fit = skin.bind(world->body(), model.cage, model.mesh, options);
+  const EmbedReport fit = skin.bind(scene->body(), model.cage, model.mesh, options);
   if (!fit.ok() || stressCase.refusal != StatusCode::Ok) return expectRefusal(stressCase, fit, skin, verdict);
-  simulate(stressCase, model, *world, skin, verdict);
+  simulate(stressCase, model, *scene, skin, verdict);
   expectOfBullet(stressCase, verdict);
 }
 
 }  // namespace
 
 Verdict runCase(const StressCase& stressCase) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  const scenes::WallTimer timer;
   Verdict verdict;
   bindAndRun(stressCase, verdict);
-  verdict.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  verdict.milliseconds = timer.milliseconds();
   return verdict;
 }
 

@@ -8,14 +8,12 @@
 #include <cstring>
 #include <limits>
 
-#include "stress/events.h"
-
 namespace tetskin::stress {
 namespace {
 
-/// A body of more than this many times the size that it should have has exploded, though Bullet's clamps may keep it
-/// finite.
-constexpr double kExploded = 2.0;
+/// A body of more than this many times the size that its scene gives it is not bounded, though Bullet's clamps may keep
+/// it finite.
+constexpr double kBounded = 2.0;
 /// Part of an edge at rest that quadratic skinning may add inside a cage: 3/8 of half of it; outside, all of it.
 constexpr double kQuadraticShare = 0.1875;
 /// Of normals' lengths, which are floats.
@@ -87,14 +85,15 @@ void Verdict::expect(bool condition, const std::string& what) {
   broken.push_back(what);
 }
 
-SkinJudge::SkinJudge(const StressCase& stressCase, const StressModel& model, const btSoftBody& body, SoftBodySkin& skin,
-                     Verdict& verdict)
+SkinJudge::SkinJudge(const StressCase& stressCase, const StressModel& model, const scenes::Scene& scene,
+                     SoftBodySkin& skin, Verdict& verdict)
     : case_(stressCase),
       model_(model),
-      body_(body),
+      scene_(scene),
+      body_(scene.body()),
       skin_(skin),
       verdict_(verdict),
-      startNodes_(copyOf(nodePositions(body))),
+      startNodes_(copyOf(nodePositions(body_))),
       startSurface_(copyOf(skin.positions())),
       diagonal_(boundingBox(model.mesh.positions).diagonal().norm()),
       longestEdge_(longestEdgeOf(model.cage)) {
@@ -140,13 +139,10 @@ void SkinJudge::update() {
 }
 
 void SkinJudge::judgeNodes() {
-  const Box3 box = boundingBox(nodePositions(body_));
-  const double extent = box.sizes().maxCoeff() / model_.size;
-  // A box ignores what is not a number.
-  const bool finite = firstNonFinite(nodePositions(body_)) == static_cast<std::size_t>(body_.m_nodes.size());
-  verdict_.simulationFinite = verdict_.simulationFinite && finite;
-  if (finite) verdict_.extentMax = std::max(verdict_.extentMax, extent);
-  verdict_.simulationBounded = verdict_.simulationFinite && verdict_.extentMax <= kExploded * extentOf(case_.event);
+  const scenes::Findings found = scene_.check();
+  verdict_.simulationFinite = verdict_.simulationFinite && found.finite;
+  if (found.finite) verdict_.extentMax = std::max(verdict_.extentMax, found.box.sizes().maxCoeff() / model_.size);
+  verdict_.simulationBounded = verdict_.simulationFinite && verdict_.extentMax <= kBounded * scene_.extent;
 }
 
 void SkinJudge::judgeFollowing() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene.h"
 #include "stress/models.h"
 
 namespace tetskin::stress {
@@ -14,7 +15,7 @@ namespace tetskin::stress {
 /// What one case showed.
 struct Verdict {
   bool simulationFinite = true;
-  /// Finite, and never larger than kExploded times what the event itself makes of it.
+  /// Finite, and never larger than kBounded times what the event itself makes of it.
   bool simulationBounded = true;
   double extentMax = 1.0;  ///< largest side of the nodes' box, over that at rest
   /// RMS in diagonals of the mesh: how far the surface was from its rest shape, wherever it lay, when the event was
@@ -43,7 +44,7 @@ struct Verdict {
 class SkinJudge {
  public:
   /// skin  bound to the body, which is at rest
-  SkinJudge(const StressCase& stressCase, const StressModel& model, const btSoftBody& body, SoftBodySkin& skin,
+  SkinJudge(const StressCase& stressCase, const StressModel& model, const scenes::Scene& scene, SoftBodySkin& skin,
             Verdict& verdict);
 
   void update();
@@ -60,6 +61,7 @@ class SkinJudge {
 
   const StressCase& case_;
   const StressModel& model_;
+  const scenes::Scene& scene_;
   const btSoftBody& body_;
   SoftBodySkin& skin_;
   Verdict& verdict_;

@@ -16,16 +16,9 @@ const char* nameIn(const char* const (&names)[N], Enum value) {
 
 }  // namespace
 
-const char* toString(Force force) {
+const char* toString(scenes::Force force) {
   static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean", "corotated"};
   return nameIn(kNames, force);
-}
-
-const char* toString(Event event) {
-  static const char* const kNames[] = {"land",      "pluck",    "squash_flat",   "stretch",     "mirror",
-                                       "permute",   "spin",     "teleport",      "impact",      "pull",
-                                       "heavy_box", "node_nan", "node_infinite", "node_too_far"};
-  return nameIn(kNames, event);
 }
 
 const char* toString(Cage cage) {

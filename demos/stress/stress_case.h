@@ -7,28 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "scenes/world.h"
+
 namespace tetskin::stress {
-
-/// Bullet's force models; mass-spring in the classic world, the others in the deformable one.
-enum class Force { MassSpring, LinearElasticity, NeoHookean, Corotated };
-
-/// What happens to the body.
-enum class Event {
-  Land,          ///< falls on the floor
-  Pluck,         ///< a hundredth longer at once, and let go
-  SquashFlat,    ///< all nodes are put on a plane and let go
-  Stretch,       ///< ten times as long at once, and let go
-  Mirror,        ///< inside out
-  Permute,       ///< every node is put where another was
-  Spin,          ///< 100 turns a second
-  Teleport,      ///< 1,000 lengths away, and back
-  Impact,        ///< hits the floor at 100 lengths a second
-  Pull,          ///< held by one node, pulled away three lengths by another
-  HeavyBox,      ///< a box of 1,000 times its mass falls on it
-  NodeNaN,       ///< a node is not a number, for one update
-  NodeInfinite,  ///< a node is infinite, for one update
-  NodeTooFar,    ///< a node is finite, but beyond what a surface can follow, for one update
-};
 
 /// The cage that the skin is bound to. The body is made of its tets that are not flat.
 enum class Cage {
@@ -68,7 +49,7 @@ struct StressCase {
   std::string group;
   std::string name;
 
-  Force force = Force::NeoHookean;
+  scenes::Force force = scenes::Force::NeoHookean;  ///< mass-spring in the classic world, the others in the deformable one
   bool implicit = false;
   /// Young's modulus, Pa, for a body of 1 kg and 2 m; mass-spring: link stiffness from 0 to 1. 0: the library's
   /// default.
@@ -79,7 +60,7 @@ struct StressCase {
   int substeps = 4;              ///< of a frame
   int frames = 30;
 
-  Event event = Event::Land;
+  std::string scene = "land";  ///< of the table of scenes: what happens to the body
   Cage cage = Cage::Bar;
   Surface surface = Surface::Bar;
   Interpolation interpolation = Interpolation::Linear;
@@ -94,8 +75,7 @@ struct StressCase {
 };
 
 /// Names for reports.
-const char* toString(Force force);
-const char* toString(Event event);
+const char* toString(scenes::Force force);
 const char* toString(Cage cage);
 const char* toString(Surface surface);
 const char* toString(Interpolation interpolation);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <string>
+
+namespace tetskin::report {
+
+/// Tells builds of this program apart: a hash over the bytes of the running executable, and of the tetskin libraries
+/// that are loaded beside it. The same for every run of one build.
+const std::string& buildId();
+
+}  // namespace tetskin::report

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "scenes/table.h"
+
+namespace tetskin::report {
+
+/// What every cage of a comparison is made of, and how it is stepped. Chosen by the reference, which is the least
+/// stable: where bodies do not land, linear elasticity, which Bullet turns with each tet, and whose damping then keeps
+/// any stiffness stable; where they do, and that would sink into the ground, neo-Hookean elasticity, with as many
+/// substeps as its stiffness needs in a landing.
+/// relativeStiffness  Young's modulus over density x gravity x size; 0: the scene's own
+scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const TetMesh& reference, double relativeStiffness,
+                                bool implicit);
+
+}  // namespace tetskin::report

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/plot_program.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "scenes/files.h"
+
+extern char** environ;
+
+namespace tetskin::report {
+namespace {
+
+constexpr const char* kProgram = TETSKIN_PLOTS "/error_vs_time.py";
+
+/// Runs a command found by the path, and waits for it; returns true if it ended well.
+bool run(const std::vector<std::string>& command, bool silent = false) {
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {1, 2}) {
+    if (silent) posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  }
+  pid_t process = 0;
+  const int error = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  return error == 0 && waitpid(process, &status, 0) == process && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// The first Python with matplotlib: the one in the path may be another than the system's, which has the package.
+std::string pythonWithMatplotlib() {
+  for (const char* python : {"python3", "/usr/bin/python3"}) {
+    if (run({python, "-c", "import matplotlib"}, true)) return python;
+  }
+  return {};
+}
+
+}  // namespace
+
+void makeTablesAndPlots(const ReportOptions& options) {
+  if (!std::filesystem::is_regular_file(options.json)) return;  // a pipe: whoever reads it has the results
+  std::vector<std::string> command = {pythonWithMatplotlib(), kProgram, options.json, options.out};
+  if (options.targetError > 0.0) {
+    std::string target;
+    scenes::appendNumber(target, options.targetError);
+    command.insert(command.end(), {"--target-error", target});
+  }
+  if (options.quiet) command.emplace_back("--quiet");
+  if (command.front().empty()) {
+    if (options.quiet) return;
+    command.front() = "No tables and plots: they need Python with matplotlib (python3-matplotlib). Then: python3";
+    for (const std::string& word : command) std::printf("%s%c", word.c_str(), &word == &command.back() ? '\n' : ' ');
+    return;
+  }
+  std::fflush(stdout);
+  if (!run(command)) std::fprintf(stderr, "tetskin_error_vs_time: warning: no tables and plots: %s failed\n", kProgram);
+}
+
+}  // namespace tetskin::report

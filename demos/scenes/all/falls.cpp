@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Scenes of a body over a floor.
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr double kNear = 0.05;  ///< sizes: from the body to the floor, and to the box above it
+
+std::unique_ptr<Scene> makeFall(const TetMesh& cage, const SceneOptions& options, double gap) {
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  scene->add(cage);
+  scene->addFloor(gap);
+  return scene;
+}
+
+}  // namespace
+
+/// The floor is hit after a third of a second.
+std::unique_ptr<Scene> makeDrop(const TetMesh& cage, const SceneOptions& options) {
+  return makeFall(cage, options, 0.25);
+}
+
+std::unique_ptr<Scene> makeLand(const TetMesh& cage, const SceneOptions& options) {
+  return makeFall(cage, options, kNear);
+}
+
+std::unique_ptr<Scene> makeImpact(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kLengths = 100.0;  // a second
+  auto scene = makeFall(cage, options, kNear);
+  scene->beforeFrame = [s = scene.get()](int frame, const Moved&) {
+    if (frame != eventFrame(s->options())) return;
+    s->body().setVelocity(btVector3(0, static_cast<btScalar>(-kLengths * s->options().size), 0));
+  };
+  return scene;
+}
+
+std::unique_ptr<Scene> makeHeavyBox(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kMass = 1000.0;  // times the body's
+  auto scene = makeFall(cage, options, kNear);
+  const Box3 box = boundingBox(nodePositions(scene->body()));
+  const double half = 0.5 * options.size;
+  Eigen::Vector3d above = box.center();
+  above.y() = box.max().y() + kNear * options.size + half;
+  scene->world().addBox(above, Eigen::Vector3d::Constant(half), 0.0, kMass * options.body.mass);
+  return scene;
+}
+
+}  // namespace tetskin::scenes

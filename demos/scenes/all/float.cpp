@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+
+/// Each body a little higher than the one before: their boxes overlap.
+std::unique_ptr<Scene> makeFloat(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kShift = 0.05;  // in sizes
+  auto scene = std::make_unique<Scene>(options, 0.0);
+  for (std::size_t k = 0; k < options.bodies; ++k) {
+    scene->add(cage, {}, kShift * options.size * static_cast<double>(k) * Eigen::Vector3d::UnitY());
+  }
+  return scene;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+namespace {
+
+/// Height of the lowest node over the highest obstacle at the start.
+constexpr double kDropHeight = 0.6;
+/// Contacts are at nodes alone, so obstacles are large and round or flat: a body of few nodes falls around an edge.
+constexpr double kDomeRadius = 1.2;
+constexpr double kDomeHeight = 0.3;
+constexpr double kRampSlope = 0.3;  ///< radians
+constexpr double kFloorHalfSide = 10.0;
+
+}  // namespace
+
+/// The body may fall asleep.
+std::unique_ptr<Scene> makeObstacles(const TetMesh& cage, const SceneOptions& options) {
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  World& world = scene->world();
+  scene->floorY = 0.0;
+  world.addBox({0.0, -1.0, 0.0}, {kFloorHalfSide, 1.0, kFloorHalfSide});
+  world.addBox({-1.4, -0.35, 0.0}, {1.2, 0.5, 2.0}, -kRampSlope);  // its upper side leads down to the right
+  world.addSphere({0.6, kDomeHeight - kDomeRadius, 0.0}, kDomeRadius);
+
+  scene->offset.y() = kDomeHeight + kDropHeight + 0.5 * layoutBox(options, cage).sizes().y();
+  TetMesh lifted = cage;
+  for (Eigen::Vector3d& p : lifted.nodes) p += scene->offset;
+  scene->add(lifted).forceActivationState(ACTIVE_TAG);
+  return scene;
+}
+
+}  // namespace tetskin::scenes

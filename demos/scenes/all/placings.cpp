@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Scenes of a body in free space whose nodes are put elsewhere by hand.
+#include <limits>
+#include <random>
+
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+namespace {
+
+/// Where a node shall be, by where it is and by the middle of the body's box.
+using Place = std::function<btVector3(const btVector3& node, const btVector3& centre)>;
+
+std::unique_ptr<Scene> makeFree(const TetMesh& cage, const SceneOptions& options) {
+  auto scene = std::make_unique<Scene>(options, 0.0);
+  scene->add(cage);
+  return scene;
+}
+
+/// All nodes go elsewhere once.
+std::unique_ptr<Scene> makePlacing(const TetMesh& cage, const SceneOptions& options, const Place& place) {
+  auto scene = makeFree(cage, options);
+  const btVector3 centre = toBullet(boundingBox(nodePositions(scene->body())).center());
+  scene->beforeFrame = [s = scene.get(), centre, place](int frame, const Moved& moved) {
+    if (frame != eventFrame(s->options())) return;
+    s->placeNodes([&](const btVector3& node) { return place(node, centre); });
+    moved();
+  };
+  return scene;
+}
+
+std::unique_ptr<Scene> makeLonger(const TetMesh& cage, const SceneOptions& options, double factor) {
+  const auto longer = static_cast<btScalar>(factor);
+  return makePlacing(cage, options, [longer](const btVector3& p, const btVector3& c) {
+    return btVector3(c.x() + longer * (p.x() - c.x()), p.y(), p.z());
+  });
+}
+
+/// One node has a coordinate that no surface can follow, for one update.
+std::unique_ptr<Scene> makeSpoilt(const TetMesh& cage, const SceneOptions& options, btScalar coordinate) {
+  auto scene = makeFree(cage, options);
+  scene->beforeFrame = [s = scene.get(), coordinate](int frame, const Moved& moved) {
+    if (frame != eventFrame(s->options())) return;
+    btSoftBody::Node& node = s->body().m_nodes[s->body().m_nodes.size() / 3];
+    const btVector3 before = node.m_x;
+    node.m_x.setZ(coordinate);
+    moved();
+    placeNode(node, before);
+    moved();
+  };
+  return scene;
+}
+
+}  // namespace
+
+std::unique_ptr<Scene> makePluck(const TetMesh& cage, const SceneOptions& options) {
+  return makeLonger(cage, options, 1.01);
+}
+
+std::unique_ptr<Scene> makeStretch(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kStretch = 10.0;
+  auto scene = makeLonger(cage, options, kStretch);
+  scene->extent = kStretch;
+  return scene;
+}
+
+std::unique_ptr<Scene> makeSquashFlat(const TetMesh& cage, const SceneOptions& options) {
+  return makePlacing(cage, options,
+                     [](const btVector3& p, const btVector3& c) { return btVector3(p.x(), c.y(), p.z()); });
+}
+
+std::unique_ptr<Scene> makeMirror(const TetMesh& cage, const SceneOptions& options) {
+  return makePlacing(cage, options,
+                     [](const btVector3& p, const btVector3& c) { return btVector3(2 * c.x() - p.x(), p.y(), p.z()); });
+}
+
+std::unique_ptr<Scene> makePermute(const TetMesh& cage, const SceneOptions& options) {
+  auto scene = makeFree(cage, options);
+  scene->beforeFrame = [s = scene.get()](int frame, const Moved& moved) {
+    if (frame != eventFrame(s->options())) return;
+    std::mt19937 generator(17);
+    std::vector<btVector3> places;
+    for (int n = 0; n < s->body().m_nodes.size(); ++n) places.push_back(s->body().m_nodes[n].m_x);
+    for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[generator() % k]);
+    auto next = places.begin();
+    s->placeNodes([&](const btVector3&) { return *next++; });
+    moved();
+  };
+  return scene;
+}
+
+std::unique_ptr<Scene> makeTeleport(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kLengths = 1000.0;
+  auto scene = makeFree(cage, options);
+  scene->beforeFrame = [s = scene.get()](int frame, const Moved& moved) {
+    const int away = eventFrame(s->options()), back = 2 * away - 1;
+    if (frame != away && frame != back) return;
+    const double up = (frame == back ? -kLengths : kLengths) * s->options().size;
+    s->body().translate(btVector3(0, static_cast<btScalar>(up), 0));
+    moved();
+  };
+  return scene;
+}
+
+std::unique_ptr<Scene> makeNodeNaN(const TetMesh& cage, const SceneOptions& options) {
+  return makeSpoilt(cage, options, std::numeric_limits<btScalar>::quiet_NaN());
+}
+
+std::unique_ptr<Scene> makeNodeInfinite(const TetMesh& cage, const SceneOptions& options) {
+  return makeSpoilt(cage, options, -std::numeric_limits<btScalar>::infinity());
+}
+
+std::unique_ptr<Scene> makeNodeTooFar(const TetMesh& cage, const SceneOptions& options) {
+  return makeSpoilt(cage, options, btScalar(1e30));
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+
+/// Held at its lower end, as if it stood in the ground.
+std::unique_ptr<Scene> makeSag(const TetMesh& cage, const SceneOptions& options) {
+  constexpr double kFootShare = 0.35;  // of the height
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  const Box3 box = layoutBox(options, cage);
+  const double foot = box.min().y() + kFootShare * box.sizes().y();
+  const auto held = [foot](const Eigen::Vector3d& p) { return p.y() <= foot; };
+  (void)nodesWhere(cage, held);
+  scene->add(cage, held);
+  return scene;
+}
+
+}  // namespace tetskin::scenes

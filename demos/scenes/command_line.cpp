@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/serpent.h"
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr int kMostFrames = 1000000;
+
+CLI::Validator isFileName() {
+  return {[](std::string& text) { return std::string(text.empty() ? "the name of a file is empty" : ""); }, ""};
+}
+
+CLI::Validator isFinite(const char* demand, bool (*holds)(double)) {
+  const auto check = [=](std::string& text) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    const bool good = !text.empty() && *end == '\0' && std::isfinite(number) && holds(number);
+    return good ? std::string() : "'" + text + "' is not " + demand;
+  };
+  return {check, ""};
+}
+
+/// An option that takes one of some words, each for a value.
+template <class Choice>
+void addChoice(CLI::App& app, const std::string& name, Choice& choice,
+               const std::vector<std::pair<std::string, Choice>>& words, const std::string& description) {
+  std::vector<std::string> known;
+  std::string preset;
+  for (const auto& [word, value] : words) {
+    known.push_back(word);
+    if (value == choice) preset = word;
+  }
+  const auto choose = [&choice, words](const std::string& wanted) {
+    for (const auto& [word, value] : words) {
+      if (word == wanted) choice = value;
+    }
+  };
+  app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
+}
+
+}  // namespace
+
+struct CommandLine::Parser {
+  CLI::App app;
+};
+
+CommandLine::CommandLine(const std::string& description) : parser_(new Parser{CLI::App(description)}) {}
+
+CommandLine::~CommandLine() = default;
+
+void CommandLine::addFlag(const std::string& name, bool& value, const std::string& description) {
+  parser_->app.add_flag(name, value, description);
+}
+
+void CommandLine::addText(const std::string& name, std::string& value, const std::string& description) {
+  parser_->app.add_option(name, value, description);
+}
+
+void CommandLine::addFile(const std::string& name, std::string& value, const std::string& description, Need need) {
+  CLI::Option* option = parser_->app.add_option(name, value, description)->check(isFileName());
+  option->required(need == Need::Required);
+  if (!value.empty()) option->capture_default_str();
+}
+
+void CommandLine::addCount(const std::string& name, int& value, const std::string& description, int most) {
+  CLI::Option* option = parser_->app.add_option(name, value, description)->check(CLI::Range(1, most));
+  if (value > 0) option->capture_default_str();
+}
+
+void CommandLine::addCount(const std::string& name, std::size_t& value, const std::string& description, int most) {
+  parser_->app.add_option(name, value, description)->check(CLI::Range(1, most))->capture_default_str();
+}
+
+void CommandLine::addPositive(const std::string& name, double& value, const std::string& description) {
+  parser_->app.add_option(name, value, description)
+      ->check(isFinite("a finite, positive number", [](double number) { return number > 0.0; }));
+}
+
+void CommandLine::addWord(const std::string& name, std::string& value, const std::vector<std::string>& known,
+                          const std::string& description) {
+  parser_->app.add_option(name, value, description)->check(CLI::IsMember(known));
+}
+
+void CommandLine::addWords(const std::string& name, std::vector<std::string>& values, const std::string& description) {
+  parser_->app.add_option(name, values, description)->delimiter(',');
+}
+
+void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& description) {
+  parser_->app.add_option(name, values, description)
+      ->delimiter(',')
+      ->check(CLI::Range(1, std::numeric_limits<int>::max()))
+      ->capture_default_str();
+}
+
+void CommandLine::addSurfaceOptions(ModelOptions& options) {
+  const std::string builtIn = "built-in " + nameOf(options.builtIn);
+  addFile("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a " + builtIn + ")");
+  parser_->app.add_option("--triangles", options.triangles, "Triangles of the " + builtIn)
+      ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
+      ->capture_default_str()
+      ->excludes("--mesh");
+}
+
+void CommandLine::addMeshOptions(ModelOptions& options) {
+  addSurfaceOptions(options);
+  addCount("--tets", options.tets, "Tets of a built cage");
+}
+
+void CommandLine::addModelOptions(ModelOptions& options) {
+  addMeshOptions(options);
+  addFile("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
+  parser_->app.get_option("--cage")->excludes("--tets");
+}
+
+void CommandLine::addInterpolationOption(SkinOptions& options) {
+  addChoice(parser_->app, "--interpolation", options.interpolation,
+            {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},
+            "How the surface follows the cage");
+}
+
+void CommandLine::addSkinOptions(SkinOptions& options) {
+  addChoice(parser_->app, "--normals", options.normals,
+            {{"none", Normals::None}, {"transformed", Normals::Transformed}, {"recomputed", Normals::Recomputed}},
+            "Current normals of the surface");
+  addChoice(parser_->app, "--outside", options.outside,
+            {{"nearest", OutsideRule::Nearest}, {"barycentric", OutsideRule::Barycentric}},
+            "Which tet carries a vertex outside the cage");
+  parser_->app
+      .add_option("--max-distance", options.maxDistance,
+                  "Refuse a mesh with a vertex farther than this from the cage, in the mesh's unit")
+      ->check(isFinite("a finite, non-negative number", [](double number) { return number >= 0.0; }));
+}
+
+void CommandLine::addSummaryOption(std::string& path, const std::string& description) {
+  addFile("--json", path, description);
+}
+
+void CommandLine::addQuietOption(bool& quiet) {
+  addFlag("--quiet", quiet, "Print nothing but errors");
+}
+
+void CommandLine::addOutputOptions(OutputOptions& options) {
+  addCount("--frames", options.frames, "Frames of 1/60 s", kMostFrames);
+  addCount("--every", options.every, "Write every so many frames", kMostFrames);
+  addFile("--out", options.out, "Folder of the OBJ sequence");
+  addSummaryOption(options.json, "File of the summary (default: summary.json in the folder)");
+  addQuietOption(options.quiet);
+}
+
+bool CommandLine::given(const std::string& name) const {
+  return parser_->app.count(name) > 0;
+}
+
+int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  try {
+    parser_->app.parse(argc, argv);
+    return demo();
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(parser_->app.help().c_str(), stdout);
+    return kDone;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: out of memory; ask for fewer tets or triangles\n", name.c_str());
+  } catch (const std::exception& error) {  // CLI::Error and InputError among them
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+  }
+  return kBadInput;
+}
+
+std::string summaryPath(const OutputOptions& options) {
+  const std::string path =
+      options.json.empty() ? (std::filesystem::path(options.out) / "summary.json").string() : options.json;
+  requireWritable(path);
+  return path;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The programs' command lines: options of the same kind are checked and spelled alike everywhere. Only the source file
+// knows the library that parses them, which takes seconds to compile.
+#pragma once
+
+#include <tetskin/core/mesh_skin.h>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/model.h"
+
+namespace tetskin::scenes {
+
+/// Exit statuses of every demo.
+constexpr int kDone = 0, kRunFailed = 1, kBadInput = 2;
+
+/// Where the results go.
+struct OutputOptions {
+  std::string out;   ///< folder of the OBJ sequence
+  std::string json;  ///< file of the summary; empty: summary.json in the folder
+  int frames = 0;
+  int every = 1;  ///< write every so many frames
+  bool quiet = false;
+};
+
+/// Options and what they set, which keeps its value where one is not given, and must outlive this object. What a value
+/// may not be is refused in one line.
+class CommandLine {
+ public:
+  enum class Need { Optional, Required };
+
+  explicit CommandLine(const std::string& description);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  void addFlag(const std::string& name, bool& value, const std::string& description);
+  void addText(const std::string& name, std::string& value, const std::string& description);
+  /// A file's or folder's name, not empty.
+  void addFile(const std::string& name, std::string& value, const std::string& description, Need need = Need::Optional);
+  /// A whole number from 1 to `most`.
+  void addCount(const std::string& name, int& value, const std::string& description,
+                int most = std::numeric_limits<int>::max());
+  void addCount(const std::string& name, std::size_t& value, const std::string& description,
+                int most = std::numeric_limits<int>::max());
+  /// Finite, above 0.
+  void addPositive(const std::string& name, double& value, const std::string& description);
+  /// One of some words.
+  void addWord(const std::string& name, std::string& value, const std::vector<std::string>& known,
+               const std::string& description);
+  /// Lists, with commas.
+  void addWords(const std::string& name, std::vector<std::string>& values, const std::string& description);
+  void addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& description);
+
+  // What several programs have.
+
+  /// --mesh, or --triangles.
+  void addSurfaceOptions(ModelOptions& options);
+  /// Those and --tets.
+  void addMeshOptions(ModelOptions& options);
+  /// Those and --cage, instead of --tets.
+  void addModelOptions(ModelOptions& options);
+  /// --interpolation.
+  void addInterpolationOption(SkinOptions& options);
+  /// --normals, --outside, --max-distance.
+  void addSkinOptions(SkinOptions& options);
+  /// --json.
+  void addSummaryOption(std::string& path, const std::string& description);
+  /// --quiet.
+  void addQuietOption(bool& quiet);
+  /// --frames, --every, --out, --json, --quiet. The defaults of `options` are the demo's.
+  void addOutputOptions(OutputOptions& options);
+
+  /// Whether an option was on the line that was parsed.
+  bool given(const std::string& name) const;
+  /// Parses the line and runs the demo; turns errors into one line on standard error and an exit status.
+  int run(int argc, char** argv, const std::function<int()>& demo);
+
+ private:
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
+};
+
+/// Where the summary goes; its folder is there, and it can be written. Throws InputError.
+std::string summaryPath(const OutputOptions& options);
+
+}  // namespace tetskin::scenes

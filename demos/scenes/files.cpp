@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/files.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scenes/input_error.h"
+
+namespace tetskin::scenes {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kNotWritable = ": cannot be written; does its folder exist?";
+
+bool write(const std::string& path, std::string_view bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  return file.good();
+}
+
+/// Whether a file can be written under another name and renamed: it is one, or nothing is there.
+bool isReplaceable(fs::file_type type) {
+  return type == fs::file_type::not_found || type == fs::file_type::regular;
+}
+
+}  // namespace
+
+void writeFile(const std::string& path, std::string_view bytes) {
+  std::error_code error;
+  if (!isReplaceable(fs::status(path, error).type())) {
+    if (!write(path, bytes)) throw InputError(path + kNotWritable);
+    return;
+  }
+  const bool link = fs::is_symlink(fs::symlink_status(path, error));
+  const fs::path target = link ? fs::weakly_canonical(path, error) : fs::path(path);
+  const std::string part = target.string() + ".part";
+  bool done = write(part, bytes);
+  if (done) {
+    fs::rename(part, target, error);
+    done = !error;
+  }
+  if (done) return;
+  fs::remove(part, error);
+  throw InputError(path + kNotWritable);
+}
+
+std::optional<std::string> contentsOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
+}
+
+void requireWritable(const std::string& path) {
+  std::error_code none;
+  const fs::file_type before = fs::status(path, none).type();
+  // /dev/stdout, a pipe: not to be touched before its time.
+  if (!isReplaceable(before) && before != fs::file_type::directory) return;
+  if (!std::ofstream(path, std::ios::app)) throw InputError(path + kNotWritable);
+  if (before == fs::file_type::not_found) fs::remove(fs::canonical(path, none), none);  // not the link to it
+}
+
+std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed) {
+  const auto* data = static_cast<const unsigned char*>(bytes);
+  for (std::size_t i = 0; i < count; ++i) seed = (seed ^ data[i]) * 1099511628211ull;
+  return seed;
+}
+
+}  // namespace tetskin::scenes

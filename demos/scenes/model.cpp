@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/model.h"
+
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/tet_mesh_reader.h>
+
+#include <cstdio>
+
+#include "scenes/bar.h"
+#include "scenes/input_error.h"
+#include "scenes/serpent.h"
+
+namespace tetskin::scenes {
+namespace {
+
+/// With more than this share of a mesh's vertices outside a cage, one of them farther out than this share of the mesh's
+/// diagonal, the cage is another model's. One that lies within its mesh has many vertices outside, but near.
+constexpr double kManyOutside = 0.5, kFarOutside = 0.1;
+
+}  // namespace
+
+std::string nameOf(BuiltIn model) {
+  return model == BuiltIn::Bar ? "bar" : "serpent";
+}
+
+Surface loadSurface(const ModelOptions& options) {
+  if (options.mesh.empty()) {
+    const bool bar = options.builtIn == BuiltIn::Bar;
+    return {nameOf(options.builtIn), bar ? makeBar(options.triangles) : makeSerpent({options.triangles})};
+  }
+  Result<TriangleMesh> mesh = loadMesh(options.mesh);
+  require(mesh.status());
+  return {options.mesh, std::move(mesh).value()};
+}
+
+TetMesh loadCage(const std::string& path) {
+  Result<TetMesh> cage = loadTetMesh(path);
+  require(cage.status());
+  if (const Status status = usable(cage.value(), checkTetMesh(cage.value())); !status.ok()) {
+    throw InputError(path + ": " + status.message);
+  }
+  return std::move(cage).value();
+}
+
+TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
+  Result<TetMesh> cage = buildCage(surface.mesh, options, report);
+  if (!cage.ok()) throw InputError(surface.name + ": " + cage.status().message);
+  return std::move(cage).value();
+}
+
+Model loadModel(const ModelOptions& options) {
+  Model model;
+  static_cast<Surface&>(model) = loadSurface(options);
+  if (options.mesh.empty()) {
+    model.layout = ObjLayout::fromMesh(model.mesh);
+  } else {
+    Result<ObjLayout> layout = objLayoutFor(options.mesh, model.mesh);
+    require(layout.status());
+    model.layout = std::move(layout).value();
+  }
+  CageOptions cage;
+  cage.targetTets = options.tets;
+  model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage);
+  (void)repairTetMesh(model.cage);
+  return model;
+}
+
+void requireFit(const EmbedReport& report, const ModelOptions& options) {
+  const std::string mesh = options.mesh.empty() ? nameOf(options.builtIn) : options.mesh;
+  if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
+  const double size = report.meshBox.diagonal().norm();
+  char text[256];
+  if (report.unitsDiffer()) {
+    std::snprintf(text, sizeof text,
+                  "their boxes have diagonals of %.4g and %.4g and %s; are they in different units? Scale one of them",
+                  size, report.cageBox.diagonal().norm(),
+                  report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
+  } else if (static_cast<double>(report.outside) > kManyOutside * static_cast<double>(report.vertexCount) &&
+             report.worstDistance > kFarOutside * size) {
+    std::snprintf(
+        text, sizeof text,
+        "%zu of %zu vertices lie outside it, vertex %zu by %.3g, and the mesh's diagonal is %.3g; take a cage "
+        "made for this mesh, such as tetskin_cage builds",
+        report.outside, report.vertexCount, report.worstVertex, report.worstDistance, size);
+  } else {
+    return;
+  }
+  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text);
+}
+
+ObjLayout layoutWith(Normals normals, const ObjLayout& layout) {
+  return normals == Normals::None ? layout : layout.withNormals();
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Which mesh in which cage a program works on: built in, loaded, or built for the mesh.
+#pragma once
+
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/io/obj_layout.h>
+
+#include <cstddef>
+#include <string>
+
+namespace tetskin::scenes {
+
+enum class BuiltIn { Serpent, Bar };
+/// "serpent", "bar".
+std::string nameOf(BuiltIn model);
+
+/// Which mesh, and which cage.
+struct ModelOptions {
+  BuiltIn builtIn = BuiltIn::Serpent;
+  std::string mesh;               ///< file; empty: the built-in model
+  std::string cage;               ///< file; empty: built from the mesh
+  std::size_t tets = 3000;        ///< of a built cage
+  std::size_t triangles = 60000;  ///< of the built-in model
+};
+
+struct Surface {
+  std::string name;
+  TriangleMesh mesh;
+};
+struct Model : Surface {
+  TetMesh cage;
+  ObjLayout layout;  ///< in which frames are written
+};
+
+/// These load or make; they throw InputError, with the file and the fault.
+Surface loadSurface(const ModelOptions& options);
+/// A usable cage, its tets as the file has them.
+TetMesh loadCage(const std::string& path);
+TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
+/// The cage's tets are positive.
+Model loadModel(const ModelOptions& options);
+
+/// Throws InputError if mesh and cage cannot belong together: they are in different units (see EmbedReport), or most of
+/// the mesh lies outside, and far.
+void requireFit(const EmbedReport& report, const ModelOptions& options);
+
+/// The layout in which a skin with these normals is written.
+ObjLayout layoutWith(Normals normals, const ObjLayout& layout);
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/triangle_mesh.h>
+
+namespace tetskin::scenes {
+
+/// Append what a body may fall on to a mesh, as a group "box" or "sphere".
+/// slope  radians about z
+void appendBox(TriangleMesh& mesh, const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope);
+void appendSphere(TriangleMesh& mesh, const Eigen::Vector3d& centre, double radius);
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/tet_mesh.h>
+
+#include <vector>
+
+namespace tetskin::scenes {
+
+/// Largest side of a body in Bullet's world, which has absolute constants (sleep thresholds, clamps).
+constexpr double kSize = 2.0;
+
+/// The way from a model's own space, where it may have any size and be anywhere, to Bullet's world, and back.
+struct Placement {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< model's space; goes to `offset`
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< world space
+  double scale = 1.0;                                ///< world's over model's lengths
+
+  Eigen::Vector3d toWorld(const Eigen::Vector3d& p) const { return scale * (p - centre) + offset; }
+  Eigen::Vector3d toModel(const Eigen::Vector3d& p) const { return (p - offset) / scale + centre; }
+  void toWorld(std::vector<Eigen::Vector3d>& points) const;
+  void toModel(std::vector<Eigen::Vector3d>& points) const;
+  TetMesh toWorld(TetMesh cage) const;
+
+  /// A skin's surface in the model's space, vertexCount.
+  void readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3d>& surface) const;
+};
+
+/// Scales a box to kSize, and puts its centre at the origin.
+Placement placementOf(const Box3& box);
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace tetskin::scenes {
+
+/// Median of some numbers, the upper one of an even count; 0 if there are none.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace tetskin::scenes

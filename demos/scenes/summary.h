@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "scenes/model.h"
+
+namespace tetskin::scenes {
+
+/// The head of a summary: what the model is, and how the mesh fits the cage.
+nlohmann::ordered_json summaryOf(const Model& model);
+nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit);
+
+/// Throws InputError.
+void writeJson(const nlohmann::ordered_json& json, const std::string& path);
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace tetskin::scenes {
+
+/// Makes a scene with a cage that is already as large as it shall be in Bullet's world (see `placementOf`), centred at
+/// the origin. Throws InputError if Bullet cannot make a body of it, or if the scene holds none of its nodes.
+using MakeScene = std::unique_ptr<Scene> (*)(const TetMesh& cage, const SceneOptions& options);
+
+struct SceneEntry {
+  std::string name;
+  int frames;  ///< its own, if the options do not say
+  bool lands;  ///< bodies meet a floor
+  std::string about;
+  MakeScene maker;
+
+  std::unique_ptr<Scene> make(const TetMesh& cage, SceneOptions options = {}) const;
+};
+
+/// All scenes.
+const std::vector<SceneEntry>& sceneTable();
+/// The scene of this name. Throws InputError with all names if there is none.
+const SceneEntry& sceneNamed(const std::string& name);
+
+}  // namespace tetskin::scenes

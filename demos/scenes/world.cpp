@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/world.h"
+
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableCorotatedForce.h>
+#include <BulletSoftBody/btDeformableGravityForce.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+
+
+#include "scenes/input_error.h"
+#include "scenes/obstacle_mesh.h"
+
+namespace tetskin::scenes {
+namespace {
+
+ForceModel modelOf(Force force) {
+  if (force == Force::MassSpring) return ForceModel::MassSpring;
+  return force == Force::LinearElasticity ? ForceModel::LinearElasticity : ForceModel::NeoHookean;
+}
+
+}  // namespace
+
+World::World(Force force, const btVector3& gravity)
+    : force_(force),
+      configuration_(std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>()),
+      dispatcher_(std::make_unique<btCollisionDispatcher>(configuration_.get())),
+      broadphase_(std::make_unique<btDbvtBroadphase>()) {
+  force == Force::MassSpring ? makeClassic() : makeDeformable();
+  world_->setGravity(gravity);
+  info_->m_gravity = gravity;
+  info_->m_sparsesdf.Initialize();
+}
+
+void World::makeClassic() {
+  solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+  auto world = std::make_unique<btSoftRigidDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver_.get(),
+                                                          configuration_.get());
+  info_ = &world->getWorldInfo();
+  world_ = std::move(world);
+}
+
+void World::makeDeformable() {
+  bodySolver_ = std::make_unique<btDeformableBodySolver>();
+  auto solver = std::make_unique<btDeformableMultiBodyConstraintSolver>();
+  solver->setDeformableSolver(bodySolver_.get());
+  auto world = std::make_unique<btDeformableMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver.get(),
+                                                                    configuration_.get(), bodySolver_.get());
+  deformable_ = world.get();
+  info_ = &world->getWorldInfo();
+  solver_ = std::move(solver);
+  world_ = std::move(world);
+}
+
+World::~World() {
+  deformableBodies_.clear();
+  for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
+  for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
+}
+
+btSoftBody& World::add(const TetMesh& cage, SoftBodyOptions options) {
+  options.forceModel = modelOf(force_);
+  if (deformable_ && force_ != Force::Corotated) {
+    auto made = DeformableBody::add(*deformable_, cage, options);
+    require(made.status());
+    deformableBodies_.push_back(std::move(made).value());
+    return deformableBodies_.back()->body();
+  }
+  auto made = makeSoftBody(cage, *info_, options);
+  require(made.status());
+  bodies_.emplace_back(std::move(made).value());
+  btSoftBody& body = *bodies_.back();
+  if (deformable_) {
+    addCorotated(body, options);
+  } else {
+    static_cast<btSoftRigidDynamicsWorld&>(*world_).addSoftBody(&body);
+  }
+  return body;
+}
+
+void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
+  const double shear = options.youngsModulus / (2.0 * (1.0 + options.poissonRatio));
+  auto elasticity = std::make_unique<btDeformableCorotatedForce>();
+  elasticity->m_mu = static_cast<btScalar>(shear);
+  elasticity->m_lambda = static_cast<btScalar>(2.0 * shear * options.poissonRatio / (1.0 - 2.0 * options.poissonRatio));
+  deformable_->setImplicit(options.implicit.value_or(false));
+  deformable_->setLineSearch(false);
+  deformable_->setUseProjection(true);
+  deformable_->addSoftBody(&body);
+  forces_.push_back(std::make_unique<btDeformableGravityForce>(world_->getGravity()));
+  deformable_->addForce(&body, forces_.back().get());
+  forces_.push_back(std::move(elasticity));
+  deformable_->addForce(&body, forces_.back().get());
+}
+
+void World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope, double mass) {
+  const btQuaternion turn(btVector3(0, 0, 1), static_cast<btScalar>(slope));
+  addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)), btTransform(turn, toBullet(centre)), mass);
+  if (mass == 0.0) appendBox(obstacles_, centre, halfExtents, slope);
+}
+
+void World::addSphere(const Eigen::Vector3d& centre, double radius) {
+  addRigid(std::make_unique<btSphereShape>(static_cast<btScalar>(radius)),
+           btTransform(btQuaternion::getIdentity(), toBullet(centre)), 0.0);
+  appendSphere(obstacles_, centre, radius);
+}
+
+void World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass) {
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0.0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+  auto body = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, shape.get(), inertia);
+  body->setWorldTransform(where);
+  body->setFriction(1);
+  world_->addRigidBody(body.get());
+  shapes_.push_back(std::move(shape));
+  rigid_.push_back(std::move(body));
+}
+
+double defaultStiffness(const TetMesh& cage, const SoftBodyOptions& options) {
+  World world(Force::NeoHookean, btVector3(0, static_cast<btScalar>(-kEarth), 0));
+  world.add(cage, options);
+  return world.youngsModulus();
+}
+
+void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {
+  node.m_v = (toBullet(target) - node.m_x) / static_cast<btScalar>(seconds);
+}
+
+}  // namespace tetskin::scenes

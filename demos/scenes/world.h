@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The one place in which the demos make Bullet's worlds and put bodies into them.
+#pragma once
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin::scenes {
+
+/// Of gravity, in lengths a second, squared.
+constexpr double kEarth = 9.81;
+
+/// What holds soft bodies together, and with it the world that they need.
+enum class Force {
+  MassSpring,        ///< Bullet's classic world
+  LinearElasticity,  ///< the deformable world, as the next
+  NeoHookean,
+  Corotated,  ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
+};
+
+/// A world of the kind that a force needs, with everything it takes to make one, and its bodies, all owned here.
+class World {
+ public:
+  World(Force force, const btVector3& gravity);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// Makes a soft body of a cage, where it is; it stays as long as the world. The force is the world's, whatever the
+  /// options say: another solver would be chosen here. Throws InputError if Bullet cannot make a body of the cage.
+  btSoftBody& add(const TetMesh& cage, SoftBodyOptions options);
+
+  /// slope  radians about z; mass  0: fixed, and an obstacle to draw
+  void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
+  void addSphere(const Eigen::Vector3d& centre, double radius);
+
+  /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
+  int step(double seconds) { return world_->stepSimulation(static_cast<btScalar>(seconds), 0); }
+
+  btDiscreteDynamicsWorld& bullet() { return *world_; }
+  /// Of the body added last, in the deformable world by a force of the library's.
+  double youngsModulus() const { return deformableBodies_.back()->youngsModulus(); }
+  /// All that is fixed, world space.
+  const TriangleMesh& obstacles() const { return obstacles_; }
+
+ private:
+  void makeClassic();
+  void makeDeformable();
+  void addCorotated(btSoftBody& body, const SoftBodyOptions& options);
+  void addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
+
+  Force force_;
+  std::unique_ptr<btCollisionConfiguration> configuration_;
+  std::unique_ptr<btDispatcher> dispatcher_;
+  std::unique_ptr<btBroadphaseInterface> broadphase_;
+  std::unique_ptr<btDeformableBodySolver> bodySolver_;
+  std::unique_ptr<btConstraintSolver> solver_;
+  std::unique_ptr<btDiscreteDynamicsWorld> world_;
+  btDeformableMultiBodyDynamicsWorld* deformable_ = nullptr;  ///< the same, if it is one
+  btSoftBodyWorldInfo* info_ = nullptr;
+
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> rigid_;
+  TriangleMesh obstacles_;
+  std::vector<std::unique_ptr<btDeformableLagrangianForce>> forces_;
+  std::vector<std::unique_ptr<btSoftBody>> bodies_;
+  std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
+};
+
+/// The stiffness that the library gives a neo-Hookean body of this cage by default, under the earth's gravity.
+double defaultStiffness(const TetMesh& cage, const SoftBodyOptions& options);
+
+/// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
+/// changes that by no force: so it arrives, and its neighbours feel it move.
+void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds);
+
+}  // namespace tetskin::scenes
