@@ -121,8 +121,7 @@ void timeOnce(Variant& variant, Scene& crowd, CacheEviction& caches) {
 std::size_t expectedUpdates(const Variant& variant) {
   const std::size_t bodies = variant.skins->all.size();
   if (!variant.stepped) return 0;
-  return (variant.asleep || variant.hidden ? awakeAmong(bodies) : bodies) *
-         (variant.everySubstep ? kSubsteps : 1);
+  return (variant.asleep || variant.hidden ? awakeAmong(bodies) : bodies) * (variant.everySubstep ? kSubsteps : 1);
 }
 
 /// A line of the table: a measured variant under the name of what it leaves out, and the one that does not.

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Draws what tetskin_error_vs_time measured, as PNG and SVG beside its JSON file (or in the folder given).
+"""Tells what tetskin_error_vs_time measured: tables, printed and as error_vs_time.md, and plots as PNG and SVG, beside its
+JSON file (or in the folder given).
 
-error_vs_time.py RESULTS.json [FOLDER] [--tets N] [--no-surface]
+error_vs_time.py RESULTS.json [FOLDER] [--target-error X] [--tets N] [--no-surface] [--quiet]
 
-For every scene: SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_frames.png, error over the frames for
-the cage nearest to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
+For every scene: a table, orders, the reference's own error, and the cheapest setting below an error of X;
+SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest
+to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
 import argparse
@@ -26,14 +28,84 @@ from matplotlib.lines import Line2D  # noqa: E402
 COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
 STYLES = {"same": "-", "calibrated": "--"}
-TITLES = {
-    "sag": "Sag: held at the lower end, under gravity",
-    "twist": "Twist: held at both ends, one of them turned",
-    "drop": "Drop: falls on a box",
-    "exact": "Control: nodes on a smooth map, without Bullet",
-}
 plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
                      "svg.hashsalt": "tetskin"})
+
+
+HEAD = ("| tets | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | simulation, ms | "
+        "skin, µs | total, ms | speed-up | attach, ms | memory, MB |\n" + 13 * "|---" + "|\n")
+SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
+CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, are those of smooth maps; here the body is clamped "
+           "along edges, where its strain is not smooth, the reference is itself linear in each tet, and coarse cages have "
+           "another shape: they are fatter, and parts that lie close together are fused.\n")
+
+
+def setting(row):
+    """The name of a row's surface."""
+    return row["interpolation"] + (", calibrated" if row["material"] == "calibrated" else "")
+
+
+def is_choice(row):
+    """Whether it is a setting that a user of the library may choose."""
+    return row["interpolation"] not in ("reference", "bullet") and row["finite"]
+
+
+def table_line(row, reference_error):
+    tets, memory = f"{row['tets']:,.0f}", f"{row['memory_bytes'] / 1e6:.1f}"
+    if row["interpolation"] == "reference":
+        return (f"| {tets} | reference | about {reference_error:.1e} | | | | | {row['simulation_ms']:.3g} | | "
+                f"{row['total_ms']:.3g} | 1 | | {memory} |\n")
+    surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
+    if not row["finite"]:
+        surface += " (exploded)"
+    return (f"| {tets} | {surface} | {row['error_total_rms']:.2e} | {row['error_total_max']:.1e} | "
+            f"{row['error_embedding_rms']:.1e} | {row['error_simulation_rms']:.1e} | {row['normal_error_mean_deg']:.2f} | "
+            f"{row['simulation_ms']:.3g} | {row['skin_us']:.0f} | {row['total_ms']:.3g} | {row['speedup']:.3g} | "
+            f"{row['attach_ms']:.3g} | {memory} |\n")
+
+
+def orders_text(scene):
+    text = "\nObserved orders (error over edge length; total / embedding alone):\n\n"
+    for order in scene["orders"]:
+        if order["material"] == "same":
+            steps = [f" {step['total']:.1f} / {step['embedding']:.1f} ({step['coarse_tets']:,.0f} to "
+                     f"{step['fine_tets']:,.0f} tets)" for step in order["steps"]]
+            overall = order["overall"]
+            text += (f"- {order['interpolation']}: {overall['total']:.1f} / {overall['embedding']:.1f} over all;"
+                     + ",".join(steps) + "\n")
+    return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED)
+
+
+def cheapest_text(scene, target):
+    good = [row for row in scene["rows"] if is_choice(row) and row["error_total_rms"] <= target]
+    if not good:
+        return f"\nNo setting stays below an error of {target:g}.\n"
+    best = min(good, key=lambda row: row["total_ms"])
+    return (f"\nCheapest below an error of {target:g}: {best['tets']:,.0f} tets, {setting(best)}: {best['total_ms']:.3g} ms "
+            f"a frame, error {best['error_total_rms']:.2e}.\n")
+
+
+def tables(results, target):
+    """All that the results say in words, as Markdown."""
+    text = (f"# Error against run time: {results['model']}\n\n{results['vertices']:,} vertices, {results['triangles']:,} "
+            "triangles. Errors in diagonals of the mesh's box, over all vertices and frames; times of the processor in one "
+            "thread, medians over the frames. Bold: nothing is both faster and more accurate.\n")
+    for scene in results["scenes"]:
+        integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
+        text += f"\n## {scene['scene']}{integrator}\n\n" + HEAD
+        text += "".join(table_line(row, scene["reference_error"]) for row in scene["rows"])
+        if scene["reference_error"] > 0:
+            text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
+                     "nothing. Calibrated cages aim at the body itself, not at the reference, which is too stiff as well: "
+                     "judge them by a fine one (--full).\n")
+        text += orders_text(scene)
+        if target:
+            text += cheapest_text(scene, target)
+    return text
+
+
+def title_of(scene):
+    return f"{scene['scene'].capitalize()}: {scene['about']}"
 
 
 def series(scene, interpolation, material):
@@ -126,7 +198,7 @@ def error_against_time(scene, name):
     axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
     axes.set_xlabel("milliseconds a frame (simulation and skin)" if reference_of(scene) else "milliseconds a frame (skin)")
     axes.set_ylabel("error, RMS, box diagonals")
-    axes.set_title(f"{TITLES[scene['scene']]} ({name})", fontsize=11, loc="left")
+    axes.set_title(f"{title_of(scene)} ({name})", fontsize=11, loc="left")
     legend_of(axes, scene)
     return figure
 
@@ -139,14 +211,13 @@ def error_over_frames(scene, name, tets):
         if row["tets"] != shown or row["interpolation"] == "bullet":
             continue
         errors = row["error_total_rms_by_frame"]
-        label = row["interpolation"] + (", calibrated" if row["material"] == "calibrated" else "")
-        axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, STYLES[row["material"]], label=label,
+        axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, STYLES[row["material"]], label=setting(row),
                   color=COLOURS[row["interpolation"]], linewidth=3 if row["interpolation"] == "linear" else 1.4,
                   alpha=0.5 if row["interpolation"] == "linear" else 1)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("seconds")
     axes.set_ylabel("error, RMS, box diagonals")
-    axes.set_title(f"{TITLES[scene['scene']]} ({name}, {shown:,.0f} tets)", fontsize=11, loc="left")
+    axes.set_title(f"{title_of(scene)} ({name}, {shown:,.0f} tets)", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
     axes.legend(frameon=False, fontsize=9)
     return figure
@@ -190,30 +261,48 @@ def save(figure, folder, name):
         path = folder / f"{name}.{ending}"
         figure.savefig(path, dpi=110, bbox_inches="tight", metadata={"Date": None} if ending == "svg" else None)
     plt.close(figure)
-    print(folder / f"{name}.png")
+    return folder / f"{name}.png"
+
+
+def coloured_mesh(name, *folders):
+    """The mesh that the demo coloured, if it is there and can be drawn."""
+    found = [folder / name for folder in folders if (folder / name).exists()]
+    return found[0] if found and shutil.which("f3d") and shutil.which("xvfb-run") else None
+
+
+def draw(scene, model, arguments, folder):
+    """All plots of a scene; returns their paths."""
+    integrated = scene["integrator"] != "none"
+    base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
+    name = f"{model}, {scene['integrator']}" if integrated else model
+    yield save(error_against_time(scene, name), folder, base)
+    if integrated:
+        yield save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
+    mesh = None if arguments.no_surface else coloured_mesh(f"error_{base}.ply", folder, arguments.results.parent)
+    if mesh:
+        yield save(surface(mesh, title_of(scene)), folder, f"{base}_surface")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path)
     parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("--target-error", type=float, default=0)
     parser.add_argument("--tets", type=float, default=3000)
     parser.add_argument("--no-surface", action="store_true")
+    parser.add_argument("--quiet", action="store_true")
     arguments = parser.parse_args()
-    results = json.loads(arguments.results.read_text())
+    results = json.loads(arguments.results.read_text(encoding="utf-8"))
     folder = arguments.folder or arguments.results.parent
     folder.mkdir(parents=True, exist_ok=True)
-    model = Path(results["model"]).stem
+    text = tables(results, arguments.target_error)
+    (folder / "error_vs_time.md").write_text(text, encoding="utf-8")
+    said = (lambda *words: None) if arguments.quiet else (lambda *words: print(*words, flush=True))
+    said(text)
+    said(folder / "error_vs_time.md")
     for scene in results["scenes"]:
-        integrated = scene["integrator"] != "none"
-        base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
-        name = f"{model}, {scene['integrator']}" if integrated else model
-        save(error_against_time(scene, name), folder, base)
-        if integrated:
-            save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
-        mesh = arguments.results.parent / f"error_{base}.ply"
-        if not arguments.no_surface and mesh.exists() and shutil.which("f3d") and shutil.which("xvfb-run"):
-            save(surface(mesh, f"{TITLES[scene['scene']]}"), folder, f"{base}_surface")
+        for path in draw(scene, Path(results["model"]).stem, arguments, folder):
+            said(path)
 
 
 if __name__ == "__main__":

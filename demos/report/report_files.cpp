@@ -6,6 +6,7 @@
 
 #include "report/advice.h"
 #include "scenes/files.h"
+#include "scenes/table.h"
 
 namespace tetskin::report {
 namespace {
@@ -64,6 +65,7 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   for (const SceneResult& scene : result.scenes) {
     nlohmann::ordered_json one;
     one["scene"] = scene.scene;
+    one["about"] = scenes::sceneNamed(scene.scene).about;
     one["integrator"] = scene.integrator;
     one["reference_error"] = scene.referenceError;
     one["orders"] = ordersOf(scene);

@@ -37,9 +37,8 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addFlag("--implicit", o.implicit, "Implicit elasticity as well, beside the explicit one");
   line.addFlag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
   line.addCount("--frames", o.frames, "Frames of 1/60 s (default: the scene's)", 100000);
-  line.addPositive("--stiffness", o.stiffness,
-                   "Young's modulus over density x gravity x size (default: the scene's)");
-  line.addPositive("--target-error", o.targetError, "Tell the cheapest setting below this, in box diagonals");
+  line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
+  line.addPositive("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals");
   line.addCount("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors");
   line.addFile("--out", o.out, "Folder of the report, and of what an interrupted run had finished");
   line.addSummaryOption(o.json, "File of the results (default: error_vs_time.json in the folder)");

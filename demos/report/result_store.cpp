@@ -23,7 +23,8 @@ ResultStore::ResultStore(std::string folder) : folder_(std::move(folder)) {
 std::string ResultStore::path(const nlohmann::ordered_json& settings, const char* extension) const {
   const std::string text = settings.dump();
   char name[17];
-  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(scenes::hashOf(text.data(), text.size())));
+  std::snprintf(name, sizeof name, "%016llx",
+                static_cast<unsigned long long>(scenes::hashOf(text.data(), text.size())));
   return (std::filesystem::path(folder_) / (std::string(name) + extension)).string();
 }
 

@@ -145,7 +145,8 @@ std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& s
 Reference& SceneRunner::reference() {
   if (reference_) return *reference_;
   if (isExact()) {
-    reference_ = std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
+    reference_ =
+        std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
     return *reference_;
   }
   if (referenceTrajectory_.empty()) {

@@ -84,8 +84,9 @@ void CommandLine::addCount(const std::string& name, std::size_t& value, const st
 }
 
 void CommandLine::addPositive(const std::string& name, double& value, const std::string& description) {
-  parser_->app.add_option(name, value, description)
-      ->check(isFinite("a finite, positive number", [](double number) { return number > 0.0; }));
+  parser_->app.add_option(name, value, description)->check(isFinite("a finite, positive number", [](double number) {
+    return number > 0.0;
+  }));
 }
 
 void CommandLine::addWord(const std::string& name, std::string& value, const std::vector<std::string>& known,

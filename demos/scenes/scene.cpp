@@ -37,7 +37,9 @@ double Scene::nodeSpeed() const {
 }
 
 int Scene::step(int frame, const Moved& moved) {
-  if (beforeFrame) beforeFrame(frame, moved ? moved : [] {});
+  if (beforeFrame)
+    beforeFrame(
+        frame, moved ? moved : [] {});
   int steps = 0;
   // One substep at a time: Bullet's own division of a frame may leave one out by rounding.
   for (int k = 1; k <= options_.substeps; ++k) {

@@ -24,13 +24,12 @@ constexpr double kFloorTolerance = 0.01;
 struct SceneOptions {
   SoftBodyOptions body;
   Force force = Force::NeoHookean;
-  int substeps = 4;                       ///< of a frame
+  int substeps = 4;  ///< of a frame
   double frameSeconds = 1.0 / kFrameRate;
-  int frames = 0;                         ///< of the whole run, over which the scene spreads what happens; 0: its own
-  std::size_t bodies = 1;                 ///< in scenes of several
-  double size = kSize;                    ///< largest side of a body; gravity is in proportion: all sizes fall alike
-  Box3 box;                               ///< what the scene is laid out by, so that it is the same for many cages;
-                                          ///< empty: the cage's own box
+  int frames = 0;          ///< of the whole run, over which the scene spreads what happens; 0: its own
+  std::size_t bodies = 1;  ///< in scenes of several
+  double size = kSize;     ///< largest side of a body; gravity is in proportion: all sizes fall alike
+  Box3 box;                ///< what the scene is laid out by, the same for many cages; empty: the cage's own
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< how far from where the cage is the body is put
 
   double substep() const { return frameSeconds / substeps; }
@@ -84,8 +83,8 @@ class Scene {
   /// Puts all nodes of the first body elsewhere, at rest.
   void placeNodes(const std::function<btVector3(const btVector3&)>& place);
 
-  double extent = 1.0;  ///< largest side that the scene itself gives its body, over that at rest
-  double floorY;        ///< upper side of the floor; minus infinity: none
+  double extent = 1.0;     ///< largest side that the scene itself gives its body, over that at rest
+  double floorY;           ///< upper side of the floor; minus infinity: none
   Eigen::Vector3d offset;  ///< of the body, where it begins, from its cage
   std::function<void(int frame, const Moved&)> beforeFrame;
   /// frame  what will be reached, a fraction between frames

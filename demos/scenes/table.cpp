@@ -9,28 +9,28 @@
 namespace tetskin::scenes {
 
 // One line a scene: its maker is make<Name>, in a file of the folder `all`. Name, frames, whether it lands, what it is.
-#define TETSKIN_SCENES(SCENE)                                                                                   \
-  SCENE(Sag, "sag", 60, false, "held at its lower end, under gravity")                                          \
-  SCENE(Twist, "twist", 60, false, "held at its lower and its upper end, which is turned, without gravity")     \
-  SCENE(Drop, "drop", 48, true, "falls on a box")                                                               \
-  SCENE(Exact, "exact", 1, false, "a control without forces: nodes are put where a smooth map takes them")      \
-  SCENE(Obstacles, "obstacles", 240, true, "falls on a floor, a ramp and a dome")                               \
-  SCENE(Wring, "wring", 240, false, "held at both ends of its longest side, turned a full turn and let go")     \
-  SCENE(Crowd, "crowd", 60, false, "many bodies side by side in free fall, too far apart to meet")              \
-  SCENE(Float, "float", 60, false, "bodies beside each other, without gravity")                                 \
-  SCENE(Land, "land", 30, true, "falls on the floor from nearby")                                               \
-  SCENE(Pluck, "pluck", 30, false, "a hundredth longer at once, and let go")                                    \
-  SCENE(SquashFlat, "squash_flat", 30, false, "all nodes are put on a plane and let go")                        \
-  SCENE(Stretch, "stretch", 30, false, "ten times as long at once, and let go")                                 \
-  SCENE(Mirror, "mirror", 30, false, "inside out at once")                                                      \
-  SCENE(Permute, "permute", 30, false, "every node is put where another was")                                   \
-  SCENE(Spin, "spin", 30, false, "100 turns a second")                                                          \
-  SCENE(Teleport, "teleport", 30, false, "1,000 lengths away, and back")                                        \
-  SCENE(Impact, "impact", 30, true, "hits the floor at 100 lengths a second")                                   \
-  SCENE(Pull, "pull", 30, false, "held by one node, pulled away three lengths by another")                      \
-  SCENE(HeavyBox, "heavy_box", 30, true, "a box of 1,000 times its mass falls on it")                           \
-  SCENE(NodeNaN, "node_nan", 30, false, "a node is not a number, for one update")                               \
-  SCENE(NodeInfinite, "node_infinite", 30, false, "a node is infinite, for one update")                         \
+#define TETSKIN_SCENES(SCENE)                                                                               \
+  SCENE(Sag, "sag", 60, false, "held at its lower end, under gravity")                                      \
+  SCENE(Twist, "twist", 60, false, "held at its lower and its upper end, which is turned")                  \
+  SCENE(Drop, "drop", 48, true, "falls on a box")                                                           \
+  SCENE(Exact, "exact", 1, false, "nodes on a smooth map, without Bullet")                                  \
+  SCENE(Obstacles, "obstacles", 240, true, "falls on a floor, a ramp and a dome")                           \
+  SCENE(Wring, "wring", 240, false, "held at both ends of its longest side, turned a full turn and let go") \
+  SCENE(Crowd, "crowd", 60, false, "many bodies side by side in free fall, too far apart to meet")          \
+  SCENE(Float, "float", 60, false, "bodies beside each other, without gravity")                             \
+  SCENE(Land, "land", 30, true, "falls on the floor from nearby")                                           \
+  SCENE(Pluck, "pluck", 30, false, "a hundredth longer at once, and let go")                                \
+  SCENE(SquashFlat, "squash_flat", 30, false, "all nodes are put on a plane and let go")                    \
+  SCENE(Stretch, "stretch", 30, false, "ten times as long at once, and let go")                             \
+  SCENE(Mirror, "mirror", 30, false, "inside out at once")                                                  \
+  SCENE(Permute, "permute", 30, false, "every node is put where another was")                               \
+  SCENE(Spin, "spin", 30, false, "100 turns a second")                                                      \
+  SCENE(Teleport, "teleport", 30, false, "1,000 lengths away, and back")                                    \
+  SCENE(Impact, "impact", 30, true, "hits the floor at 100 lengths a second")                               \
+  SCENE(Pull, "pull", 30, false, "held by one node, pulled away three lengths by another")                  \
+  SCENE(HeavyBox, "heavy_box", 30, true, "a box of 1,000 times its mass falls on it")                       \
+  SCENE(NodeNaN, "node_nan", 30, false, "a node is not a number, for one update")                           \
+  SCENE(NodeInfinite, "node_infinite", 30, false, "a node is infinite, for one update")                     \
   SCENE(NodeTooFar, "node_too_far", 30, false, "a node is beyond what a surface can follow, for one update")
 
 #define DECLARE(maker, name, frames, lands, about) \
@@ -51,7 +51,7 @@ const SceneEntry& sceneNamed(const std::string& name) {
   if (found != table.end()) return *found;
   std::string names;
   for (const SceneEntry& entry : table) names += (names.empty() ? "" : ", ") + entry.name;
-  throw InputError("there is no scene '" + name + "', but: " + names);
+  throw InputError("there is no scene '" + name + "'; there are: " + names);
 }
 
 std::unique_ptr<Scene> SceneEntry::make(const TetMesh& cage, SceneOptions options) const {

@@ -16,9 +16,9 @@ using MakeScene = std::unique_ptr<Scene> (*)(const TetMesh& cage, const SceneOpt
 
 struct SceneEntry {
   std::string name;
-  int frames;  ///< its own, if the options do not say
-  bool lands;  ///< bodies meet a floor
-  std::string about;
+  int frames;         ///< its own, if the options do not say
+  bool lands;         ///< bodies meet a floor
+  std::string about;  ///< for people: what happens to the body
   MakeScene maker;
 
   std::unique_ptr<Scene> make(const TetMesh& cage, SceneOptions options = {}) const;

@@ -10,7 +10,6 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 
-
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
 

@@ -49,7 +49,8 @@ struct StressCase {
   std::string group;
   std::string name;
 
-  scenes::Force force = scenes::Force::NeoHookean;  ///< mass-spring in the classic world, the others in the deformable one
+  scenes::Force force =
+      scenes::Force::NeoHookean;  ///< mass-spring in the classic world, the others in the deformable one
   bool implicit = false;
   /// Young's modulus, Pa, for a body of 1 kg and 2 m; mass-spring: link stiffness from 0 to 1. 0: the library's
   /// default.

@@ -51,7 +51,7 @@ class Deform : public testing::Test {
     mesh = scenes::makeSerpent({triangles});
     CageOptions options;
     options.targetTets = tets;
-    cage = buildCage(mesh, options);
+    cage = buildCage(mesh, options).value();
     ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
     ASSERT_TRUE(saveTetMesh(cage, folder.path("rest.vtk")).ok());
   }
@@ -264,11 +264,11 @@ TEST_F(Deform, WritesNormalsOfTheDeformedSurface) {
   writeDeformed([&](const Vector3d& p) -> Vector3d { return scale.cwiseProduct(p); });
   for (const char* normals : {"transformed", "recomputed"}) {
     ASSERT_EQ(deform({"--normals", normals, "--interpolation", "quadratic"}).status, 0);
-    const TriangleMesh out = loadMesh(folder.path("o.obj"));
+    const TriangleMesh out = loadMesh(folder.path("o.obj")).value();
     ASSERT_EQ(out.normals.size(), mesh.vertexCount()) << normals;
     EXPECT_EQ(out.texcoords, mesh.texcoords);
     EXPECT_EQ(out.triangles, mesh.triangles);
-    const TriangleMesh rest = loadMesh(folder.path("m.obj"));  // without normals: those of its triangles
+    const TriangleMesh rest = loadMesh(folder.path("m.obj")).value();  // without normals: those of its triangles
     const std::vector<Vector3d> restDirections = restNormals(rest);
     double off = 0.0;
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -307,7 +307,7 @@ TEST_F(Deform, ReadsEveryTetFormatAndAnyMeshFormat) {
 
 TEST_F(Deform, KeepsTheDigitsOfASurfaceFarOut) {
   writeTwoTets(folder);
-  cage = loadTetMesh(folder.path("rest.vtk"));
+  cage = loadTetMesh(folder.path("rest.vtk")).value();
   writeDeformed([](const Vector3d& p) -> Vector3d { return p + Vector3d(1e6, 0, 0); });
   ASSERT_EQ(deform().status, 0);
   const auto moved = test::objPositions(folder.read("o.obj"));
@@ -348,7 +348,7 @@ TEST_F(Deform, RefusesFilesThatCannotBeWritten) {
 
 TEST_F(Deform, RefusesADeformedCageOfOtherCounts) {
   writeTwoTets(folder);
-  TetMesh other = loadTetMesh(folder.path("rest.vtk"));
+  TetMesh other = loadTetMesh(folder.path("rest.vtk")).value();
   other.nodes.emplace_back(5, 5, 5);
   ASSERT_TRUE(saveTetMesh(other, folder.path("more.vtk")).ok());
   other.nodes.pop_back();

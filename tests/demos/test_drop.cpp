@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/src/normals/normals.h>
+#include <tetskin/core/mesh_skin.h>
 #include <tetskin/io/mesh_loader.h>
 
 #include <Eigen/Geometry>
@@ -117,8 +117,8 @@ TEST_F(Drop, WritesCurrentUnitNormalsIfAskedFor) {
                     "quadratic", "--normals", normals, "--out", normals})
                   .status,
               0);
-    const TriangleMesh first = loadMesh(folder.path(normals + "/frame_0000.obj"));
-    const TriangleMesh last = loadMesh(folder.path(normals + "/frame_0029.obj"));
+    const TriangleMesh first = loadMesh(folder.path(normals + "/frame_0000.obj")).value();
+    const TriangleMesh last = loadMesh(folder.path(normals + "/frame_0029.obj")).value();
     ASSERT_EQ(first.normals.size(), 8u);
     ASSERT_EQ(last.normals.size(), 8u);
     EXPECT_EQ(last.texcoords.size(), first.texcoords.size());

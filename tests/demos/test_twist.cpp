@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/src/normals/normals.h>
 #include <tetskin/io/mesh_loader.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 
 #include "command.h"
 #include "scenes/bar.h"
-#include "scenes/twist_scene.h"
+#include "scenes/twist.h"
 
 namespace tetskin {
 namespace {
@@ -101,11 +100,11 @@ TEST_F(TwistCommand, TurnsOneEndAFullTurnHoldsItAndLetsItGo) {
   EXPECT_LT(json["nodes_off_twist_rms"], 0.05);
   EXPECT_GT(json["skin_linear_us_per_frame"], 0.0);
   EXPECT_GT(json["skin_quadratic_us_per_frame"], 0.0);
-  const TriangleMesh rest = loadMesh(folder.path("out/twist/frame_0000.obj"));
+  const TriangleMesh rest = loadMesh(folder.path("out/twist/frame_0000.obj")).value();
   const auto turned = [&](int frame, double from, double to) {
     char name[32];
     std::snprintf(name, sizeof name, "out/twist/frame_%04d.obj", frame);
-    return turnOf(rest, loadMesh(folder.path(name)), rest.vertexCount() / 2, from, to);
+    return turnOf(rest, loadMesh(folder.path(name)).value(), rest.vertexCount() / 2, from, to);
   };
   for (const int frame : {60, 120, 140, 230}) EXPECT_NEAR(turned(frame, -2.0, -1.8), 0.0, 5.0) << frame;
   EXPECT_NEAR(std::abs(turned(60, 1.8, 2.0)), 180.0, 8.0);
@@ -130,8 +129,8 @@ TEST_F(TwistCommand, QuadraticIsCloserToTheExactTwist) {
 TEST_F(TwistCommand, WritesBothSurfacesSideBySideWithNormals) {
   ASSERT_EQ(twist({"--triangles", "4000", "--tets", "300", "--frames", "61", "--every", "60", "--out", "o"}).status, 0);
   const TriangleMesh bar = scenes::makeBar(4000);
-  const TriangleMesh first = loadMesh(folder.path("o/frame_0000.obj"));
-  const TriangleMesh last = loadMesh(folder.path("o/frame_0060.obj"));
+  const TriangleMesh first = loadMesh(folder.path("o/frame_0000.obj")).value();
+  const TriangleMesh last = loadMesh(folder.path("o/frame_0060.obj")).value();
   ASSERT_EQ(first.vertexCount(), 2 * bar.vertexCount());
   ASSERT_EQ(first.groups.size(), 2u);
   EXPECT_EQ(first.groups[0].name, "linear");

@@ -28,7 +28,7 @@ std::unique_ptr<Scene> makeTwist(const TetMesh& cage, const SceneOptions& option
   const std::vector<int> held = nodesWhere(cage, isHeld);
   btSoftBody& body = scene->add(cage, isHeld);
   scene->beforeSubstep = [&body, held, rest = cage.nodes, twist, frames = options.frames](double frame,
-                                                                                        double seconds) mutable {
+                                                                                          double seconds) mutable {
     twist.turn = kTurn * smoothStep(0.0, kTurningShare * frames, frame);
     for (const int n : held) moveHeldNode(body.m_nodes[n], twist.point(rest[n]), seconds);
   };

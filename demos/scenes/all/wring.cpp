@@ -26,7 +26,8 @@ double turnAt(int frame) {
 /// Lets go of the moved end.
 void release(btSoftBody& body, const TetMesh& cage, double mass, const Twist& twist, std::vector<int>& held) {
   const std::vector<double> masses = lumpedMasses(cage, mass);
-  const auto stays = std::partition(held.begin(), held.end(), [&](int n) { return cage.nodes[n][twist.axis] < twist.to; });
+  const auto stays =
+      std::partition(held.begin(), held.end(), [&](int n) { return cage.nodes[n][twist.axis] < twist.to; });
   for (auto n = stays; n != held.end(); ++n) setMass(body, *n, static_cast<btScalar>(masses[*n]));
   held.erase(stays, held.end());
 }
