@@ -7,13 +7,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "scenes/command_line.h"
-#include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/progress.h"
+#include "scenes/player.h"
 #include "scenes/summary.h"
-#include "scenes/table.h"
-#include "scenes/timer.h"
 
 namespace {
 
@@ -32,13 +28,6 @@ constexpr double kRestSpeed = 0.05;
 
 /// What is measured on the way.
 struct Totals {
-  int frames = 0;
-  int written = 0;
-  double simulationMs = 0.0;
-  double skinUs = 0.0;
-  double writeMs = 0.0;
-  bool finite = true;
-  bool aboveFloor = true;
   double extentMax = 1.0;
   double lowest = HUGE_VAL;
   std::vector<double> speeds;  ///< a frame, in sizes a second
@@ -51,112 +40,72 @@ struct Totals {
   }
 };
 
-/// The model in the scene. It may have any size and be anywhere: results are in its own space. Frame 0 is the model at
-/// rest.
+/// The mesh in the scene, and its numbers in the mesh's own space.
 class Drop {
  public:
   explicit Drop(const DropOptions& options)
       : options_(options),
-        model_(loadModel(options.model)),
-        place_(placementOf(boundingBox(model_.cage.nodes))),
-        scene_(sceneNamed("obstacles").make(place_.toWorld(model_.cage))),
-        fit_(skin_.bind(scene_->body(), model_.cage, model_.mesh, options.skin)) {
-    requireFit(fit_, options.model);
-    place_.offset = scene_->offset;
-  }
+        player_(options.model, "obstacles"),
+        surface_(player_.carry(options.skin)),
+        restExtent_(bounds().sizes().maxCoeff()) {}
 
-  const ObjLayout& layout() const { return model_.layout; }
-  TriangleMesh obstacles() const {
-    TriangleMesh mesh = scene_->world().obstacles();
-    place_.toModel(mesh.positions);
+  const ObjLayout& layout() const { return player_.model().layout; }
+  TriangleMesh obstacles() {
+    TriangleMesh mesh = player_.scene().world().obstacles();
+    player_.place().toModel(mesh.positions);
     return mesh;
   }
-  double floorY() const { return place_.toModel(Eigen::Vector3d(0.0, scene_->floorY, 0.0)).y(); }
+  double floorY() { return player_.place().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
+  const Totals& totals() const { return totals_; }
 
-  Totals simulate(FrameWriter& writer);
-  nlohmann::ordered_json summarise(const Totals& totals) const;
+  Playback simulate(FrameWriter& writer) {
+    return player_.play(
+        "simulating", options_.output, writer, [&](int) { measure(); }, [&](int frame) { write(frame, writer); });
+  }
+  nlohmann::ordered_json summarise(const Playback& run);
 
  private:
-  bool step(int frame, Totals& totals);
-  void measure(double restExtent, Totals& totals);
-  void write(int frame, FrameWriter& writer, Totals& totals);
-  Box3 bounds() const { return {place_.toModel(skin_.bounds().min()), place_.toModel(skin_.bounds().max())}; }
-
-  const DropOptions& options_;
-  const Model model_;
-  Placement place_;
-  const std::unique_ptr<Scene> scene_;
-  SoftBodySkin skin_;
-  const EmbedReport fit_;
-  std::vector<Eigen::Vector3d> surface_;
-};
-
-/// Returns false if the skin found node positions that are not finite.
-bool Drop::step(int frame, Totals& totals) {
-  const WallTimer simulation;
-  const int substeps = scene_->step(frame);
-  totals.simulationMs += simulation.milliseconds();
-  const WallTimer skin;
-  const UpdateStatus status = substeps > 0 ? skin_.update() : UpdateStatus::Asleep;
-  totals.skinUs += skin.microseconds();
-  return status == UpdateStatus::Updated || status == UpdateStatus::Asleep;
-}
-
-void Drop::measure(double restExtent, Totals& totals) {
-  const Findings found = scene_->check(skin_.positions());
-  totals.finite = !found.exploded;
-  totals.aboveFloor = totals.aboveFloor && found.aboveFloor;
-  totals.extentMax = std::max(totals.extentMax, bounds().sizes().maxCoeff() / restExtent);
-  totals.lowest = std::min(totals.lowest, bounds().min().y());
-  totals.speeds.push_back(scene_->nodeSpeed());
-}
-
-void Drop::write(int frame, FrameWriter& writer, Totals& totals) {
-  const WallTimer timer;
-  place_.readSurface(skin_, surface_);
-  writer.write(frame, surface_, bounds(), skin_.normals());
-  if (options_.writeCage) {
-    TetMesh cage = tetMeshOf(scene_->body());
-    place_.toModel(cage.nodes);
+  Box3 bounds() const {
+    const Box3& box = surface_.skin.bounds();
+    return {player_.place().toModel(box.min()), player_.place().toModel(box.max())};
+  }
+  void measure() {
+    totals_.extentMax = std::max(totals_.extentMax, bounds().sizes().maxCoeff() / restExtent_);
+    totals_.lowest = std::min(totals_.lowest, bounds().min().y());
+    totals_.speeds.push_back(player_.scene().nodeSpeed());
+  }
+  void write(int frame, FrameWriter& writer) {
+    writer.write(frame, surface_.surface, bounds(), surface_.skin.normals());
+    if (!options_.writeCage) return;
+    TetMesh cage = tetMeshOf(player_.scene().body());
+    player_.place().toModel(cage.nodes);
     writer.writeCage(frame, cage);
   }
-  totals.writeMs += timer.milliseconds();
-  if (totals.written++ == 0 && !options_.output.quiet) std::printf("%s\n", writer.announcement().c_str());
-}
 
-Totals Drop::simulate(FrameWriter& writer) {
-  const OutputOptions& output = options_.output;
-  const double restExtent = bounds().sizes().maxCoeff();
-  Totals totals;
-  Progress progress("simulating", output.frames, output.quiet);
-  for (int frame = 0; frame < output.frames; ++frame) {
-    if (frame > 0) totals.finite = step(frame, totals);
-    if (totals.finite) measure(restExtent, totals);
-    if (!totals.finite) break;
-    if (frame % output.every == 0) write(frame, writer, totals);
-    totals.frames = frame + 1;
-    progress.show(frame + 1);
-  }
-  return totals;
-}
+  const DropOptions& options_;
+  Player player_;
+  const Carried& surface_;
+  double restExtent_;
+  Totals totals_;
+};
 
-nlohmann::ordered_json Drop::summarise(const Totals& totals) const {
-  const double steps = std::max(1, totals.frames - 1), margin = scene_->margin() / place_.scale;
-  nlohmann::ordered_json json = summaryOf(model_, fit_);
-  json["simulation_ms_per_frame"] = totals.simulationMs / steps;
-  json["skin_us_per_frame"] = totals.skinUs / steps;
-  json["write_ms_per_frame"] = totals.writeMs / std::max(1, totals.written);
-  json["frames"] = totals.frames;
-  json["frames_written"] = totals.written;
+nlohmann::ordered_json Drop::summarise(const Playback& run) {
+  const double scale = player_.place().scale, margin = player_.scene().margin() / scale;
+  nlohmann::ordered_json json = summaryOf(player_.model(), player_.fit());
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  json["skin_us_per_frame"] = surface_.microseconds / run.steps();
+  json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
+  json["frames"] = run.frames;
+  json["frames_written"] = run.written;
   json["floor_y"] = floorY();
   json["margin"] = margin;
-  json["lowest_y"] = totals.lowest;
-  json["floor_tolerance"] = margin + kFloorTolerance * (kSize / place_.scale);
-  json["above_floor"] = totals.aboveFloor;
-  json["extent_max"] = totals.extentMax;
-  json["rest_speed"] = totals.restSpeed();
-  json["at_rest"] = totals.restSpeed() < kRestSpeed;
-  json["finite"] = totals.finite;
+  json["lowest_y"] = totals_.lowest;
+  json["floor_tolerance"] = margin + kFloorTolerance * (kSize / scale);
+  json["above_floor"] = run.aboveFloor;
+  json["extent_max"] = totals_.extentMax;
+  json["rest_speed"] = totals_.restSpeed();
+  json["at_rest"] = totals_.restSpeed() < kRestSpeed;
+  json["finite"] = run.finite;
   json["out"] = options_.output.out;
   return json;
 }
@@ -199,17 +148,17 @@ int run(const DropOptions& options) {
   const std::string obstaclesPath = (std::filesystem::path(output.out) / "obstacles.obj").string();
   require(ObjLayout::fromMesh(obstacles).writeTo(obstaclesPath, viewOf(obstacles.positions)));
 
-  const Totals totals = drop.simulate(writer);
-  const nlohmann::ordered_json json = drop.summarise(totals);
+  const Playback run = drop.simulate(writer);
+  const nlohmann::ordered_json json = drop.summarise(run);
   writeJson(json, path);
   if (!output.quiet) printTable(json, path);
-  if (!totals.finite) {
-    std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", totals.frames - 1);
+  if (!run.finite) {
+    std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", run.frames - 1);
     return kRunFailed;
   }
-  if (!totals.aboveFloor) {
+  if (!run.aboveFloor) {
     std::fprintf(stderr, "tetskin_drop: the surface passed through the floor at y = %g, down to y = %g\n",
-                 drop.floorY(), totals.lowest);
+                 drop.floorY(), drop.totals().lowest);
     return kRunFailed;
   }
   return kDone;

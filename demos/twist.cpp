@@ -3,20 +3,14 @@
 //
 // A bar held at both ends in Bullet's deformable world, twisted a full turn and released; a linear and a quadratic
 // surface on the same coarse cage, side by side, and the errors of both.
-#include <tetskin/bullet/soft_body_skin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "scenes/command_line.h"
-#include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/progress.h"
+#include "scenes/player.h"
 #include "scenes/summary.h"
-#include "scenes/table.h"
-#include "scenes/timer.h"
 #include "scenes/wring.h"
 
 namespace {
@@ -39,7 +33,7 @@ struct Accuracy {
 };
 
 /// Without Bullet, whose body finds its own shape: the nodes are set to a full turn from end to end.
-Accuracy measure(const Model& model, SkinOptions options, Interpolation interpolation) {
+Accuracy accuracyOf(const Model& model, SkinOptions options, Interpolation interpolation) {
   const Twist twist = twistOf(boundingBox(model.cage.nodes), kFullTurn);
   options.interpolation = interpolation;
   options.normals = Normals::Transformed;
@@ -66,12 +60,6 @@ Accuracy measure(const Model& model, SkinOptions options, Interpolation interpol
   result.rms = std::sqrt(result.rms);
   return result;
 }
-
-/// A skin, and its surface in the model's space.
-struct Carried {
-  SoftBodySkin skin;
-  std::vector<Eigen::Vector3d> surface;
-};
 
 /// Two copies of a mesh in one, as the groups `linear` and `quadratic`, the second beside the first.
 class SideBySide {
@@ -114,138 +102,65 @@ class SideBySide {
   std::vector<Eigen::Vector3f> normals_;
 };
 
-/// What is measured on the way.
+/// What is measured on the way, lengths in diagonals of the mesh's box.
 struct Totals {
-  int frames = 0;
-  int written = 0;
-  double simulationMs = 0.0, linearUs = 0.0, quadraticUs = 0.0;
   double extentMax = 1.0;
   double nodesOffTwist = 0.0;                     ///< at the last frame before the release
-  double differenceRms = 0.0, differenceMax = 0;  ///< of the two surfaces, likewise, in box diagonals
-  bool finite = true;
+  double differenceRms = 0.0, differenceMax = 0;  ///< of the two surfaces, likewise
 };
 
-/// The model in the scene, with a linear and a quadratic surface. It may have any size and be anywhere: results are in
-/// its own space.
-class Wringing {
- public:
-  explicit Wringing(const TwistOptions& options)
-      : options_(options),
-        model_(loadModel(options.model)),
-        box_(boundingBox(model_.mesh.positions)),
-        place_(placementOf(boundingBox(model_.cage.nodes))),
-        scene_(sceneNamed("wring").make(place_.toWorld(model_.cage))) {
-    SkinOptions skin = options.skin;
-    skin.interpolation = Interpolation::Quadratic;
-    fit_ = quadratic_.skin.bind(scene_->body(), model_.cage, model_.mesh, skin);
-    requireFit(fit_, options.model);
-    skin.interpolation = Interpolation::Linear;
-    require(linear_.skin.bind(scene_->body(), quadratic_.skin.binding(), skin));
-    for (Carried* carried : {&linear_, &quadratic_}) place_.readSurface(carried->skin, carried->surface);
-  }
-
-  const Model& model() const { return model_; }
-  const EmbedReport& fit() const { return fit_; }
-  Totals simulate(FrameWriter& writer, SideBySide& pair);
-
- private:
-  bool step(int frame, Totals& totals);
-  bool update(Carried& carried, double& microseconds) const;
-  double nodesOffTwist(int frame) const;
-  void compareSurfaces(int frame, Totals& totals) const;
-
-  const TwistOptions& options_;
-  const Model model_;
-  const Box3 box_;  ///< of the mesh
-  const Placement place_;
-  const std::unique_ptr<Scene> scene_;
-  Carried linear_, quadratic_;
-  EmbedReport fit_;
-};
-
-/// Returns false if node positions are not finite.
-bool Wringing::step(int frame, Totals& totals) {
-  const WallTimer timer;
-  scene_->step(frame);
-  totals.simulationMs += timer.milliseconds();
-  const bool linear = update(linear_, totals.linearUs), quadratic = update(quadratic_, totals.quadraticUs);
-  return linear && quadratic;
-}
-
-bool Wringing::update(Carried& carried, double& microseconds) const {
-  const WallTimer timer;
-  const UpdateStatus status = carried.skin.update();
-  microseconds += timer.microseconds();
-  place_.readSurface(carried.skin, carried.surface);
-  return status == UpdateStatus::Updated;
-}
-
-/// Root mean square distance of the nodes to an even twist between the held ends, in diagonals of the mesh's box.
-double Wringing::nodesOffTwist(int frame) const {
-  const std::vector<Eigen::Vector3d>& rest = model_.cage.nodes;
+/// Root mean square distance of the nodes to an even twist between the held ends.
+double nodesOffTwist(Player& player, int frame) {
+  const std::vector<Eigen::Vector3d>& rest = player.model().cage.nodes;
   const Twist twist = wringAt(boundingBox(rest), frame);
   double squared = 0.0;
   for (std::size_t n = 0; n < rest.size(); ++n) {
-    const Eigen::Vector3d now = place_.toModel(toEigen(scene_->body().m_nodes[static_cast<int>(n)].m_x));
-    squared += (now - twist.point(rest[n])).squaredNorm();
+    const btVector3& node = player.scene().body().m_nodes[static_cast<int>(n)].m_x;
+    squared += (player.place().toModel(toEigen(node)) - twist.point(rest[n])).squaredNorm();
   }
-  return std::sqrt(squared / static_cast<double>(rest.size())) / box_.diagonal().norm();
+  return std::sqrt(squared / static_cast<double>(rest.size()));
 }
 
-void Wringing::compareSurfaces(int frame, Totals& totals) const {
-  totals.nodesOffTwist = nodesOffTwist(frame);
+void measure(Player& player, const Carried& linear, const Carried& quadratic, int frame, Totals& totals) {
+  const Box3 rest = boundingBox(player.model().mesh.positions);
+  const double diagonal = rest.diagonal().norm();
+  const double extent = boundingBox(linear.surface).sizes().maxCoeff() / rest.sizes().maxCoeff();
+  totals.extentMax = std::max(totals.extentMax, extent);
+  if (frame >= kReleased) return;
+  totals.nodesOffTwist = nodesOffTwist(player, frame) / diagonal;
   double squared = 0.0, farthest = 0.0;
-  for (std::size_t v = 0; v < linear_.surface.size(); ++v) {
-    const double distance = (linear_.surface[v] - quadratic_.surface[v]).norm() / box_.diagonal().norm();
+  for (std::size_t v = 0; v < linear.surface.size(); ++v) {
+    const double distance = (linear.surface[v] - quadratic.surface[v]).norm() / diagonal;
     squared += distance * distance;
     farthest = std::max(farthest, distance);
   }
-  totals.differenceRms = std::sqrt(squared / static_cast<double>(linear_.surface.size()));
+  totals.differenceRms = std::sqrt(squared / static_cast<double>(linear.surface.size()));
   totals.differenceMax = farthest;
 }
 
-Totals Wringing::simulate(FrameWriter& writer, SideBySide& pair) {
-  const OutputOptions& output = options_.output;
-  Totals totals;
-  Progress progress("twisting", output.frames, output.quiet);
-  for (int frame = 0; frame < output.frames; ++frame) {
-    totals.finite = (frame == 0 || step(frame, totals)) && !scene_->check(linear_.skin.positions()).exploded;
-    const double extent = boundingBox(linear_.surface).sizes().maxCoeff() / box_.sizes().maxCoeff();
-    totals.extentMax = std::max(totals.extentMax, extent);
-    if (!totals.finite) break;
-    if (frame < kReleased) compareSurfaces(frame, totals);
-    if (frame % output.every == 0) {
-      pair.write(linear_, quadratic_, frame, writer);
-      if (totals.written++ == 0 && !output.quiet) std::printf("%s\n", writer.announcement().c_str());
-    }
-    totals.frames = frame + 1;
-    progress.show(frame + 1);
-  }
-  return totals;
-}
-
-nlohmann::ordered_json summarise(const Wringing& wringing, const TwistOptions& options, const Accuracy& linear,
-                                 const Accuracy& quadratic, const Totals& totals) {
-  const double steps = std::max(1, totals.frames - 1);
-  nlohmann::ordered_json json = summaryOf(wringing.model(), wringing.fit());
-  json["error_linear_rms"] = linear.rms;
-  json["error_quadratic_rms"] = quadratic.rms;
-  json["error_linear_max"] = linear.max;
-  json["error_quadratic_max"] = quadratic.max;
-  json["normal_error_linear_deg"] = linear.normalDegrees;
-  json["normal_error_quadratic_deg"] = quadratic.normalDegrees;
-  json["frames"] = totals.frames;
-  json["frames_written"] = totals.written;
+nlohmann::ordered_json summarise(const Player& player, const TwistOptions& options, const Totals& totals,
+                                 const Playback& run, const Carried& linear, const Carried& quadratic) {
+  const Accuracy linearError = accuracyOf(player.model(), options.skin, Interpolation::Linear);
+  const Accuracy quadraticError = accuracyOf(player.model(), options.skin, Interpolation::Quadratic);
+  nlohmann::ordered_json json = summaryOf(player.model(), player.fit());
+  json["error_linear_rms"] = linearError.rms;
+  json["error_quadratic_rms"] = quadraticError.rms;
+  json["error_linear_max"] = linearError.max;
+  json["error_quadratic_max"] = quadraticError.max;
+  json["normal_error_linear_deg"] = linearError.normalDegrees;
+  json["normal_error_quadratic_deg"] = quadraticError.normalDegrees;
+  json["frames"] = run.frames;
+  json["frames_written"] = run.written;
   json["frame_turned"] = kTurned;
   json["frame_released"] = kReleased;
   json["nodes_off_twist_rms"] = totals.nodesOffTwist;
   json["difference_rms"] = totals.differenceRms;
   json["difference_max"] = totals.differenceMax;
-  json["simulation_ms_per_frame"] = totals.simulationMs / steps;
-  json["skin_linear_us_per_frame"] = totals.linearUs / steps;
-  json["skin_quadratic_us_per_frame"] = totals.quadraticUs / steps;
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  json["skin_linear_us_per_frame"] = linear.microseconds / run.steps();
+  json["skin_quadratic_us_per_frame"] = quadratic.microseconds / run.steps();
   json["extent_max"] = totals.extentMax;
-  json["finite"] = totals.finite;
+  json["finite"] = run.finite;
   json["out"] = options.output.out;
   return json;
 }
@@ -281,19 +196,27 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 }
 
 int run(const TwistOptions& options) {
-  Wringing wringing(options);
-  const Accuracy linear = measure(wringing.model(), options.skin, Interpolation::Linear);
-  const Accuracy quadratic = measure(wringing.model(), options.skin, Interpolation::Quadratic);
-  SideBySide pair(wringing.model().mesh);
+  Player player(options.model, "wring");
+  const auto carry = [&](Interpolation interpolation) -> const Carried& {
+    SkinOptions skin = options.skin;
+    skin.interpolation = interpolation;
+    return player.carry(skin);
+  };
+  const Carried& quadratic = carry(Interpolation::Quadratic);
+  const Carried& linear = carry(Interpolation::Linear);
+  SideBySide pair(player.model().mesh);
   FrameWriter writer({options.output.out, options.output.frames, options.output.every},
                      layoutWith(options.skin.normals, pair.layout()));
   const std::string path = summaryPath(options.output);
-  const Totals totals = wringing.simulate(writer, pair);
-  const nlohmann::ordered_json json = summarise(wringing, options, linear, quadratic, totals);
+  Totals totals;
+  const Playback run = player.play(
+      "twisting", options.output, writer, [&](int frame) { measure(player, linear, quadratic, frame, totals); },
+      [&](int frame) { pair.write(linear, quadratic, frame, writer); });
+  const nlohmann::ordered_json json = summarise(player, options, totals, run, linear, quadratic);
   writeJson(json, path);
   if (!options.output.quiet) printTable(json, path);
-  if (totals.finite) return kDone;
-  std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", totals.frames - 1);
+  if (run.finite) return kDone;
+  std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;
 }
 

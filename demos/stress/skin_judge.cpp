@@ -27,16 +27,6 @@ constexpr double kWeightRounding = 6e-8;
 /// Share of the size that a node must have gone for an amplification to mean anything.
 constexpr double kSmallWay = 0.001;
 
-/// Index of the first node that no surface can follow.
-std::size_t firstUnusable(PointView<const btScalar> nodes) {
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(static_cast<double>(nodes[n][k])) <= kLargestCoordinate)) return n;
-    }
-  }
-  return nodes.size();
-}
-
 template <class Scalar>
 std::vector<Scalar> copyOf(PointView<const Scalar> points) {
   std::vector<Scalar> copy;

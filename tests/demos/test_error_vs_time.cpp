@@ -230,7 +230,7 @@ TEST_F(ErrorVsTime, SaysWhatItNeedsForTablesAndPlots) {
   arguments.erase(arguments.begin() + 1);  // --quiet
   const CommandResult result = run(arguments);
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1) << result.out;
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 2) << result.out;
   for (const char* word :
        {"python3-matplotlib", "python3 " TETSKIN_PLOTS "/error_vs_time.py out/error_vs_time.json out",
         "--target-error 0.5"}) {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/player.h"
+
+#include <cstdio>
+
+#include "scenes/input_error.h"
+#include "scenes/progress.h"
+#include "scenes/timer.h"
+
+namespace tetskin::scenes {
+
+Player::Player(const ModelOptions& options, const std::string& scene)
+    : options_(options),
+      model_(loadModel(options)),
+      place_(placementOf(boundingBox(model_.cage.nodes))),
+      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage))) {
+  place_.offset = scene_->offset;
+}
+
+Carried& Player::carry(const SkinOptions& options) {
+  Carried& added = carried_.emplace_back();
+  if (carried_.size() == 1) {
+    fit_ = added.skin.bind(scene_->body(), model_.cage, model_.mesh, options);
+    requireFit(fit_, options_);
+  } else {
+    require(added.skin.bind(scene_->body(), carried_.front().skin.binding(), options));
+  }
+  place_.readSurface(added.skin, added.surface);
+  return added;
+}
+
+/// Returns false if node positions are not finite.
+bool Player::step(int frame, Playback& run) {
+  const WallTimer simulation;
+  scene_->step(frame);
+  run.simulationMs += simulation.milliseconds();
+  bool followed = true;
+  for (Carried& carried : carried_) {
+    const WallTimer timer;
+    const UpdateStatus status = carried.skin.update();
+    carried.microseconds += timer.microseconds();
+    followed = followed && (status == UpdateStatus::Updated || status == UpdateStatus::Asleep);
+    place_.readSurface(carried.skin, carried.surface);
+  }
+  return followed;
+}
+
+Playback Player::play(const char* doing, const OutputOptions& output, const FrameWriter& writer, const OfFrame& measure,
+                      const OfFrame& write) {
+  Playback run;
+  Progress progress(doing, output.frames, output.quiet);
+  for (int frame = 0; frame < output.frames; ++frame) {
+    run.finite = frame == 0 || step(frame, run);
+    for (const Carried& carried : carried_) {
+      const Findings found = scene_->check(carried.skin.positions());
+      run.finite = run.finite && !found.exploded;
+      run.aboveFloor = run.aboveFloor && found.aboveFloor;
+    }
+    if (!run.finite) break;
+    measure(frame);
+    if (frame % output.every == 0) {
+      const WallTimer timer;
+      write(frame);
+      run.writeMs += timer.milliseconds();
+      if (run.written++ == 0 && !output.quiet) std::printf("%s\n", writer.announcement().c_str());
+    }
+    run.frames = frame + 1;
+    progress.show(frame + 1);
+  }
+  return run;
+}
+
+}  // namespace tetskin::scenes

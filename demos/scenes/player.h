@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <deque>
+
+#include "scenes/command_line.h"
+#include "scenes/frame_writer.h"
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+
+/// A skin, and its surface in the model's space.
+struct Carried {
+  SoftBodySkin skin;
+  std::vector<Eigen::Vector3d> surface;  ///< vertexCount
+  double microseconds = 0.0;             ///< of all updates
+};
+
+/// What a run has shown.
+struct Playback {
+  int frames = 0, written = 0;
+  double simulationMs = 0.0, writeMs = 0.0;  ///< of all frames
+  bool finite = true;                        ///< and not exploded; the run ends before the first frame that is not
+  bool aboveFloor = true;                    ///< in all frames
+
+  int steps() const { return frames > 1 ? frames - 1 : 1; }
+};
+
+/// Told the number of a frame.
+using OfFrame = std::function<void(int frame)>;
+
+/// A model in a scene, with surfaces on its body. It may have any size and be anywhere: results are in its own space.
+/// Frame 0 is the model at rest.
+class Player {
+ public:
+  /// Loads the model. Throws InputError.
+  Player(const ModelOptions& options, const std::string& scene);
+
+  /// Adds a surface; all later ones share the binding of the first. Throws InputError if mesh and cage do not fit.
+  Carried& carry(const SkinOptions& options);
+
+  const Model& model() const { return model_; }
+  Scene& scene() { return *scene_; }
+  const Placement& place() const { return place_; }
+  const EmbedReport& fit() const { return fit_; }
+
+  /// Simulates the frames that the options say, and tells how far it has come.
+  /// measure  after every frame; write  after those that are to be written, to this writer
+  Playback play(const char* doing, const OutputOptions& output, const FrameWriter& writer, const OfFrame& measure,
+                const OfFrame& write);
+
+ private:
+  bool step(int frame, Playback& run);
+
+  ModelOptions options_;
+  Model model_;
+  Placement place_;
+  std::unique_ptr<Scene> scene_;
+  std::deque<Carried> carried_;
+  EmbedReport fit_;
+};
+
+}  // namespace tetskin::scenes
