@@ -15,6 +15,7 @@
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/memory.h"
+#include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/statistics.h"
 #include "scenes/summary.h"

@@ -3,6 +3,7 @@
 #include "bench/body_cases.h"
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/body_trees.h>
 #include <tetskin/cage/cage_builder.h>

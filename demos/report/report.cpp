@@ -8,6 +8,7 @@
 #include "report/advice.h"
 #include "report/report_files.h"
 #include "scenes/files.h"
+#include "scenes/placement.h"
 #include "scenes/progress.h"
 
 namespace tetskin::report {

@@ -7,10 +7,9 @@
 
 #include <vector>
 
-namespace tetskin::scenes {
+#include "scenes/world.h"
 
-/// Largest side of a body in Bullet's world, which has absolute constants (sleep thresholds, clamps).
-constexpr double kSize = 2.0;
+namespace tetskin::scenes {
 
 /// The way from a model's own space, where it may have any size and be anywhere, to Bullet's world, and back.
 struct Placement {

@@ -6,6 +6,7 @@
 
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
+#include "scenes/placement.h"
 #include "scenes/table.h"
 
 namespace tetskin::scenes {

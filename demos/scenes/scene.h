@@ -9,7 +9,6 @@
 #include <memory>
 #include <vector>
 
-#include "scenes/placement.h"
 #include "scenes/world.h"
 
 namespace tetskin::scenes {

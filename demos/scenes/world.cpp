@@ -2,13 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/world.h"
 
-#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableCorotatedForce.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
+#include <tetskin/bullet/deformable_body.h>
 
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
@@ -93,6 +95,14 @@ void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
   deformable_->addForce(&body, forces_.back().get());
   forces_.push_back(std::move(elasticity));
   deformable_->addForce(&body, forces_.back().get());
+}
+
+int World::step(double seconds) {
+  return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+}
+
+double World::youngsModulus() const {
+  return deformableBodies_.back()->youngsModulus();
 }
 
 void World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope, double mass) {

@@ -4,17 +4,31 @@
 // The one place in which the demos make Bullet's worlds and put bodies into them.
 #pragma once
 
-#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
-#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/soft_body_builder.h>
 #include <tetskin/core/triangle_mesh.h>
-
-#include <btBulletDynamicsCommon.h>
 
 #include <memory>
 #include <vector>
 
+class btBroadphaseInterface;
+class btCollisionConfiguration;
+class btCollisionShape;
+class btConstraintSolver;
+class btDeformableBodySolver;
+class btDeformableLagrangianForce;
+class btDeformableMultiBodyDynamicsWorld;
+class btDiscreteDynamicsWorld;
+class btDispatcher;
+class btRigidBody;
+
+namespace tetskin {
+class DeformableBody;
+}
+
 namespace tetskin::scenes {
 
+/// Largest side of a body in Bullet's world, which has absolute constants (sleep thresholds, clamps).
+constexpr double kSize = 2.0;
 /// Of gravity, in lengths a second, squared.
 constexpr double kEarth = 9.81;
 
@@ -43,11 +57,11 @@ class World {
   void addSphere(const Eigen::Vector3d& centre, double radius);
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
-  int step(double seconds) { return world_->stepSimulation(static_cast<btScalar>(seconds), 0); }
+  int step(double seconds);
 
   btDiscreteDynamicsWorld& bullet() { return *world_; }
   /// Of the body added last, in the deformable world by a force of the library's.
-  double youngsModulus() const { return deformableBodies_.back()->youngsModulus(); }
+  double youngsModulus() const;
   /// All that is fixed, world space.
   const TriangleMesh& obstacles() const { return obstacles_; }
 

@@ -9,6 +9,7 @@
 #include "scenes/crowd.h"
 #include "scenes/memory.h"
 #include "scenes/model.h"
+#include "scenes/placement.h"
 #include "scenes/table.h"
 
 namespace tetskin {

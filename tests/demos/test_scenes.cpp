@@ -13,6 +13,7 @@
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/model.h"
+#include "scenes/placement.h"
 #include "scenes/statistics.h"
 #include "scenes/table.h"
 #include "scenes/wring.h"
