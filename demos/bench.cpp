@@ -8,6 +8,9 @@
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body_builder.h>
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/src/normals/normals.h>
+#include <tetskin/core/src/normals/recomputed_normals.h>
+#include <tetskin/core/src/skinning/skinning.h>
 #include <tetskin/io/tet_mesh_writer.h>
 
 #include <algorithm>

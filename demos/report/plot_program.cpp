@@ -5,13 +5,12 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 
 #include "scenes/files.h"
-
-extern char** environ;
 
 namespace tetskin::report {
 namespace {
@@ -46,7 +45,8 @@ std::string pythonWithMatplotlib() {
 }  // namespace
 
 void makeTablesAndPlots(const ReportOptions& options) {
-  if (!std::filesystem::is_regular_file(options.json)) return;  // a pipe: whoever reads it has the results
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options.json, error)) return;  // a pipe: whoever reads it has the results
   std::vector<std::string> command = {pythonWithMatplotlib(), kProgram, options.json, options.out};
   if (options.targetError > 0.0) {
     std::string target;

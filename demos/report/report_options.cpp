@@ -27,7 +27,7 @@ std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
 ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   ReportOptions& o = options_;
   line.addSurfaceOptions(o.model);
-  line.addWords("--scene", o.scenes, "Scenes, with commas (default: sag,twist,drop,exact)");
+  line.addWords("--scene", o.scenes, "With commas (default: sag,twist,drop,exact), of: " + scenes::sceneNames());
   line.addCounts("--tets", o.tets, "Tets of the cages, with commas");
   line.addCount("--reference-tets", o.referenceTets, "Tets of the cage that counts as right");
   line.addFlag("--full", full_, "A reference of 300,000 tets");

@@ -45,13 +45,17 @@ const std::vector<SceneEntry>& sceneTable() {
   return table;
 }
 
+std::string sceneNames() {
+  std::string names;
+  for (const SceneEntry& entry : sceneTable()) names += (names.empty() ? "" : ", ") + entry.name;
+  return names;
+}
+
 const SceneEntry& sceneNamed(const std::string& name) {
   const auto& table = sceneTable();
   const auto found = std::find_if(table.begin(), table.end(), [&](const SceneEntry& e) { return e.name == name; });
   if (found != table.end()) return *found;
-  std::string names;
-  for (const SceneEntry& entry : table) names += (names.empty() ? "" : ", ") + entry.name;
-  throw InputError("there is no scene '" + name + "'; there are: " + names);
+  throw InputError("there is no scene '" + name + "'; there are: " + sceneNames());
 }
 
 std::unique_ptr<Scene> SceneEntry::make(const TetMesh& cage, SceneOptions options) const {

@@ -26,6 +26,8 @@ struct SceneEntry {
 
 /// All scenes.
 const std::vector<SceneEntry>& sceneTable();
+/// All names, with commas.
+std::string sceneNames();
 /// The scene of this name. Throws InputError with all names if there is none.
 const SceneEntry& sceneNamed(const std::string& name);
 

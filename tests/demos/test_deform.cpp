@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/cage_builder.h>
+#include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
-#include <tetskin/core/src/normals/normals.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/obj_layout.h>
 #include <tetskin/io/tet_mesh_reader.h>

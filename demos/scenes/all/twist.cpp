@@ -27,10 +27,10 @@ std::unique_ptr<Scene> makeTwist(const TetMesh& cage, const SceneOptions& option
   const auto isHeld = [=](const Eigen::Vector3d& p) { return p.y() <= twist.from || p.y() >= twist.to; };
   const std::vector<int> held = nodesWhere(cage, isHeld);
   btSoftBody& body = scene->add(cage, isHeld);
-  scene->beforeSubstep = [&body, held, rest = cage.nodes, twist, frames = options.frames](double frame,
-                                                                                          double seconds) mutable {
+  scene->beforeSubstep = [&body, held, rest = cage.nodes, twist, frames = options.frames, offset = scene->offset](
+                             double frame, double seconds) mutable {
     twist.turn = kTurn * smoothStep(0.0, kTurningShare * frames, frame);
-    for (const int n : held) moveHeldNode(body.m_nodes[n], twist.point(rest[n]), seconds);
+    for (const int n : held) moveHeldNode(body.m_nodes[n], twist.point(rest[n]) + offset, seconds);
   };
   return scene;
 }

@@ -54,11 +54,11 @@ std::unique_ptr<Scene> makeWring(const TetMesh& cage, const SceneOptions& wished
   scene->beforeFrame = [=, &body](int frame, const Moved&) {
     if (frame == kReleased) release(body, cage, mass, rest, *held);
   };
-  scene->beforeSubstep = [=, &body](double frame, double seconds) {
+  scene->beforeSubstep = [=, &body, offset = scene->offset](double frame, double seconds) {
     const int reached = static_cast<int>(std::ceil(frame));
     Twist twist = rest;
     twist.turn = turnAt(reached - 1) + (turnAt(reached) - turnAt(reached - 1)) * (frame - (reached - 1));
-    for (const int n : *held) moveHeldNode(body.m_nodes[n], twist.point(cage.nodes[n]), seconds);
+    for (const int n : *held) moveHeldNode(body.m_nodes[n], twist.point(cage.nodes[n]) + offset, seconds);
   };
   return scene;
 }
