@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -19,9 +20,9 @@ constexpr const char* kProgram = TETSKIN_PLOTS "/error_vs_time.py";
 
 /// Runs a command found by the path, and waits for it; returns true if it ended well.
 bool run(const std::vector<std::string>& command, bool silent = false) {
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  std::vector<char*> arguments(command.size() + 1);  // the last one null
+  std::transform(command.begin(), command.end(), arguments.begin(),
+                 [](const std::string& word) { return const_cast<char*>(word.c_str()); });
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (const int stream : {1, 2}) {

@@ -181,7 +181,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
 }
 
 std::string summaryPath(const OutputOptions& options) {
-  const std::string path =
+  std::string path =
       options.json.empty() ? (std::filesystem::path(options.out) / "summary.json").string() : options.json;
   requireWritable(path);
   return path;

@@ -14,7 +14,8 @@ std::unique_ptr<Scene> makeCrowd(const TetMesh& cage, const SceneOptions& option
   auto scene = std::make_unique<Scene>(options, kEarth);
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.bodies))));
   for (std::size_t i = 0; i < options.bodies; ++i) {
-    const Eigen::Vector3d where(static_cast<double>(i % columns), 0.0, static_cast<double>(i / columns));
+    const std::size_t row = i / columns;
+    const Eigen::Vector3d where(static_cast<double>(i % columns), 0.0, static_cast<double>(row));
     scene->add(cage, {}, kSpacing * options.size * where).forceActivationState(ACTIVE_TAG);
   }
   return scene;

@@ -82,6 +82,7 @@ std::unique_ptr<Scene> makePermute(const TetMesh& cage, const SceneOptions& opti
     if (frame != eventFrame(s->options())) return;
     std::mt19937 generator(17);
     std::vector<btVector3> places;
+    places.reserve(static_cast<std::size_t>(s->body().m_nodes.size()));
     for (int n = 0; n < s->body().m_nodes.size(); ++n) places.push_back(s->body().m_nodes[n].m_x);
     for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[generator() % k]);
     auto next = places.begin();
