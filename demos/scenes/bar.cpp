@@ -6,18 +6,18 @@
 #include <cmath>
 
 #include "scenes/serpent.h"
+#include "scenes/serpent_spine.h"
 #include "scenes/serpent_tube.h"
 
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kHalfLength = 2.0, kHalfWidth = 0.46;
 constexpr double kCapDepth = 0.25;  ///< over which each end is rounded off
 constexpr double kCapShare = 0.13;  ///< of the rings, for each end
 constexpr double kRidgeHeight = 0.035;
 constexpr int kRidges = 16, kColumnsPerRidge = 6;
-constexpr double kSlenderness = 1.35;
+constexpr double kBarSlenderness = 1.35;
 
 /// Distance of the outline from the axis, over half the width: a rounded square.
 double outline(double theta) {
@@ -28,7 +28,7 @@ double outline(double theta) {
 
 TriangleMesh makeBar(std::size_t triangles) {
   const std::size_t wish = std::clamp(triangles, kMinSerpentTriangles, kMaxSerpentTriangles);
-  const TubeGrid grid = tubeGrid(static_cast<double>(wish), kSlenderness);
+  const TubeGrid grid = tubeGrid(static_cast<double>(wish), kBarSlenderness);
   const double ridge = grid.columns >= kColumnsPerRidge * kRidges ? kRidgeHeight : 0.0;
   TriangleMesh mesh;
   appendTube(mesh, grid, [&](int ring, int column) -> Eigen::Vector3d {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "scenes/serpent_spine.h"
+
 namespace tetskin::scenes {
 namespace {
 
@@ -40,7 +42,6 @@ void appendBox(TriangleMesh& mesh, const Eigen::Vector3d& centre, const Eigen::V
 }
 
 void appendSphere(TriangleMesh& mesh, const Eigen::Vector3d& centre, double radius) {
-  constexpr double kPi = 3.14159265358979323846;
   constexpr int kRings = 24, kAround = 48;
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<int, 3>> triangles;

@@ -15,9 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;
-
 constexpr int kScaleColumns = 12;         ///< scales round the body
 constexpr double kScaleRows = 165.0;      ///< scales along it, about
 constexpr double kBodySlenderness = 9.5;  ///< rings over columns: four quads a scale along, four round

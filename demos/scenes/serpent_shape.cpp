@@ -11,9 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;
-
 constexpr double kHeadLength = 0.54;
 constexpr double kTailCap = 0.02;                        ///< length over which the tail's tip is rounded off
 constexpr double kSnoutCap = 0.085;                      ///< length over which the snout is rounded off

@@ -22,7 +22,6 @@ constexpr int kSamplesPerSpan = 512;             ///< of the B-spline, before it
 constexpr int kSettleReach = 1100;               ///< samples on either side over which the back finds its way up
 constexpr double kEnd = 0.93, kEndWeight = 6.0;  ///< share of the length from which on the back's way up counts more
 constexpr int kDensitySamples = 4096;
-constexpr double kPi = 3.14159265358979323846;
 
 /// Index i with keys[i] <= key <= keys[i + 1], for ascending keys.
 template <class Range, class Less>

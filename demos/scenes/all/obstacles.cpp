@@ -11,7 +11,7 @@ constexpr double kDropHeight = 0.6;
 constexpr double kDomeRadius = 1.2;
 constexpr double kDomeHeight = 0.3;
 constexpr double kRampSlope = 0.3;  ///< radians
-constexpr double kFloorHalfSide = 10.0;
+constexpr double kGroundHalfSide = 10.0;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::unique_ptr<Scene> makeObstacles(const TetMesh& cage, const SceneOptions& op
   auto scene = std::make_unique<Scene>(options, kEarth);
   World& world = scene->world();
   scene->floorY = 0.0;
-  world.addBox({0.0, -1.0, 0.0}, {kFloorHalfSide, 1.0, kFloorHalfSide});
+  world.addBox({0.0, -1.0, 0.0}, {kGroundHalfSide, 1.0, kGroundHalfSide});
   world.addBox({-1.4, -0.35, 0.0}, {1.2, 0.5, 2.0}, -kRampSlope);  // its upper side leads down to the right
   world.addSphere({0.6, kDomeHeight - kDomeRadius, 0.0}, kDomeRadius);
 
