@@ -6,12 +6,11 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/render_nodes.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/src/normals/normals.h>
-#include <tetskin/core/src/normals/recomputed_normals.h>
+#include <tetskin/core/src/skin_binding.h>
 #include <tetskin/core/src/skinning/skinning.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cstring>
@@ -54,9 +53,8 @@ struct Bench {
 void attachTetskin(State& state, const Bench& bench) {
   EmbedReport report;
   for (auto _ : state) {
-    Embedding embedding;
-    report = embed(bench.model.cage, viewOf(bench.model.mesh.positions), {}, embedding);
-    benchmark::DoNotOptimize(embedding);
+    const Result<Embedding> embedding = embed(bench.model.cage, viewOf(bench.model.mesh.positions), {}, &report);
+    benchmark::DoNotOptimize(&embedding);
   }
   state.counters["outside"] = static_cast<double>(report.outside);
   state.counters["candidates"] = static_cast<double>(report.candidates) / static_cast<double>(report.vertexCount);
@@ -68,7 +66,7 @@ void attachBullet(State& state, const Bench& bench) {
 
 /// Ours in Bullet's place: the render nodes of a body, ready for Bullet's own updates.
 void attachRenderNodes(State& state, const Bench& bench) {
-  for (auto _ : state) require(bindRenderNodes(*bench.body).status);
+  for (auto _ : state) require(bindRenderNodes(*bench.body).status());
 }
 
 /// One whole update as an application calls it, into its own buffer of floats.
@@ -78,9 +76,9 @@ void update(State& state, const Bench& bench, const SkinOptions& wished) {
   options.target = viewOf(out);
   options.bounds = false;
   SoftBodySkin skin;
-  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
+  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status());
   for (auto _ : state) {
-    skin.update();
+    benchmark::DoNotOptimize(skin.update());
     benchmark::ClobberMemory();
   }
 }
@@ -105,8 +103,7 @@ void updateQuadratic(State& state, const Bench& bench) {
 /// The normals alone, in the order of Update/linear.
 void normalsTransformed(State& state, const Bench& bench) {
   const TetMesh& cage = bench.model.cage;
-  Embedding embedding;
-  require(embed(cage, bench.model.mesh, {}, embedding).status);
+  const Embedding embedding = embed(cage, bench.model.mesh).value();
   const auto factors = DirectionFactors::ofNormals(cage, embedding, restNormals(bench.model.mesh));
   PackedNodes<btScalar> nodes(cage.nodeCount());
   if (nodes.pack(nodePositions(*bench.body)) < nodes.size()) throw InputError("the body is not finite");
@@ -122,8 +119,8 @@ void normalsRecomputed(State& state, const Bench& bench) {
   options.normals = Normals::Recomputed;
   options.order = VertexOrder::Sorted;
   SoftBodySkin skin;
-  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status);
-  const NormalTopology& topology = *skin.binding()->recomputed;
+  require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status());
+  const NormalTopology& topology = *skin.binding()->parts().recomputed;
   std::vector<btScalar> padded(4 * bench.model.mesh.vertexCount());
   std::vector<Eigen::Vector3f> normals(bench.model.mesh.vertexCount());
   for (auto _ : state) {
@@ -196,8 +193,9 @@ void buildCageOf(State& state, const TriangleMesh& mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
   CageReport report;
-  for (auto _ : state) benchmark::DoNotOptimize(buildCage(mesh, options, &report));
-  require(report.status);
+  Status status;
+  for (auto _ : state) status = buildCage(mesh, options, &report).status();
+  require(status);
   state.counters["triangles"] = static_cast<double>(mesh.triangleCount());
   state.counters["tets"] = static_cast<double>(report.tets);
 }
@@ -238,9 +236,9 @@ void attachSize(State& state, std::size_t vertices) {
   const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
   mesh = {};
   for (auto _ : state) {
-    Embedding embedding;
-    require(embed(cage, viewOf(points), {}, embedding).status);
-    benchmark::DoNotOptimize(embedding);
+    const Result<Embedding> embedding = embed(cage, viewOf(points));
+    require(embedding.status());
+    benchmark::DoNotOptimize(&embedding);
   }
   const double count = static_cast<double>(points.size());
   state.counters["tets"] = static_cast<double>(cage.tetCount());

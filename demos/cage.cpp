@@ -3,7 +3,7 @@
 //
 // Any mesh -> a cage of tets that holds it, as a file for Bullet, tetskin or a meshing program.
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 #include <nlohmann/json.hpp>
 
@@ -56,9 +56,9 @@ int run(CageCommand command) {
   require(saveTetMesh(cage, command.output));
 
   // Counted as an application would see it, not as the builder believes it to be.
-  Embedding embedding;
-  const EmbedReport fit = embed(cage, viewOf(surface.mesh.positions), {}, embedding);
-  if (!fit.ok()) throw InputError(surface.name + ": " + fit.status.message);
+  EmbedReport fit;
+  const auto embedded = embed(cage, viewOf(surface.mesh.positions), {}, &fit);
+  if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
   if (!command.json.empty()) writeJson(summarise(surface, report, fit), command.json);
   if (!command.quiet) std::printf("%s%s\n", report.describe().c_str(), command.output.c_str());
   if (fit.outside == 0) return kDone;

@@ -65,6 +65,7 @@ SkinOptions leastOptions() {
 /// bindingEach  for every body a binding of its own; otherwise they share the first one's
 Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const SkinOptions& options,
               bool bindingEach) {
+  const InstanceOptions& instance = options;
   const std::size_t before = heapBytes();
   const WallTimer timer;
   Skins skins;
@@ -72,9 +73,9 @@ Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     skins.pointers.push_back(&skins.all[i]);
     if (i == 0 || bindingEach) {
-      require(skins.all[i].bind(*bodies[i], model.cage, model.mesh, options).status);
+      require(skins.all[i].bind(*bodies[i], model.cage, model.mesh, options).status());
     } else {
-      require(skins.all[i].bind(*bodies[i], skins.all[0].binding(), options));
+      require(skins.all[i].bind(*bodies[i], skins.all[0].binding(), instance));
     }
   }
   skins.bindMs = timer.milliseconds();
@@ -157,7 +158,9 @@ constexpr Row kRows[] = {
 class Measurement {
  public:
   explicit Measurement(const CrowdOptions& options) : options_(options), model_(loadModel(options.model)) {
-    requireFit(checkFit(), options.model);
+    EmbedReport fit;
+    const Status embedded = embed(model_.cage, model_.mesh, {}, &fit).status();
+    requireFit(embedded, fit, options.model);
     const Placement place = placementOf(boundingBox(model_.cage.nodes));
     place.toWorld(model_.cage.nodes);
     place.toWorld(model_.mesh.positions);
@@ -189,11 +192,6 @@ class Measurement {
   }
 
  private:
-  EmbedReport checkFit() const {
-    Embedding embedding;
-    return embed(model_.cage, model_.mesh, {}, embedding);
-  }
-
   Skins* add(const std::vector<btSoftBody*>& bodies, const SkinOptions& skin, bool bindingEach = false) {
     skins_.push_back(bindAll(bodies, model_, skin, bindingEach));
     return &skins_.back();

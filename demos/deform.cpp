@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cctype>
@@ -107,22 +107,25 @@ int run(const DeformCommand& command) {
   model.cage = loadCage(command.model.cage);
   const TetMesh deformed = loadDeformed(command, model.cage);
 
-  std::shared_ptr<const SkinBinding<double>> binding;
-  QuadraticReport quadratic;
-  const EmbedReport fit = makeSkinBinding(model.cage, model.mesh, command.skin, binding, &quadratic);
-  requireFit(fit, command.model);
+  EmbedReport fit;
+  auto made = SkinBinding<double>::make(model.cage, model.mesh, command.skin, &fit);
+  requireFit(made.status(), fit, command.model);
+  const SkinBinding<double>::Pointer binding = std::move(made).value();
   MeshSkin<double> skin;
   const WallTimer timer;
-  const Status bound = skin.bind(binding, viewOf(deformed.nodes), command.skin);
+  const Status bound = skin.bind(binding, viewOf(deformed.nodes));
   const double updateUs = timer.microseconds();
   if (!bound.ok()) throw InputError(command.deformed + ": " + bound.message);
 
   writeSurface(skin, layoutWith(command.skin.normals, layout.value()), command.output);
-  if (!command.embedding.empty()) writeFile(command.embedding, embeddingText(binding->embedding));
-  if (!command.json.empty()) writeJson(summarise(model, command, fit, quadratic, updateUs), command.json);
+  if (!command.embedding.empty()) writeFile(command.embedding, embeddingText(binding->embedding()));
+  if (!command.json.empty())
+    writeJson(summarise(model, command, fit, binding->quadraticReport(), updateUs), command.json);
   if (command.quiet) return kDone;
   std::printf("%s", fit.describe().c_str());
-  if (binding->quadratic) std::printf("%s\n", quadratic.describe().c_str());
+  if (command.skin.interpolation == Interpolation::Quadratic) {
+    std::printf("%s\n", binding->quadraticReport().describe().c_str());
+  }
   std::printf("%s\n", command.output.c_str());
   return kDone;
 }

@@ -67,14 +67,15 @@ int main() {
   if (!body.ok()) return std::fprintf(stderr, "%s\n", body.status().message.c_str()), 1;
 
   tetskin::SoftBodySkin skin;
-  const tetskin::EmbedReport fit = skin.bind(body.value()->body(), cage, surface);  // once, at rest
-  std::printf("%s\n", fit.describe().c_str());
-  if (!fit.ok()) return 1;
+  const auto fit = skin.bind(body.value()->body(), cage, surface);  // once, at rest
+  if (!fit.ok()) return std::fprintf(stderr, "%s\n", fit.status().message.c_str()), 1;
+  std::printf("%s\n", fit.value().describe().c_str());
 
   const btScalar dt = btScalar(1) / 60;
   for (int frame = 0; frame <= 60; ++frame) {
     if (frame % 10 == 0) std::printf("frame %2d: lowest point at y = %.3f\n", frame, skin.bounds().min().y());
-    if (world.stepSimulation(dt, 4, dt / 4) > 0) skin.update();  // after each step; then draw skin.positions()
+    if (world.stepSimulation(dt, 4, dt / 4) == 0) continue;
+    if (skin.update() == tetskin::UpdateStatus::NonFinite) return 1;  // after each step; then draw skin.positions()
   }
   return 0;
 }

@@ -38,10 +38,11 @@ Accuracy accuracyOf(const Model& model, SkinOptions options, Interpolation inter
   options.interpolation = interpolation;
   options.normals = Normals::Transformed;
   MeshSkin<double> skin;
-  require(skin.bind(model.cage, model.mesh, options).status);
+  require(skin.bind(model.cage, model.mesh, options).status());
   std::vector<Eigen::Vector3d> nodes;
   for (const Eigen::Vector3d& p : model.cage.nodes) nodes.push_back(twist.point(p));
-  if (skin.update(viewOf(std::as_const(nodes))) < nodes.size()) throw InputError("the cage's nodes are not finite");
+  if (skin.update(viewOf(std::as_const(nodes))) != UpdateStatus::Updated)
+    throw InputError("the cage's nodes are not finite");
 
   const std::vector<Eigen::Vector3d> normals = restNormals(model.mesh);
   const double diagonal = boundingBox(model.mesh.positions).diagonal().norm();

@@ -16,6 +16,7 @@ import json
 import math
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -192,7 +193,8 @@ def error_against_time(scene, name):
         draw_embedding(axes, scene)
     draw_totals(axes, scene)
     errors = [r[key] for r in scene["rows"] for key in ("error_total_rms", "error_embedding_rms") if r[key] > 0]
-    axes.set_ylim(0.5 * min(errors), 2.5 * max(errors))
+    if errors:
+        axes.set_ylim(0.5 * min(errors), 2.5 * max(errors))
     label_sizes(axes, scene)
     draw_reference(axes, scene)
     axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
@@ -276,11 +278,14 @@ def draw(scene, model, arguments, folder):
     base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
     name = f"{model}, {scene['integrator']}" if integrated else model
     yield save(error_against_time(scene, name), folder, base)
-    if integrated:
+    if integrated and any(row["error_total_rms_by_frame"] for row in scene["rows"]):
         yield save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
     mesh = None if arguments.no_surface else coloured_mesh(f"error_{base}.ply", folder, arguments.results.parent)
     if mesh:
-        yield save(surface(mesh, title_of(scene)), folder, f"{base}_surface")
+        try:
+            yield save(surface(mesh, title_of(scene)), folder, f"{base}_surface")
+        except (OSError, subprocess.CalledProcessError) as error:
+            print(f"error_vs_time.py: warning: {mesh} is not drawn: {error}", file=sys.stderr)
 
 
 def main():
@@ -292,7 +297,14 @@ def main():
     parser.add_argument("--no-surface", action="store_true")
     parser.add_argument("--quiet", action="store_true")
     arguments = parser.parse_args()
-    results = json.loads(arguments.results.read_text(encoding="utf-8"))
+    if not arguments.tets > 0:
+        parser.error("--tets must be above 0")
+    try:
+        results = json.loads(arguments.results.read_text(encoding="utf-8"))
+        if not all("about" in scene and scene["rows"] for scene in results["scenes"]):
+            raise ValueError("of an older version")
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        parser.error(f"{arguments.results} is not what tetskin_error_vs_time writes ({error}); run that again")
     folder = arguments.folder or arguments.results.parent
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(results, arguments.target_error)

@@ -5,6 +5,8 @@
 #include <link.h>
 
 #include <cstdio>
+#include <optional>
+#include <random>
 #include <vector>
 
 #include "scenes/files.h"
@@ -17,7 +19,10 @@ std::vector<std::string> loadedLibraries() {
   dl_iterate_phdr(
       [](dl_phdr_info* info, std::size_t, void* into) {
         const std::string path = info->dlpi_name;
-        if (path.find("tetskin") != std::string::npos) static_cast<std::vector<std::string>*>(into)->push_back(path);
+        const auto has = [&](const char* name) { return path.find(name) != std::string::npos; };
+        if (has("tetskin") || has("Bullet") || has("LinearMath")) {
+          static_cast<std::vector<std::string>*>(into)->push_back(path);
+        }
         return 0;
       },
       &paths);
@@ -29,8 +34,9 @@ std::string makeBuildId() {
   paths.insert(paths.begin(), "/proc/self/exe");
   std::uint64_t hash = scenes::kNoHash;
   for (const std::string& path : paths) {
-    const std::string bytes = scenes::contentsOf(path).value_or("");
-    hash = scenes::hashOf(bytes.data(), bytes.size(), hash);
+    const std::optional<std::string> bytes = scenes::contentsOf(path);
+    if (!bytes) return "of this run alone: " + std::to_string(std::random_device()());
+    hash = scenes::hashOf(bytes->data(), bytes->size(), hash);
   }
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));

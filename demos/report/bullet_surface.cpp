@@ -3,7 +3,7 @@
 #include "report/bullet_surface.h"
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include "scenes/input_error.h"
 #include "scenes/memory.h"

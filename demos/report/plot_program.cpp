@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 
@@ -32,7 +33,11 @@ bool run(const std::vector<std::string>& command, bool silent = false) {
   const int error = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
-  return error == 0 && waitpid(process, &status, 0) == process && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (error != 0) return false;
+  while (waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) return false;
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 /// The first Python with matplotlib: the one in the path may be another than the system's, which has the package.
@@ -48,7 +53,8 @@ std::string pythonWithMatplotlib() {
 void makeTablesAndPlots(const ReportOptions& options) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(options.json, error)) return;  // a pipe: whoever reads it has the results
-  std::vector<std::string> command = {pythonWithMatplotlib(), kProgram, options.json, options.out};
+  std::vector<std::string> command = {pythonWithMatplotlib(),           kProgram, options.json, options.out, "--tets",
+                                      std::to_string(options.shownTets)};
   if (options.targetError > 0.0) {
     std::string target;
     scenes::appendNumber(target, options.targetError);
@@ -62,7 +68,8 @@ void makeTablesAndPlots(const ReportOptions& options) {
     return;
   }
   std::fflush(stdout);
-  if (!run(command)) std::fprintf(stderr, "tetskin_error_vs_time: warning: no tables and plots: %s failed\n", kProgram);
+  if (!run(command))
+    std::fprintf(stderr, "tetskin_error_vs_time: warning: %s failed: tables or plots are missing\n", kProgram);
 }
 
 }  // namespace tetskin::report

@@ -13,13 +13,13 @@ MeshSkin<double> skinOf(const TetMesh& cage, const TriangleMesh& points, Normals
   options.interpolation = Interpolation::Quadratic;
   options.normals = normals;
   MeshSkin<double> skin;
-  scenes::require(skin.bind(cage, points, options).status);
+  scenes::require(skin.bind(cage, points, options).status());
   return skin;
 }
 
 void update(MeshSkin<double>& skin, const std::vector<Eigen::Vector3f>& nodes) {
   const Points current = toDouble(nodes);
-  if (skin.update(viewOf(current)) < nodes.size()) throw scenes::InputError("the reference is not finite");
+  if (skin.update(viewOf(current)) != UpdateStatus::Updated) throw scenes::InputError("the reference is not finite");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class TimedSurfaces {
       options.interpolation = interpolationOf(kind);
       const std::size_t before = scenes::heapBytes();
       const scenes::CpuTimer timer;
-      scenes::require(skins_[indexOf(kind)].bind(body, cage, mesh, options).status);
+      scenes::require(skins_[indexOf(kind)].bind(body, cage, mesh, options).status());
       cost.attachMs = timer.milliseconds();
       cost.bytes = scenes::heapBytes() - before;
     }

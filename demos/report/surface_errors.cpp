@@ -30,13 +30,13 @@ class CarriedSurface {
     SkinOptions options;
     options.interpolation = interpolationOf(kind);
     options.normals = Normals::Transformed;
-    scenes::require(skin_.bind(cage, mesh, options).status);
+    scenes::require(skin_.bind(cage, mesh, options).status());
   }
 
   void update(const std::vector<Eigen::Vector3f>& nodes) {
     if (bullet_) return bullet_->update(nodes);
     const Points current = toDouble(nodes);
-    if (skin_.update(viewOf(current)) < nodes.size()) throw scenes::InputError("a cage is not finite");
+    if (skin_.update(viewOf(current)) != UpdateStatus::Updated) throw scenes::InputError("a cage is not finite");
   }
   Eigen::Vector3d position(std::size_t v) const {
     return bullet_ ? bullet_->position(v) : Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]));

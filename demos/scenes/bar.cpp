@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/angles.h"
 #include "scenes/serpent.h"
 #include "scenes/serpent_spine.h"
 #include "scenes/serpent_tube.h"

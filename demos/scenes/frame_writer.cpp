@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/frame_writer.h"
 
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 #include <cstdio>
 #include <filesystem>

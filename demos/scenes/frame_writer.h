@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/core/tet_mesh.h>
-#include <tetskin/io/obj_sequence_writer.h>
+#include <tetskin/io/obj_sequence.h>
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "scenes/model.h"
 
 #include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_files.h>
 
 #include <cstdio>
 
@@ -66,27 +66,26 @@ Model loadModel(const ModelOptions& options) {
   return model;
 }
 
-void requireFit(const EmbedReport& report, const ModelOptions& options) {
+void requireFit(const Status& status, const EmbedReport& report, const ModelOptions& options) {
   const std::string mesh = options.mesh.empty() ? nameOf(options.builtIn) : options.mesh;
-  if (!report.ok()) throw InputError(mesh + ": " + report.status.message);
+  if (!status.ok()) throw InputError(mesh + ": " + status.message);
   const double size = report.meshBox.diagonal().norm();
-  char text[256];
+  std::string fault;
   if (report.unitsDiffer()) {
-    std::snprintf(text, sizeof text,
-                  "their boxes have diagonals of %.4g and %.4g and %s; are they in different units? Scale one of them",
-                  size, report.cageBox.diagonal().norm(),
-                  report.meshBox.intersects(report.cageBox) ? "overlap" : "lie apart");
+    fault = report.unitsFault() + " Scale one of them";
   } else if (static_cast<double>(report.outside) > kManyOutside * static_cast<double>(report.vertexCount) &&
              report.worstDistance > kFarOutside * size) {
+    char text[256];
     std::snprintf(
         text, sizeof text,
         "%zu of %zu vertices lie outside it, vertex %zu by %.3g, and the mesh's diagonal is %.3g; take a cage "
         "made for this mesh, such as tetskin_cage builds",
         report.outside, report.vertexCount, report.worstVertex, report.worstDistance, size);
+    fault = text;
   } else {
     return;
   }
-  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + text);
+  throw InputError(mesh + " does not fit its cage " + options.cage + ": " + fault);
 }
 
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout) {

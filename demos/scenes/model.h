@@ -8,7 +8,7 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
-#include <tetskin/io/obj_layout.h>
+#include <tetskin/io/obj_sequence.h>
 
 #include <cstddef>
 #include <string>
@@ -45,9 +45,9 @@ TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* 
 /// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);
 
-/// Throws InputError if mesh and cage cannot belong together: they are in different units (see EmbedReport), or most of
-/// the mesh lies outside, and far.
-void requireFit(const EmbedReport& report, const ModelOptions& options);
+/// Throws InputError unless the status is ok, or if mesh and cage cannot belong together: they are in different units
+/// (see EmbedReport), or most of the mesh lies outside, and far.
+void requireFit(const Status& status, const EmbedReport& report, const ModelOptions& options);
 
 /// The layout in which a skin with these normals is written.
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout);

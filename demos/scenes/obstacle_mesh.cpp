@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scenes/serpent_spine.h"
+#include "scenes/angles.h"
 
 namespace tetskin::scenes {
 namespace {

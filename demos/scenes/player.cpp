@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/player.h"
 
+#include <cassert>
 #include <cstdio>
 
 #include "scenes/input_error.h"
@@ -19,12 +20,18 @@ Player::Player(const ModelOptions& options, const std::string& scene)
 }
 
 Carried& Player::carry(const SkinOptions& options) {
+  InstanceOptions instance = options;
+  instance.leaveOutQuadratic = options.interpolation == Interpolation::Linear;
   Carried& added = carried_.emplace_back();
   if (carried_.size() == 1) {
-    fit_ = added.skin.bind(scene_->body(), model_.cage, model_.mesh, options);
-    requireFit(fit_, options_);
+    const Result<EmbedReport> fit = added.skin.bind(scene_->body(), model_.cage, model_.mesh, options);
+    requireFit(fit.status(), fit.value(), options_);
+    fit_ = fit.value();
   } else {
-    require(added.skin.bind(scene_->body(), carried_.front().skin.binding(), options));
+    [[maybe_unused]] const BindingOptions& bound = carried_.front().skin.binding()->options();
+    assert(options.interpolation == Interpolation::Linear || options.interpolation == bound.interpolation);
+    assert(options.normals == bound.normals && options.order == bound.order);
+    require(added.skin.bind(scene_->body(), carried_.front().skin.binding(), instance));
   }
   place_.readSurface(added.skin, added.surface);
   return added;

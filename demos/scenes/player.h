@@ -38,7 +38,8 @@ class Player {
   /// Loads the model. Throws InputError.
   Player(const ModelOptions& options, const std::string& scene);
 
-  /// Adds a surface; all later ones share the binding of the first. Throws InputError if mesh and cage do not fit.
+  /// Adds a surface; all later ones share the binding of the first, and may leave out its quadratic skinning. Throws
+  /// InputError if mesh and cage do not fit.
   Carried& carry(const SkinOptions& options);
 
   const Model& model() const { return model_; }

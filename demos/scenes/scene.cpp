@@ -37,9 +37,8 @@ double Scene::nodeSpeed() const {
 }
 
 int Scene::step(int frame, const Moved& moved) {
-  if (beforeFrame)
-    beforeFrame(
-        frame, moved ? moved : [] {});
+  static const Moved kNobody = [] {};
+  if (beforeFrame) beforeFrame(frame, moved ? moved : kNobody);
   int steps = 0;
   // One substep at a time: Bullet's own division of a frame may leave one out by rounding.
   for (int k = 1; k <= options_.substeps; ++k) {
@@ -93,7 +92,8 @@ btSoftBody& Scene::add(const TetMesh& cage, const std::function<bool(const Eigen
 
 void Scene::addFloor(double gap) {
   const double side = kFloorHalfSide * options_.size, height = kFloorHalfHeight * options_.size;
-  const Box3 box = options_.box.isEmpty() ? boundingBox(nodePositions(body())) : options_.box;
+  const Box3 box =
+      options_.box.isEmpty() ? boundingBox(nodePositions(body())) : options_.box.translated(options_.offset);
   Eigen::Vector3d centre = box.center();
   floorY = box.min().y() - gap * options_.size;
   centre.y() = floorY - height;

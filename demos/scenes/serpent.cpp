@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "scenes/angles.h"
 #include "scenes/serpent_shape.h"
 #include "scenes/serpent_tube.h"
 

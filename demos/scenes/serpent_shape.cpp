@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/angles.h"
+
 namespace tetskin::scenes {
 namespace {
 

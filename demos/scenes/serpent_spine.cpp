@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "scenes/angles.h"
+
 namespace tetskin::scenes {
 namespace {
 

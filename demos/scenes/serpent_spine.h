@@ -10,8 +10,6 @@
 
 namespace tetskin::scenes {
 
-constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180.0;
-
 /// A right-handed orthonormal frame at a point of the spine.
 struct Frame {
   Eigen::Vector3d origin;

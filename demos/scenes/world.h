@@ -4,7 +4,7 @@
 // The one place in which the demos make Bullet's worlds and put bodies into them.
 #pragma once
 
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <memory>

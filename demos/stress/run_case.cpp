@@ -52,23 +52,23 @@ void simulate(const StressCase& stressCase, const StressModel& model, scenes::Sc
 }
 
 /// A case that must be refused: the skin stays unbound, while the body goes on.
-void expectRefusal(const StressCase& stressCase, const EmbedReport& fit, SoftBodySkin& skin, Verdict& verdict) {
-  verdict.status = "refused: " + std::string(toString(fit.status.code));
-  verdict.expect(fit.status.code == stressCase.refusal, "the mesh is refused with the right status");
-  verdict.expect(!fit.status.message.empty(), "the refusal has a message");
+void expectRefusal(const StressCase& stressCase, const Status& fit, SoftBodySkin& skin, Verdict& verdict) {
+  verdict.status = "refused: " + std::string(toString(fit.code));
+  verdict.expect(fit.code == stressCase.refusal, "the mesh is refused with the right status");
+  verdict.expect(!fit.message.empty(), "the refusal has a message");
   verdict.expect(skin.update() == UpdateStatus::Unbound, "a skin that was refused stays unbound");
 }
 
 void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   const StressModel model = makeModel(stressCase.cage, stressCase.surface);
   btSoftBodyWorldInfo info;
-  auto probe = makeSoftBody(model.bodyCage, info);
-  const std::unique_ptr<btSoftBody> owned(std::move(probe).value());
+  const Result<std::unique_ptr<btSoftBody>> probe = makeSoftBody(model.bodyCage, info);
   if (!probe.ok()) {
     verdict.status = "refused: " + std::string(toString(probe.status().code));
     verdict.expect(probe.status().code == stressCase.refusal, "the cage is refused with the right status");
     MeshSkin<btScalar> skin;
-    verdict.expect(skin.bind(model.cage, model.mesh).status.code == stressCase.refusal, "the skin refuses it likewise");
+    verdict.expect(skin.bind(model.cage, model.mesh).status().code == stressCase.refusal,
+                   "the skin refuses it likewise");
     return;
   }
   const std::unique_ptr<scenes::Scene> scene =
@@ -78,7 +78,7 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   options.normals = stressCase.normals;
   options.origin = model.offset;
   SoftBodySkin skin;
-  const EmbedReport fit = skin.bind(scene->body(), model.cage, model.mesh, options);
+  const Status fit = skin.bind(scene->body(), model.cage, model.mesh, options).status();
   if (!fit.ok() || stressCase.refusal != StatusCode::Ok) return expectRefusal(stressCase, fit, skin, verdict);
   simulate(stressCase, model, *scene, skin, verdict);
   expectOfBullet(stressCase, verdict);

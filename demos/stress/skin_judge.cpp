@@ -94,7 +94,7 @@ SkinJudge::SkinJudge(const StressCase& stressCase, const StressModel& model, con
 }
 
 void SkinJudge::judgeWeights() {
-  for (const VertexBinding& binding : skin_.binding()->embedding.bindings()) {
+  for (const VertexBinding& binding : skin_.binding()->embedding().bindings()) {
     double sum = 0.0, absolute = 0.0, largest = 0.0;
     for (const float w : binding.weights) {
       sum += static_cast<double>(w);

@@ -6,7 +6,7 @@
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <gtest/gtest.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <cstdio>
@@ -46,7 +46,7 @@ class RenderMeshes : public testing::Test {
   void make(const TetMesh& restCage) {
     cage = restCage;
     for (Eigen::Vector3d& p : cage.nodes) p = inBulletsPrecision(p);
-    body.reset(makeSoftBody(cage, info));
+    body = makeSoftBody(cage, info).value();
     ASSERT_TRUE(body);
   }
   /// Binds both to these vertices, where the body is now.

@@ -55,7 +55,7 @@ TEST_F(BulletsBinding, AgreesWithOursOnGoodCages) {
     p += btScalar(0.2) * btVector3(btSin(4 * p.y()), p.x() * p.z(), btCos(3 * p.x()));
   }
   updateBoth();
-  const auto bindings = skin.binding()->embedding.bindings();
+  const auto bindings = skin.binding()->embedding().bindings();
   int otherTets = 0;
   for (int v = 0; v < count(); ++v) {
     const int tet = bulletsTet(v);
@@ -90,9 +90,9 @@ TEST_F(BulletsBinding, DrawsABodyWithoutTetsAtTheOrigin) {
   btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
   body->interpolateRenderMesh();
   EXPECT_EQ(bullets(0), Eigen::Vector3d::Zero());
-  const EmbedReport report = skin.bind(*body, meshOf({{0.5, 0.5, 0.5}}));
-  EXPECT_EQ(report.status.code, StatusCode::Empty);
-  EXPECT_FALSE(report.status.message.empty());
+  const Result<EmbedReport> report = skin.bind(*body, meshOf({{0.5, 0.5, 0.5}}));
+  EXPECT_EQ(report.status().code, StatusCode::Empty);
+  EXPECT_FALSE(report.status().message.empty());
 }
 
 /// The weights that Bullet stores for a vertex without a tet were never set: they depend on which vertex came before.
@@ -160,7 +160,7 @@ TEST_F(BulletsBinding, HasWeightsThatDoNotSumToOne) {
     make(sliver);
     bindBoth({0.3 * a + 0.3 * b + 0.2 * c + 0.2 * sliver.nodes[3]});
     bulletsSum = std::max(bulletsSum, std::abs(bulletsWeightSum(0) - 1.0));
-    const auto w = skin.binding()->embedding.bindings()[0].weights;
+    const auto w = skin.binding()->embedding().bindings()[0].weights;
     oursSum = std::max(oursSum, std::abs(static_cast<double>(w[0] + w[1] + w[2] + w[3]) - 1.0));
     body->translate(away);
     updateBoth();
@@ -187,7 +187,7 @@ TEST_F(BulletsBinding, TakesABigInnerTetInsteadOfTheThinLayerBelowTheVertex) {
     const TetCorners p = cornersOf(cage, cage.tets[tet]);
     return std::min({p[0].y(), p[1].y(), p[2].y(), p[3].y()}) > box.max().y() - 0.021;
   };
-  const auto bindings = skin.binding()->embedding.bindings();
+  const auto bindings = skin.binding()->embedding().bindings();
   int bulletsInLayer = 0, oursInLayer = 0;
   for (int v = 0; v < count(); ++v) {
     bulletsInLayer += inTheLayer(bulletsTet(v));
@@ -259,7 +259,7 @@ TEST_F(BulletsFaces, AreOnTheFarSideForSomeVertices) {
   const TetMesh lattice = test::latticeCage(8, 8, 8, 0.25);  // ours, with a cage of the ball's size
   make({test::scaledAndMoved(lattice.nodes, 1.0, Eigen::Vector3d::Constant(-1.0)), lattice.tets});
   ASSERT_TRUE(skin.bind(*body, cage, meshOf(above)).ok());
-  const auto bindings = skin.binding()->embedding.bindings();
+  const auto bindings = skin.binding()->embedding().bindings();
   for (std::size_t v = 0; v < above.size(); ++v) {
     const TetCorners p = cornersOf(cage, cage.tets[bindings[v].tet]);
     EXPECT_GT((p[0] + p[1] + p[2] + p[3]).dot(above[v]), 0.0);

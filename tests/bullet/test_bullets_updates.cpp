@@ -51,11 +51,11 @@ struct Both {
   void letSleep() {
     for (int step = 0; step < 3000 && body.isActive(); ++step) {
       world.world->stepSimulation(kStep, 1, kStep);
-      skin.update();
+      (void)skin.update();
     }
     ASSERT_FALSE(body.isActive());
     world.world->stepSimulation(kStep, 1, kStep);
-    skin.update();
+    (void)skin.update();
   }
 };
 
@@ -137,7 +137,7 @@ TEST(BulletsUpdates, LeaveATeleportedSleeperBehind) {
 TEST(BulletsUpdates, NeverTouchNormals) {
   TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   btSoftBodyWorldInfo info;
-  const std::unique_ptr<btSoftBody> body(makeSoftBody(cage, info));
+  const std::unique_ptr<btSoftBody> body(makeSoftBody(cage, info).value());
   TriangleMesh mesh;
   mesh.positions = {{0.5, 0.5, 0.5}};
   mesh.normals = {{0, 1, 0}};

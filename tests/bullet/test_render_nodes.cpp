@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/render_nodes.h>
-#include <tetskin/bullet/soft_body_adapter.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
@@ -46,7 +45,7 @@ class RenderNodes : public testing::Test {
  protected:
   void make(const TetMesh& cage, const std::vector<Eigen::Vector3d>& points) {
     for (std::unique_ptr<btSoftBody>* body : {&ours, &bullets}) {
-      body->reset(makeSoftBody(cage, info));
+      *body = makeSoftBody(cage, info).value();
       ASSERT_TRUE(*body);
       setRenderNodes(**body, points);
     }
@@ -62,11 +61,11 @@ class RenderNodes : public testing::Test {
   /// Binds both, compares tets and weights; then bends both, and compares the points that Bullet's update computes.
   /// Returns how many render nodes have another tet.
   int compare() {
-    const EmbedReport report = bindRenderNodes(*ours);
-    EXPECT_TRUE(report.ok()) << report.status.message;
+    const Result<EmbedReport> report = bindRenderNodes(*ours);
+    EXPECT_TRUE(report.ok()) << report.status().message;
     btSoftBodyHelpers::interpolateBarycentricWeights(bullets.get());
     const int count = ours->m_renderNodes.size();
-    EXPECT_EQ(static_cast<int>(report.vertexCount), count);
+    EXPECT_EQ(static_cast<int>(report.value().vertexCount), count);
     EXPECT_EQ(ours->m_renderNodesParents.size(), count);
     EXPECT_EQ(ours->m_renderNodesInterpolationWeights.size(), count);
     EXPECT_EQ(ours->m_z.size(), 0);
@@ -141,10 +140,10 @@ TEST_F(RenderNodes, BindWhereTheNodesAreNow) {
   make(test::latticeCage(2, 2, 2, 0.5), points);
   ours->translate(btVector3(3, 0, 0));
   for (int v = 0; v < ours->m_renderNodes.size(); ++v) ours->m_renderNodes[v].m_x += btVector3(3, 0, 0);
-  const EmbedReport report = bindRenderNodes(*ours);
-  ASSERT_TRUE(report.ok()) << report.status.message;
-  EXPECT_GT(report.inside, 200u);
-  EXPECT_EQ(report.inside + report.outside, points.size());
+  const Result<EmbedReport> report = bindRenderNodes(*ours);
+  ASSERT_TRUE(report.ok()) << report.status().message;
+  EXPECT_GT(report.value().inside, 200u);
+  EXPECT_EQ(report.value().inside + report.value().outside, points.size());
   ours->translate(btVector3(0, 1, 0));
   ours->interpolateRenderMesh();
   for (int v = 0; v < ours->m_renderNodes.size(); ++v) {
@@ -171,9 +170,9 @@ TEST_F(RenderNodes, NeverBoundToAFlatTet) {
   ours->appendTetra(0, 3, 5, 1);
   ours->appendTetra(0, 1, 2, 3);
   ours->m_nodes[4].m_x = (ours->m_nodes[1].m_x + ours->m_nodes[2].m_x) / btScalar(2);
-  const EmbedReport report = bindRenderNodes(*ours);
-  ASSERT_TRUE(report.ok()) << report.status.message;
-  EXPECT_EQ(report.flatTets, 2u);
+  const Result<EmbedReport> report = bindRenderNodes(*ours);
+  ASSERT_TRUE(report.ok()) << report.status().message;
+  EXPECT_EQ(report.value().flatTets, 2u);
   for (int v = 0; v < ours->m_renderNodes.size(); ++v) EXPECT_EQ(parentsOf(*ours, v), (Tet{0, 1, 2, 3}));
 }
 
@@ -192,9 +191,9 @@ TEST_F(RenderNodes, FaultsLeaveTheBodyAsItWas) {
   const Tet parents = parentsOf(*ours, 7);
   ours->m_z.resize(50, btScalar(1));
   const auto fails = [&](StatusCode code, const char* mentions) {
-    const EmbedReport report = bindRenderNodes(*ours);
-    EXPECT_EQ(report.status.code, code);
-    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
+    const Result<EmbedReport> report = bindRenderNodes(*ours);
+    EXPECT_EQ(report.status().code, code);
+    EXPECT_NE(report.status().message.find(mentions), std::string::npos) << report.status().message;
     EXPECT_EQ(ours->m_renderNodesParents.size(), 50);
     EXPECT_EQ(ours->m_renderNodesInterpolationWeights.size(), 50);
     EXPECT_EQ(ours->m_z.size(), 50);
@@ -219,7 +218,7 @@ TEST_F(RenderNodes, TetsLeftDanglingAreRefused) {
   make(test::latticeCage(1, 1, 1), test::randomPoints(10, kAround, 1));
   const btSoftBody::Node* const before = &ours->m_nodes[0];
   while (&ours->m_nodes[0] == before) ours->appendNode(btVector3(0, 0, 0), 1);  // until the array moves
-  EXPECT_EQ(bindRenderNodes(*ours).status.code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(bindRenderNodes(*ours).status().code, StatusCode::IndexOutOfRange);
   EXPECT_EQ(ours->m_renderNodesParents.size(), 0);
 }
 

@@ -3,8 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/soft_body_adapter.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <memory>
 
@@ -12,7 +11,7 @@ namespace tetskin {
 namespace {
 
 std::unique_ptr<btSoftBody> makeBody(const TetMesh& cage, btSoftBodyWorldInfo& info) {
-  return std::unique_ptr<btSoftBody>(makeSoftBody(cage, info));
+  return std::unique_ptr<btSoftBody>(makeSoftBody(cage, info).value());
 }
 
 TEST(SoftBodyAdapter, ReadsNodesAndTetsByIndex) {

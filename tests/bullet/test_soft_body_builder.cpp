@@ -4,7 +4,7 @@
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <gtest/gtest.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <filesystem>
 #include <fstream>
@@ -50,7 +50,7 @@ TetMesh wavyCage() {
 
 class BuilderAgainstBullet : public testing::Test {
  protected:
-  BuilderAgainstBullet() : ours(makeSoftBody(cage, info)), bullets(fromVtkFile(cage, info)) {}
+  BuilderAgainstBullet() : ours(makeSoftBody(cage, info).value()), bullets(fromVtkFile(cage, info)) {}
 
   int indexIn(const Body& body, const btSoftBody::Node* node) const {
     return static_cast<int>(node - &body->m_nodes[0]);
@@ -112,7 +112,7 @@ TEST(SoftBodyBuilder, ReorientsNegativeTets) {
   btSoftBodyWorldInfo info;
   TetMesh cage = test::latticeCage(1, 1, 1);
   std::swap(cage.tets[2][0], cage.tets[2][1]);
-  const Body body(makeSoftBody(cage, info));
+  const Body body(makeSoftBody(cage, info).value());
   ASSERT_NE(body, nullptr);
   for (int t = 0; t < body->m_tetras.size(); ++t) EXPECT_GT(body->m_tetras[t].m_element_measure, 0);
 }
@@ -122,10 +122,10 @@ TEST(SoftBodyBuilder, MassIsTheTotalAskedFor) {
   const TetMesh cage = wavyCage();
   SoftBodyOptions options;
   options.mass = 3.5;
-  const Body body(makeSoftBody(cage, info, options));
+  const Body body(makeSoftBody(cage, info, options).value());
   EXPECT_NEAR(body->getTotalMass(), 3.5, 1e-4);
   options.density = 1000;
-  const Body dense(makeSoftBody(cage, info, options));
+  const Body dense(makeSoftBody(cage, info, options).value());
   double volume = 0;
   for (int t = 0; t < dense->m_tetras.size(); ++t) volume += dense->m_tetras[t].m_element_measure;
   EXPECT_NEAR(dense->getTotalMass(), 1000 * volume, 1e-4 * 1000 * volume);
@@ -156,10 +156,10 @@ TEST(SoftBodyBuilder, LightestNodeHasThreeTenthsOfTheMean) {
 TEST(SoftBodyBuilder, MarginDefaultsToAFractionOfTheSize) {
   btSoftBodyWorldInfo info;
   const TetMesh cage = test::latticeCage(4, 2, 2, 2.5);  // 10 long
-  EXPECT_NEAR(Body(makeSoftBody(cage, info))->getCollisionShape()->getMargin(), 0.2, 1e-6);
+  EXPECT_NEAR(Body(makeSoftBody(cage, info).value())->getCollisionShape()->getMargin(), 0.2, 1e-6);
   SoftBodyOptions options;
   options.margin = 0.0;
-  EXPECT_EQ(Body(makeSoftBody(cage, info, options))->getCollisionShape()->getMargin(), 0);
+  EXPECT_EQ(Body(makeSoftBody(cage, info, options).value())->getCollisionShape()->getMargin(), 0);
 }
 
 TEST(SoftBodyBuilder, PinnedNodesHaveInfiniteMass) {
@@ -167,14 +167,14 @@ TEST(SoftBodyBuilder, PinnedNodesHaveInfiniteMass) {
   const TetMesh cage = test::latticeCage(3, 1, 1);
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
-  const Body body(makeSoftBody(cage, info, options));
+  const Body body(makeSoftBody(cage, info, options).value());
   for (int n = 0; n < body->m_nodes.size(); ++n) EXPECT_EQ(body->m_nodes[n].m_im == 0, cage.nodes[n].x() < 0.1);
 }
 
 TEST(SoftBodyBuilder, HandlesAHundredThousandTetsInMemoryProportionalToThem) {
   btSoftBodyWorldInfo info;
   const TetMesh cage = test::latticeCage(26, 26, 25, 0.1);  // 101,400 tets; Bullet's own reader would take minutes
-  const Body body(makeSoftBody(cage, info));
+  const Body body(makeSoftBody(cage, info).value());
   ASSERT_NE(body, nullptr);
   EXPECT_EQ(body->m_tetras.size(), 101400);
   std::set<std::pair<int, int>> links;
@@ -189,7 +189,7 @@ TEST(SoftBodyBuilder, HandlesAHundredThousandTetsInMemoryProportionalToThem) {
 TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   btSoftBodyWorldInfo info;
   const auto fails = [&](const TetMesh& cage, const SoftBodyOptions& options, StatusCode code) {
-    const Result<btSoftBody*> result = makeSoftBody(cage, info, options);
+    const Result<std::unique_ptr<btSoftBody>> result = makeSoftBody(cage, info, options);
     EXPECT_EQ(result.status().code, code) << result.status().message;
     EXPECT_EQ(result.value(), nullptr);
     EXPECT_FALSE(result.status().message.empty());

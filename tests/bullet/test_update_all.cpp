@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/allocation_count.h"
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <deque>
@@ -28,7 +29,7 @@ class UpdateAll : public testing::Test {
         if (i == 0) {
           ASSERT_TRUE(skins->back().bind(*bodies[i], cage, mesh, options).ok());
         } else {
-          ASSERT_TRUE(skins->back().bind(*bodies[i], skins->front().binding(), options).ok());
+          ASSERT_TRUE(skins->back().bind(*bodies[i], skins->front().binding(), instanceOf(options)).ok());
         }
       }
     }

@@ -15,7 +15,7 @@
 #include <BulletSoftBody/btSoftMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <memory>
 
@@ -69,7 +69,7 @@ class ClassicWorld : public TestWorld {
     soft->getWorldInfo().m_gravity.setValue(0, -10, 0);
     soft->getWorldInfo().m_sparsesdf.Initialize();
     options.forceModel = ForceModel::MassSpring;
-    body_.reset(makeSoftBody(cage, soft->getWorldInfo(), options));
+    body_ = makeSoftBody(cage, soft->getWorldInfo(), options).value();
     soft->addSoftBody(body_.get());
   }
   ~ClassicWorld() override { soft->removeSoftBody(body_.get()); }
@@ -115,7 +115,7 @@ class DeformableWorldBase : public TestWorld {
 class DeformableWorld : public DeformableWorldBase {
  public:
   explicit DeformableWorld(const TetMesh& cage) : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {
-    body_.reset(makeSoftBody(cage, soft->getWorldInfo()));
+    body_ = makeSoftBody(cage, soft->getWorldInfo()).value();
     soft->addSoftBody(body_.get());
     soft->addForce(body_.get(), &gravity);
     soft->addForce(body_.get(), &elasticity);

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <set>
 
+#include "support/embed_into.h"
+
 namespace tetskin::test {
 namespace {
 
@@ -107,7 +109,6 @@ std::string faultOfTopology(const TetMesh& cage) {
 }
 
 std::string faultOfCage(const TriangleMesh& mesh, const TetMesh& cage, const CageReport& report) {
-  if (!report.ok()) return report.status.message;
   const TetMeshReport check = checkTetMesh(cage);
   if (!check.clean()) return check.describe();
   const DihedralRange range = dihedralRange(cage);
@@ -115,7 +116,7 @@ std::string faultOfCage(const TriangleMesh& mesh, const TetMesh& cage, const Cag
     return "dihedral angles " + std::to_string(range.minDeg) + " to " + std::to_string(range.maxDeg);
   }
   Embedding embedding;
-  const EmbedReport embedded = embed(cage, viewOf(mesh.positions), {}, embedding);
+  const Fit embedded = embedInto(cage, viewOf(mesh.positions), {}, embedding);
   if (!embedded.ok() || embedded.inside != mesh.vertexCount()) return embedded.describe();
   if (report.verticesOutside != 0) return "the report counts vertices outside";
   if (report.tets != cage.tetCount() || report.nodes != cage.nodeCount()) return "the report has other counts";
@@ -128,8 +129,8 @@ std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fi
   CageOptions options;
   options.targetTets = targetTets;
   options.fit = fit;
-  const TetMesh cage = buildCage(mesh, options, &used);
-  std::string fault = faultOfCage(mesh, cage, used);
+  const Result<TetMesh> cage = buildCage(mesh, options, &used);
+  std::string fault = cage.ok() ? faultOfCage(mesh, cage.value(), used) : cage.status().message;
   if (fault.empty() && !used.targetMet()) fault = std::to_string(used.tets) + " tets";
   return fault.empty() ? "" : "at " + std::to_string(targetTets) + " tets: " + fault;
 }

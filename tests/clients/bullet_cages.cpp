@@ -5,7 +5,8 @@
 // with Bullet, and compares every vertex with brute force in double after every update. See tests/clients/run.
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/core/src/search/tolerances.h>
+#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -115,10 +116,11 @@ Row check(const TetMesh& cage, OutsideRule rule) {
   SkinOptions options;
   options.outside = rule;
   SoftBodySkin alone, connected;  // without triangles, and with them
-  row.fit = alone.bind(body, cage, viewOf(mesh.positions), options);
-  const EmbedReport report = connected.bind(body, cage, mesh, options);
-  if (!row.fit.ok() || !report.ok()) return row.failure = row.fit.status.message, row;
-  if (!oracle.agrees(alone.binding()->embedding)) return row.failure = "tets are not those of brute force", row;
+  const Result<EmbedReport> fit = alone.bind(body, cage, viewOf(mesh.positions), options);
+  const Result<EmbedReport> report = connected.bind(body, cage, mesh, options);
+  if (!fit.ok() || !report.ok()) return row.failure = fit.status().message + report.status().message, row;
+  row.fit = fit.value();
+  if (!oracle.agrees(alone.binding()->embedding())) return row.failure = "tets are not those of brute force", row;
 
   const auto updated = [&](const char* when) {
     const bool done = alone.update() == UpdateStatus::Updated && connected.update() == UpdateStatus::Updated;

@@ -6,15 +6,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <tetskin/bullet/bullet_parallel_for.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/render_nodes.h>
-#include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/cage/cage_builder.h>
-#include <tetskin/elastic/stiffness_calibration.h>
-#include <tetskin/io/embedding_file.h>
-#include <tetskin/io/mesh_loader.h>
-#include <tetskin/threads/thread_pool.h>
+#include <tetskin/tetskin.h>
 
 struct Vertex {
   float position[3], normal[3], texcoord[2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <cstdio>
@@ -24,16 +24,16 @@ int main() {
   cage = std::move(built).value();
 #endif
   btSoftBodyWorldInfo worldInfo;
-  const std::unique_ptr<btSoftBody> body(tetskin::makeSoftBody(cage, worldInfo));
+  const std::unique_ptr<btSoftBody> body = tetskin::makeSoftBody(cage, worldInfo).value();
   tetskin::SkinOptions options;
 #ifdef WITH_ALL_PARTS
   tetskin::ThreadPool pool;
   options.threads = &pool;
 #endif
   tetskin::SoftBodySkin skin;
-  const tetskin::EmbedReport fit = skin.bind(*body, cage, mesh, options);
-  std::printf("%s", fit.describe().c_str());
+  const tetskin::Result<tetskin::EmbedReport> fit = skin.bind(*body, cage, mesh, options);
+  std::printf("%s", fit.value().describe().c_str());
   body->translate(btVector3(0, 5, 0));
   const bool moved = skin.update() == tetskin::UpdateStatus::Updated && skin.bounds().min().y() > 5;
-  return fit.ok() && fit.inside == 3 && moved ? 0 : 3;
+  return fit.ok() && fit.value().inside == 3 && moved ? 0 : 3;
 }

@@ -72,13 +72,14 @@ class Carried {
     options.normals = normals;
     options.interpolation = interpolation;
     options.hardEdgeDegrees = hardEdgeDegrees;
-    fit = skin.bind(cage, mesh, options);
-    EXPECT_TRUE(fit.ok()) << fit.describe();
+    const Result<EmbedReport> bound = skin.bind(cage, mesh, options);
+    EXPECT_TRUE(bound.ok()) << bound.status().message;
+    fit = bound.value();
   }
   void move(const std::vector<Eigen::Vector3d>& places) {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
     for (const Eigen::Vector3d& p : places) nodes.push_back(p.cast<Scalar>());
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), nodes.size());
+    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
   }
   Eigen::Vector3d normal(std::size_t v) const {
     return Eigen::Map<const Eigen::Vector3f>(skin.normals()[v]).template cast<double>();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/allocation_count.h"
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ double peakPerVertex(const TetMesh& cage, const std::vector<Eigen::Matrix<Scalar
   Embedding embedding;
   const std::size_t before = test::allocatedBytes();
   test::resetPeak();
-  EXPECT_TRUE(embed(cage, viewOf(vertices), {rule}, embedding).ok());
+  EXPECT_TRUE(embedInto(cage, viewOf(vertices), {rule}, embedding).ok());
   return static_cast<double>(test::peakBytes() - before) / static_cast<double>(vertices.size());
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What an embedding reports, of good input and of bad.
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ TEST(EmbedReport, ReportNamesTheWorstVertex) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices{{0.5, 0.5, 0.5}, {0.5, 1.5, 0.5}, {0.5, 0.5, -2.0}, {1.1, 0.5, 0.5}};
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_EQ(report.inside, 1u);
   EXPECT_EQ(report.outside, 3u);
   EXPECT_EQ(report.worstVertex, 2u);
@@ -37,7 +38,7 @@ TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
   const Points vertices{{0.5, 0.5, 0.5}, {0.25, 1.5, 0.75}, {0.5, 0.5, -1.25}, {1.125, 0.5, 0.5}};
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
     Embedding embedding;
-    const EmbedReport refused = embed(cage, viewOf(vertices), {rule, 1.0}, embedding);
+    const Fit refused = embedInto(cage, viewOf(vertices), {rule, 1.0}, embedding);
     EXPECT_EQ(refused.status.code, StatusCode::OutsideCage);
     for (const char* mentions : {"vertex 2", "(0.5, 0.5, -1.25)", "1.25 outside", "than the 1 allowed"}) {
       EXPECT_NE(refused.status.message.find(mentions), std::string::npos) << refused.status.message;
@@ -47,13 +48,13 @@ TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
     EXPECT_EQ(refused.unbound, 4u);
     EXPECT_EQ(refused.inside + refused.outside, 0u);
     EXPECT_TRUE(embedding.empty());
-    const EmbedReport accepted = embed(cage, viewOf(vertices), {rule, 1.25}, embedding);
+    const Fit accepted = embedInto(cage, viewOf(vertices), {rule, 1.25}, embedding);
     EXPECT_TRUE(accepted.ok()) << accepted.status.message;
     EXPECT_EQ(accepted.outside, 3u);
     EXPECT_EQ(accepted.unbound, 0u);
     // None at all outside.
-    EXPECT_TRUE(embed(cage, viewOf(Points{vertices[0]}), {rule, 0.0}, embedding).ok());
-    EXPECT_EQ(embed(cage, viewOf(vertices), {rule, 0.0}, embedding).status.code, StatusCode::OutsideCage);
+    EXPECT_TRUE(embedInto(cage, viewOf(Points{vertices[0]}), {rule, 0.0}, embedding).ok());
+    EXPECT_EQ(embedInto(cage, viewOf(vertices), {rule, 0.0}, embedding).status.code, StatusCode::OutsideCage);
   }
 }
 
@@ -62,7 +63,7 @@ TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {
   Embedding embedding;
   const Points vertices =
       test::randomPoints(2000, {Eigen::Vector3d::Constant(-0.25), Eigen::Vector3d::Constant(1.25)}, 25);
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_GT(report.restErrorMax, 0.0);
   EXPECT_LT(report.restErrorMax, 1e-6);
 }
@@ -71,13 +72,15 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const Points metres = test::randomPoints(200, kUnitBox, 26);
   Embedding embedding;
-  EXPECT_FALSE(embed(cage, viewOf(metres), {}, embedding).unitsDiffer());
+  EXPECT_FALSE(embedInto(cage, viewOf(metres), {}, embedding).unitsDiffer());
+  EXPECT_EQ(embedInto(cage, viewOf(metres), {}, embedding).unitsFault(), "");
   for (const double scale : {1e-3, 0.0254, 39.37, 1e3}) {
     const Points others = test::scaledAndMoved(metres, scale, Eigen::Vector3d::Zero());
-    const EmbedReport report = embed(cage, viewOf(others), {}, embedding);
+    const Fit report = embedInto(cage, viewOf(others), {}, embedding);
     EXPECT_TRUE(report.ok());
     EXPECT_TRUE(report.unitsDiffer()) << scale;
-    EXPECT_NE(report.describe().find("different units"), std::string::npos);
+    EXPECT_NE(report.unitsFault().find("different units"), std::string::npos);
+    EXPECT_NE(report.describe().find(report.unitsFault()), std::string::npos);
   }
 }
 
@@ -85,7 +88,7 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices = test::scaledAndMoved(test::randomPoints(10, kUnitBox, 27), 1.0, {5, 0, 0});
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_TRUE(report.unitsDiffer());
   EXPECT_EQ(report.outside, 10u);
 }
@@ -93,9 +96,9 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
 TEST(EmbedReport, NamesTheLargestWeight) {
   const TetMesh cage = test::singleTet();
   Embedding embedding;
-  EXPECT_EQ(embed(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).largestWeight, 1.0);
-  EXPECT_EQ(embed(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).largestWeight, 1.0);
-  const EmbedReport report = embed(cage, viewOf(Points{{-2.0, -3.0, 0.0}}), {}, embedding);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).largestWeight, 1.0);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).largestWeight, 1.0);
+  const Fit report = embedInto(cage, viewOf(Points{{-2.0, -3.0, 0.0}}), {}, embedding);
   EXPECT_EQ(report.largestWeight, 6.0);
   EXPECT_EQ(report.rescued, 0u);  // there is no other tet
   EXPECT_NE(report.describe().find("largest weight 6"), std::string::npos) << report.describe();
@@ -105,13 +108,12 @@ TEST(EmbedReport, RefusesBadInputAndLeavesTheEmbeddingAlone) {
   const TetMesh cage = test::latticeCage(1, 1, 1);
   const Points good{{0.5, 0.5, 0.5}};
   Embedding embedding;
-  ASSERT_TRUE(embed(cage, viewOf(good), {}, embedding).ok());
+  ASSERT_TRUE(embedInto(cage, viewOf(good), {}, embedding).ok());
 
   const auto fails = [&](const TetMesh& badCage, const Points& vertices, StatusCode code, const char* mentions) {
-    const EmbedReport report = embed(badCage, viewOf(vertices), {}, embedding);
+    const Fit report = embedInto(badCage, viewOf(vertices), {}, embedding);
     EXPECT_EQ(report.status.code, code);
     EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
-    EXPECT_EQ(report.describe(), report.status.message);
     EXPECT_EQ(report.unbound, vertices.size());
     EXPECT_EQ(embedding.vertexCount(), 1u);
   };
@@ -142,7 +144,7 @@ TEST(EmbedReport, RefusesALargestDistanceThatIsNone) {
   const Points inside{{0.5, 0.5, 0.5}};
   for (const double none : {std::numeric_limits<double>::quiet_NaN(), -1.0, -1e-300}) {
     Embedding embedding;
-    const EmbedReport report = embed(cage, viewOf(inside), {OutsideRule::Nearest, none}, embedding);
+    const Fit report = embedInto(cage, viewOf(inside), {OutsideRule::Nearest, none}, embedding);
     EXPECT_EQ(report.status.code, StatusCode::InvalidOption) << none;
     EXPECT_NE(report.status.message.find("maxDistance is "), std::string::npos) << report.status.message;
     EXPECT_EQ(report.unbound, 1u);
@@ -169,7 +171,7 @@ TEST(EmbedReport, VerticesComputedToLieOnAFaceAreInside) {
       cage.nodes = test::scaledAndMoved(cage.nodes, 0.7, offset);
       for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
         Embedding embedding;
-        const EmbedReport report = embed(cage, viewOf(onBoundary(cage)), {rule, 0.0}, embedding);
+        const Fit report = embedInto(cage, viewOf(onBoundary(cage)), {rule, 0.0}, embedding);
         EXPECT_TRUE(report.ok()) << kind.name << ": " << report.status.message;
         EXPECT_EQ(report.outside, 0u) << kind.name;
         EXPECT_EQ(report.worstDistance, 0.0);
@@ -188,7 +190,7 @@ TEST(EmbedReport, VerticesAHairOffAFaceAreOutside) {
   }
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
     Embedding embedding;
-    EXPECT_EQ(embed(cage, viewOf(vertices), {rule}, embedding).inside, 0u);
+    EXPECT_EQ(embedInto(cage, viewOf(vertices), {rule}, embedding).inside, 0u);
   }
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/embedding/embedding_data.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,21 +25,25 @@ bool sameFloats(const float* a, const float* b, std::size_t count) {
 }
 
 /// Whether two embeddings are equal to the bit, padding included.
-bool same(const Embedding& a, const Embedding& b) {
-  if (a.vertexCount() != b.vertexCount() || a.insideCount() != b.insideCount() || a.nodeCount() != b.nodeCount() ||
-      a.tetCount() != b.tetCount() || a.insideRunCount() != b.insideRunCount()) {
+bool same(const Embedding& one, const Embedding& other) {
+  const EmbeddingData &a = one.data(), &b = other.data();
+  if (a.vertexCount() != b.vertexCount() || a.insideCount != b.insideCount || a.nodeCount != b.nodeCount ||
+      a.tetCount != b.tetCount || a.insideRunCount != b.insideRunCount) {
     return false;
   }
-  const auto sameRun = [](const Embedding::Run& x, const Embedding::Run& y) {
+  const auto sameRun = [](const EmbeddingData::Run& x, const EmbeddingData::Run& y) {
     return std::equal(x.nodes, x.nodes + 4, y.nodes) && x.firstSlot == y.firstSlot && x.tet == y.tet;
   };
-  if (!std::equal(a.runs().begin(), a.runs().end(), b.runs().begin(), b.runs().end(), sameRun)) return false;
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t outside = a.vertexCount() - a.insideCount();
-    if (!sameFloats(a.weights(k), b.weights(k), a.vertexCount() + Embedding::kPadding)) return false;
-    if (!sameFloats(a.closestWeights(k), b.closestWeights(k), outside + Embedding::kPadding)) return false;
+  if (!std::equal(a.runs.begin(), a.runs.end(), b.runs.begin(), b.runs.end(), sameRun)) return false;
+  const auto samePlane = [](const std::vector<float>& x, const std::vector<float>& y, std::size_t count) {
+    return x.size() == count + EmbeddingData::kPadding && y.size() == x.size() &&
+           sameFloats(x.data(), y.data(), x.size());
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!samePlane(a.weights[k], b.weights[k], a.vertexCount())) return false;
+    if (!samePlane(a.closestWeights[k], b.closestWeights[k], a.vertexCount() - a.insideCount)) return false;
   }
-  return a.slotVertices() == b.slotVertices() && a.vertexSlots() == b.vertexSlots();
+  return a.slotVertices == b.slotVertices && a.vertexSlots == b.vertexSlots;
 }
 
 class SavedEmbedding : public testing::Test {
@@ -47,7 +53,7 @@ class SavedEmbedding : public testing::Test {
   void embedAround(double factor, std::size_t count) {
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * factor), centre = Eigen::Vector3d::Constant(0.5);
     const auto vertices = test::randomPoints(count, {centre - half, centre + half}, 6);
-    EXPECT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+    EXPECT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
     bytes = embedding.save(cage);
   }
 
@@ -81,7 +87,7 @@ TEST_F(SavedEmbedding, AllVerticesInsideOrOutside) {
   ASSERT_EQ(embedding.insideCount(), 500u);
   EXPECT_TRUE(same(load(bytes, cage).value(), embedding));
   const std::vector<Eigen::Vector3d> outside{{2, 2, 2}, {-1, 0, 0}, {0.5, 0.5, 7}};
-  ASSERT_TRUE(embed(cage, viewOf(outside), {}, embedding).ok());
+  ASSERT_TRUE(embedInto(cage, viewOf(outside), {}, embedding).ok());
   ASSERT_EQ(embedding.insideCount(), 0u);
   bytes = embedding.save(cage);
   EXPECT_TRUE(same(load(bytes, cage).value(), embedding));
@@ -90,7 +96,7 @@ TEST_F(SavedEmbedding, AllVerticesInsideOrOutside) {
 TEST_F(SavedEmbedding, FormatOfVersion1DoesNotChange) {
   cage = test::singleTet();
   const std::vector<Eigen::Vector3d> vertices{{0.25, 0.25, 0.25}, {0.0, 0.0, -1.0}};
-  ASSERT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+  ASSERT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
   bytes = embedding.save(cage);
   ASSERT_EQ(bytes.size(), 72u + 2 * 8 + 2 * 16 + 12 + 8);
   EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 8), "tetskemb");
@@ -171,13 +177,13 @@ TEST_F(SavedEmbedding, CarriesASkinAsTheOriginalDoes) {
     options.normals = normals;
     MeshSkin<float> original, again;
     ASSERT_TRUE(original.bind(cage, mesh, options).ok());
-    const Bytes saved = original.binding()->embedding.save(cage);
-    std::shared_ptr<const SkinBinding<float>> binding;
-    ASSERT_TRUE(makeSkinBinding(cage, mesh, options, load(saved, cage).value(), binding).ok());
+    const Bytes saved = original.binding()->embedding().save(cage);
+    const auto binding = SkinBinding<float>::make(cage, mesh, options, load(saved, cage).value()).value();
+    ASSERT_TRUE(binding);
     std::vector<Eigen::Vector3f> nodes;
     for (const Eigen::Vector3d& p : cage.nodes) nodes.emplace_back(p.x(), p.y() + p.x() * p.z(), p.z());
-    ASSERT_TRUE(again.bind(binding, viewOf(std::as_const(nodes)), options).ok());
-    ASSERT_EQ(original.update(viewOf(std::as_const(nodes))), nodes.size());
+    ASSERT_TRUE(again.bind(binding, viewOf(std::as_const(nodes)), instanceOf(options)).ok());
+    ASSERT_EQ(original.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
     ASSERT_EQ(again.positions().size(), original.positions().size());
     EXPECT_TRUE(sameFloats(again.positions().data(), original.positions().data(), 3 * mesh.vertexCount()));
     ASSERT_EQ(again.normals().size(), original.normals().size());
@@ -186,12 +192,11 @@ TEST_F(SavedEmbedding, CarriesASkinAsTheOriginalDoes) {
 }
 
 TEST_F(SavedEmbedding, OfAnotherMeshOrCageCarriesNoSkin) {
-  std::shared_ptr<const SkinBinding<float>> binding;
   const auto refuses = [&](const TetMesh& with, const TriangleMesh& mesh, const char* mentions) {
-    const Status status = makeSkinBinding(with, mesh, SkinOptions(), embedding, binding);
-    EXPECT_EQ(status.code, StatusCode::SizeMismatch);
-    EXPECT_NE(status.message.find(mentions), std::string::npos) << status.message;
-    EXPECT_EQ(binding, nullptr);
+    const auto made = SkinBinding<float>::make(with, mesh, {}, embedding);
+    EXPECT_EQ(made.status().code, StatusCode::SizeMismatch);
+    EXPECT_NE(made.status().message.find(mentions), std::string::npos) << made.status().message;
+    EXPECT_EQ(made.value(), nullptr);
   };
   TriangleMesh mesh;
   mesh.positions.assign(60, Eigen::Vector3d::Zero());
@@ -245,7 +250,7 @@ TEST_F(SavedEmbedding, ForgeriesAreRefusedOrSound) {
     std::vector<std::uint32_t> vertices = e.slotVertices();
     std::sort(vertices.begin(), vertices.end());
     for (std::uint32_t v = 0; v < vertices.size(); ++v) ASSERT_EQ(vertices[v], v);
-    ASSERT_EQ(e.runs().back().firstSlot, e.vertexCount());
+    ASSERT_EQ(e.data().runs.back().firstSlot, e.vertexCount());
     for (const VertexBinding& binding : e.bindings()) ASSERT_LT(static_cast<std::size_t>(binding.tet), e.tetCount());
   }
   EXPECT_GT(loadedOnes, 1000);  // those with other weights

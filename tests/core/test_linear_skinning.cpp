@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ class LinearSkinning : public testing::Test {
 
   LinearSkinning() : cage(test::latticeCage(4, 4, 4, 0.25)) {
     vertices = test::randomPoints(1000, {Eigen::Vector3d::Constant(-0.2), Eigen::Vector3d::Constant(1.2)}, 41);
-    const EmbedReport report = embed(cage, viewOf(std::as_const(vertices)), {}, embedding);
+    const Fit report = embedInto(cage, viewOf(std::as_const(vertices)), {}, embedding);
     EXPECT_TRUE(report.ok());
     EXPECT_GT(report.outside, 100u);
   }
@@ -146,7 +147,7 @@ TYPED_TEST(LinearSkinning, WorldOutputFarFromTheOriginIsRoundedOnce) {
 TYPED_TEST(LinearSkinning, CoincidentVerticesStayTogetherToTheLastBit) {
   std::vector<Eigen::Vector3d> doubled = this->vertices;
   doubled.insert(doubled.end(), this->vertices.begin(), this->vertices.end());
-  ASSERT_TRUE(embed(this->cage, viewOf(std::as_const(doubled)), {}, this->embedding).ok());
+  ASSERT_TRUE(embedInto(this->cage, viewOf(std::as_const(doubled)), {}, this->embedding).ok());
   std::vector<Eigen::Vector3d> bent = this->cage.nodes;
   for (Eigen::Vector3d& p : bent) p += 0.2 * Eigen::Vector3d(std::sin(7 * p.z()), std::cos(3 * p.x()), p.x() * p.y());
   const auto surface = this->skin(this->nodesFrom(bent));

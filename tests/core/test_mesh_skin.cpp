@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/skin_binding.h>
 
 #include <limits>
 #include <memory>
@@ -32,7 +33,7 @@ class MeshSkins : public testing::Test {
     return options;
   }
   static PointView<const float> view(const Nodes& nodes) { return viewOf(nodes); }
-  void update(MeshSkin<float>& skin, const Nodes& nodes) { ASSERT_EQ(skin.update(view(nodes)), nodes.size()); }
+  void update(MeshSkin<float>& skin, const Nodes& nodes) { ASSERT_EQ(skin.update(view(nodes)), UpdateStatus::Updated); }
   static Eigen::Vector3f at(PointView<const float> points, std::size_t v) {
     return Eigen::Map<const Eigen::Vector3f>(points[v]);
   }
@@ -63,16 +64,16 @@ TEST_F(MeshSkins, NothingIsMadeThatIsNotAskedFor) {
   EXPECT_TRUE(skin.normals().empty());
   EXPECT_TRUE(skin.tangents().empty());
   EXPECT_TRUE(skin.bounds().isEmpty());
-  EXPECT_FALSE(skin.binding()->quadratic);
-  EXPECT_FALSE(skin.binding()->normals);
-  EXPECT_FALSE(skin.binding()->tangents);
-  EXPECT_FALSE(skin.binding()->recomputed);
+  EXPECT_FALSE(skin.binding()->parts().quadratic);
+  EXPECT_FALSE(skin.binding()->parts().normals);
+  EXPECT_FALSE(skin.binding()->parts().tangents);
+  EXPECT_FALSE(skin.binding()->parts().recomputed);
   ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Recomputed)).ok());
-  EXPECT_FALSE(skin.binding()->normals);
+  EXPECT_FALSE(skin.binding()->parts().normals);
   EXPECT_TRUE(skin.tangents().empty());
   mesh.tangents.clear();
   ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Transformed)).ok());
-  EXPECT_FALSE(skin.binding()->tangents);
+  EXPECT_FALSE(skin.binding()->parts().tangents);
   EXPECT_TRUE(skin.tangents().empty());
 }
 
@@ -85,7 +86,7 @@ TEST_F(MeshSkins, SortedOrderIsTheMeshsPermutedToTheLastBit) {
     ASSERT_TRUE(sorted.bind(cage, mesh, options).ok());
     update(expected, twisted);
     update(sorted, twisted);
-    const auto& slotVertices = sorted.binding()->embedding.slotVertices();
+    const auto& slotVertices = sorted.binding()->embedding().slotVertices();
     for (std::size_t slot = 0; slot < mesh.vertexCount(); ++slot) {
       EXPECT_EQ(at(sorted.positions(), slot), at(expected.positions(), slotVertices[slot]));
       EXPECT_EQ(at(sorted.normals(), slot), at(expected.normals(), slotVertices[slot]));
@@ -151,7 +152,7 @@ TEST_F(MeshSkins, WriteDoublesFromFloatNodesAndTheOtherWayRound) {
   for (const Eigen::Vector3f& p : twisted) nodes.push_back(p.cast<double>());
   update(own, twisted);
   update(single, twisted);
-  ASSERT_EQ(twice.update(viewOf(std::as_const(nodes))), nodes.size());
+  ASSERT_EQ(twice.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     EXPECT_LT((doubles[v] - at(own.positions(), v).cast<double>()).norm(), 1e-6);
     EXPECT_LT((doubles[v] - floats[v].cast<double>()).norm(), 1e-6);
@@ -170,7 +171,7 @@ TEST_F(MeshSkins, BoundsAreThoseOfThePositions) {
   EXPECT_LT((skin.bounds().min() - box.min()).norm(), 2e-6);
   EXPECT_LT((skin.bounds().max() - box.max()).norm(), 2e-6);
   EXPECT_LT(skin.bounds().max().x(), -1.0);
-  skin.setOrigin({0, 0, 0});
+  ASSERT_TRUE(skin.setOrigin({0, 0, 0}).ok());
   update(skin, twisted);
   EXPECT_LT((skin.bounds().min() - box.min() - Eigen::Vector3d(3, -2, 1)).norm(), 2e-6);
 }
@@ -183,11 +184,11 @@ TEST_F(MeshSkins, KeepTheirOriginWhereTheNewOneIsNotFinite) {
   const Eigen::Vector3f before = at(skin.positions(), 9);
   using Limits = std::numeric_limits<double>;
   for (const double bad : {Limits::quiet_NaN(), Limits::infinity(), -1.1e18}) {
-    EXPECT_FALSE(skin.setOrigin({0, bad, 0}));
+    EXPECT_FALSE(skin.setOrigin({0, bad, 0}).ok());
     update(skin, rest);
     EXPECT_EQ(at(skin.positions(), 9), before);
   }
-  EXPECT_TRUE(skin.setOrigin({4, -2, 1}));
+  EXPECT_TRUE(skin.setOrigin({4, -2, 1}).ok());
   update(skin, rest);
   EXPECT_NEAR(at(skin.positions(), 9).x(), before.x() - 1.0f, 1e-6f);
 }
@@ -208,7 +209,8 @@ TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
       Nodes broken = rest;
       broken[70].z() = bad;
       broken[90].x() = bad;
-      EXPECT_EQ(skin.update(view(broken)), 70u);
+      EXPECT_EQ(skin.update(view(broken)), UpdateStatus::NonFinite);
+      EXPECT_EQ(skin.firstBadNode(), 70u);
       for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
         EXPECT_EQ(at(skin.positions(), v), before[2 * v]);
         EXPECT_EQ(at(skin.normals(), v), before[2 * v + 1]);
@@ -221,13 +223,12 @@ TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
 
 TEST_F(MeshSkins, ShareABinding) {
   const SkinOptions options = everything(Normals::Transformed);
-  std::shared_ptr<const SkinBinding<float>> binding;
-  QuadraticReport quadratic;
-  ASSERT_TRUE(makeSkinBinding(cage, mesh, options, binding, &quadratic).ok());
-  EXPECT_GT(quadratic.edges, 0u);
+  const MeshSkin<float>::Binding binding = SkinBinding<float>::make(cage, mesh, options).value();
+  ASSERT_TRUE(binding);
+  EXPECT_GT(binding->quadraticReport().edges, 0u);
   MeshSkin<float> one, other;
-  ASSERT_TRUE(one.bind(binding, view(rest), options).ok());
-  ASSERT_TRUE(other.bind(binding, view(twisted), options).ok());
+  ASSERT_TRUE(one.bind(binding, view(rest)).ok());
+  ASSERT_TRUE(other.bind(binding, view(twisted)).ok());
   EXPECT_EQ(one.binding(), other.binding());
   EXPECT_LT((at(one.positions(), 5).cast<double>() - mesh.positions[5]).norm(), 1e-6);
   EXPECT_GT((at(other.positions(), 5).cast<double>() - mesh.positions[5]).norm(), 0.01);
@@ -238,29 +239,37 @@ TEST_F(MeshSkins, ShareABinding) {
   }
 }
 
-TEST_F(MeshSkins, RefuseABindingThatLacksWhatTheOptionsAskFor) {
-  std::shared_ptr<const SkinBinding<float>> binding;
-  ASSERT_TRUE(makeSkinBinding(cage, mesh, {}, binding).ok());
+TEST_F(MeshSkins, LeaveOutWhatTheyAreToldTo) {
+  const MeshSkin<float>::Binding binding =
+      SkinBinding<float>::make(cage, mesh, everything(Normals::Transformed)).value();
+  MeshSkin<float> linear, expected, without;
+  ASSERT_TRUE(expected.bind(cage, mesh).ok());
+  update(expected, twisted);
+  InstanceOptions options;
+  options.leaveOutQuadratic = true;
+  ASSERT_TRUE(linear.bind(binding, view(twisted), options).ok());
+  EXPECT_FALSE(linear.normals().empty());
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    EXPECT_EQ(at(linear.positions(), v), at(expected.positions(), v));
+  options = {};
+  options.leaveOutNormals = true;
+  ASSERT_TRUE(without.bind(binding, view(twisted), options).ok());
+  EXPECT_TRUE(without.normals().empty());
+  EXPECT_TRUE(without.tangents().empty());
+  EXPECT_NE(at(without.positions(), 5), at(expected.positions(), 5));
+}
+
+TEST_F(MeshSkins, RefuseInstanceOptionsThatDoNotFitTheBinding) {
+  MeshSkin<float>::Binding binding = SkinBinding<float>::make(cage, mesh, {}).value();
   MeshSkin<float> skin;
-  const auto refuses = [&](const SkinOptions& options, StatusCode code, const char* mentions) {
+  const auto refuses = [&](const InstanceOptions& options, StatusCode code, const char* mentions) {
     const Status status = skin.bind(binding, view(rest), options);
     EXPECT_EQ(status.code, code);
     EXPECT_NE(status.message.find(mentions), std::string::npos) << status.message;
     EXPECT_FALSE(skin.bound());
   };
-  SkinOptions options;
-  options.interpolation = Interpolation::Quadratic;
-  refuses(options, StatusCode::InvalidOption, "quadratic");
-  options = {};
-  options.normals = Normals::Transformed;
-  refuses(options, StatusCode::InvalidOption, "transformed normals");
-  options.normals = Normals::Recomputed;
-  refuses(options, StatusCode::InvalidOption, "recomputed normals");
-  ASSERT_TRUE(makeSkinBinding(cage, mesh, options, binding).ok());
-  options.order = VertexOrder::Sorted;
-  refuses(options, StatusCode::InvalidOption, "order");
   std::vector<Eigen::Vector3f> tooFew(7);
-  options = {};
+  InstanceOptions options;
   options.target = viewOf(tooFew);
   refuses(options, StatusCode::SizeMismatch, "7 points");
   options = {};
@@ -274,18 +283,11 @@ TEST_F(MeshSkins, RefuseABindingThatLacksWhatTheOptionsAskFor) {
 }
 
 TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
-  std::shared_ptr<const SkinBinding<float>> binding;
-  ASSERT_TRUE(makeSkinBinding(cage, mesh, everything(Normals::Recomputed), binding).ok());
   const auto refuses = [&](const SkinOptions& options, StatusCode code, const char* mentions) {
     MeshSkin<float> skin;
-    const EmbedReport report = skin.bind(cage, mesh, options);
-    EXPECT_EQ(report.status.code, code);
-    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
-    EXPECT_EQ(report.candidates, 0u);
-    EXPECT_EQ(report.inside + report.outside, 0u);
-    EXPECT_EQ(report.unbound, mesh.vertexCount());
-    const Status shared = skin.bind(binding, view(rest), options);
-    EXPECT_EQ(shared.message, report.status.message);
+    const Result<EmbedReport> report = skin.bind(cage, mesh, options);
+    EXPECT_EQ(report.status().code, code);
+    EXPECT_NE(report.status().message.find(mentions), std::string::npos) << report.status().message;
     EXPECT_FALSE(skin.bound());
   };
   using Limits = std::numeric_limits<double>;
@@ -298,6 +300,11 @@ TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
     SkinOptions options = everything(Normals::Recomputed);
     options.hardEdgeDegrees = bad;
     refuses(options, StatusCode::InvalidOption, "hardEdgeDegrees");
+    EmbedReport report;
+    report.candidates = 7;
+    EXPECT_FALSE(SkinBinding<float>::make(cage, mesh, options, &report).ok());
+    EXPECT_EQ(report.candidates, 0u) << "nothing is even begun";
+    EXPECT_EQ(report.unbound, mesh.vertexCount());
   }
   std::vector<Eigen::Vector3f> tooFew(7);
   SkinOptions options = everything(Normals::Recomputed);
@@ -305,15 +312,13 @@ TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
   refuses(options, StatusCode::SizeMismatch, "7 points");
 }
 
-TEST_F(MeshSkins, RefusedAfterEmbeddingReportNothingBound) {
+TEST_F(MeshSkins, RefusedAfterEmbeddingAreNotBound) {
   for (Eigen::Vector3d& p : cage.nodes) p *= 1e20;  // more than the nodes of a body may be
   for (Eigen::Vector3d& p : mesh.positions) p *= 1e20;
   MeshSkin<float> skin;
-  const EmbedReport report = skin.bind(cage, mesh);
+  const Result<EmbedReport> report = skin.bind(cage, mesh);
   EXPECT_FALSE(report.ok());
-  EXPECT_EQ(report.inside + report.outside, 0u);
-  EXPECT_EQ(report.unbound, mesh.vertexCount());
-  EXPECT_EQ(report.vertexCount, mesh.vertexCount());
+  EXPECT_FALSE(skin.bound());
 }
 
 TEST_F(MeshSkins, RefuseNodesThatDoNotFitTheBinding) {
@@ -329,13 +334,30 @@ TEST_F(MeshSkins, RefuseNodesThatDoNotFitTheBinding) {
   update(skin, twisted);  // and goes on as before
 }
 
+TEST_F(MeshSkins, SayWhyThereIsNoUpdate) {
+  MeshSkin<float> skin;
+  EXPECT_EQ(skin.update(view(rest)), UpdateStatus::Unbound);
+  EXPECT_EQ(skin.update(KeptSteps<float>(), 0.5f), UpdateStatus::Unbound);
+  EXPECT_EQ(skin.nodeCount(), 0u);
+  EXPECT_EQ(skin.binding(), nullptr);
+  ASSERT_TRUE(skin.bind(cage, mesh).ok());
+  const Eigen::Vector3f before = at(skin.positions(), 9);
+  Nodes fewer = twisted;
+  fewer.pop_back();
+  EXPECT_EQ(skin.update(view(fewer)), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(KeptSteps<float>(), 0.5f), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(at(skin.positions(), 9), before);
+  MeshSkin<float> moved = std::move(skin);
+  EXPECT_FALSE(skin.bound());  // NOLINT: what is left of it
+  update(moved, twisted);
+}
+
 TEST_F(MeshSkins, RefuseAMeshWithTooFewNormalsOrTangents) {
   const auto refuses = [&](const char* mentions) {
     MeshSkin<float> skin;
-    const EmbedReport report = skin.bind(cage, mesh);
-    EXPECT_EQ(report.status.code, StatusCode::SizeMismatch);
-    EXPECT_NE(report.status.message.find(mentions), std::string::npos) << report.status.message;
-    EXPECT_EQ(report.unbound, mesh.vertexCount());
+    const Result<EmbedReport> report = skin.bind(cage, mesh);
+    EXPECT_EQ(report.status().code, StatusCode::SizeMismatch);
+    EXPECT_NE(report.status().message.find(mentions), std::string::npos) << report.status().message;
     EXPECT_FALSE(skin.bound());
   };
   mesh.tangents.pop_back();
@@ -351,9 +373,9 @@ TEST_F(MeshSkins, RefuseAVertexTooFarOutsideAndStayAsTheyWere) {
   mesh.positions[12] = {0.5, 0.5, 1.75};
   SkinOptions options;
   options.maxDistance = 0.5;
-  const EmbedReport report = skin.bind(cage, mesh, options);
-  EXPECT_EQ(report.status.code, StatusCode::OutsideCage);
-  EXPECT_NE(report.status.message.find("vertex 12"), std::string::npos) << report.status.message;
+  const Result<EmbedReport> report = skin.bind(cage, mesh, options);
+  EXPECT_EQ(report.status().code, StatusCode::OutsideCage);
+  EXPECT_NE(report.status().message.find("vertex 12"), std::string::npos) << report.status().message;
   EXPECT_EQ(skin.binding(), binding);
   options.maxDistance = 0.751;
   EXPECT_TRUE(skin.bind(cage, mesh, options).ok());

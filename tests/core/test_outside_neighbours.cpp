@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/brute_force.h"
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -70,10 +71,10 @@ TEST(OutsideNeighbours, VerticesThatPokeTowardsAnotherPartStayWithTheirOwn) {
     const TetMesh cage = legs(joined);
     const TriangleMesh mesh = pokingOut();
     Embedding embedding;
-    const EmbedReport alone = embed(cage, viewOf(mesh.positions), {}, embedding);
+    const Fit alone = embedInto(cage, viewOf(mesh.positions), {}, embedding);
     EXPECT_EQ(inRightLeg(cage, embedding), 20u);  // without triangles: the nearest
     EXPECT_EQ(alone.keptWithNeighbours, 0u);
-    const EmbedReport report = embed(cage, mesh, {}, embedding);
+    const Fit report = embedInto(cage, mesh, {}, embedding);
     EXPECT_EQ(inRightLeg(cage, embedding), 0u) << joined;
     EXPECT_EQ(report.keptWithNeighbours, 20u);
     EXPECT_EQ(report.outside, 20u);
@@ -96,7 +97,7 @@ TEST(OutsideNeighbours, OtherVerticesAreBoundAsIfAlone) {
   const TetMesh cage = legs(true);
   const TriangleMesh mesh = test::sphere(24, 0.56, {0.5, 2.0, 0.25});  // pokes out on all sides, hardly to the right
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_GT(report.outside, 100u);
   EXPECT_EQ(report.keptWithNeighbours, 0u);
   const auto brute = test::bruteForce(cage, mesh.positions, OutsideRule::Nearest);
@@ -110,7 +111,7 @@ TEST(OutsideNeighbours, ANearestTetThatIsMuchNearerThanTheirOwnIsTaken) {
   mesh.positions = {{0.3, 2.0, 0.2}, {0.3, 2.2, 0.2}, {2.0, 2.0, 0.55}, {0.9, 2.1, 0.6}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.outside, 2u);
   EXPECT_EQ(report.keptWithNeighbours, 0u);
   EXPECT_EQ(inRightLeg(cage, embedding), 1u);  // vertex 2, more than a leg away from its own
@@ -120,7 +121,7 @@ TEST(OutsideNeighbours, APieceWithNoVertexInsideStaysWhereItIsNearest) {
   const TetMesh cage = legs(false);
   const TriangleMesh mesh = sheet({1.12, 1.17});
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.keptWithNeighbours, 0u);
   EXPECT_EQ(inRightLeg(cage, embedding), mesh.vertexCount());
 }
@@ -129,7 +130,7 @@ TEST(OutsideNeighbours, TheBarycentricRuleIsLeftPure) {
   const TetMesh cage = legs(false);
   const TriangleMesh mesh = pokingOut();
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, {OutsideRule::Barycentric}, embedding);
+  const Fit report = embedInto(cage, mesh, {OutsideRule::Barycentric}, embedding);
   EXPECT_EQ(report.keptWithNeighbours, 0u);
   EXPECT_EQ(inRightLeg(cage, embedding), 20u);
   const auto brute = test::bruteForce(cage, mesh.positions, OutsideRule::Barycentric);
@@ -148,8 +149,8 @@ TEST(OutsideNeighbours, SeamsChangeTogether) {
     cut.triangles.push_back({last - 3, last - 2, last - 1});
   }
   Embedding embedding, expected;
-  ASSERT_TRUE(embed(cage, cut, {}, embedding).ok());
-  ASSERT_TRUE(embed(cage, whole, {}, expected).ok());
+  ASSERT_TRUE(embedInto(cage, cut, {}, embedding).ok());
+  ASSERT_TRUE(embedInto(cage, whole, {}, expected).ok());
   const auto bindings = embedding.bindings(), wholes = expected.bindings();
   for (std::size_t t = 0; t < whole.triangleCount(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -25,7 +25,7 @@ class PreviousPositions : public testing::Test {
   }
   void update(int step) {
     const Points nodes = nodesAt(step);
-    ASSERT_EQ(skin.update(viewOf(nodes)), nodes.size());
+    ASSERT_EQ(skin.update(viewOf(nodes)), UpdateStatus::Updated);
   }
   static Points copyOf(PointView<const float> view) {
     Points points;
@@ -66,7 +66,7 @@ TEST_F(PreviousPositions, DoNotChangeTheCurrentOnes) {
   for (int step = 1; step < 4; ++step) {
     update(step);
     const Points nodes = nodesAt(step);
-    ASSERT_EQ(plain.update(viewOf(nodes)), nodes.size());
+    ASSERT_EQ(plain.update(viewOf(nodes)), UpdateStatus::Updated);
     EXPECT_EQ(copyOf(skin.positions()), copyOf(plain.positions()));
   }
 }
@@ -90,7 +90,8 @@ TEST_F(PreviousPositions, AreTheCurrentOnesAfterAFailedUpdate) {
   const Points good = copyOf(skin.positions());
   Points nodes = nodesAt(2);
   nodes[7].y() = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), 7u);
+  EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::NonFinite);
+  EXPECT_EQ(skin.firstBadNode(), 7u);
   EXPECT_EQ(copyOf(skin.positions()), good);
   EXPECT_EQ(copyOf(skin.previousPositions()), good);
   update(2);
@@ -105,7 +106,7 @@ TEST_F(PreviousPositions, CostNothingWhenNotAskedFor) {
     EXPECT_TRUE(made.bind(cage, mesh, options).ok());
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
     const Points nodes = nodesAt(1);
-    EXPECT_EQ(made.update(viewOf(nodes)), nodes.size());
+    EXPECT_EQ(made.update(viewOf(nodes)), UpdateStatus::Updated);
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
     return test::allocatedBytes() - before;
   };
@@ -118,7 +119,7 @@ TEST_F(PreviousPositions, UpdatesAllocateNothing) {
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
   const Points nodes = nodesAt(1);
   const std::size_t before = test::allocationCount();
-  ASSERT_EQ(skin.update(viewOf(nodes)), nodes.size());
+  ASSERT_EQ(skin.update(viewOf(nodes)), UpdateStatus::Updated);
   EXPECT_EQ(test::allocationCount(), before);
 }
 
@@ -126,9 +127,9 @@ TEST_F(PreviousPositions, AreNotKeptOfTheCallersBuffer) {
   Points target(mesh.vertexCount());
   options.previousPositions = true;
   options.target = viewOf(target);
-  const EmbedReport report = skin.bind(cage, mesh, options);
-  EXPECT_EQ(report.status.code, StatusCode::InvalidOption);
-  EXPECT_NE(report.status.message.find("own array"), std::string::npos);
+  const Result<EmbedReport> report = skin.bind(cage, mesh, options);
+  EXPECT_EQ(report.status().code, StatusCode::InvalidOption);
+  EXPECT_NE(report.status().message.find("own array"), std::string::npos);
   EXPECT_FALSE(skin.bound());
 }
 

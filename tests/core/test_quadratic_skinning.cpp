@@ -5,6 +5,7 @@
 #include "support/smooth_maps.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/mesh_skin.h>
 
 #include <cmath>
 #include <limits>
@@ -73,9 +74,9 @@ TEST_P(OnLattices, QuadraticMapsAreExactInsideUpToTheBoundary) {
   const Points vertices = test::pointsIn(cage, tets, 53);
   CarriedPoints<double> points(cage, vertices, tets);
   CarriedPoints<float> rounded(cage, vertices, tets);
-  EXPECT_EQ(points.report.nodes, cage.nodeCount());
-  EXPECT_EQ(points.report.thinNodes, 0u);
-  EXPECT_EQ(points.report.plainNodes, 0u);
+  EXPECT_EQ(points.stencils.gradientCount(), cage.nodeCount());
+  EXPECT_EQ(points.stencils.thinCount(), 0u);
+  EXPECT_EQ(points.stencils.plainCount(), 0u);
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const test::SmoothMap map = test::quadraticMap(seed, 0.25);
     points.move(map(cage.nodes));
@@ -167,7 +168,7 @@ Errors errorsIn(const TetMesh& cage, const std::vector<int>& tets) {
   Errors errors;
   const std::vector<int> chosen = test::someOf(tets, 300, 55);
   CarriedPoints<double> points(cage, test::pointsIn(cage, chosen, 56), chosen);
-  EXPECT_EQ(points.report.thinNodes + points.report.plainNodes, 0u);
+  EXPECT_EQ(points.stencils.thinCount() + points.stencils.plainCount(), 0u);
   for (const test::SmoothMap& map : test::smoothMaps(Eigen::Vector3d::Constant(0.5))) {
     points.move(map(cage.nodes));
     errors.linear.push_back(distances(points.linear(), map(points.rest)).rms);
@@ -256,11 +257,8 @@ TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
   for (const TetMesh& cage : {test::latticeCage(6, 1, 6, 0.25), test::plainLatticeCage(6, 1, 6, 0.25)}) {
     const std::vector<int> tets = allTets(cage);
     CarriedPoints<double> points(cage, test::pointsIn(cage, tets, 58), tets);
-    EXPECT_EQ(points.report.thinNodes, cage.nodeCount());
-    EXPECT_EQ(points.report.plainNodes, 0u);
-    EXPECT_NE(points.report.describe().find(std::to_string(cage.nodeCount()) + " nodes in thin places"),
-              std::string::npos)
-        << points.report.describe();
+    EXPECT_EQ(points.stencils.thinCount(), cage.nodeCount());
+    EXPECT_EQ(points.stencils.plainCount(), 0u);
     for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
       points.move(map(cage.nodes));
       const Points expected = map(points.rest);
@@ -279,7 +277,7 @@ TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
         const TetMesh cage = test::jittered(even, 0.25 * jitter, seed);
         const std::vector<int> tets = allTets(cage);
         CarriedPoints<double> points(cage, test::pointsIn(cage, tets, 61), tets);
-        EXPECT_GT(points.report.thinNodes, 0u);
+        EXPECT_GT(points.stencils.thinCount(), 0u);
         for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
           points.move(map(cage.nodes));
           const Points expected = map(points.rest);
@@ -295,16 +293,25 @@ TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
 TEST(QuadraticReport, CountsNodesEdgesAndNeighbours) {
   const TetMesh cage = test::singleTet();
   CarriedPoints<double> points(cage, {{0.1, 0.2, 0.3}});
-  EXPECT_EQ(points.report.nodes, 4u);
-  EXPECT_EQ(points.report.thinNodes, 4u);
-  EXPECT_EQ(points.report.edges, 6u);
-  EXPECT_EQ(points.report.meanNeighbours, 3.0);
-  EXPECT_GT(points.report.milliseconds, 0.0);
+  EXPECT_EQ(points.stencils.gradientCount(), 4u);
+  EXPECT_EQ(points.stencils.thinCount(), 4u);
+  EXPECT_EQ(points.stencils.edgeCount(), 6u);
+  TriangleMesh mesh;
+  mesh.positions = {{0.1, 0.2, 0.3}};
+  BindingOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  const QuadraticReport report = SkinBinding<double>::make(cage, mesh, options).value()->quadraticReport();
+  EXPECT_EQ(report.nodes, 4u);
+  EXPECT_EQ(report.thinNodes, 4u);
+  EXPECT_EQ(report.edges, 6u);
+  EXPECT_EQ(report.meanNeighbours, 3.0);
+  EXPECT_GT(report.milliseconds, 0.0);
+  EXPECT_NE(report.describe().find("4 nodes in thin places"), std::string::npos) << report.describe();
   // One vertex in a large cage: four nodes, not all of them.
   CarriedPoints<double> one(test::latticeCage(6, 6, 6, 0.2), {{0.51, 0.52, 0.53}});
-  EXPECT_EQ(one.report.nodes, 4u);
-  EXPECT_EQ(one.report.edges, 6u);
-  EXPECT_EQ(one.report.thinNodes, 0u);
+  EXPECT_EQ(one.stencils.gradientCount(), 4u);
+  EXPECT_EQ(one.stencils.edgeCount(), 6u);
+  EXPECT_EQ(one.stencils.thinCount(), 0u);
 }
 
 /// Independent noise in the nodes must not be magnified.

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "carried_normals.h"
 
+#include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/kernels/instruction_set.h>
+#include <tetskin/core/src/skin_binding.h>
 
 #include <limits>
 #include <random>
@@ -86,7 +88,7 @@ void expectSmoothSeams(float length) {
   }
   const test::SmoothMap waves = test::smoothMaps(kCentre)[3];
   Carried<float> expected(cage, whole, Normals::Recomputed), carried(cage, cut, Normals::Recomputed);
-  EXPECT_EQ(carried.skin.binding()->recomputed->groupCount(), whole.vertexCount());
+  EXPECT_EQ(carried.skin.binding()->parts().recomputed->groupCount(), whole.vertexCount());
   expected.move(waves(cage.nodes));
   carried.move(waves(cage.nodes));
   for (std::size_t t = 0; t < whole.triangleCount(); ++t) {
@@ -140,7 +142,7 @@ void expectSumsOfTriangles(const TriangleMesh& mesh, double tolerance) {
   std::vector<Eigen::Vector3f> normals(mesh.vertexCount(), untouched);
   std::vector<Scalar> padded(4 * mesh.vertexCount());
   padPoints(viewOf(std::as_const(positions)), padded);
-  recomputeNormals(NormalTopology(mesh, {}), padded, viewOf(normals));
+  recomputeNormals(NormalTopology(mesh, {}, kHardEdgeDegrees), padded, viewOf(normals));
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     if (sums[v].isZero()) {
       EXPECT_EQ(normals[v], untouched);
@@ -166,7 +168,7 @@ TEST(RecomputedNormals, AreSumsOfAllTrianglesOnAnySoup) {
 
 TEST(NormalTopology, HasOneClosedPathAroundEveryVertexOfAClosedSurface) {
   const TriangleMesh mesh = test::sphere(16, 0.5, kCentre);
-  const NormalTopology topology(mesh, {});
+  const NormalTopology topology(mesh, {}, kHardEdgeDegrees);
   EXPECT_EQ(topology.groupCount(), mesh.vertexCount());
   EXPECT_EQ(topology.paths().size(), 3 * mesh.triangleCount() + mesh.vertexCount());
   for (std::size_t g = 0; g < topology.groupCount(); ++g) {
@@ -183,7 +185,7 @@ TEST(NormalTopology, TakesManyTrianglesAroundOneVertex) {
     fan.positions.push_back({std::cos(k / (kDegrees * 1000)), 0, std::sin(k / (kDegrees * 1000))});
     fan.triangles.push_back({0, 1 + (k + 1) % kMany, 1 + k});
   }
-  const NormalTopology around(fan, {});
+  const NormalTopology around(fan, {}, kHardEdgeDegrees);
   std::size_t longest = 0;
   for (std::size_t g = 0; g < around.groupCount(); ++g) {
     longest = std::max<std::size_t>(longest, around.groupPaths()[g + 1] - around.groupPaths()[g]);
@@ -192,7 +194,7 @@ TEST(NormalTopology, TakesManyTrianglesAroundOneVertex) {
   same.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   same.triangles.assign(kMany, {0, 1, 2});
   for (int k = 0; k < kMany / 2; ++k) same.triangles[static_cast<std::size_t>(k)] = {0, 2, 1};
-  EXPECT_EQ(NormalTopology(same, {}).groupCount(), 3u);
+  EXPECT_EQ(NormalTopology(same, {}, kHardEdgeDegrees).groupCount(), 3u);
 }
 
 TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
@@ -202,14 +204,14 @@ TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
     return Eigen::Vector3d(std::sin(degrees / kDegrees), std::cos(degrees / kDegrees), 0.0).cast<float>();
   };
   for (const double degrees : {0.0, 60.0, 3.0, 63.0, 120.0}) mesh.normals.push_back(tilted(degrees));
-  const NormalTopology topology(mesh, {});
+  const NormalTopology topology(mesh, {}, kHardEdgeDegrees);
   EXPECT_EQ(topology.groupCount(), 3u);
   EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 2, 1, 3, 4}));
   EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 2, 4, 5}));
   EXPECT_EQ(NormalTopology(mesh, {}, 61.0).groupCount(), 2u);
   EXPECT_EQ(NormalTopology(mesh, {}, 360.0).groupCount(), 1u);
   mesh.normals.clear();
-  EXPECT_EQ(NormalTopology(mesh, {}).groupCount(), 1u);
+  EXPECT_EQ(NormalTopology(mesh, {}, kHardEdgeDegrees).groupCount(), 1u);
 }
 
 /// It does not make hard edges of its own, and softens none: the others are grouped as if it were not there.
@@ -218,11 +220,11 @@ TEST(NormalTopology, AVertexWithoutARestNormalJoinsTheFirstGroupOfItsPosition) {
   TriangleMesh mesh;
   mesh.positions.assign(5, {0.1, 0.2, 0.3});
   mesh.normals = {{0, 0, 0}, {2, 0, 0}, {nan, 1, 0}, {0, 3, 0}, {0.5f, 0, 0}};
-  const NormalTopology topology(mesh, {});
+  const NormalTopology topology(mesh, {}, kHardEdgeDegrees);
   EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 1, 2, 4, 3}));
   EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 4, 5}));
   mesh.normals.assign(5, {0, 0, 0});
-  EXPECT_EQ(NormalTopology(mesh, {}).groupCount(), 1u);
+  EXPECT_EQ(NormalTopology(mesh, {}, kHardEdgeDegrees).groupCount(), 1u);
 }
 
 TEST(NormalTopology, EqualRestNormalsMakeNoEdgeWhateverTheAngle) {

@@ -3,6 +3,7 @@
 //
 // What a skin writes into the caller's memory it never reads back: that may be mapped for writing only, and reading it
 // a hundred times slower.
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
@@ -61,9 +62,9 @@ class SkinTargets : public testing::Test {
     options.normalTarget = points<float>(directions, stride);
     options.tangentTarget = points<float>(tangents, stride);
     options.threads = &caller;
-    ASSERT_TRUE(skin.bind(own.binding(), viewOf(std::as_const(nodes)), options).ok());
-    ASSERT_EQ(own.update(viewOf(std::as_const(nodes))), nodes.size());
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), nodes.size());
+    ASSERT_TRUE(skin.bind(own.binding(), viewOf(std::as_const(nodes)), instanceOf(options)).ok());
+    ASSERT_EQ(own.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
     ASSERT_GE(caller.stages, 2);
     const bool tangentsLast = !own.tangents().empty();
     const PointView<const float> expected = tangentsLast ? own.tangents() : own.normals();

@@ -5,11 +5,13 @@
 #include "support/brute_force.h"
 #include "support/cage_surface.h"
 #include "support/carried_points.h"
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/search/tolerances.h>
 
 #include <algorithm>
 #include <string>
@@ -100,7 +102,7 @@ TEST(Slivers, CarryNoVertexThatAnotherTetNearbyCarriesWell) {
   const TriangleMesh mesh = test::surfaceBeside(cage, distance);
   Embedding embedding;
   // Rescued vertices are no farther from the cage than others.
-  const EmbedReport report = embed(cage, mesh, {OutsideRule::Nearest, 1.001 * distance}, embedding);
+  const Fit report = embedInto(cage, mesh, {OutsideRule::Nearest, 1.001 * distance}, embedding);
   ASSERT_TRUE(report.ok()) << report.status.message;
   EXPECT_GT(report.outside, 0.99 * static_cast<double>(mesh.vertexCount()));
   EXPECT_LT(strayed(cage, mesh.positions, tetsOf(embedding), 0.01 * size), 0.03 * size);
@@ -118,7 +120,7 @@ TEST(Slivers, AreAvoidedAsTestingAllPairsWould) {
     vertices.insert(vertices.end(), layer.begin(), layer.end());
   }
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   const auto expected = test::bruteForce(cage, vertices, OutsideRule::Nearest);
   const auto bindings = embedding.bindings();
   std::size_t rescued = 0;
@@ -141,7 +143,7 @@ TEST(Slivers, MakeNoDifferenceWhereThereAreNone) {
     const double diagonal = diagonalOf(cages[c]);
     const Points vertices = test::surfaceBeside(cages[c], 0.01 * diagonal, 1).positions;
     Embedding embedding;
-    ASSERT_TRUE(embed(cages[c], viewOf(vertices), {}, embedding).ok());
+    ASSERT_TRUE(embedInto(cages[c], viewOf(vertices), {}, embedding).ok());
     std::vector<std::int32_t> nearest;
     for (const test::BruteHit& hit : test::bruteForce(cages[c], vertices, OutsideRule::Nearest)) {
       nearest.push_back(hit.inside ? hit.nearest : ~hit.nearest);
@@ -195,10 +197,10 @@ TEST(Slivers, ARescueStaysWithTheNeighbours) {
   const TetMesh cage = plates(0.03);  // carries vertices above it well, but the upper plate does it better
   for (const TriangleMesh& mesh : {sheetAt({-0.02, -0.01, 0.04, 0.04}), sheetAt({2e-5, 2e-5, 0.04, 0.04})}) {
     Embedding embedding;
-    const EmbedReport alone = embed(cage, viewOf(mesh.positions), {}, embedding);
+    const Fit alone = embedInto(cage, viewOf(mesh.positions), {}, embedding);
     EXPECT_EQ(alone.rescued, 14u);
     EXPECT_GT(inUpperPlate(cage, embedding), 7u);
-    const EmbedReport report = embed(cage, mesh, {}, embedding);
+    const Fit report = embedInto(cage, mesh, {}, embedding);
     EXPECT_EQ(report.rescued, 14u);
     EXPECT_EQ(inUpperPlate(cage, embedding), 0u);
     EXPECT_GT(report.keptWithNeighbours, 7u);
@@ -210,9 +212,9 @@ TEST(Slivers, NoVertexIsKeptWithItsNeighboursByOne) {
   // The last two columns are nearer to the upper plate; the lower one's skin is too thin for them.
   const TriangleMesh mesh = sheetAt({-0.2, -0.1, 0.06, 0.07});
   Embedding embedding;
-  EXPECT_EQ(embed(cage, viewOf(mesh.positions), {}, embedding).rescued, 0u);
+  EXPECT_EQ(embedInto(cage, viewOf(mesh.positions), {}, embedding).rescued, 0u);
   EXPECT_EQ(inUpperPlate(cage, embedding), 14u);
-  const EmbedReport report = embed(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.keptWithNeighbours, 14u);
   EXPECT_EQ(inUpperPlate(cage, embedding), 0u);
   EXPECT_LT(report.largestWeight, kLargestWeight);
@@ -226,7 +228,7 @@ TEST(Slivers, AVertexStaysWithAnotherPartWhereItsOwnIsAllSlivers) {
   cage.tets.erase(std::remove_if(cage.tets.begin(), cage.tets.end(), belowTheSkin), cage.tets.end());
   const TriangleMesh mesh = sheetAt({-5e-6, -4e-6, 0.06, 0.07});
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.inside, 14u);
   EXPECT_EQ(report.keptWithNeighbours, 0u);
   EXPECT_LT(report.largestWeight, kLargestWeight);

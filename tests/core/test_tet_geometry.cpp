@@ -113,5 +113,18 @@ TEST(TetGeometry, ClosestPointOnATriangleCoversItsSevenRegions) {
   EXPECT_LT((closest(0.2, 0.3) - Eigen::Vector3d(0.2, 0.3, 0)).norm(), 1e-15);
 }
 
+TEST(ClosestPointInTet, IsAPointOfTheTetFromHoweverFar) {
+  // Found by fuzzing: from so far away, nothing was left of a face but a division of zero by zero.
+  const TetCorners p = {Eigen::Vector3d(2e-12, 1.5e-12, 1.75e-12), Eigen::Vector3d(1.5e-12, 1.5e-12, 2e-12),
+                        Eigen::Vector3d(0.0, 3.75e-12, 3.5e-12), Eigen::Vector3d::Zero()};
+  const BarycentricMap map(p);
+  const Eigen::Vector3d one = Eigen::Vector3d::Ones();
+  for (const Eigen::Vector3d& v : test::randomPoints(1000, {-one, one}, 41)) {
+    const Eigen::Vector3d far = 1e13 * v;
+    const double distance = distanceToTet(far, p, map(far));
+    EXPECT_NEAR(distance / far.norm(), 1.0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

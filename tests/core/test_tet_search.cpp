@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/brute_force.h"
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ using test::around;
 /// Embeds under one rule and compares every vertex with brute force: the tet, the side, the weights, the extremes.
 EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, OutsideRule rule) {
   Embedding embedding;
-  EmbedReport report = embed(cage, viewOf(vertices), {rule}, embedding);
+  Fit report = embedInto(cage, viewOf(vertices), {rule}, embedding);
   EXPECT_TRUE(report.ok()) << report.status.message;
   const auto bindings = embedding.bindings();
   const auto expected = test::bruteForce(cage, vertices, rule);
@@ -95,7 +96,7 @@ TEST(Embed, MatchesBruteForceInACageThatOverlapsItself) {
   const Points vertices = test::randomPoints(1500, around(cage, 1.1), 3);
   expectBruteForceUnderBothRules(cage, vertices);
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   // Both lattices are unit cubes; what they share is about half of each.
   EXPECT_GT(report.overlapping, report.vertexCount / 4);
   EXPECT_LT(report.overlapping, report.inside);
@@ -106,7 +107,7 @@ TEST(Embed, SharedFacesAreNoOverlap) {
   Points vertices = cage.nodes;
   for (const auto& e : uniqueEdges(cage)) vertices.push_back((cage.nodes[e[0]] + cage.nodes[e[1]]) / 2.0);
   Embedding embedding;
-  EXPECT_EQ(embed(cage, viewOf(vertices), {}, embedding).overlapping, 0u);
+  EXPECT_EQ(embedInto(cage, viewOf(vertices), {}, embedding).overlapping, 0u);
 }
 
 TEST(Embed, VerticesOnSharedFacesEdgesAndNodesGoToTheLowestTet) {
@@ -124,7 +125,7 @@ TEST(Embed, MatchesBruteForceAtTheDragonsSize) {
   TriangleMesh mesh = test::sphere(172, 0.51 * box.sizes().minCoeff(), box.center());
   ASSERT_GT(mesh.vertexCount(), 29000u);
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(mesh.positions), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(mesh.positions), {}, embedding);
   EXPECT_GT(report.outside, 100u);
   EXPECT_LT(candidatesPerVertex(report), 60.0);
   Points sample;  // brute force of all would take a minute
@@ -178,10 +179,10 @@ TEST(Embed, AFewFarVerticesCostNextToNothing) {
   const TetMesh cage = test::latticeCage(8, 8, 8, 0.125);
   Points vertices = test::randomPoints(20000, around(cage, 0.99), 10);
   Embedding embedding;
-  const std::size_t without = embed(cage, viewOf(vertices), {}, embedding).candidates;
+  const std::size_t without = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
   vertices.emplace_back(1250, 0, 0);  // 10,000 tet sizes
   vertices.emplace_back(0, -1250, 3);
-  const std::size_t with = embed(cage, viewOf(vertices), {}, embedding).candidates;
+  const std::size_t with = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
   EXPECT_LT(with, without + without / 10);
 }
 
@@ -235,13 +236,13 @@ TEST(Embed, ScaleChangesNoDecision) {
   const TetMesh unit = test::randomTets(200, 0.4, 21);
   const Points vertices = test::randomPoints(500, around(unit, 1.3), 22);
   Embedding embedding;
-  const EmbedReport first = embed(unit, viewOf(vertices), {}, embedding);
+  const Fit first = embedInto(unit, viewOf(vertices), {}, embedding);
   const auto expected = embedding.bindings();
   for (const double scale : {0x1p-20, 0x1p20}) {  // powers of two: exact
     TetMesh cage = unit;
     cage.nodes = test::scaledAndMoved(unit.nodes, scale, Eigen::Vector3d::Zero());
     const Points scaled = test::scaledAndMoved(vertices, scale, Eigen::Vector3d::Zero());
-    EXPECT_EQ(embed(cage, viewOf(scaled), {}, embedding).candidates, first.candidates);
+    EXPECT_EQ(embedInto(cage, viewOf(scaled), {}, embedding).candidates, first.candidates);
     const auto bindings = embedding.bindings();
     for (std::size_t v = 0; v < vertices.size(); ++v) EXPECT_EQ(bindings[v].tet, expected[v].tet);
   }
@@ -259,7 +260,7 @@ TEST(Embed, MatchesBruteForceWithFloatVerticesFarFromTheOrigin) {
   }
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
     Embedding embedding;
-    ASSERT_TRUE(embed(cage, viewOf(std::as_const(vertices)), {rule}, embedding).ok());
+    ASSERT_TRUE(embedInto(cage, viewOf(std::as_const(vertices)), {rule}, embedding).ok());
     const auto bindings = embedding.bindings();
     const auto expected = test::bruteForce(cage, exact, rule);
     for (std::size_t v = 0; v < exact.size(); ++v) EXPECT_EQ(bindings[v].tet, expected[v].tet);
@@ -285,14 +286,14 @@ TEST(Embed, SearchTestsFewCandidatesOfManyTets) {
   const TetMesh cage = test::latticeCage(20, 20, 20, 0.05);  // 48,000 tets
   const Points vertices = test::randomPoints(30000, around(cage, 1.0), 15);
   Embedding embedding;
-  EXPECT_LT(candidatesPerVertex(embed(cage, viewOf(vertices), {}, embedding)), 60.0);
+  EXPECT_LT(candidatesPerVertex(embedInto(cage, viewOf(vertices), {}, embedding)), 60.0);
 }
 
 TEST(Embed, SearchStaysLinearWhenTheCageIsFinerThanTheMesh) {
   const TetMesh cage = test::latticeCage(20, 20, 20, 0.05);
   const Points vertices = test::randomPoints(200, around(cage, 1.0), 16);
   Embedding embedding;
-  const EmbedReport report = embed(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_LT(report.candidates, 10 * cage.tetCount());
 }
 
@@ -303,7 +304,7 @@ TEST(Embed, NearestRuleKeepsVerticesOnAThinLayer) {
   for (const Eigen::Vector3d& p : test::randomPoints(400, kUnitBox, 17)) vertices.emplace_back(p.x(), 0.57, p.z());
   const auto onLayer = [&](OutsideRule rule) {
     Embedding embedding;
-    EXPECT_TRUE(embed(cage, viewOf(vertices), {rule}, embedding).ok());
+    EXPECT_TRUE(embedInto(cage, viewOf(vertices), {rule}, embedding).ok());
     std::size_t count = 0;
     for (const VertexBinding& b : embedding.bindings()) {
       const Tet& t = cage.tets[b.tet];
@@ -325,7 +326,7 @@ TEST(Embed, FlatTetsAreCountedAndNeverUsed) {
   const Points vertices{{0.5, 0.5, 2.0}, {0.2, 0.3, 0.4}};  // the first lies in the flat tet's plane
   expectBruteForceUnderBothRules(cage, vertices);
   Embedding embedding;
-  EXPECT_EQ(embed(cage, viewOf(vertices), {}, embedding).flatTets, 2u);
+  EXPECT_EQ(embedInto(cage, viewOf(vertices), {}, embedding).flatTets, 2u);
   for (const VertexBinding& b : embedding.bindings()) EXPECT_NE(b.tet, 0);
 }
 

@@ -19,17 +19,18 @@ TEST(StatusCode, EveryCodeHasItsOwnName) {
   EXPECT_EQ(names.count("unknown status"), 0u);
 }
 
-TEST(Result, ConvertsToItsValueWhereUsedDirectly) {
+TEST(Result, DoesNotConvertToItsValue) {
+  static_assert(!std::is_convertible_v<Result<std::string>, std::string>);
+  static_assert(!std::is_convertible_v<Result<int*>, bool>);
   const auto make = [] { return Result<std::string>(std::string("value")); };
-  const std::string value = make();
+  const std::string value = make().value();
   EXPECT_EQ(value, "value");
   EXPECT_TRUE(make().ok());
 }
 
-TEST(Result, OfAFailureConvertsToAnEmptyValueAndKeepsTheMessage) {
+TEST(Result, OfAFailureHasAnEmptyValueAndKeepsTheMessage) {
   const auto fail = [] { return Result<int*>(Status{StatusCode::Empty, "nothing there"}); };
-  int* const value = fail();
-  EXPECT_EQ(value, nullptr);
+  EXPECT_EQ(fail().value(), nullptr);
   EXPECT_FALSE(fail().ok());
   EXPECT_EQ(fail().status().message, "nothing there");
 }

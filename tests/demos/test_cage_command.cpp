@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 

@@ -5,9 +5,8 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/obj_layout.h>
-#include <tetskin/io/tet_mesh_reader.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/obj_sequence.h>
+#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cmath>

@@ -246,7 +246,7 @@ TEST_F(ErrorVsTime, SaysWhatItNeedsForTablesAndPlots) {
 TEST_F(ErrorVsTime, APlotProgramThatFailsIsAWarning) {
   const CommandResult result = runWith("", small("exact"));
   EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.err.find("warning: no tables and plots"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("tables or plots are missing"), std::string::npos) << result.err;
 }
 
 TEST_F(ErrorVsTime, HasTablesAndPlotsMade) {

@@ -52,6 +52,19 @@ std::unique_ptr<Scene> played(const char* name, int frames, const SceneOptions& 
   return scene;
 }
 
+TEST(SceneTable, AScenesBodyBeginsWhereItIsSaidToBe) {
+  for (const char* name : {"obstacles", "drop", "sag", "wring"}) {
+    SceneOptions options;
+    options.offset = {3.0, 0.5, -2.0};
+    const auto there = scenes::sceneNamed(name).make(smallCage(), options);
+    const auto here = scenes::sceneNamed(name).make(smallCage(), {});
+    const std::vector<Eigen::Vector3d> moved = nodesOf(*there), rest = nodesOf(*here);
+    for (std::size_t n = 0; n < rest.size(); n += 10)
+      EXPECT_LT((moved[n] - rest[n] - options.offset).norm(), 1e-5) << name;
+    EXPECT_LT((there->offset - here->offset - options.offset).norm(), 1e-12) << name;
+  }
+}
+
 TEST(SceneTable, EverySceneMakesStepsAndChecks) {
   // Scenes whose bodies are torn apart by what is done to them, if Bullet does not survive it.
   const std::set<std::string> violent = {"stretch", "mirror", "permute", "spin", "impact"};

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/embed_into.h"
+
 namespace {
 
 using namespace tetskin;
@@ -72,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const TetMesh cage = takeCage(bytes);
   const TriangleMesh mesh = takeMesh(bytes);
   Embedding embedding;
-  const EmbedReport report = embed(cage, mesh, options, embedding);
+  const Fit report = embedInto(cage, mesh, options, embedding);
   (void)Embedding::load(bytes.data(), bytes.size(), cage);
   if (!report.ok()) {
     TETSKIN_FUZZ_EXPECT(!report.status.message.empty() && embedding.empty());

@@ -5,7 +5,7 @@
 // format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed.
 #include "fuzz_files.h"
 
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_files.h>
 
 #include <string>
 #include <utility>

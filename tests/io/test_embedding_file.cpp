@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/embed_into.h"
 #include "support/odd_meshes.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/embedding_file.h>
-#include <tetskin/io/tet_mesh_reader.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 namespace tetskin {
 namespace {
@@ -17,7 +17,7 @@ class EmbeddingFile : public testing::Test {
  protected:
   EmbeddingFile() {
     const auto vertices = test::randomPoints(500, {Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(1.1)}, 1);
-    EXPECT_TRUE(embed(cage, viewOf(vertices), {}, embedding).ok());
+    EXPECT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
   }
 
   TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);

@@ -26,7 +26,8 @@ TEST(LoadMesh, KeepsTheThreeVerticesOfEveryStlTriangle) {
       loadText("m.STL",
                "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 "
                "0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 "
-               "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid plate\n");
+               "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid plate\n")
+          .value();
   EXPECT_EQ(mesh.vertexCount(), 6u);
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {3, 4, 5}}));
   ASSERT_EQ(mesh.normals.size(), 6u);
@@ -108,7 +109,7 @@ TEST(LoadMesh, AppliesTheTransformsOfAllNodes) {
 
 TEST(LoadMesh, NamesGroupsAfterMeshesAndMaterials) {
   const TriangleMesh mesh =
-      loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":1,"translation":[0,0,1]})"));
+      loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":1,"translation":[0,0,1]})")).value();
   ASSERT_EQ(mesh.groups.size(), 2u);
   EXPECT_EQ(mesh.groups[0].name, "lit");
   EXPECT_EQ(mesh.groups[0].material, "skin");
@@ -120,7 +121,7 @@ TEST(LoadMesh, NamesGroupsAfterMeshesAndMaterials) {
 }
 
 TEST(LoadMesh, AMirroredMeshStaysTheRightWayOut) {
-  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"mesh":0,"scale":[1,1,-1]})"));
+  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"mesh":0,"scale":[1,1,-1]})")).value();
   ASSERT_EQ(mesh.triangleCount(), 1u);
   const Triangle& t = mesh.triangles[0];
   const Eigen::Vector3d a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
@@ -130,13 +131,13 @@ TEST(LoadMesh, AMirroredMeshStaysTheRightWayOut) {
 }
 
 TEST(LoadMesh, FillsWhatOnlySomeMeshesHave) {
-  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":1},{"mesh":0})"));
+  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":1},{"mesh":0})")).value();
   ASSERT_EQ(mesh.normals.size(), 6u);
   EXPECT_EQ(mesh.normals[0], Eigen::Vector3f(0, 0, 1));
   EXPECT_LT((mesh.normals[3] - Eigen::Vector3f(0.6f, 0, 0.8f)).norm(), 1e-6f);
   ASSERT_EQ(mesh.texcoords.size(), 6u);
   EXPECT_EQ(mesh.texcoords[1], Eigen::Vector2f(0, 0));
-  const TriangleMesh plain = loadText("m.gltf", gltf(R"({"mesh":1})"));
+  const TriangleMesh plain = loadText("m.gltf", gltf(R"({"mesh":1})")).value();
   EXPECT_EQ(plain.triangleCount(), 1u);
   EXPECT_TRUE(plain.normals.empty());
   EXPECT_TRUE(plain.texcoords.empty());

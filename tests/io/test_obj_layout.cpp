@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/obj_layout.h>
+#include <tetskin/io/obj_sequence.h>
 
 #include <cmath>
 #include <filesystem>
@@ -92,7 +92,7 @@ TEST(ObjLayout, AMaterialKeepsToItsOwnGroup) {
   const TempFolder folder;
   const std::string path = folder.path("out.obj");
   ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(path, viewOf(kMoved)).ok());
-  const TriangleMesh back = loadMesh(path);
+  const TriangleMesh back = loadMesh(path).value();
   ASSERT_EQ(back.groups.size(), 2u);
   EXPECT_EQ(back.groups[0].material, "skin");
   EXPECT_EQ(back.groups[1].material, "");
@@ -144,7 +144,7 @@ TEST(ObjLayout, RefusesWhatIsNoModel) {
 TEST(ObjLayoutFor, TakesTheFileIfItIsObjAndElseTheMesh) {
   const TempFolder folder;
   const std::string path = folder.write("m.Obj", "# kept\n" + kBody);
-  const TriangleMesh mesh = loadMesh(path);
+  const TriangleMesh mesh = loadMesh(path).value();
   const Result<ObjLayout> own = objLayoutFor(path, mesh);
   ASSERT_TRUE(own.ok());
   EXPECT_EQ(formatted(own.value(), kMoved).substr(0, 7), "# kept\n");
@@ -156,7 +156,7 @@ TEST(ObjLayoutFor, TakesTheFileIfItIsObjAndElseTheMesh) {
 TEST(ObjLayoutFor, NoticesThatTheFileHasChanged) {
   const TempFolder folder;
   const std::string path = folder.write("m.obj", kBody);
-  const TriangleMesh mesh = loadMesh(path);
+  const TriangleMesh mesh = loadMesh(path).value();
   folder.write("m.obj", kBody + "v 1 1 1\n");
   expectError(objLayoutFor(path, mesh).status(), StatusCode::SizeMismatch,
               {path, "has 4 vertices", "load the mesh again"});
@@ -197,7 +197,7 @@ TEST(ObjLayout, NormalsReadBackAndLibrariesStayNamed) {
   const std::string path = folder.path("out/m.obj");
   ASSERT_TRUE(layout.value().withNormals().writeTo(path, viewOf(kMoved), viewOf(kNormals)).ok());
   EXPECT_NE(TempFolder::read(path).find("\nmtllib ../skin.mtl\n"), std::string::npos);
-  const TriangleMesh back = loadMesh(path);
+  const TriangleMesh back = loadMesh(path).value();
   ASSERT_EQ(back.normals.size(), 3u);
   for (int v = 0; v < 3; ++v) EXPECT_EQ(back.normals[v], kNormals[v]);
   for (int v = 0; v < 3; ++v) EXPECT_EQ(back.positions[v].cast<float>(), kMoved[v]);

@@ -52,7 +52,7 @@ TEST(LoadObj, NamesTheLineOfACoordinateThatIsTooFar) {
 }
 
 TEST(LoadObj, ReadsPositionsExactlyInDouble) {
-  const TriangleMesh mesh = loadText("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n");
+  const TriangleMesh mesh = loadText("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n").value();
   ASSERT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.positions[0], Eigen::Vector3d(0.1, 1.0, -2.5e-3));
   EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1234567.890123456, 100, 0.5));
@@ -68,23 +68,23 @@ TEST(LoadObj, ReadsEveryFormOfCorner) {
 }
 
 TEST(LoadObj, NegativeIndicesCountBackFromTheLastVertex) {
-  const TriangleMesh mesh = loadText(std::string(kThree) + "f -3 -2 -1\nv 5 5 5\nf -4 -2 -1\n");
+  const TriangleMesh mesh = loadText(std::string(kThree) + "f -3 -2 -1\nv 5 5 5\nf -4 -2 -1\n").value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(LoadObj, FacesMayNameVerticesDefinedLater) {
-  const TriangleMesh mesh = loadText(std::string("f 1 2 3\n") + kThree);
+  const TriangleMesh mesh = loadText(std::string("f 1 2 3\n") + kThree).value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
 }
 
 TEST(LoadObj, AcceptsDosLineBreaksTabsAndBlanks) {
-  const TriangleMesh mesh = loadText("\r\n\tv\t0  0\t0\r\n  v 1 0 0 \r\nv 0 1 0\r\n f  1\t2 3 \r\n");
+  const TriangleMesh mesh = loadText("\r\n\tv\t0  0\t0\r\n  v 1 0 0 \r\nv 0 1 0\r\n f  1\t2 3 \r\n").value();
   EXPECT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
 }
 
 TEST(LoadObj, JoinsContinuedLines) {
-  const TriangleMesh mesh = loadText("v 0 \\\n0 0\nv \\\r\n1 0 0\nv 0 1\\\n 0\nf 1 2 \\\n  3");
+  const TriangleMesh mesh = loadText("v 0 \\\n0 0\nv \\\r\n1 0 0\nv 0 1\\\n 0\nf 1 2 \\\n  3").value();
   ASSERT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.positions[2], Eigen::Vector3d(0, 1, 0));
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
@@ -96,20 +96,20 @@ TEST(LoadObj, CountsTheLinesOfContinuedStatements) {
 }
 
 TEST(LoadObj, ABackslashDoesNotContinueAComment) {
-  const TriangleMesh mesh = loadText("# C:\\models\\\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # 4 5\n");
+  const TriangleMesh mesh = loadText("# C:\\models\\\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # 4 5\n").value();
   EXPECT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.triangleCount(), 1u);
 }
 
 TEST(LoadObj, AcceptsAByteOrderMarkAndAnExtensionInCapitals) {
   const TempFolder folder;
-  const TriangleMesh mesh = loadMesh(folder.write("M.OBJ", std::string("\xEF\xBB\xBF") + kThree + "f 1 2 3"));
+  const TriangleMesh mesh = loadMesh(folder.write("M.OBJ", std::string("\xEF\xBB\xBF") + kThree + "f 1 2 3")).value();
   EXPECT_EQ(mesh.vertexCount(), 3u);
 }
 
 TEST(LoadObj, ReadsOverWeightsColoursLinesAndCurves) {
   const TriangleMesh mesh =
-      loadText("v 0 0 0 1\nv 1 0 0 0.5 0.25 1\nv 0 1 0\nl 1 2\np 3\nvp 0.5\ncurv 0 1 1 2\nf 1 2 3");
+      loadText("v 0 0 0 1\nv 1 0 0 0.5 0.25 1\nv 0 1 0\nl 1 2\np 3\nvp 0.5\ncurv 0 1 1 2\nf 1 2 3").value();
   EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(mesh.triangleCount(), 1u);
 }
@@ -124,14 +124,14 @@ double area(const TriangleMesh& mesh) {
 }
 
 TEST(LoadObj, FansAConvexPolygonFromItsFirstCorner) {
-  const TriangleMesh mesh = loadText("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5\n");
+  const TriangleMesh mesh = loadText("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
 }
 
 TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
   const std::string points = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";  // vertex 3 is the reflex one
   for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
-    const TriangleMesh mesh = loadText(points + face);
+    const TriangleMesh mesh = loadText(points + face).value();
     ASSERT_EQ(mesh.triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(area(mesh), 4.0) << face;
   }
@@ -153,13 +153,15 @@ TEST(LoadObj, APolygonThatCrossesItselfNamesAllItsCorners) {
 }
 
 TEST(LoadObj, ConcavePolygonsAreNotFolded) {
-  const TriangleMesh mesh = loadText("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n");
+  const TriangleMesh mesh = loadText("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   ASSERT_EQ(mesh.triangleCount(), 3u);
   EXPECT_DOUBLE_EQ(area(mesh), 5.5);
   // A comb, which no single corner sees as a whole.
-  const TriangleMesh comb = loadText(
-      "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
-      "f 4 5 6 7 8 9 10 11 12 1 2 3\n");
+  const TriangleMesh comb =
+      loadText(
+          "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
+          "f 4 5 6 7 8 9 10 11 12 1 2 3\n")
+          .value();
   ASSERT_EQ(comb.triangleCount(), 10u);
   EXPECT_DOUBLE_EQ(area(comb), 13.0);
 }
@@ -168,7 +170,8 @@ TEST(LoadObj, GroupsAreRunsOfOneNameAndMaterial) {
   const TriangleMesh mesh =
       loadText(std::string(kThree) +
                "f 1 2 3\no Left wing \nusemtl skin\nf 1 2 3\nf 1 2 3 1\nusemtl claw\ng toe # comment\n"
-               "usemtl skin\ng claws\nf 1 2 3\n");
+               "usemtl skin\ng claws\nf 1 2 3\n")
+          .value();
   ASSERT_EQ(mesh.groups.size(), 3u);
   EXPECT_EQ(mesh.groups[0].name, "");
   EXPECT_EQ(mesh.groups[0].triangleCount, 1u);
@@ -183,24 +186,24 @@ TEST(LoadObj, GroupsAreRunsOfOneNameAndMaterial) {
 
 TEST(LoadObj, TexcoordsAreGivenIfEveryVertexHasOneValue) {
   const std::string head = std::string(kThree) + "v 5 5 5\nvt 0 0\nvt 1 0\nvt 0 0.5\nvt 1 0\nvt 0.25 0.25\n";
-  const TriangleMesh one = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/4 3/3\n");
+  const TriangleMesh one = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/4 3/3\n").value();
   const std::vector<Eigen::Vector2f> expected = {{0, 0}, {1, 0}, {0, 0.5f}, {0, 0}};
   EXPECT_EQ(one.texcoords, expected);
-  const TriangleMesh seam = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/5 3/3\n");
+  const TriangleMesh seam = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/5 3/3\n").value();
   EXPECT_EQ(seam.triangleCount(), 2u);
   EXPECT_TRUE(seam.texcoords.empty());
-  const TriangleMesh partly = loadText(head + "f 1/1 2/2 3/3\nf 1 2 3\n");
+  const TriangleMesh partly = loadText(head + "f 1/1 2/2 3/3\nf 1 2 3\n").value();
   EXPECT_EQ(partly.triangleCount(), 2u);
   EXPECT_TRUE(partly.texcoords.empty());
 }
 
 TEST(LoadObj, NormalsAreMadeUnitAndHardEdgesLeaveNone) {
   const std::string head = std::string(kThree) + "vn 0 0 2\nvn 0 3 4\nvn nan 0 0\n";
-  const TriangleMesh mesh = loadText(head + "f 1//1 2//2 3//3\n");
+  const TriangleMesh mesh = loadText(head + "f 1//1 2//2 3//3\n").value();
   const std::vector<Eigen::Vector3f> expected = {{0, 0, 1}, {0, 0.6f, 0.8f}, {0, 0, 0}};
   EXPECT_EQ(mesh.normals, expected);
   EXPECT_TRUE(mesh.texcoords.empty());
-  EXPECT_TRUE(TriangleMesh(loadText(head + "f 1//1 2//2 3//3\nf 1//2 2//2 3//3\n")).normals.empty());
+  EXPECT_TRUE(loadText(head + "f 1//1 2//2 3//3\nf 1//2 2//2 3//3\n").value().normals.empty());
 }
 
 TEST(LoadObj, NamesAMissingFileAndAFolder) {

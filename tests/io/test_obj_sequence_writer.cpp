@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/obj_sequence_writer.h>
+#include <tetskin/io/obj_sequence.h>
 
 #include <cmath>
 #include <filesystem>
@@ -63,7 +63,7 @@ TEST(ObjSequenceWriter, FloatPositionsReadBackExactlyAndShort) {
       {0.1f, 1.0f / 3.0f, 1e-45f}, {9.9999998e17f, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   ASSERT_TRUE(writer.write(1, viewOf(floats)).ok());
   EXPECT_EQ(TempFolder::read(writer.framePath(1)).substr(0, 23), "v 0.1 0.33333334 1e-45\n");
-  const TriangleMesh back = loadMesh(writer.framePath(1));
+  const TriangleMesh back = loadMesh(writer.framePath(1)).value();
   ASSERT_EQ(back.vertexCount(), floats.size());
   for (std::size_t v = 0; v < floats.size(); ++v) EXPECT_EQ(back.positions[v].cast<float>(), floats[v]);
 }
@@ -71,9 +71,9 @@ TEST(ObjSequenceWriter, FloatPositionsReadBackExactlyAndShort) {
 TEST(ObjSequenceWriter, FramesKeepTrianglesTexcoordsAndGroups) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);
-  const TriangleMesh rest = loadMesh(folder.path("m.obj"));
+  const TriangleMesh rest = loadMesh(folder.path("m.obj")).value();
   ASSERT_TRUE(writer.write(3, viewOf(rest.positions)).ok());
-  const TriangleMesh frame = loadMesh(writer.framePath(3));
+  const TriangleMesh frame = loadMesh(writer.framePath(3)).value();
   EXPECT_EQ(frame.positions, rest.positions);
   EXPECT_EQ(frame.triangles, rest.triangles);
   EXPECT_EQ(frame.texcoords, rest.texcoords);
@@ -111,7 +111,7 @@ TEST(ObjSequenceWriter, WritesCurrentNormals) {
   ASSERT_TRUE(writer.ok());
   const std::vector<Eigen::Vector3f> normals(4, Eigen::Vector3f(0.6f, 0, -0.8f));
   ASSERT_TRUE(writer.value().write(0, viewOf(kDoubles), viewOf(normals)).ok());
-  const TriangleMesh frame = loadMesh(writer.value().framePath(0));
+  const TriangleMesh frame = loadMesh(writer.value().framePath(0)).value();
   EXPECT_EQ(frame.positions, kDoubles);
   EXPECT_EQ(frame.texcoords.size(), 4u);
   ASSERT_EQ(frame.normals.size(), 4u);

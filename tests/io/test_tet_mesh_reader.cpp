@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/tet_mesh.h>
-#include <tetskin/io/tet_mesh_reader.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 #include <random>
 

@@ -3,6 +3,7 @@
 #include "support/brute_force.h"
 
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/search/tolerances.h>
 
 #include <algorithm>
 #include <utility>

@@ -4,12 +4,15 @@
 // Points in a cage and what skinning makes of them.
 #pragma once
 
+#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "support/embed_into.h"
 
 namespace tetskin::test {
 
@@ -20,12 +23,12 @@ template <class Scalar>
 class CarriedPoints {
  public:
   CarriedPoints(const TetMesh& restCage, const Points& vertices, const EmbedOptions& options = {}) : cage(restCage) {
-    fit = embed(cage, viewOf(vertices), options, embedding);
+    fit = embedInto(cage, viewOf(vertices), options, embedding);
     prepare();
   }
-  /// tetOf  as in Embedding::fromTets
+  /// tetOf  as in embeddingFromTets
   CarriedPoints(const TetMesh& restCage, const Points& vertices, const std::vector<std::int32_t>& tetOf)
-      : cage(restCage), embedding(Embedding::fromTets(restCage, viewOf(vertices), tetOf)) {
+      : cage(restCage), embedding(embeddingFromTets(restCage, viewOf(vertices), tetOf)) {
     prepare();
   }
 
@@ -34,7 +37,7 @@ class CarriedPoints {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> rounded;
     for (const Eigen::Vector3d& p : places) rounded.push_back(p.cast<Scalar>());
     finite = nodes.pack(viewOf(std::as_const(rounded))) == nodes.size();
-    edges.update(stencils, nodes);
+    (void)edges.update(stencils, nodes);
   }
   Points linear() const {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> out(embedding.vertexCount());
@@ -49,8 +52,7 @@ class CarriedPoints {
 
   TetMesh cage;
   Embedding embedding;
-  EmbedReport fit;
-  QuadraticReport report;
+  Fit fit;
   QuadraticStencils<Scalar> stencils;
   EdgeVectors<Scalar> edges;
   PackedNodes<Scalar> nodes;
@@ -61,7 +63,7 @@ class CarriedPoints {
 
  private:
   void prepare() {
-    stencils = QuadraticStencils<Scalar>(cage, embedding, &report);
+    stencils = QuadraticStencils<Scalar>(cage, embedding);
     edges = EdgeVectors<Scalar>(stencils);
     nodes = PackedNodes<Scalar>(cage.nodeCount());
     bindings = embedding.bindings();

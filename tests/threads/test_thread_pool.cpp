@@ -122,7 +122,7 @@ struct Update {
       const Eigen::Vector3d bent = p + 0.2 * Eigen::Vector3d(std::sin(4 * p.y()), p.x() * p.z(), std::cos(3 * p.x()));
       nodes.push_back(bent.cast<float>());
     }
-    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), nodes.size());
+    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
   }
 
   MeshSkin<float> skin;

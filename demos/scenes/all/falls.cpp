@@ -44,7 +44,8 @@ std::unique_ptr<Scene> makeHeavyBox(const TetMesh& cage, const SceneOptions& opt
   const double half = 0.5 * options.size;
   Eigen::Vector3d above = box.center();
   above.y() = box.max().y() + kNear * options.size + half;
-  scene->world().addBox(above, Eigen::Vector3d::Constant(half), 0.0, kMass * options.body.mass);
+  scene->world().addBox(above, Eigen::Vector3d::Constant(half), 0.0,
+                        kMass * static_cast<double>(scene->body().getTotalMass()));
   return scene;
 }
 

@@ -24,9 +24,10 @@ std::unique_ptr<Scene> makeObstacles(const TetMesh& cage, const SceneOptions& op
   world.addBox({-1.4, -0.35, 0.0}, {1.2, 0.5, 2.0}, -kRampSlope);  // its upper side leads down to the right
   world.addSphere({0.6, kDomeHeight - kDomeRadius, 0.0}, kDomeRadius);
 
-  scene->offset.y() = kDomeHeight + kDropHeight + 0.5 * layoutBox(options, cage).sizes().y();
-  TetMesh lifted = cage;
-  for (Eigen::Vector3d& p : lifted.nodes) p += scene->offset;
+  const double height = kDomeHeight + kDropHeight + 0.5 * layoutBox(options, cage).sizes().y();
+  scene->offset.y() += height;
+  TetMesh lifted = cage;  // before it is a body: one that is moved is not quite one that is made there
+  for (Eigen::Vector3d& p : lifted.nodes) p.y() += height;
   scene->add(lifted).forceActivationState(ACTIVE_TAG);
   return scene;
 }

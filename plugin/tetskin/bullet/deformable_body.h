@@ -3,7 +3,7 @@
 #pragma once
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <memory>
 
@@ -18,7 +18,7 @@ namespace tetskin {
 /// frees its memory; but a solver that outlives its world must not be used in another one then.
 ///
 /// The application may take the body out of the world itself: it then has no forces any more.
-class DeformableBody {
+class TETSKIN_BULLET_API DeformableBody {
  public:
   /// Makes the body (see `makeSoftBody`) and adds it to the world. Unless `options.configureWorld` is false, switches
   /// on the world's projection of contacts, without which soft bodies do not land but hang, or fall through, and sets

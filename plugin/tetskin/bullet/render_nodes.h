@@ -17,9 +17,8 @@ namespace tetskin {
 ///           Written on success: m_renderNodesParents and m_renderNodesInterpolationWeights, four of each a render
 ///           node; m_z is emptied, which is how Bullet knows that the parents are those of tets. As the parents are
 ///           pointers to the body's nodes, bind again after appending nodes.
-/// Returns   the fit, render nodes as vertices. If its status is not ok, the body is as it was: no render nodes, no
-///           usable tets, a coordinate that is not finite
-/// Cost      see `embed`, under OutsideRule::Barycentric; one small allocation a render node, as Bullet wants them
-[[nodiscard]] EmbedReport bindRenderNodes(btSoftBody& body);
+/// Returns   the fit, render nodes as vertices. On an error the body is as it was: no render nodes, no usable tets, a
+///           coordinate that is not finite
+TETSKIN_BULLET_API Result<EmbedReport> bindRenderNodes(btSoftBody& body);
 
 }  // namespace tetskin

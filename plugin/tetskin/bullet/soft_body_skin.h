@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/bullet/soft_body_adapter.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/mesh_skin.h>
 
 #include <array>
@@ -10,27 +10,15 @@
 
 namespace tetskin {
 
-/// What an update did. Only after `Updated` are there new positions; otherwise the last good surface stands.
-enum class UpdateStatus {
-  Updated,
-  Asleep,           ///< skipped: the body sleeps and has not been moved since the last update
-  Hidden,           ///< skipped: the skin is not visible
-  NonFinite,        ///< skipped: a node is infinite, not a number or beyond 1e18; the simulation has exploded
-  TopologyChanged,  ///< skipped: the body has gained or lost nodes or tets since bind; bind again
-  Unbound,          ///< skipped: no successful bind yet
-};
-
-const char* toString(UpdateStatus status);
-
 /// What skins of several bodies with one cage may share: see `SoftBodySkin::binding`.
 using SoftBodyBinding = SkinBinding<btScalar>;
 
 /// A render mesh carried by a soft body: bind once at rest, update after each step.
 ///
 ///     SoftBodySkin skin;
-///     EmbedReport fit = skin.bind(*body, cage, mesh);
+///     Result<EmbedReport> fit = skin.bind(*body, cage, mesh);
 ///     ...
-///     if (world->stepSimulation(dt, 4, dt / 4) > 0) skin.update();
+///     if (world->stepSimulation(dt, 4, dt / 4) > 0) status = skin.update();
 ///
 /// Works in every Bullet world and for a body in none; a skin only reads its body. Update after stepSimulation, not in
 /// a tick callback: there is no callback at which the positions are final in all worlds. A body that was moved, scaled
@@ -43,8 +31,8 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 /// is its own, and the surface is then a step behind it:
 ///
 ///     if (world->stepSimulation(step, 4, step / 4) > 0) skin.keepStep();   // as often as time asks for
-///     skin.update(alpha);                                                  // each frame
-class SoftBodySkin {
+///     status = skin.update(alpha);                                                // each frame
+class TETSKIN_BULLET_API SoftBodySkin {
  public:
   SoftBodySkin() = default;
   SoftBodySkin(SoftBodySkin&&) = default;
@@ -55,18 +43,22 @@ class SoftBodySkin {
   /// body      has the cage's nodes, in the cage's order, wherever they are now
   /// restCage  rest space, near the origin best; its tets count, not the body's
   /// mesh      in the cage's rest space
-  /// Returns   the fit; if its status is not ok, this skin is left as it was
-  /// Cost      see `embed`, and `QuadraticStencils` for quadratic skinning; allocates
-  [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
-                                 const SkinOptions& options = {});
+  /// Returns   the fit; on an error this skin is left as it was
+  /// Cost      see `embed`; 20 to 50 microseconds more a node that carries vertices for quadratic skinning; allocates
+  Result<EmbedReport> bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
+                           const SkinOptions& options = {});
   /// The same for vertices alone: no triangles, hence no recomputed normals.
-  [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
-                                 const SkinOptions& options = {});
+  Result<EmbedReport> bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
+                           const SkinOptions& options = {});
   /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is. Refused once
   /// Bullet's own tets dangle: see `checkDangling`.
-  [[nodiscard]] EmbedReport bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options = {});
-  /// The same with a binding made before, such as another skin's, under the same options.
-  Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const SkinOptions& options = {});
+  Result<EmbedReport> bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options = {});
+  /// The same with a binding made before, such as another skin's.
+  Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding,
+              const InstanceOptions& options = {});
+  /// What shapes the surface is the binding's, and was told when it was made: give InstanceOptions.
+  template <class Options, class = std::enable_if_t<std::is_same_v<Options, SkinOptions>>>
+  Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const Options& options) = delete;
 
   /// Computes the current positions, and normals if asked for. Cost O(vertexCount + nodeCount); allocates nothing. A
   /// sleeping body costs a look at a few of its nodes, a hidden skin nothing.
@@ -107,7 +99,7 @@ class SoftBodySkin {
   void setVisible(bool visible);
   bool visible() const { return visible_; }
 
-  /// vertexCount current positions, world space minus origin, in the options' order: the skin's own array. Empty where
+  /// vertexCount current positions, world space minus origin, in the binding's order: the skin's own array. Empty where
   /// the target is the caller's.
   PointView<const btScalar> positions() const { return skin_.positions(); }
   /// Of the update before, whatever its alpha, if asked for: see MeshSkin. The current ones after bind, after any
@@ -120,13 +112,11 @@ class SoftBodySkin {
   /// Box of the positions, for culling. An extrapolated vertex may lie outside the soft body's own box.
   const Box3& bounds() const { return skin_.bounds(); }
   /// To share; null before a successful bind.
-  const std::shared_ptr<const SoftBodyBinding>& binding() const { return skin_.binding(); }
-  /// How well the cage supports quadratic skinning; of the last bind that made a binding with it.
-  const QuadraticReport& quadraticReport() const { return quadraticReport_; }
+  std::shared_ptr<const SoftBodyBinding> binding() const { return skin_.binding(); }
   /// The first such node when `update` last returned NonFinite.
-  std::size_t firstBadNode() const { return firstBadNode_; }
-  /// Moves the origin for the updates to come. Returns false, and leaves it, if it is not finite or beyond 1e18.
-  bool setOrigin(const btVector3& origin);
+  std::size_t firstBadNode() const { return skin_.firstBadNode(); }
+  /// Moves the origin for the updates to come. Errors: InvalidOption if it is not finite or beyond 1e18, and it stays.
+  Status setOrigin(const btVector3& origin);
 
  private:
   /// A node of the last update.
@@ -157,9 +147,7 @@ class SoftBodySkin {
   bool sleeps_ = false;      ///< did when the last step was kept
   bool teleported_ = false;  ///< the next update is no motion
   std::array<Sample, 4> samples_;
-  std::size_t firstBadNode_ = 0;
   MeshSkin<btScalar> skin_;
-  QuadraticReport quadraticReport_;
   KeptSteps<btScalar> steps_;
 };
 

@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-//
-// From any triangle mesh to a cage for it: a body-centred cubic lattice of tets, of which those are kept that touch the
-// surface or lie inside. The mesh need not be watertight, welded, consistently oriented or free of intersections.
-//
-//   prepareSurface   weld, orient                                        surface, orientation
-//   searchLattice    spacing and origin for the wanted number of tets    lattice_search
-//     coverSurface     tets that triangles touch                         surface_cover, bcc_lattice
-//     fillInside       tets inside                                       inside_fill, winding_number
-//     joinPinches      tets that make the boundary a manifold            cage_joints
-//   bindPoints       which tet holds which vertex                        cage_binding
-//   fitCage          pull the boundary towards the surface               cage_fit
 #pragma once
 
 #include <tetskin/core/tet_mesh.h>
@@ -32,9 +21,7 @@ struct CageOptions {
 };
 
 /// What was built, and how well it fits. Lengths and volumes are in rest space, the mesh's unit.
-struct CageReport {
-  Status status;  ///< not ok: there is no cage, and the message says why
-
+struct TETSKIN_CAGE_API CageReport {
   std::size_t targetTets = 0;
   std::size_t tets = 0;
   std::size_t nodes = 0;
@@ -58,7 +45,6 @@ struct CageReport {
   double volumeRatioUnfitted = 0.0;  ///< the same before fitting
   double milliseconds = 0.0;         ///< wall time of the whole build
 
-  bool ok() const { return status.ok(); }
   /// True if the number of tets is within 10 % of what was asked for.
   bool targetMet() const;
   /// One line a fact, for people.
@@ -79,6 +65,7 @@ struct CageReport {
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
 ///          kLargestTargetTets), Degenerate (all vertices in one point, or so near each other, or so far apart, that
 ///          double cannot hold a lattice)
-Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options = {}, CageReport* report = nullptr);
+TETSKIN_CAGE_API Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options = {},
+                                           CageReport* report = nullptr);
 
 }  // namespace tetskin

@@ -4,18 +4,12 @@
 
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/src/normals/normals.h>
-#include <tetskin/core/src/normals/recomputed_normals.h>
-#include <tetskin/core/src/skinning/kept_steps.h>
-#include <tetskin/core/src/skinning/moved_parts.h>
-#include <tetskin/core/src/skinning/quadratic_skinning.h>
-#include <tetskin/core/src/skinning/skinning.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <limits>
 #include <memory>
-#include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -27,142 +21,209 @@ enum class Interpolation {
   Quadratic,  ///< smooth to the eye, an order more accurate, at 2.4 to 3 times the cost of an update
 };
 
-/// Where the positions go: nowhere else (the skin's own array, the default), or to the caller's buffer of float or
-/// double points, which must hold vertexCount points and outlive the binding.
-using SkinTarget = std::variant<std::monostate, PointView<float>, PointView<double>>;
+/// Where a skin's normals come from.
+enum class Normals {
+  None,         ///< nowhere: no memory, no time
+  Transformed,  ///< the rest normals, carried by the gradient of the map: keeps all detail of authored normals
+  Recomputed,   ///< the deformed triangles, weighted by area: also right where the surface folds within a tet
+};
 
-/// What a scene does not ask for is neither allocated nor computed.
-struct SkinOptions {
+/// Normals that differ by more than this at one position make a hard edge. Below, they are a smooth normal's rounding,
+/// or that of a file; a facet of a smooth surface turns more.
+constexpr double kHardEdgeDegrees = 5.0;
+
+/// What shapes the surface: told once, when the binding is made. What is not asked for is neither allocated nor
+/// computed.
+struct BindingOptions {
   Interpolation interpolation = Interpolation::Linear;
   Normals normals = Normals::None;
   OutsideRule outside = OutsideRule::Nearest;
-  /// A vertex farther than this from every tet is refused: nothing is bound, and the report says which one, and where.
+  /// A vertex farther than this from every tet is refused: nothing is bound, and the message says which one, and where.
   double maxDistance = std::numeric_limits<double>::infinity();
   /// Of positions, normals and tangents.
   VertexOrder order = VertexOrder::Mesh;
   /// Angle between rest normals at one position above which recomputed normals keep a hard edge; not below 0.
   double hardEdgeDegrees = kHardEdgeDegrees;
+};
+
+/// Where the positions go: nowhere else (the skin's own array, the default), or to the caller's buffer of float or
+/// double points, which must hold vertexCount points and outlive the skin's last update.
+using SkinTarget = std::variant<std::monostate, PointView<float>, PointView<double>>;
+
+/// What one skin does with a binding. It may leave out what the binding has, never add to it.
+struct InstanceOptions {
+  bool leaveOutQuadratic = false;  ///< linear in spite of a quadratic binding
+  bool leaveOutNormals = false;    ///< neither normals nor tangents
   /// Keep the box of the positions up to date.
   bool bounds = true;
   /// Keep the positions of the update before, for motion vectors. Of the skin's own array only: not with `target`.
   bool previousPositions = false;
-  /// Leave out the parts of the mesh whose nodes have not moved since the last update, such as those around pinned
-  /// nodes; recomputed normals only if none has. The targets must then keep what was last written to them. Pays where
-  /// much of a body stays in place to the last bit. Not with `bounds` or `previousPositions`, which need all positions.
-  bool skipStill = false;
   SkinTarget target;
   /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
   /// the sign that belongs to them (TriangleMesh::tangents) does not change. No target is ever read. `bind` fills these
   /// two with unit vectors, and where a direction collapses to nothing, an update may leave what it last wrote there.
+  /// The target of what there is not, as of normals that the binding lacks, is left alone.
   PointView<float> normalTarget;
   PointView<float> tangentTarget;
   /// World space, within kLargestCoordinate; subtracted from every position. Near the body, it keeps float positions
   /// exact far from the origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  /// Lends its threads to updates of large meshes; must outlive the binding.
+  /// Lends its threads to updates of large meshes; must outlive the skin's last update.
   ParallelFor* threads = nullptr;
 };
 
-/// All that skins of one mesh in one cage have in common, whatever body carries them: made once, immutable, shared.
-template <class Scalar>
-struct SkinBinding {
-  Embedding embedding;
-  VertexOrder order = VertexOrder::Mesh;  ///< of `recomputed`
-  std::optional<QuadraticStencils<Scalar>> quadratic;
-  std::optional<DirectionFactors> normals;   ///< of transformed normals
-  std::optional<DirectionFactors> tangents;  ///< likewise, if the mesh has tangents
-  std::optional<NormalTopology> recomputed;  ///< of recomputed normals
+/// Both, to bind in one call.
+struct SkinOptions : BindingOptions, InstanceOptions {};
+
+/// How well the cage supports a quadratic surface. Where the neighbourhood of a node does not tell some second
+/// derivatives apart (a cage one cell thick, a fin, a single tet), the surface is linear in those directions.
+struct TETSKIN_CORE_API QuadraticReport {
+  std::size_t nodes = 0;       ///< nodes that need a gradient: those of the tets that carry vertices
+  std::size_t thinNodes = 0;   ///< of these, with a neighbourhood too thin for all second derivatives
+  std::size_t plainNodes = 0;  ///< of these, without even a linear fit: the mean of the tets' gradients instead
+  std::size_t edges = 0;       ///< cage edges that carry a vector
+  double meanNeighbours = 0.0;
+  double milliseconds = 0.0;  ///< wall time of the build
+
+  /// One line for people.
+  std::string describe() const;
 };
 
-/// The report of a mesh that could not be bound: the status says why, and no vertex is.
-EmbedReport refused(const TriangleMesh& mesh, Status status);
+template <class Scalar>
+struct SkinParts;
 
-/// Ok if a surface can follow these nodes: NonFinite names the first that is not finite, or beyond kLargestCoordinate.
+/// All that skins of one mesh in one cage have in common, whatever body carries them: made once, immutable, shared.
 template <class Scalar>
-Status checkNodes(PointView<const Scalar> nodes);
+class TETSKIN_CORE_API SkinBinding {
+ public:
+  using Pointer = std::shared_ptr<const SkinBinding>;
 
-/// Embeds the mesh in the cage at rest, with all that the options' interpolation, normals and order need.
-/// Errors in the report's status, as `embed`'s; before anything is embedded, SizeMismatch if the mesh's normals or
-/// tangents, or the points of a target, are not one a vertex, and InvalidOption for options that make no sense, or do
-/// not go together.
+  /// Embeds the mesh in the cage at rest, with all that the options need.
+  /// report  of the fit, written if not null, on failure too
+  /// Errors  `embed`'s; before anything is embedded, SizeMismatch if the mesh's normals or tangents are not one a
+  ///         vertex, and InvalidOption for a hardEdgeDegrees below 0 or NaN
+  static Result<Pointer> make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options = {},
+                              EmbedReport* report = nullptr);
+  /// The same with an embedding made before, such as a loaded one; the options' rule for vertices outside, and how far
+  /// they may be, were its maker's to choose. Errors: SizeMismatch if mesh or cage differ in count from what was
+  /// embedded; those of `usable`; those of the mesh and the options as above.
+  static Result<Pointer> make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options,
+                              const Embedding& embedding);
+  ~SkinBinding();
+
+  /// As they were given; what an embedding made before was made with, it does not tell.
+  const BindingOptions& options() const;
+  const Embedding& embedding() const;
+  /// How well the cage supports a quadratic surface; all 0 for a linear one.
+  const QuadraticReport& quadraticReport() const;
+  /// For the library's own use.
+  const SkinParts<Scalar>& parts() const { return *parts_; }
+
+ private:
+  explicit SkinBinding(std::unique_ptr<const SkinParts<Scalar>> parts);
+  std::unique_ptr<const SkinParts<Scalar>> parts_;
+};
+
+/// What an update did. Only after `Updated` are there new positions; otherwise the last good surface stands.
+enum class [[nodiscard]] UpdateStatus{
+    Updated,
+    Asleep,           ///< skipped: the body sleeps and has not been moved since the last update
+    Hidden,           ///< skipped: the skin is not visible
+    NonFinite,        ///< skipped: a node is infinite, not a number or beyond 1e18; the simulation has exploded
+    TopologyChanged,  ///< skipped: the body has gained or lost nodes or tets since bind; bind again
+    Unbound,          ///< skipped: no successful bind yet
+};
+
+TETSKIN_CORE_API const char* toString(UpdateStatus status);
+
+/// The nodes of a body after its last two steps, for an application that draws frames between them. No memory until a
+/// step is kept, then six scalars a node; each skin has its own.
 template <class Scalar>
-[[nodiscard]] EmbedReport makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
-                                          std::shared_ptr<const SkinBinding<Scalar>>& binding,
-                                          QuadraticReport* quadratic = nullptr);
-/// The same with a copy of an embedding made before, such as a loaded one; the options' rule for vertices outside, and
-/// how far they may be, were its maker's to choose. Errors: SizeMismatch if mesh or cage differ in count from what was
-/// embedded; those of the mesh as above.
-template <class Scalar>
-Status makeSkinBinding(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options,
-                       const Embedding& embedding, std::shared_ptr<const SkinBinding<Scalar>>& binding,
-                       QuadraticReport* quadratic = nullptr);
+class TETSKIN_CORE_API KeptSteps {
+ public:
+  /// Keeps the nodes as they are after a step, world space, and lets those kept last be the step before. Returns
+  /// whether there are both, so that there is something between them: not the first time, nor after `forget`, nor while
+  /// a node of either is not finite or beyond kLargestCoordinate. Allocates the first time, or for another number of
+  /// nodes, which begins anew. Cost O(nodes).
+  bool keep(PointView<const Scalar> nodes);
+  /// The next step does not begin where the last one ended: after a teleport, say.
+  void forget() { usable_ = between_ = false; }
+
+  std::size_t size() const { return last_.size(); }
+  bool empty() const { return last_.empty(); }
+  /// Writes the step before plus alpha times the way to the last one; the last one where there is none before.
+  /// alpha  from 0 to 1, where the result is the last step's to the bit; counts as the nearer of the two beyond them,
+  ///        and as 1 if it is not a number
+  /// out    size() x 3, of the caller's, any stride
+  void nodesAt(Scalar alpha, PointView<Scalar> out) const;
+
+ private:
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> before_, last_;
+  bool usable_ = false;   ///< last_ is where the next step begins
+  bool between_ = false;  ///< so was before_ for last_
+};
 
 /// A render mesh carried by the nodes of a cage, whoever moves them: bind once at rest, update with their positions.
-/// For Bullet's soft bodies there is `SoftBodySkin`, which does just this with their nodes.
+/// For Bullet's soft bodies there is `SoftBodySkin`, which does just this with their nodes. May be moved, not copied.
 template <class Scalar>
-class MeshSkin {
+class TETSKIN_CORE_API MeshSkin {
  public:
-  /// Embeds the mesh, and updates once with the cage's rest nodes. On an error this skin is left as it was.
-  [[nodiscard]] EmbedReport bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
-  /// Takes a binding made before; `nodes` are the current ones, finite.
-  /// Errors: InvalidOption if it lacks what the options ask for, or they make no sense, or do not go together;
-  /// SizeMismatch for a target, or nodes, of another size; NonFinite as `checkNodes`.
-  Status bind(std::shared_ptr<const SkinBinding<Scalar>> binding, PointView<const Scalar> nodes,
-              const SkinOptions& options = {});
+  using Binding = typename SkinBinding<Scalar>::Pointer;
+
+  MeshSkin();
+  ~MeshSkin();
+  MeshSkin(MeshSkin&& other) noexcept;
+  MeshSkin& operator=(MeshSkin&& other) noexcept;
+
+  /// Makes a binding, and updates once with the cage's rest nodes. Returns the fit; on an error this skin is left as it
+  /// was, and what was known of the fit by then is told by `SkinBinding::make` alone. Errors: those of
+  /// `SkinBinding::make`, and before anything is embedded those of the other `bind`.
+  Result<EmbedReport> bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
+  /// Takes a binding made before; `nodes` are the current ones.
+  /// Errors: Empty without a binding; InvalidOption for options that make no sense, or do not go together; SizeMismatch
+  /// for a target, or nodes, of another size; NonFinite for a node that is not finite or beyond kLargestCoordinate. On
+  /// an error this skin is left as it was.
+  Status bind(Binding binding, PointView<const Scalar> nodes, const InstanceOptions& options = {});
+  /// What shapes the surface is the binding's, and was told when it was made: give InstanceOptions.
+  template <class Options, class = std::enable_if_t<std::is_same_v<Options, SkinOptions>>>
+  Status bind(Binding binding, PointView<const Scalar> nodes, const Options& options) = delete;
 
   /// Computes positions, normals and tangents for these node positions, world space, nodeCount x 3. Allocates nothing.
-  /// Returns the index of the first node that is not finite, or beyond kLargestCoordinate, and changes nothing then;
-  /// nodeCount() if all is well.
-  [[nodiscard]] std::size_t update(PointView<const Scalar> nodes);
-  /// The same for the nodes between two steps: see KeptSteps::nodesAt. `steps` are of nodeCount() nodes.
-  [[nodiscard]] std::size_t update(const KeptSteps<Scalar>& steps, Scalar alpha);
+  /// Updated; or nothing has changed: NonFinite, see `firstBadNode`; TopologyChanged for another number of nodes;
+  /// Unbound.
+  UpdateStatus update(PointView<const Scalar> nodes);
+  /// The same for the nodes between two steps: see KeptSteps::nodesAt.
+  UpdateStatus update(const KeptSteps<Scalar>& steps, Scalar alpha);
+  /// Of the last update that returned NonFinite: the first node that is not finite, or beyond kLargestCoordinate.
+  std::size_t firstBadNode() const;
 
-  bool bound() const { return binding_ != nullptr; }
-  std::size_t nodeCount() const { return nodes_.size(); }
-  /// vertexCount current positions, minus the origin, in the options' order: the skin's own array, empty where the
+  bool bound() const { return parts_ != nullptr; }
+  std::size_t nodeCount() const;
+  /// vertexCount current positions, minus the origin, in the binding's order: the skin's own array, empty where the
   /// target is the caller's.
-  PointView<const Scalar> positions() const { return viewOf(positions_); }
+  PointView<const Scalar> positions() const;
   /// vertexCount positions of the update before, minus its origin, in the same order; empty if not asked for. The
   /// current ones after bind, after `hold`, and where an update failed. With this option the two arrays change places
   /// at every update, so ask for both views after it. Costs 3 scalars a vertex, and no time.
-  PointView<const Scalar> previousPositions() const {
-    return options_.previousPositions && held_ ? viewOf(positions_) : viewOf(previous_);
-  }
+  PointView<const Scalar> previousPositions() const;
   /// Nothing has moved since the last update, or is to count as motion: the previous positions are the current ones
   /// until the next update. Free.
   void hold() { held_ = true; }
   /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
-  PointView<const float> normals() const { return viewOf(normals_); }
-  PointView<const float> tangents() const { return viewOf(tangents_); }
+  PointView<const float> normals() const;
+  PointView<const float> tangents() const;
   /// Box of the positions, for culling. An extrapolated vertex may lie outside the cage's own box.
-  const Box3& bounds() const { return bounds_; }
-  const std::shared_ptr<const SkinBinding<Scalar>>& binding() const { return binding_; }
-  /// For the updates to come. Returns false, and keeps the one there is, if it is not finite or beyond
-  /// kLargestCoordinate.
-  bool setOrigin(const Eigen::Vector3d& origin);
+  const Box3& bounds() const;
+  /// To share; null before a successful bind.
+  Binding binding() const;
+  /// For the updates to come. Errors: InvalidOption if it is not finite or beyond kLargestCoordinate, and the one there
+  /// is stays.
+  Status setOrigin(const Eigen::Vector3d& origin);
 
  private:
-  template <class Out>
-  void skinTo(PointView<Out> out);
-  void skinDirections();
-  const QuadraticStencils<Scalar>* stencils() const;
-  PointView<float> normalsOut();
-  PointView<float> tangentsOut();
-  void prepareArrays(std::size_t vertexCount);
-
-  // What a skin that is skipped needs comes first: see SoftBodySkin.
-  std::shared_ptr<const SkinBinding<Scalar>> binding_;
-  bool held_ = true;  ///< previous_ is not to be shown
-  SkinOptions options_;
-  PackedNodes<Scalar> nodes_;
-  EdgeVectors<Scalar> edges_;
-  MovedParts<Scalar> moved_;  ///< with skipStill
-  std::vector<Eigen::Matrix<Scalar, 3, 1>> positions_, previous_;
-  std::vector<Eigen::Vector3f> normals_, tangents_;
-  std::vector<Scalar> padded_;   ///< positions, for recomputed normals
-  std::vector<Scalar> scratch_;  ///< of positions, where they are not written directly
-  std::vector<Eigen::Vector3f> normalScratch_, tangentScratch_;
-  Box3 bounds_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;  ///< null: not bound
+  bool held_ = true;              ///< the previous positions are not to be shown
 };
 
 }  // namespace tetskin

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/export.h>
+
 #include <cstddef>
 #include <type_traits>
 
@@ -10,7 +12,7 @@ namespace tetskin {
 /// How an application lends its threads: the library has none of its own. Derive from it, or take the adapters
 /// `BulletParallelFor` (tetskin/bullet/bullet_parallel_for.h) and `ThreadPool` (tetskin/threads/thread_pool.h).
 /// Results have the same bits whatever it does, as work is cut the same way for any number of threads.
-class ParallelFor {
+class TETSKIN_CORE_API ParallelFor {
  public:
   /// A reference to a callable void(std::size_t), valid as long as the callable is. Never allocates.
   class Task {

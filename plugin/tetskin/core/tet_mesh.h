@@ -10,6 +10,12 @@
 
 namespace tetskin {
 
+/// Which tet carries a vertex that lies in none. Vertices inside are bound the same under both.
+enum class OutsideRule {
+  Nearest,      ///< the tet closest in distance, but for slivers: a thin layer of tets keeps the vertices just above it
+  Barycentric,  ///< the tet of the smallest barycentric distance: the tutorial's rule, and Bullet's
+};
+
 /// Four node indices. A tet is positive when node 3 lies on the side of triangle (0, 1, 2) towards which
 /// (p1-p0) x (p2-p0) points.
 using Tet = std::array<int, 4>;
@@ -26,7 +32,7 @@ struct TetMesh {
 /// What is wrong with a tet mesh: how many of each, and where the first one is (undefined where the count is 0).
 /// The first two make a mesh unusable. The others are survivable and reported, as long as not every tet repeats a node
 /// or has no volume.
-struct TetMeshReport {
+struct TETSKIN_CORE_API TetMeshReport {
   struct Fault {
     std::size_t count = 0;
     std::size_t first = 0;  ///< index of the first tet (or node) concerned
@@ -46,35 +52,35 @@ struct TetMeshReport {
 };
 
 /// Counts the faults of a mesh. Cost O(T log T) for T tets.
-TetMeshReport checkTetMesh(const TetMesh& mesh);
+TETSKIN_CORE_API TetMeshReport checkTetMesh(const TetMesh& mesh);
 
 /// The part of `checkTetMesh` that `usable` needs: everything but duplicate tets and unreferenced nodes. Cost O(N + T)
 /// for N nodes, allocates nothing.
-TetMeshReport checkForUse(const TetMesh& mesh);
+TETSKIN_CORE_API TetMeshReport checkForUse(const TetMesh& mesh);
 
 /// Most nodes, and most tets: the lists of neighbours of all of them, up to 32 each, are counted by 32 bits.
 constexpr std::size_t kMostTets = 0xFFFFFFFFu / 32;
 
 /// Ok if a mesh may have so many. Error: TooLarge
-Status checkTetCounts(std::size_t nodes, std::size_t tets);
+TETSKIN_CORE_API Status checkTetCounts(std::size_t nodes, std::size_t tets);
 
 /// Ok if the mesh can be used, by a report of either check: it has tets, not too many, all indices exist, all
 /// coordinates are finite, at least one tet has a volume.
-Status usable(const TetMesh& mesh, const TetMeshReport& report);
+TETSKIN_CORE_API Status usable(const TetMesh& mesh, const TetMeshReport& report);
 
 /// Reverses the orientation of negative tets by exchanging their last two nodes. Returns the report of the mesh as it
 /// was. A mesh with indices out of range or non-finite nodes is left untouched.
-TetMeshReport repairTetMesh(TetMesh& mesh);
+TETSKIN_CORE_API TetMeshReport repairTetMesh(TetMesh& mesh);
 
 /// Sum of the tets' volumes, whatever their orientation. Indices must be in range.
-double totalVolume(const TetMesh& mesh);
+TETSKIN_CORE_API double totalVolume(const TetMesh& mesh);
 
 /// The distinct edges, each as (a, b) in the direction of the tet that names it first, in order of first appearance:
 /// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3) of tet 0, then of tet 1, ... Cost O(T log T). Indices must be in range.
-std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh);
+TETSKIN_CORE_API std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh);
 
 /// The faces that belong to an odd number of tets, that is the boundary, oriented outwards on positive tets and sorted
 /// by their sorted node indices. Cost O(T log T). Indices must be in range.
-std::vector<std::array<int, 3>> boundaryFaces(const TetMesh& mesh);
+TETSKIN_CORE_API std::vector<std::array<int, 3>> boundaryFaces(const TetMesh& mesh);
 
 }  // namespace tetskin

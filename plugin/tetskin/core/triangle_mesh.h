@@ -41,10 +41,14 @@ constexpr std::size_t kMostVertices = 0x7FFFFFFF;
 constexpr std::size_t kMostTriangles = 0xFFFFFFFFu / 9;
 
 /// Ok if a mesh may have so many. Error: TooLarge
-Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
+TETSKIN_CORE_API Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
 
 /// Ok if the mesh has vertices, not too many, all finite, and every triangle names existing vertices. A mesh without
 /// triangles (a point cloud) is fine. Cost O(vertexCount + triangleCount).
-Status checkTriangleMesh(const TriangleMesh& mesh);
+TETSKIN_CORE_API Status checkTriangleMesh(const TriangleMesh& mesh);
+
+/// The mesh's authored normals; where there are none, or one is not of unit length, those of its triangles, weighted by
+/// area and smooth across coincident vertices. vertexCount unit vectors, of (0, 1, 0) for vertices without triangles.
+TETSKIN_CORE_API std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh);
 
 }  // namespace tetskin

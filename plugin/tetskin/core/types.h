@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/export.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -36,7 +38,7 @@ enum class StatusCode {
 };
 
 /// Name of a status code, for messages and logs. Never null.
-const char* toString(StatusCode code);
+TETSKIN_CORE_API const char* toString(StatusCode code);
 
 /// Outcome of an operation on data that may be bad. The message says what is wrong, where, and what to do about it; it
 /// is empty on success.
@@ -47,8 +49,8 @@ struct [[nodiscard]] Status {
   bool ok() const { return code == StatusCode::Ok; }
 };
 
-/// A value, or the status that says why there is none. Converts to the value where an expression's result is used
-/// directly; the value of a failed result is T{} (an empty mesh, a null pointer), which every later stage rejects.
+/// A value, or the status that says why there is none. Ask `ok()` first: the value of a failed result is T{} (an empty
+/// mesh, a null pointer), which every later stage rejects, and its message is lost.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -60,7 +62,6 @@ class [[nodiscard]] Result {
   const T& value() const& { return value_; }
   T& value() & { return value_; }
   T&& value() && { return std::move(value_); }
-  operator T() && { return std::move(value_); }  // NOLINT: implicit by design
 
  private:
   T value_{};

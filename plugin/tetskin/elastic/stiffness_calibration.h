@@ -37,6 +37,7 @@ struct StiffnessCalibration {
 /// cage     usable (see `usable`), without flat tets; rest space, any unit and size
 /// Cost     with one refinement one to two seconds for 3,000 tets and six for 10,000; about 2 KB a refined tet
 /// Errors   InvalidOption; those of `usable`; Degenerate if a tet is flat, or the cage's stiffness cannot be factorised
-Result<StiffnessCalibration> calibrateStiffness(const TetMesh& cage, const CalibrationOptions& options = {});
+TETSKIN_ELASTIC_API Result<StiffnessCalibration> calibrateStiffness(const TetMesh& cage,
+                                                                    const CalibrationOptions& options = {});
 
 }  // namespace tetskin

@@ -12,9 +12,8 @@ namespace tetskin {
 ///
 /// `.obj` files (in any case) are read as they are: vertices in the file's order, also unused ones; polygons cut into
 /// triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has one of its own.
-/// See `io/obj_reader.h`.
 ///
-/// `.ply` files likewise, see `io/ply_reader.h`: no groups, normals and texture coordinates if the file has them.
+/// `.ply` files likewise: no groups, normals and texture coordinates if the file has them.
 ///
 /// Everything else (STL, glTF, FBX, Collada, 3DS, OFF, ...) is read by assimp, as it stands in its scene:
 /// - every mesh once for each node that shows it, transformed, as one group; in the file's own unit;
@@ -26,6 +25,6 @@ namespace tetskin {
 /// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite (also for a coordinate beyond
 /// kLargestCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the line of
 /// an `.obj` or an ASCII `.ply` file. Throws nothing.
-Result<TriangleMesh> loadMesh(const std::string& path);
+TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path);
 
 }  // namespace tetskin

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
+#include <tetskin/export.h>
 
 #include <cstddef>
 #include <memory>
@@ -12,8 +13,8 @@ namespace tetskin {
 /// A fixed number of threads that sleep until there is work: for applications that have no scheduler of their own.
 ///
 ///     ThreadPool pool;                 // as many threads as the machine has
-///     options.threads = &pool;         // of SkinOptions; the pool outlives the skins
-class ThreadPool : public ParallelFor {
+///     options.threads = &pool;         // of a skin; the pool outlives it
+class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
  public:
   /// threadCount  how many work on a `run`, the calling one included; 0: one for each that the machine runs at a time.
   ///              All others are started here. With 1 there are none, and `run` is a loop.

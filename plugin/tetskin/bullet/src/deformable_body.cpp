@@ -5,6 +5,8 @@
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/src/body_forces.h>
+#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
@@ -12,6 +14,14 @@
 #include <functional>
 
 namespace tetskin {
+
+/// Seconds of damping, and a stiffness.
+struct BodyMaterial {
+  double youngsModulus = 0.0;
+  double poissonRatio = 0.0;
+  double damping = 0.0;
+};
+
 namespace {
 
 /// Largest median of (time step x natural frequency of a node)^2 for a default stiffness. Elastic forces are explicit,
@@ -19,28 +29,20 @@ namespace {
 /// hard landing of thin parts it fails between 15 and 30 (measured with cages of 300 to 30,000 tets).
 constexpr double kStableFrequency = 8.0;
 
-/// Lamé's parameters of a material: mu, lambda.
-std::pair<double, double> lame(double youngsModulus, double poissonRatio) {
-  return {youngsModulus / (2.0 * (1.0 + poissonRatio)),
-          youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio))};
-}
-
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours held, over its mass.
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, double mass) {
-  const auto [mu, lambda] = lame(1.0, options.poissonRatio);
+  const Lame unit(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
   for (const Tet& tet : cage.tets) {
     const TetCorners corners = cornersOf(cage, tet);
     const Eigen::Vector4d gradients = BarycentricMap(corners).gradientLengths();
-    const double modulus = (lambda + 2.0 * mu) * std::abs(signedVolume(corners));
+    const double modulus = (unit.lambda + 2.0 * unit.mu) * std::abs(signedVolume(corners));
     for (int k = 0; k < 4; ++k) stiffness[tet[k]] += modulus * gradients[k] * gradients[k];
   }
   const std::vector<double> masses = lumpedMasses(cage, mass);
   for (std::size_t n = 0; n < masses.size(); ++n) stiffness[n] /= masses[n];
-  const auto middle = stiffness.begin() + static_cast<std::ptrdiff_t>(stiffness.size() / 2);
-  std::nth_element(stiffness.begin(), middle, stiffness.end());
-  return *middle;
+  return median(std::move(stiffness));
 }
 
 double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, double gravity) {
@@ -54,13 +56,6 @@ double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options,
   return std::min(wanted, kStableFrequency / (options.timeStep * options.timeStep * frequency));
 }
 
-/// Seconds of damping, and a stiffness.
-struct Material {
-  double youngsModulus = 0.0;
-  double poissonRatio = 0.0;
-  double damping = 0.0;
-};
-
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
   force.setDamping(damping);
 }
@@ -70,9 +65,9 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
 }
 
 template <class Force>
-void setMaterial(Force& force, const Material& material) {
-  const auto [mu, lambda] = lame(material.youngsModulus, material.poissonRatio);
-  force.setLameParameters(static_cast<btScalar>(mu), static_cast<btScalar>(lambda));
+void setMaterial(Force& force, const BodyMaterial& material) {
+  const Lame lame(material.youngsModulus, material.poissonRatio);
+  force.setLameParameters(static_cast<btScalar>(lame.mu), static_cast<btScalar>(lame.lambda));
   setDamping(force, static_cast<btScalar>(material.damping));
 }
 
@@ -81,10 +76,10 @@ Status invalid(const char* message) {
 }
 
 /// Ok if Bullet's scalars can hold it.
-Status checkRange(const Material& material) {
-  const auto [mu, lambda] = lame(material.youngsModulus, material.poissonRatio);
+Status checkRange(const BodyMaterial& material) {
+  const Lame lame(material.youngsModulus, material.poissonRatio);
   const auto held = [](double value) { return std::isfinite(static_cast<btScalar>(value)); };
-  if (held(mu) && held(lambda) && held(material.damping) && held(lambda * material.damping)) return {};
+  if (held(lame.mu) && held(lame.lambda) && held(material.damping) && held(lame.lambda * material.damping)) return {};
   return invalid("a material so stiff, or so strongly damped, is beyond the range of Bullet's numbers");
 }
 
@@ -99,23 +94,23 @@ struct DeformableBody::Parts {
   ForceList& list;
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: what it has when it is not pinned
-  Material material;
+  BodyMaterial material;
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
-  std::function<void(const Material&)> applyMaterial;  ///< to `elasticity`, which is one of several types
+  std::function<void(const BodyMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
 
   template <class Force>
   void makeElasticity() {
     auto force = std::make_unique<OwnForce<Force>>(list);
-    applyMaterial = [to = force.get()](const Material& now) { setMaterial(*to, now); };
+    applyMaterial = [to = force.get()](const BodyMaterial& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
   }
-  void apply(const Material& now) {
+  void apply(const BodyMaterial& now) {
     material = now;
     applyMaterial(now);
     body->activate();
   }
-  Status set(const Material& now) {
+  Status set(const BodyMaterial& now) {
     Status status = checkRange(now);
     if (status.ok()) apply(now);
     return status;
@@ -136,13 +131,13 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
         "the body to a btSoftRigidDynamicsWorld");
   }
-  Result<btSoftBody*> made = makeSoftBody(cage, world.getWorldInfo(), options);
+  Result<std::unique_ptr<btSoftBody>> made = makeSoftBody(cage, world.getWorldInfo(), options);
   if (!made.ok()) return made.status();
-  std::unique_ptr<btSoftBody> body(made.value());
+  std::unique_ptr<btSoftBody> body = std::move(made).value();
   const double gravity = static_cast<double>(world.getGravity().length());
   const double stiffness =
       options.youngsModulus > 0.0 ? options.youngsModulus : defaultYoungsModulus(cage, options, gravity);
-  const Material material{stiffness, options.poissonRatio, options.damping};
+  const BodyMaterial material{stiffness, options.poissonRatio, options.damping};
   if (Status status = checkRange(material); !status.ok()) return status;
   if (options.configureWorld) {
     world.setUseProjection(true);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/render_nodes.h>
-#include <tetskin/bullet/soft_body_adapter.h>
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 namespace tetskin {
@@ -22,32 +23,29 @@ btVector4 weightsIn(const BarycentricMap& map, const btVector3& point) {
 
 }  // namespace
 
-EmbedReport bindRenderNodes(btSoftBody& body) {
-  EmbedReport report;
+Result<EmbedReport> bindRenderNodes(btSoftBody& body) {
   if (body.m_renderNodes.size() == 0) {
-    report.status = {StatusCode::Empty, "the body has no render nodes; fill m_renderNodes before binding them"};
-    return report;
+    return Status{StatusCode::Empty, "the body has no render nodes; fill m_renderNodes before binding them"};
   }
   const TetMesh cage = tetMeshOf(body);
-  report.vertexCount = report.unbound = static_cast<std::size_t>(body.m_renderNodes.size());
-  report.status = checkDangling(cage);
-  if (!report.ok()) return report;
+  if (Status status = checkDangling(cage); !status.ok()) return status;
   EmbedOptions options;
   options.outside = OutsideRule::Barycentric;
-  Embedding embedding;
-  report = embed(cage, renderNodePositions(body), options, embedding);
-  if (!report.ok()) return report;
+  EmbedReport report;
+  const Result<Embedding> made = embed(cage, renderNodePositions(body), options, &report);
+  if (!made.ok()) return made.status();
+  const EmbeddingData& embedding = made.value().data();
 
   body.m_z.resize(0);
   body.m_renderNodesInterpolationWeights.resize(body.m_renderNodes.size());
   body.m_renderNodesParents.resize(body.m_renderNodes.size());
   // In Bullet's order, so that its update finds them in memory one after the other.
   for (int v = 0; v < body.m_renderNodes.size(); ++v) body.m_renderNodesParents[v].resize(4);
-  const std::vector<Embedding::Run>& runs = embedding.runs();
+  const std::vector<EmbeddingData::Run>& runs = embedding.runs;
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
     const BarycentricMap map(cornersOf(cage, cage.tets[runs[r].tet]));
     for (std::uint32_t slot = runs[r].firstSlot; slot < runs[r + 1].firstSlot; ++slot) {
-      const int v = static_cast<int>(embedding.slotVertices()[slot]);
+      const int v = static_cast<int>(embedding.slotVertices[slot]);
       body.m_renderNodesInterpolationWeights[v] = weightsIn(map, body.m_renderNodes[v].m_x);
       for (int k = 0; k < 4; ++k) body.m_renderNodesParents[v][k] = &body.m_nodes[runs[r].nodes[k]];
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/soft_body_adapter.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/soft_body_builder.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/body_trees.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
@@ -132,7 +132,8 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
   return masses;
 }
 
-Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options) {
+Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
+                                                 const SoftBodyOptions& options) {
   if (Status status = checkOptions(options); !status.ok()) return status;
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
@@ -144,7 +145,7 @@ Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& world
   appendElements(positive, *body);
   setMasses(positive, options, *body);
   finish(options, *body);
-  return body.release();
+  return std::unique_ptr<btSoftBody>(std::move(body));
 }
 
 }  // namespace tetskin

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/bullet/src/node_samples.h>
+#include <tetskin/core/src/skin_binding.h>
 
 #include <algorithm>
 #include <utility>
@@ -36,39 +37,21 @@ constexpr std::size_t kInFlight = 8;
 
 }  // namespace
 
-const char* toString(UpdateStatus status) {
-  switch (status) {
-    case UpdateStatus::Updated:
-      return "updated";
-    case UpdateStatus::Asleep:
-      return "asleep";
-    case UpdateStatus::Hidden:
-      return "hidden";
-    case UpdateStatus::NonFinite:
-      return "not finite";
-    case UpdateStatus::TopologyChanged:
-      return "topology changed";
-    case UpdateStatus::Unbound:
-      return "unbound";
-  }
-  return "unknown update status";
-}
-
-EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
-                               const SkinOptions& options) {
-  if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return refused(mesh, std::move(s));
-  if (Status s = checkNodes(nodePositions(body)); !s.ok()) return refused(mesh, std::move(s));
-  std::shared_ptr<const SoftBodyBinding> binding;
-  QuadraticReport quadratic;
-  EmbedReport report = makeSkinBinding(restCage, mesh, options, binding, &quadratic);
-  if (!report.ok()) return report;
-  if (Status s = bind(body, std::move(binding), options); !s.ok()) return refused(mesh, std::move(s));
-  quadraticReport_ = quadratic;
+Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
+                                       const SkinOptions& options) {
+  if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return s;
+  if (Status s = checkNodes(nodePositions(body)); !s.ok()) return s;
+  if (Status s = checkInstance(options, mesh.vertexCount()); !s.ok()) return s;
+  EmbedReport report;
+  auto made = SoftBodyBinding::make(restCage, mesh, options, &report);
+  if (!made.ok()) return made.status();
+  const InstanceOptions& instance = options;
+  if (Status s = bind(body, std::move(made).value(), instance); !s.ok()) return s;
   return report;
 }
 
-EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
-                               const SkinOptions& options) {
+Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage,
+                                       PointView<const double> vertices, const SkinOptions& options) {
   TriangleMesh mesh;
   mesh.positions.reserve(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -77,16 +60,16 @@ EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, 
   return bind(body, restCage, mesh, options);
 }
 
-EmbedReport SoftBodySkin::bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options) {
+Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options) {
   const TetMesh cage = tetMeshOf(body);
-  if (Status s = checkDangling(cage); !s.ok()) return refused(mesh, std::move(s));
+  if (Status s = checkDangling(cage); !s.ok()) return s;
   return bind(body, cage, mesh, options);
 }
 
 Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding,
-                          const SkinOptions& options) {
+                          const InstanceOptions& options) {
   if (binding) {
-    if (Status status = checkNodeCount(body, binding->embedding.nodeCount()); !status.ok()) return status;
+    if (Status status = checkNodeCount(body, binding->embedding().nodeCount()); !status.ok()) return status;
   }
   if (Status status = skin_.bind(std::move(binding), nodePositions(body), options); !status.ok()) return status;
   body_ = &body;
@@ -122,11 +105,10 @@ UpdateStatus SoftBodySkin::decide(btScalar alpha) {
 
 UpdateStatus SoftBodySkin::compute(btScalar alpha) {
   const bool between = isBetween(alpha);
-  const std::size_t bad = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
-  if (bad < skin_.nodeCount()) {
-    firstBadNode_ = bad;
+  const UpdateStatus done = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
+  if (done != UpdateStatus::Updated) {
     moved_ = true;  // there are no good nodes to compare with
-    return UpdateStatus::NonFinite;
+    return done;
   }
   if (teleported_) skin_.hold();
   teleported_ = false;
@@ -222,10 +204,10 @@ void SoftBodySkin::setVisible(bool visible) {
   skin_.hold();  // what happened meanwhile is no motion
 }
 
-bool SoftBodySkin::setOrigin(const btVector3& origin) {
-  if (!skin_.setOrigin(toEigen(origin))) return false;
-  moved_ = true;
-  return true;
+Status SoftBodySkin::setOrigin(const btVector3& origin) {
+  Status status = skin_.setOrigin(toEigen(origin));
+  if (status.ok()) moved_ = true;
+  return status;
 }
 
 void SoftBodySkin::sample() {

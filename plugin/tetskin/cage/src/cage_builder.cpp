@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// From any triangle mesh to a cage for it: a body-centred cubic lattice of tets, of which those are kept that touch the
+// surface or lie inside. The mesh need not be watertight, welded, consistently oriented or free of intersections.
+//
+//   prepareSurface   weld, orient                                        surface, orientation
+//   searchLattice    spacing and origin for the wanted number of tets    lattice_search
+//     coverSurface     tets that triangles touch                         surface_cover, bcc_lattice
+//     fillInside       tets inside                                       inside_fill, winding_number
+//     joinPinches      tets that make the boundary a manifold            cage_joints
+//   bindPoints       which tet holds which vertex                        cage_binding
+//   fitCage          pull the boundary towards the surface               cage_fit
 #include <tetskin/cage/cage_builder.h>
 #include <tetskin/cage/src/fit/cage_binding.h>
 #include <tetskin/cage/src/fit/cage_fit.h>
@@ -122,13 +133,11 @@ void reportCage(const TetMesh& cage, CageReport& report) {
 }
 
 /// The build proper: everything in the report but the time.
-TetMesh build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
+Result<TetMesh> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
   report.targetTets = options.targetTets;
-  report.status = checkInput(mesh, options);
-  if (!report.ok()) return {};
+  if (Status status = checkInput(mesh, options); !status.ok()) return status;
   const Surface surface = cage_detail::prepareSurface(mesh);
-  report.status = checkExtent(surface);
-  if (!report.ok()) return {};
+  if (Status status = checkExtent(surface); !status.ok()) return status;
   reportSurface(surface, report);
 
   BoundCage bound = firstCageThatHolds(surface, options);
@@ -149,7 +158,6 @@ bool CageReport::targetMet() const {
 }
 
 std::string CageReport::describe() const {
-  if (!ok()) return std::string(toString(status.code)) + ": " + status.message + "\n";
   std::ostringstream text;
   text << tets << " tets, " << nodes << " nodes, spacing " << spacing;
   if (!targetMet()) text << " (" << targetTets << " tets were asked for; no lattice comes nearer)";
@@ -172,13 +180,13 @@ std::string CageReport::describe() const {
 
 Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options, CageReport* report) {
   const auto start = std::chrono::steady_clock::now();
-  CageReport own;
-  TetMesh cage = build(mesh, options, own);
-  own.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (report) *report = own;
-  if (!own.ok()) return own.status;
-  assert(checkTetMesh(cage).clean());
-  return {std::move(cage)};
+  CageReport unread;
+  CageReport& now = report ? *report : unread;
+  now = {};
+  Result<TetMesh> cage = build(mesh, options, now);
+  now.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  assert(!cage.ok() || checkTetMesh(cage.value()).clean());
+  return cage;
 }
 
 }  // namespace tetskin

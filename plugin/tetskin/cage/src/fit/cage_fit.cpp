@@ -12,6 +12,7 @@
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/tets_around_nodes.h>
 
 #include <algorithm>
 #include <cassert>
@@ -42,23 +43,6 @@ constexpr double kRetryStep = 0.05;
 constexpr double kNearMean = 0.02;
 /// The volume hardly changes after some twelve sweeps.
 constexpr int kSweeps = 16;
-
-/// Tets around every node, one list after the other.
-struct Stars {
-  std::vector<int> start;  ///< nodes + 1
-  std::vector<int> tets;
-
-  explicit Stars(const TetMesh& mesh) : start(mesh.nodeCount() + 1, 0), tets(4 * mesh.tetCount()) {
-    for (const Tet& tet : mesh.tets) {
-      for (const int n : tet) ++start[n + 1];
-    }
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<int> next(start.begin(), start.end() - 1);
-    for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
-      for (const int n : mesh.tets[t]) tets[next[n]++] = static_cast<int>(t);
-    }
-  }
-};
 
 /// Points by tet, as doubly linked lists, so that a point changes its tet in constant time.
 class PointLists {
@@ -103,7 +87,7 @@ class CageFit {
         openFaces_(lattice.openFaces),
         points_(points),
         half_(half),
-        stars_(mesh_),
+        stars_(tetsAroundNodes(mesh_)),
         lists_(mesh_.tetCount(), tetOf),
         boundary_(mesh_.nodeCount(), 0),
         step_(mesh_.nodeCount(), kFirstStep),
@@ -131,8 +115,10 @@ class CageFit {
   }
 
  private:
-  int starSize(int n) const { return stars_.start[n + 1] - stars_.start[n]; }
-  int starTet(int n, int k) const { return stars_.tets[stars_.start[n] + k]; }
+  int starSize(int n) const { return static_cast<int>(stars_.starts[n + 1] - stars_.starts[n]); }
+  int starTet(int n, int k) const {
+    return static_cast<int>(stars_.values[stars_.starts[n] + static_cast<std::uint32_t>(k)]);
+  }
 
   /// Six times the derivative of the cage's volume by the node's position. Zero for an inner node.
   Eigen::Vector3d volumeGradient(int n) const {
@@ -259,7 +245,7 @@ class CageFit {
   const std::vector<std::uint8_t>& openFaces_;
   const std::vector<Eigen::Vector3d>& points_;
   double half_;
-  Stars stars_;
+  Lists<> stars_;  ///< by node: the tets around it
   PointLists lists_;
   std::vector<char> boundary_;  ///< by node
   std::vector<double> step_;    ///< by node, in half cubes

@@ -5,6 +5,7 @@
 //   François Labelle, Jonathan Richard Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral
 //   Angles", SIGGRAPH 2007, section 3 (the body-centred cubic lattice and its tets)
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/core/src/base/hash.h>
 
 #include <algorithm>
 #include <cassert>
@@ -122,11 +123,10 @@ LatticeTables makeTables() {
 }
 
 std::size_t hashOf(const Cube& c) {
-  // Large odd factors spread neighbouring cubes; the final shift brings the high bits, which all three reach, down.
-  const std::uint64_t h = static_cast<std::uint32_t>(c[0]) * 0x9E3779B97F4A7C15ull ^
-                          static_cast<std::uint32_t>(c[1]) * 0xC2B2AE3D27D4EB4Full ^
-                          static_cast<std::uint32_t>(c[2]) * 0x165667B19E3779F9ull;
-  return static_cast<std::size_t>(h ^ (h >> 29));
+  Hash hash;
+  hash.add(std::uint64_t{static_cast<std::uint32_t>(c[0])} << 32 | static_cast<std::uint32_t>(c[1]));
+  hash.add(std::uint64_t{static_cast<std::uint32_t>(c[2])});
+  return hash.mixed();
 }
 
 std::uint8_t openFacesOf(const LatticeSet& set, const LatticeTet& tet) {

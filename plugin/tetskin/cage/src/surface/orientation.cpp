@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/surface/orientation.h>
 #include <tetskin/cage/src/surface/winding_number.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/lists.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,25 +29,20 @@ struct Side {
 };
 
 /// All sides of the solid triangles, bucketed by lower point and sorted by higher point.
-struct Sides {
-  std::vector<Side> sides;
-
-  explicit Sides(const Surface& surface) : start_(surface.points.size() + 1, 0) {
-    const auto forSides = [&](auto f) {
-      for (std::size_t t = 0; t < surface.solidCount; ++t) {
-        for (int i = 0; i < 3; ++i) {
-          const int a = surface.triangles[t][i], b = surface.triangles[t][(i + 1) % 3];
-          f(std::min(a, b), Side{std::max(a, b), static_cast<int>(t), a < b});
-        }
-      }
-    };
-    forSides([&](int low, const Side&) { ++start_[low + 1]; });
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    sides.resize(3 * surface.solidCount);
-    std::vector<int> next(start_.begin(), start_.end() - 1);
-    forSides([&](int low, const Side& side) { sides[next[low]++] = side; });
-    for (std::size_t p = 0; p + 1 < start_.size(); ++p) {
-      std::sort(sides.begin() + start_[p], sides.begin() + start_[p + 1], [](const Side& a, const Side& b) {
+class Sides {
+ public:
+  explicit Sides(const Surface& surface)
+      : byLow_(packLists<Side>(surface.points.size(), [&](auto&& add) {
+          for (std::size_t t = 0; t < surface.solidCount; ++t) {
+            for (int i = 0; i < 3; ++i) {
+              const int a = surface.triangles[t][i], b = surface.triangles[t][(i + 1) % 3];
+              add(static_cast<std::size_t>(std::min(a, b)), Side{std::max(a, b), static_cast<int>(t), a < b});
+            }
+          }
+        })) {
+    Side* sides = byLow_.values.data();
+    for (std::size_t p = 0; p + 1 < byLow_.starts.size(); ++p) {
+      std::sort(sides + byLow_.starts[p], sides + byLow_.starts[p + 1], [](const Side& a, const Side& b) {
         return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
       });
     }
@@ -55,18 +51,19 @@ struct Sides {
   /// Calls f(first, last) with the range of sides of every edge.
   template <class F>
   void forEdges(F f) const {
-    for (std::size_t p = 0; p + 1 < start_.size(); ++p) {
-      for (int i = start_[p]; i < start_[p + 1];) {
-        int end = i + 1;
-        while (end < start_[p + 1] && sides[end].high == sides[i].high) ++end;
-        f(sides.begin() + i, sides.begin() + end);
+    const Side* sides = byLow_.values.data();
+    for (std::size_t p = 0; p + 1 < byLow_.starts.size(); ++p) {
+      for (std::uint32_t i = byLow_.starts[p]; i < byLow_.starts[p + 1];) {
+        std::uint32_t end = i + 1;
+        while (end < byLow_.starts[p + 1] && sides[end].high == sides[i].high) ++end;
+        f(sides + i, sides + end);
         i = end;
       }
     }
   }
 
  private:
-  std::vector<int> start_;
+  Lists<Side> byLow_;
 };
 
 /// What is known about a patch; indexed by its representative triangle.

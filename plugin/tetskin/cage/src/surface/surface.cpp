@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/surface/orientation.h>
 #include <tetskin/cage/src/surface/surface.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/mesh/weld.h>
 
 #include <algorithm>
@@ -45,17 +46,14 @@ void addDistinct(const std::vector<std::array<int, 3>>& triangles, Surface& surf
     std::sort(t.begin(), t.end());
     return t;
   };
-  std::vector<int> start(surface.points.size() + 1, 0);
-  for (const auto& t : triangles) ++start[sorted(t)[0] + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> bucketed(triangles.size());
-  std::vector<int> next(start.begin(), start.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t) bucketed[next[sorted(triangles[t])[0]]++] = static_cast<int>(t);
-
+  Lists<> byLowest = packLists(surface.points.size(), [&](auto&& add) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) add(static_cast<std::size_t>(sorted(triangles[t])[0]), t);
+  });
   std::vector<char> keep(triangles.size(), 1);
   for (std::size_t p = 0; p < surface.points.size(); ++p) {
-    const auto begin = bucketed.begin() + start[p], end = bucketed.begin() + start[p + 1];
-    std::stable_sort(begin, end, [&](int a, int b) { return sorted(triangles[a]) < sorted(triangles[b]); });
+    const auto begin = byLowest.values.begin() + byLowest.starts[p],
+               end = byLowest.values.begin() + byLowest.starts[p + 1];
+    std::stable_sort(begin, end, [&](auto a, auto b) { return sorted(triangles[a]) < sorted(triangles[b]); });
     for (auto i = begin; i != end; ++i) {
       if (i != begin && sorted(triangles[*i]) == sorted(triangles[*(i - 1)])) keep[*i] = 0;
     }

@@ -134,14 +134,21 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
                                          const Eigen::Vector4d& weights) {
   Eigen::Vector3d closest = v;
   double squared = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 4; ++i) {
-    if (weights[i] >= 0.0) continue;
-    const Eigen::Vector3d q = closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]);
+  const auto take = [&](const Eigen::Vector3d& q) {
     const double d = (v - q).squaredNorm();
-    if (d >= squared) continue;
+    if (!(d < squared)) return;  // nor what is not a number
     squared = d;
     closest = q;
+  };
+  bool inside = true;
+  for (int i = 0; i < 4; ++i) {
+    if (weights[i] >= 0.0) continue;
+    inside = false;
+    take(closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]));
   }
+  if (inside || squared < std::numeric_limits<double>::infinity()) return closest;
+  // Seen from 1e20 sizes away, rounding may leave nothing of a face; a corner is as near.
+  for (const Eigen::Vector3d& corner : p) take(corner);
   return closest;
 }
 

@@ -4,6 +4,8 @@
 // A hash table of all points would miss the cache at every look-up once there are millions. So points are first dealt
 // into buckets by their hash, a sequential pass; the table of one bucket then stays in the cache. Hashes are kept, so
 // that a point is compared, which reads it from anywhere, only with one of the same hash.
+#include <tetskin/core/src/base/hash.h>
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/mesh/weld.h>
 
 #include <cstring>
@@ -21,21 +23,10 @@ struct Key {
   std::uint32_t point;
 };
 
-std::uint64_t bitsOf(double x) {
-  x += 0.0;  // -0 becomes 0
-  std::uint64_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-
-/// Mixes three coordinates so that all bits depend on all of theirs (the multiplier is the golden ratio's, after Knuth,
-/// "The Art of Computer Programming" 3, section 6.4).
 std::uint32_t hashOf(const Eigen::Vector3d& p) {
-  constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15u;
-  std::uint64_t h = bitsOf(p[0]) * kMultiplier;
-  h = ((h >> 32) ^ h ^ bitsOf(p[1])) * kMultiplier;
-  h = ((h >> 32) ^ h ^ bitsOf(p[2])) * kMultiplier;
-  return static_cast<std::uint32_t>((h ^ (h >> 32)) * kMultiplier >> 32);
+  Hash hash;
+  for (int k = 0; k < 3; ++k) hash.add(p[k]);
+  return hash.mixed();
 }
 
 /// How far to shift a hash to the right for its bucket.
@@ -45,20 +36,12 @@ int bucketShift(std::size_t count) {
   return shift;
 }
 
-/// The points' keys, bucket by bucket, and in each in the points' order; `bucketEnd` receives where each ends.
-std::vector<Key> dealtKeys(const std::vector<std::uint32_t>& hashes, std::vector<std::uint32_t>& bucketEnd) {
+/// The points' keys, bucket by bucket, and in each in the points' order.
+Lists<Key> dealtKeys(const std::vector<std::uint32_t>& hashes) {
   const int shift = bucketShift(hashes.size());
-  bucketEnd.assign(std::size_t{1} << (32 - shift), 0);
-  for (const std::uint32_t hash : hashes) ++bucketEnd[hash >> shift];
-  std::uint32_t sum = 0;
-  for (std::uint32_t& bucket : bucketEnd) {
-    const std::uint32_t size = bucket;
-    bucket = sum;  // where the bucket begins: filling it moves that to its end
-    sum += size;
-  }
-  std::vector<Key> keys(hashes.size());
-  for (std::uint32_t i = 0; i < hashes.size(); ++i) keys[bucketEnd[hashes[i] >> shift]++] = {hashes[i], i};
-  return keys;
+  return packLists<Key>(std::size_t{1} << (32 - shift), [&](auto&& add) {
+    for (std::uint32_t i = 0; i < hashes.size(); ++i) add(hashes[i] >> shift, Key{hashes[i], i});
+  });
 }
 
 /// Names the first point at the position of every other among the keys of one bucket. `table` is scratch memory.
@@ -89,14 +72,13 @@ std::vector<std::uint32_t> weldCoincident(PointReader points) {
   assert(points.size() < 0xFFFFFFFFu);
   std::vector<std::uint32_t> first(points.size());  // holds hashes until their points are dealt
   for (std::size_t i = 0; i < points.size(); ++i) first[i] = hashOf(points[i]);
-  std::vector<std::uint32_t> bucketEnd, table;
-  const std::vector<Key> keys = dealtKeys(first, bucketEnd);
+  std::vector<std::uint32_t> table;
+  const Lists<Key> buckets = dealtKeys(first);
   // Now every point is its own first, and only the few that are not are written to, far apart as those of a bucket are.
   std::iota(first.begin(), first.end(), std::uint32_t{0});
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : bucketEnd) {
-    weldBucket(points, keys.data() + begin, end - begin, table, first);
-    begin = end;
+  for (std::size_t b = 0; b + 1 < buckets.starts.size(); ++b) {
+    const std::uint32_t begin = buckets.starts[b], end = buckets.starts[b + 1];
+    weldBucket(points, buckets.values.data() + begin, end - begin, table, first);
   }
   return first;
 }

@@ -14,6 +14,6 @@ namespace tetskin {
 /// and normal seams, and every triangle of an STL file, duplicate vertices this way. 0 and -0 are the same.
 /// Points must be finite. Cost O(count) expected, in sequential passes; 8 bytes a point while it works, and where most
 /// points coincide up to 16 more.
-std::vector<std::uint32_t> weldCoincident(PointReader points);
+TETSKIN_CORE_API std::vector<std::uint32_t> weldCoincident(PointReader points);
 
 }  // namespace tetskin

@@ -12,17 +12,6 @@
 
 namespace tetskin {
 
-/// Where a skin's normals come from.
-enum class Normals {
-  None,         ///< nowhere: no memory, no time
-  Transformed,  ///< the rest normals, carried by the gradient of the map: keeps all detail of authored normals
-  Recomputed,   ///< the deformed triangles, weighted by area: also right where the surface folds within a tet
-};
-
-/// The mesh's authored normals; where there are none, or one is not of unit length, those of its triangles, weighted by
-/// area and smooth across coincident vertices. vertexCount unit vectors, of (0, 1, 0) for vertices without triangles.
-std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh);
-
 /// Directions on the rest surface, prepared to be carried by the map's gradient G: normals by its cofactor matrix (not
 /// its inverse transpose: no division, and the right side out when a tet is inverted), tangents by G itself.
 /// Immutable, shared like an Embedding. Memory: 12 bytes a vertex.
@@ -58,13 +47,11 @@ class DirectionFactors {
 /// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
 ///                  writes; not needed for `out` side by side in sorted order; without it, some is allocated, and `out`
 ///                  is read
-/// movedRuns        as in SkinOutput
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
                          const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
-                         float* scratch = nullptr, ParallelFor* threads = nullptr,
-                         const std::uint8_t* movedRuns = nullptr);
+                         float* scratch = nullptr, ParallelFor* threads = nullptr);
 
 }  // namespace tetskin

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/mesh/weld.h>
 #include <tetskin/core/src/normals/recomputed_normals.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
@@ -18,7 +20,7 @@ using skin_tasks::taskCount;
 constexpr std::size_t kGroupsPerTask = 8192;
 constexpr std::size_t kWindow = 256;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
-constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
 /// Of the cosine of an angle between two floats' directions.
 constexpr double kRounding = 1e-12;
@@ -36,12 +38,12 @@ std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vec
                                         double hardEdgeDegrees, std::size_t& groupCount) {
   const double limit = std::cos(std::min(hardEdgeDegrees, 180.0) * kDegree) - kRounding;
   // The groups at one position are chained by their first vertices.
-  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNone), firstGroup(groupOf), next(groupOf);
+  std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNoGroup), firstGroup(groupOf), next(groupOf);
   groupCount = 0;
   const auto join = [&](std::uint32_t v, auto&& isWith) {
     std::uint32_t* other = &firstGroup[first[v]];
-    while (*other != kNone && !isWith(*other)) other = &next[*other];
-    if (*other == kNone) {
+    while (*other != kNoGroup && !isWith(*other)) other = &next[*other];
+    if (*other == kNoGroup) {
       *other = v;
       groupOf[v] = static_cast<std::uint32_t>(groupCount++);
     } else {
@@ -54,7 +56,7 @@ std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vec
     join(v, [&](std::uint32_t other) { return direction.dot(restDirection(mesh, other)) >= limit; });
   }
   for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
-    if (groupOf[v] == kNone) join(v, [](std::uint32_t) { return true; });  // after those that know where they belong
+    if (groupOf[v] == kNoGroup) join(v, [](std::uint32_t) { return true; });  // after those that know where they belong
   }
   return groupOf;
 }
@@ -100,12 +102,12 @@ void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::ve
 /// within a window by their triangles, as a loop of another length each time is mispredicted each time.
 void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& mesh, std::size_t groups,
               std::vector<std::uint32_t>& groupOf) {
-  std::vector<std::uint32_t> triangles(groups, 0), order, numberOf(groups, kNone);
+  std::vector<std::uint32_t> triangles(groups, 0), order, numberOf(groups, kNoGroup);
   for (const auto& t : mesh.triangles) {
     for (const int v : t) ++triangles[groupOf[static_cast<std::size_t>(v)]];
   }
   for (const std::uint32_t v : vertexAt) {
-    if (numberOf[groupOf[v]] != kNone) continue;
+    if (numberOf[groupOf[v]] != kNoGroup) continue;
     numberOf[groupOf[v]] = 0;
     order.push_back(groupOf[v]);
   }
@@ -129,11 +131,6 @@ void pad(PointView<const Scalar> points, std::size_t first, std::size_t last, Sc
   for (; k < last; ++k) std::memcpy(to + 4 * k, points[k], 3 * sizeof(Scalar));
 }
 
-/// Starts of lists from their lengths, which come one place late.
-void accumulate(std::vector<std::uint32_t>& starts) {
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-}
-
 }  // namespace
 
 NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
@@ -149,30 +146,24 @@ NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::
   for (std::size_t v = 0; v < count; ++v) vertexAt[placeOf(v)] = static_cast<std::uint32_t>(v);
   renumber(vertexAt, mesh, groups, groupOf);
 
-  groupPlaces_.assign(groups + 1, 0);
-  for (const std::uint32_t group : groupOf) ++groupPlaces_[group + 1];
-  accumulate(groupPlaces_);
-  places_.resize(count);
-  std::vector<std::uint32_t> next(groupPlaces_.begin(), groupPlaces_.end() - 1);
-  for (const std::uint32_t v : vertexAt) places_[next[groupOf[v]]++] = placeOf(v);
+  Lists<> placesOf = packLists(groups, [&](auto&& add) {
+    for (const std::uint32_t v : vertexAt) add(groupOf[v], placeOf(v));
+  });
+  groupPlaces_ = std::move(placesOf.starts);
+  places_ = std::move(placesOf.values);
 
-  std::vector<std::uint32_t> groupSides(groups + 1, 0);
-  for (const auto& t : mesh.triangles) {
-    for (const int v : t) ++groupSides[groupOf[static_cast<std::size_t>(v)] + 1];
-  }
-  accumulate(groupSides);
-  std::vector<FarSide> sides(3 * mesh.triangleCount());
-  next.assign(groupSides.begin(), groupSides.end() - 1);
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto from = static_cast<std::size_t>(t[(k + 1) % 3]), to = static_cast<std::size_t>(t[(k + 2) % 3]);
-      sides[next[groupOf[static_cast<std::size_t>(t[k])]]++] = {placeOf(from), placeOf(to), firstAt[from], firstAt[to]};
+  const Lists<FarSide> sides = packLists<FarSide>(groups, [&](auto&& add) {
+    for (const auto& t : mesh.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto from = static_cast<std::size_t>(t[(k + 1) % 3]), to = static_cast<std::size_t>(t[(k + 2) % 3]);
+        add(groupOf[static_cast<std::size_t>(t[k])], FarSide{placeOf(from), placeOf(to), firstAt[from], firstAt[to]});
+      }
     }
-  }
+  });
   std::vector<FarSide> ofGroup;
-  paths_.reserve(sides.size() + 2 * groups);
+  paths_.reserve(sides.values.size() + 2 * groups);
   for (std::size_t g = 0; g < groups; ++g) {
-    ofGroup.assign(sides.begin() + groupSides[g], sides.begin() + groupSides[g + 1]);
+    ofGroup.assign(sides.values.begin() + sides.starts[g], sides.values.begin() + sides.starts[g + 1]);
     appendPath(ofGroup, places_[groupPlaces_[g]], paths_);
     groupPaths_.push_back(static_cast<std::uint32_t>(paths_.size()));
   }
@@ -213,8 +204,7 @@ void recomputeNormals(const NormalTopology& topology, const std::vector<Scalar>&
 #define TETSKIN_INSTANTIATE(Scalar)                                                     \
   template void padPoints(PointView<const Scalar>, std::vector<Scalar>&, ParallelFor*); \
   template void recomputeNormals(const NormalTopology&, const std::vector<Scalar>&, PointView<float>, ParallelFor*);
-TETSKIN_INSTANTIATE(float)
-TETSKIN_INSTANTIATE(double)
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

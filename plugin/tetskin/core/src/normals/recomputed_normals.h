@@ -11,10 +11,6 @@
 
 namespace tetskin {
 
-/// Normals that differ by more than this at one position make a hard edge. Below, they are a smooth normal's rounding,
-/// or that of a file; a facet of a smooth surface turns more.
-constexpr double kHardEdgeDegrees = 5.0;
-
 /// Which vertices around make the normal of which vertices: vertices at one position share theirs, unless their rest
 /// normals differ by more than an angle (a hard edge), whatever their lengths; one that is zero or not finite counts as
 /// absent, and makes no edge. A group of vertices that share a normal has a path: around them,
@@ -25,8 +21,7 @@ class NormalTopology {
   NormalTopology() = default;
   /// places           by vertex, where it is written (its slot, for VertexOrder::Sorted); empty for the mesh's order
   /// hardEdgeDegrees  not below 0; from 180 on there is no hard edge
-  NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
-                 double hardEdgeDegrees = kHardEdgeDegrees);
+  NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places, double hardEdgeDegrees);
 
   std::size_t groupCount() const { return groupPlaces_.size() - 1; }
   const std::vector<std::uint32_t>& groupPlaces() const { return groupPlaces_; }  ///< by group, and one more

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/embedding.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/tets_around_nodes.h>
 #include <tetskin/core/src/search/outside_neighbours.h>
+#include <tetskin/core/src/search/tolerances.h>
 
 #include <algorithm>
 #include <queue>
@@ -19,11 +20,10 @@ bool shareNode(const Tet& a, const Tet& b) {
   return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
 }
 
-/// Edges from vertices outside, by the first vertex at a position: entries of the k-th outside vertex.
+/// Edges from vertices outside, by the first vertex at a position.
 struct OutsideEdges {
   std::vector<std::uint32_t> vertices;  ///< outside, ascending, one a position
-  std::vector<std::uint32_t> starts;
-  std::vector<std::uint32_t> ends;
+  Lists<> ends;                        ///< by place among these: the other ends of its edges, each from either triangle
   std::vector<std::uint32_t> placeOf;  ///< by vertex; kInside if it is not outside
 
   static constexpr std::uint32_t kInside = 0xFFFFFFFFu;
@@ -36,55 +36,19 @@ struct OutsideEdges {
       placeOf[v] = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(v);
     }
-    std::vector<std::array<std::uint32_t, 2>> pairs;  // of each edge twice, once from either triangle
-    for (const auto& t : triangles) {
-      for (int k = 0; k < 3; ++k) {
-        if (tetOf[static_cast<std::size_t>(t[k])] >= 0) continue;
-        const std::uint32_t a = first[static_cast<std::size_t>(t[k])];
-        for (int step = 1; step <= 2; ++step) {
-          const std::uint32_t b = first[static_cast<std::size_t>(t[(k + step) % 3])];
-          if (b != a) pairs.push_back({placeOf[a], b});
+    ends = packLists(vertices.size(), [&](auto&& add) {
+      for (const auto& t : triangles) {
+        for (int k = 0; k < 3; ++k) {
+          if (tetOf[static_cast<std::size_t>(t[k])] >= 0) continue;
+          const std::uint32_t a = first[static_cast<std::size_t>(t[k])];
+          for (int step = 1; step <= 2; ++step) {
+            const std::uint32_t b = first[static_cast<std::size_t>(t[(k + step) % 3])];
+            if (b != a) add(placeOf[a], b);
+          }
         }
       }
-    }
-    starts.assign(vertices.size() + 1, 0);
-    for (const auto& pair : pairs) ++starts[pair[0]];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& start : starts) start = sum += start;  // now one past each vertex's last
-    ends.resize(pairs.size());
-    for (std::size_t k = pairs.size(); k-- > 0;) ends[--starts[pairs[k][0]]] = pairs[k][1];
+    });
   }
-};
-
-/// The tets around each node, made when first asked for: most meshes never need them.
-class TetsAroundNodes {
- public:
-  explicit TetsAroundNodes(const TetMesh& cage) : cage_(cage) {}
-
-  template <class Visit>
-  void around(const Tet& tet, Visit&& visit) {
-    if (starts_.empty()) build();
-    for (const int n : tet) {
-      for (std::uint32_t k = starts_[n]; k < starts_[n + 1]; ++k) visit(tets_[k]);
-    }
-  }
-
- private:
-  void build() {
-    starts_.assign(cage_.nodeCount() + 1, 0);
-    for (const Tet& tet : cage_.tets) {
-      for (const int n : tet) ++starts_[n + 1];
-    }
-    for (std::size_t n = 0; n < cage_.nodeCount(); ++n) starts_[n + 1] += starts_[n];
-    tets_.resize(4 * cage_.tetCount());
-    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-    for (std::uint32_t t = 0; t < cage_.tetCount(); ++t) {
-      for (const int n : cage_.tets[t]) tets_[next[n]++] = t;
-    }
-  }
-
-  const TetMesh& cage_;
-  std::vector<std::uint32_t> starts_, tets_;
 };
 
 /// A tet as a vertex sees it.
@@ -98,7 +62,7 @@ struct Seen {
 /// One vertex and the tets around it that are connected to its neighbours'.
 class LocalSearch {
  public:
-  explicit LocalSearch(const TetMesh& cage) : cage_(cage), adjacency_(cage), visited_(cage.tetCount(), 0) {}
+  explicit LocalSearch(const TetMesh& cage) : cage_(cage), visited_(cage.tetCount(), 0) {}
 
   /// The tet for a vertex that the nearest rule gives to `nearest`, with neighbours in the tets `others`, at most
   /// `reach` away.
@@ -137,7 +101,7 @@ class LocalSearch {
       if (isFlat(corners)) continue;
       seen_.push_back(look(v, corners, t));
       if (seen_.back().distance > radius) continue;
-      adjacency_.around(cage_.tets[t], [&](std::uint32_t next) { push(static_cast<std::int32_t>(next)); });
+      pushAround(cage_.tets[t]);
     }
     return false;
   }
@@ -156,6 +120,15 @@ class LocalSearch {
     return meanEdge_;
   }
 
+  void pushAround(const Tet& tet) {
+    if (tetsAround_.starts.empty()) tetsAround_ = tetsAroundNodes(cage_);
+    for (const int n : tet) {
+      for (std::uint32_t k = tetsAround_.starts[n]; k < tetsAround_.starts[n + 1]; ++k) {
+        push(static_cast<std::int32_t>(tetsAround_.values[k]));
+      }
+    }
+  }
+
   void push(std::int32_t tet) {
     if (visited_[tet] == round_) return;
     visited_[tet] = round_;
@@ -163,7 +136,7 @@ class LocalSearch {
   }
 
   const TetMesh& cage_;
-  TetsAroundNodes adjacency_;
+  Lists<> tetsAround_;  ///< by node; made when first asked for: most meshes never need them
   double meanEdge_ = 0.0;
   std::vector<std::uint32_t> visited_;
   std::uint32_t round_ = 0;
@@ -187,8 +160,8 @@ class Walk {
   std::size_t run() {
     for (std::uint32_t place = 0; place < state_.size(); ++place) {
       if (state_[place] != State::Untouched) continue;
-      const auto begin = edges_.ends.begin() + edges_.starts[place],
-                 end = edges_.ends.begin() + edges_.starts[place + 1];
+      const auto begin = edges_.ends.values.begin() + edges_.ends.starts[place],
+                 end = edges_.ends.values.begin() + edges_.ends.starts[place + 1];
       if (std::any_of(begin, end, [&](std::uint32_t v) { return settled(v); })) push(place);
     }
     std::size_t changed = 0;
@@ -223,8 +196,8 @@ class Walk {
     others_.clear();
     double reach = 0.0;
     bool local = false;
-    for (std::uint32_t k = edges_.starts[place]; k < edges_.starts[place + 1]; ++k) {
-      const std::uint32_t other = edges_.ends[k];
+    for (std::uint32_t k = edges_.ends.starts[place]; k < edges_.ends.starts[place + 1]; ++k) {
+      const std::uint32_t other = edges_.ends.values[k];
       if (settled(other)) {
         others_.push_back(indexOf(tetOf_[other]));
         reach = std::max(reach, (vertices_[other] - point).norm());

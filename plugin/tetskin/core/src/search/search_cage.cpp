@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/search/search_cage.h>
 
 #include <algorithm>
@@ -31,9 +32,7 @@ SearchCage::SearchCage(const TetMesh& mesh) : mesh_(mesh) {
   assert(!solid_.empty());
   std::vector<double> sides;
   for (std::size_t i = 0; i < size(); i += size() / kSample + 1) sides.push_back((*this)[i].box.sizes().maxCoeff());
-  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
-  std::nth_element(sides.begin(), middle, sides.end());
-  medianSide_ = *middle;
+  medianSide_ = median(std::move(sides));
 }
 
 }  // namespace tetskin

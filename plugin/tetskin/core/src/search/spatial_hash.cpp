@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   Matthias Müller, "Blazing Fast Neighbor Search with Spatial Hashing", Ten Minute Physics 11, 2022
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/search/spatial_hash.h>
 
 #include <limits>
@@ -46,21 +47,20 @@ void SpatialHash::chooseTable(std::size_t mostCells) {
 
 void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_t>& first) {
   std::vector<std::uint32_t> cellOfPoint(points.size(), kNoCell);
-  cellStart_.assign(std::size_t{table_[0]} * table_[1] * table_[2] + 1, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!first.empty() && first[i] != i) continue;
     const Eigen::Vector3d p = points[i];
     if (!box_.contains(p)) continue;
     const Cell cell = cellOf(p);
     cellOfPoint[i] = (wrapped(cell[2], 2) * table_[1] + wrapped(cell[1], 1)) * table_[0] + wrapped(cell[0], 0);
-    ++cellStart_[cellOfPoint[i]];
   }
-  std::uint32_t sum = 0;
-  for (std::uint32_t& start : cellStart_) start = sum += start;  // now one past each cell's last entry
-  ids_.resize(sum);
-  for (std::size_t i = points.size(); i-- > 0;) {  // from the back, so that entries of a cell keep the points' order
-    if (cellOfPoint[i] != kNoCell) ids_[--cellStart_[cellOfPoint[i]]] = static_cast<std::uint32_t>(i);
-  }
+  Lists<> cells = packLists(std::size_t{table_[0]} * table_[1] * table_[2], [&](auto&& add) {
+    for (std::uint32_t i = 0; i < cellOfPoint.size(); ++i) {
+      if (cellOfPoint[i] != kNoCell) add(cellOfPoint[i], i);
+    }
+  });
+  cellStart_ = std::move(cells.starts);
+  ids_ = std::move(cells.values);
 }
 
 void SpatialHash::copyCoordinates(PointReader points) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/tets_around_nodes.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
 
 #include <Eigen/Eigenvalues>
@@ -94,39 +95,27 @@ struct Fit {
   }
 };
 
-/// Lists by key, packed: entries of key k are [starts[k], starts[k + 1]).
-void pack(const std::vector<std::array<std::uint32_t, 2>>& pairs, std::size_t keys, std::vector<std::uint32_t>& starts,
-          std::vector<std::uint32_t>& values) {
-  starts.assign(keys + 1, 0);
-  for (const auto& [key, value] : pairs) ++starts[key + 1];
-  for (std::size_t k = 0; k < keys; ++k) starts[k + 1] += starts[k];
-  values.resize(pairs.size());
-  std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
-  for (const auto& [key, value] : pairs) values[next[key]++] = value;
-}
-
 }  // namespace
 
 CageNeighbours::CageNeighbours(const TetMesh& cage) : cage_(cage), foundFor_(cage.nodeCount(), 0) {
   TetMesh solid;  // without flat tets, which may tie together what is far apart
-  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<bool> isSolid(cage.tetCount());
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    if (isFlat(cornersOf(cage, cage.tets[t]))) continue;
-    solid.tets.push_back(cage.tets[t]);
-    for (const int n : cage.tets[t]) pairs.push_back({static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(t)});
+    isSolid[t] = !isFlat(cornersOf(cage, cage.tets[t]));
+    if (isSolid[t]) solid.tets.push_back(cage.tets[t]);
   }
-  pack(pairs, cage.nodeCount(), tetStarts_, tets_);
-  pairs.clear();
-  for (const auto& edge : uniqueEdges(solid)) {
-    const auto a = static_cast<std::uint32_t>(edge[0]), b = static_cast<std::uint32_t>(edge[1]);
-    pairs.push_back({a, b});
-    pairs.push_back({b, a});
-  }
-  pack(pairs, cage.nodeCount(), edgeStarts_, edgeEnds_);
+  tets_ = tetsAroundNodes(cage, [&](std::uint32_t t) { return isSolid[t]; });
+  const auto edges = uniqueEdges(solid);
+  edges_ = packLists(cage.nodeCount(), [&](auto&& add) {
+    for (const auto& [a, b] : edges) {
+      add(static_cast<std::size_t>(a), static_cast<std::uint32_t>(b));
+      add(static_cast<std::size_t>(b), static_cast<std::uint32_t>(a));
+    }
+  });
 }
 
 GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
-  assert(tetStarts_[node] < tetStarts_[node + 1]);
+  assert(tets_.starts[node] < tets_.starts[node + 1]);
   found_.assign(1, node);
   foundFor_[node] = node + 1;
   std::size_t ringStart = 0;
@@ -187,8 +176,8 @@ std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::ui
 void CageNeighbours::addRing(std::size_t from) {
   const std::uint32_t centre = found_.front();
   for (std::size_t k = from, end = found_.size(); k < end; ++k) {
-    for (std::uint32_t e = edgeStarts_[found_[k]]; e < edgeStarts_[found_[k] + 1]; ++e) {
-      const std::uint32_t other = edgeEnds_[e];
+    for (std::uint32_t e = edges_.starts[found_[k]]; e < edges_.starts[found_[k] + 1]; ++e) {
+      const std::uint32_t other = edges_.values[e];
       if (foundFor_[other] == centre + 1 || cage_.nodes[other] == cage_.nodes[centre]) continue;
       foundFor_[other] = centre + 1;
       found_.push_back(other);
@@ -199,8 +188,8 @@ void CageNeighbours::addRing(std::size_t from) {
 GradientStencil CageNeighbours::plainStencil(std::uint32_t node) const {
   std::map<std::uint32_t, Eigen::Vector3d> factors;
   double volume = 0.0;
-  for (std::uint32_t k = tetStarts_[node]; k < tetStarts_[node + 1]; ++k) {
-    const Tet& tet = cage_.tets[tets_[k]];
+  for (std::uint32_t k = tets_.starts[node]; k < tets_.starts[node + 1]; ++k) {
+    const Tet& tet = cage_.tets[tets_.values[k]];
     const TetCorners corners = cornersOf(cage_, tet);
     const BarycentricMap map(corners);
     const double v = std::abs(signedVolume(corners));

@@ -4,6 +4,7 @@
 // Internal to quadratic skinning: how the gradient at a node follows from the positions of the nodes around it.
 #pragma once
 
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <cstdint>
@@ -38,10 +39,10 @@ class CageNeighbours {
   GradientStencil plainStencil(std::uint32_t node) const;
 
   const TetMesh& cage_;
-  std::vector<std::uint32_t> edgeStarts_, edgeEnds_;  ///< by node: the nodes at the other ends of its edges
-  std::vector<std::uint32_t> tetStarts_, tets_;       ///< by node: its tets
-  std::vector<std::uint32_t> found_;                  ///< the node, then its rings
-  std::vector<std::uint32_t> foundFor_;               ///< by node: for which node it was found last, plus 1
+  Lists<> edges_;                        ///< by node: the nodes at the other ends of its edges
+  Lists<> tets_;                         ///< by node: its tets
+  std::vector<std::uint32_t> found_;     ///< the node, then its rings
+  std::vector<std::uint32_t> foundFor_;  ///< by node: for which node it was found last, plus 1
 };
 
 }  // namespace tetskin

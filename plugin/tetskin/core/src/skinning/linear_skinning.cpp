@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
@@ -8,18 +9,15 @@ namespace tetskin {
 template <class Scalar, class Out>
 void skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const SkinOutput<Scalar, Out>& output,
                 Box3* bounds, ParallelFor* threads) {
-  auto work = skin_tasks::workFor(embedding, nodes);
+  auto work = skin_tasks::workFor(embedding.data(), nodes);
   work.surface = kernels::Surface::Linear;
-  skin_tasks::skin(embedding, work, nodes, output, bounds, threads);
+  skin_tasks::skin(embedding.data(), work, nodes, output, bounds, threads);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar, Out)                                                                        \
   template void skinLinear(const Embedding&, const PackedNodes<Scalar>&, const SkinOutput<Scalar, Out>&, Box3*, \
                            ParallelFor*);
-TETSKIN_INSTANTIATE(float, float)
-TETSKIN_INSTANTIATE(float, double)
-TETSKIN_INSTANTIATE(double, float)
-TETSKIN_INSTANTIATE(double, double)
+TETSKIN_FOR_SCALAR_PAIRS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

@@ -4,12 +4,12 @@
 // This work is based on:
 //   Doug L. James, "Phong Deformation: A Better C0 Interpolant for Embedded Deformation", ACM TOG 39(4), 2020,
 //   doi 10.1145/3386569.3392371
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
-#include <chrono>
-#include <cstdio>
+#include <algorithm>
 
 namespace tetskin {
 namespace {
@@ -35,10 +35,10 @@ std::array<Edge, 6> edgesOf(const kernels::Run& run) {
 }
 
 /// The distinct edges of the tets that carry vertices, sorted.
-std::vector<Edge> occupiedEdges(const Embedding& embedding) {
+std::vector<Edge> occupiedEdges(const EmbeddingData& embedding) {
   std::vector<Edge> edges;
-  for (std::size_t r = 0; r + 1 < embedding.runs().size(); ++r) {
-    for (const Edge& edge : edgesOf(embedding.runs()[r])) edges.push_back(edge);
+  for (std::size_t r = 0; r + 1 < embedding.runs.size(); ++r) {
+    for (const Edge& edge : edgesOf(embedding.runs[r])) edges.push_back(edge);
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -47,22 +47,10 @@ std::vector<Edge> occupiedEdges(const Embedding& embedding) {
 
 }  // namespace
 
-std::string QuadraticReport::describe() const {
-  char text[256];
-  std::snprintf(
-      text, sizeof text,
-      "quadratic: %zu nodes with %.1f neighbours on average, %zu edges; %zu nodes in thin places, %zu without "
-      "a fit; %.1f ms",
-      nodes, meanNeighbours, edges, thinNodes, plainNodes, milliseconds);
-  return text;
-}
-
 template <class Scalar>
-QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embedding& embedding, QuadraticReport* report) {
+QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embedding& embedding) {
   assert(cage.nodeCount() == embedding.nodeCount() && cage.tetCount() == embedding.tetCount());
-  const auto start = std::chrono::steady_clock::now();
-  QuadraticReport counts;
-  const std::vector<Edge> edges = occupiedEdges(embedding);
+  const std::vector<Edge> edges = occupiedEdges(embedding.data());
   std::vector<std::uint32_t> gradientOf(cage.nodeCount(), kNone);
   for (const Edge& edge : edges) gradientOf[edge[0]] = gradientOf[edge[1]] = 0;
 
@@ -70,9 +58,9 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
   for (std::uint32_t node = 0; node < cage.nodeCount(); ++node) {
     if (gradientOf[node] == kNone) continue;
     const GradientStencil stencil = neighbours.stencilOf(node);
-    gradientOf[node] = static_cast<std::uint32_t>(counts.nodes++);
-    counts.thinNodes += stencil.kind == GradientStencil::Kind::Thin;
-    counts.plainNodes += stencil.kind == GradientStencil::Kind::Plain;
+    gradientOf[node] = static_cast<std::uint32_t>(gradientCount());
+    thinCount_ += stencil.kind == GradientStencil::Kind::Thin;
+    plainCount_ += stencil.kind == GradientStencil::Kind::Plain;
     entryNodes_.insert(entryNodes_.end(), stencil.nodes.begin(), stencil.nodes.end());
     for (const Eigen::Vector3d& g : stencil.factors) {
       for (int k = 0; k < 3; ++k) entryFactors_.push_back(static_cast<Scalar>(g[k]));
@@ -87,19 +75,12 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
     halfRest_.push_back(static_cast<Scalar>(half.squaredNorm()));
     restLengths_.push_back(static_cast<Scalar>(2.0 * half.norm()));
   }
-  for (std::size_t r = 0; r + 1 < embedding.runs().size(); ++r) {
-    for (const Edge& edge : edgesOf(embedding.runs()[r])) {
+  for (std::size_t r = 0; r + 1 < embedding.data().runs.size(); ++r) {
+    for (const Edge& edge : edgesOf(embedding.data().runs[r])) {
       const auto place = std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin();
       runEdges_.push_back(static_cast<std::uint32_t>(place));
     }
   }
-  if (!report) return;
-  counts.edges = edges.size();
-  if (counts.nodes > 0) {
-    counts.meanNeighbours = static_cast<double>(entryNodes_.size()) / static_cast<double>(counts.nodes) - 1.0;
-  }
-  counts.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  *report = counts;
 }
 
 template <class Scalar>
@@ -110,7 +91,7 @@ EdgeVectors<Scalar>::EdgeVectors(const QuadraticStencils<Scalar>& stencils)
 
 template <class Scalar>
 void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
-                                 ParallelFor* threads, const std::uint8_t* movedGradients) {
+                                 ParallelFor* threads) {
   using namespace skin_tasks;
   assert(edges_.size() == 4 * stencils.edgeCount());
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
@@ -124,13 +105,9 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
   std::size_t tasks = taskCount(stencils.gradientCount(), kGradientsPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {
     kernels::GradientWork<Scalar> part = gradients;
-    const std::size_t first = firstItem(stencils.gradientCount(), tasks, task);
-    const std::size_t last = firstItem(stencils.gradientCount(), tasks, task + 1);
-    forMarked(movedGradients, first, last, [&](std::size_t begin, std::size_t end) {
-      part.firstNode = begin;
-      part.lastNode = end;
-      table.gradients(part);
-    });
+    part.firstNode = firstItem(stencils.gradientCount(), tasks, task);
+    part.lastNode = firstItem(stencils.gradientCount(), tasks, task + 1);
+    table.gradients(part);
   });
 
   kernels::EdgeWork<Scalar> edges;
@@ -151,26 +128,24 @@ template <class Scalar, class Out>
 void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,
                    const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
                    const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
-  assert(stencils.runEdges().size() + 6 == 6 * embedding.runs().size());
-  auto work = skin_tasks::workFor(embedding, nodes);
+  assert(stencils.runEdges().size() + 6 == 6 * embedding.data().runs.size());
+  auto work = skin_tasks::workFor(embedding.data(), nodes);
   work.surface = kernels::Surface::Quadratic;
   work.edges = edges.data();
   work.runEdges = stencils.runEdges().data();
-  skin_tasks::skin(embedding, work, nodes, output, bounds, threads);
+  skin_tasks::skin(embedding.data(), work, nodes, output, bounds, threads);
 }
 
-template class QuadraticStencils<float>;
-template class QuadraticStencils<double>;
-template class EdgeVectors<float>;
-template class EdgeVectors<double>;
+#define TETSKIN_INSTANTIATE(Scalar)         \
+  template class QuadraticStencils<Scalar>; \
+  template class EdgeVectors<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
 
 #define TETSKIN_INSTANTIATE(Scalar, Out)                                                                      \
   template void skinQuadratic(const Embedding&, const QuadraticStencils<Scalar>&, const EdgeVectors<Scalar>&, \
                               const PackedNodes<Scalar>&, const SkinOutput<Scalar, Out>&, Box3*, ParallelFor*);
-TETSKIN_INSTANTIATE(float, float)
-TETSKIN_INSTANTIATE(float, double)
-TETSKIN_INSTANTIATE(double, float)
-TETSKIN_INSTANTIATE(double, double)
+TETSKIN_FOR_SCALAR_PAIRS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

@@ -2,27 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/kernels/skinning_kernels.h>
+#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
-#include <string>
 #include <vector>
 
 namespace tetskin {
-
-/// How well the cage supports a quadratic surface. Where the neighbourhood of a node does not tell some second
-/// derivatives apart (a cage one cell thick, a fin, a single tet), the surface is linear in those directions.
-struct QuadraticReport {
-  std::size_t nodes = 0;       ///< nodes that need a gradient: those of the tets that carry vertices
-  std::size_t thinNodes = 0;   ///< of these, with a neighbourhood too thin for all second derivatives
-  std::size_t plainNodes = 0;  ///< of these, without even a linear fit: the mean of the tets' gradients instead
-  std::size_t edges = 0;       ///< cage edges that carry a vector
-  double meanNeighbours = 0.0;
-  double milliseconds = 0.0;  ///< wall time of the build
-
-  /// One line for people.
-  std::string describe() const;
-};
 
 /// All that quadratic skinning needs of the rest shape: computed once, immutable, shared like an Embedding.
 ///
@@ -40,10 +25,13 @@ class QuadraticStencils {
   QuadraticStencils() = default;
   /// cage  usable, rest space; that of the embedding
   /// Cost  some 20 to 50 microseconds a node that carries vertices
-  QuadraticStencils(const TetMesh& cage, const Embedding& embedding, QuadraticReport* report = nullptr);
+  QuadraticStencils(const TetMesh& cage, const Embedding& embedding);
 
   std::size_t gradientCount() const { return starts_.size() - 1; }
   std::size_t edgeCount() const { return restLengths_.size(); }
+  /// Of the gradients, those of thin places, and those without a fit: see GradientStencil::Kind.
+  std::size_t thinCount() const { return thinCount_; }
+  std::size_t plainCount() const { return plainCount_; }
 
   /// By gradient, and one more: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
@@ -57,6 +45,7 @@ class QuadraticStencils {
   const std::vector<std::uint32_t>& runEdges() const { return runEdges_; }
 
  private:
+  std::size_t thinCount_ = 0, plainCount_ = 0;
   std::vector<std::uint32_t> starts_ = {0};
   std::vector<std::uint32_t> entryNodes_;
   std::vector<Scalar> entryFactors_;
@@ -75,9 +64,8 @@ class EdgeVectors {
 
   /// Computes them for the current nodes. No vector is longer than half its edge's rest length. Cost O(nodes x
   /// neighbours + edges), no allocation.
-  /// movedGradients  by gradient: 0 where it stays as it is; null: all are computed
   void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
-              ParallelFor* threads = nullptr, const std::uint8_t* movedGradients = nullptr);
+              ParallelFor* threads = nullptr);
 
   /// 4 an edge: its vector, and its rest length
   const Scalar* data() const { return edges_.data(); }

@@ -4,8 +4,8 @@
 // Internal to skinning: an embedding's runs as pieces of work for kernels, cut alike for any number of threads.
 #pragma once
 
-#include <tetskin/core/embedding.h>
 #include <tetskin/core/parallel_for.h>
+#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/kernels/kernel_tables.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
@@ -29,65 +29,48 @@ inline std::size_t firstItem(std::size_t items, std::size_t tasks, std::size_t t
 }
 
 /// The first run that begins at this slot or later.
-inline std::size_t runFrom(const Embedding& embedding, std::size_t slot) {
-  const auto& runs = embedding.runs();
+inline std::size_t runFrom(const EmbeddingData& embedding, std::size_t slot) {
+  const auto& runs = embedding.runs;
   const auto found = std::partition_point(runs.begin(), runs.end() - 1,
-                                          [slot](const Embedding::Run& run) { return run.firstSlot < slot; });
+                                          [slot](const EmbeddingData::Run& run) { return run.firstSlot < slot; });
   return static_cast<std::size_t>(found - runs.begin());
 }
 
-/// Calls piece(begin, end) for every stretch of items in [first, last) that are marked; for all in one if there are no
-/// marks.
-template <class Piece>
-void forMarked(const std::uint8_t* marks, std::size_t first, std::size_t last, Piece&& piece) {
-  while (first < last) {
-    if (marks)
-      first =
-          static_cast<std::size_t>(std::find_if(marks + first, marks + last, [](auto m) { return m != 0; }) - marks);
-    const std::size_t end =
-        marks ? static_cast<std::size_t>(std::find(marks + first, marks + last, std::uint8_t{0}) - marks) : last;
-    if (first < end) piece(first, end);
-    first = end;
-  }
-}
-
-/// Calls kernel(work, task) for all runs that have moved: in pieces that lie inside or outside as a whole where the
+/// Calls kernel(work, task) for all runs: in pieces that lie inside or outside as a whole where the
 /// surface differs. `work` is the common part of all pieces.
-/// movedRuns  see MovedParts; null: all
 template <class Scalar, class Kernel>
-void forAllRuns(const Embedding& embedding, const kernels::Work<Scalar>& work, const std::uint8_t* movedRuns,
-                ParallelFor* threads, Kernel&& kernel) {
+void forAllRuns(const EmbeddingData& embedding, const kernels::Work<Scalar>& work, ParallelFor* threads,
+                Kernel&& kernel) {
   const std::size_t tasks = taskCount(embedding.vertexCount());
   runTasks(threads, tasks, [&](std::size_t task) {
     const auto piece = [&](std::size_t first, std::size_t last, kernels::Surface surface) {
+      if (first >= last) return;
       kernels::Work<Scalar> part = work;
       part.surface = surface;
-      forMarked(movedRuns, first, last, [&](std::size_t begin, std::size_t end) {
-        part.firstRun = begin;
-        part.lastRun = end;
-        kernel(part, task);
-      });
+      part.firstRun = first;
+      part.lastRun = last;
+      kernel(part, task);
     };
     const std::size_t first = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task));
     const std::size_t last = runFrom(embedding, firstItem(embedding.vertexCount(), tasks, task + 1));
     if (work.surface == kernels::Surface::Linear) return piece(first, last, work.surface);
-    piece(first, std::min(last, embedding.insideRunCount()), kernels::Surface::Quadratic);
-    piece(std::max(first, embedding.insideRunCount()), last, kernels::Surface::QuadraticOutside);
+    piece(first, std::min(last, embedding.insideRunCount), kernels::Surface::Quadratic);
+    piece(std::max(first, embedding.insideRunCount), last, kernels::Surface::QuadraticOutside);
   });
 }
 
 /// The part of the work that an embedding and its nodes give.
 template <class Scalar>
-kernels::Work<Scalar> workFor(const Embedding& embedding, const PackedNodes<Scalar>& nodes) {
-  assert(nodes.size() == embedding.nodeCount());
+kernels::Work<Scalar> workFor(const EmbeddingData& embedding, const PackedNodes<Scalar>& nodes) {
+  assert(nodes.size() == embedding.nodeCount);
   kernels::Work<Scalar> work;
-  work.runs = embedding.runs().data();
+  work.runs = embedding.runs.data();
   work.nodes = nodes.data();
   for (int k = 0; k < 3; ++k) {
-    work.weights[k] = embedding.weights(k);
-    work.closest[k] = embedding.closestWeights(k);
+    work.weights[k] = embedding.weights[static_cast<std::size_t>(k)].data();
+    work.closest[k] = embedding.closestWeights[static_cast<std::size_t>(k)].data();
   }
-  work.closestBase = static_cast<std::uint32_t>(embedding.insideCount());
+  work.closestBase = static_cast<std::uint32_t>(embedding.insideCount);
   return work;
 }
 
@@ -127,9 +110,9 @@ void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t f
 /// null. To read at random and write in order is much the faster way round: a processor need not wait for what it reads
 /// ahead.
 template <class From, class Out>
-void place(const Embedding& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
+void place(const EmbeddingData& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
            ParallelFor* threads, From* padded = nullptr) {
-  const std::uint32_t* slots = order == VertexOrder::Mesh ? embedding.vertexSlots().data() : nullptr;
+  const std::uint32_t* slots = order == VertexOrder::Mesh ? embedding.vertexSlots.data() : nullptr;
   const std::size_t tasks = taskCount(points.size());
   runTasks(threads, tasks, [&](std::size_t task) {
     const std::size_t first = firstItem(points.size(), tasks, task), last = firstItem(points.size(), tasks, task + 1);
@@ -151,30 +134,29 @@ void place(const Embedding& embedding, const From* sorted, PointView<Out> points
 
 /// The way back.
 template <class From>
-void collect(const Embedding& embedding, PointView<From> points, VertexOrder order, From* sorted) {
+void collect(const EmbeddingData& embedding, PointView<From> points, VertexOrder order, From* sorted) {
   for (std::size_t slot = 0; slot < points.size(); ++slot) {
-    const std::size_t k = order == VertexOrder::Mesh ? embedding.slotVertices()[slot] : slot;
+    const std::size_t k = order == VertexOrder::Mesh ? embedding.slotVertices[slot] : slot;
     std::copy_n(points[k], 3, sorted + 3 * slot);
   }
 }
 
 /// Writes all positions; their box, if asked for.
 template <class Scalar, class Out>
-void skin(const Embedding& embedding, const kernels::Work<Scalar>& work, const PackedNodes<Scalar>& nodes,
+void skin(const EmbeddingData& embedding, const kernels::Work<Scalar>& work, const PackedNodes<Scalar>& nodes,
           const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
   assert(output.points.size() == embedding.vertexCount());
-  if (embedding.empty()) return;
+  if (embedding.runs.empty()) return;
   const Eigen::Matrix<Scalar, 3, 1> shift = nodes.mean() - output.origin;
   constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
   std::array<kernels::Extent<Scalar>, kMostTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
   const bool direct = isDirect<Scalar>(output.points, output.order) && !output.padded;
-  assert(!output.movedRuns || (!bounds && (direct || output.scratch)));
   std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : scratchSize(output.points.size()));
   Scalar* scratch = output.scratch ? output.scratch : ownScratch.data();
   Scalar* sorted = direct ? reinterpret_cast<Scalar*>(output.points.data()) : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
-  forAllRuns(embedding, work, output.movedRuns, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
+  forAllRuns(embedding, work, threads, [&](const kernels::Work<Scalar>& part, std::size_t task) {
     table.positions(part, shift.data(), sorted, bounds ? &extents[task] : nullptr);
   });
   if (!direct) place(embedding, sorted, output.points, output.order, threads, output.padded);

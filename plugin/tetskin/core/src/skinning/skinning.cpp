@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
 #include <algorithm>
@@ -45,7 +46,8 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   return size();
 }
 
-template class PackedNodes<float>;
-template class PackedNodes<double>;
+#define TETSKIN_INSTANTIATE(Scalar) template class PackedNodes<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

@@ -12,12 +12,6 @@
 
 namespace tetskin {
 
-/// The order in which vertices are written.
-enum class VertexOrder {
-  Mesh,    ///< the mesh's own
-  Sorted,  ///< by tet, `Embedding::slotVertices()`: faster, if the application permutes its mesh once
-};
-
 /// Current node positions side by side, each padded to four scalars, relative to their mean: what the kernels read. A
 /// Bullet node is some 400 bytes; gathering the positions once is cheaper than striding over them for every tet.
 template <class Scalar>
@@ -67,9 +61,6 @@ struct SkinOutput {
   /// written directly and need none; all others are put in their places from here. Without it, some is allocated each
   /// time.
   Scalar* scratch = nullptr;
-  /// By run of the embedding: 0 leaves its points as they are, in the points if they are written directly, otherwise in
-  /// the scratch, which must then be the one of the update before. Null: all are written. Not with bounds.
-  const std::uint8_t* movedRuns = nullptr;
   /// If not null, vertexCount x 4 scalars of the caller's that get the points besides, in the same order, each with one
   /// that means nothing: for who has to read them. All points then go by the scratch.
   Scalar* padded = nullptr;

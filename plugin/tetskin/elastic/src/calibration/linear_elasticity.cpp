@@ -4,6 +4,7 @@
 // This work is based on:
 //   Klaus-Jürgen Bathe, "Finite Element Procedures", 2014, chapter 4 (the constant-strain tet)
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/elastic/src/calibration/linear_elasticity.h>
 
@@ -22,8 +23,7 @@ std::array<Eigen::Vector3d, 4> gradientsOf(const TetCorners& corners) {
 }  // namespace
 
 Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio) {
-  const double mu = 1.0 / (2.0 * (1.0 + poissonRatio));
-  const double lambda = poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
+  const Lame material(1.0, poissonRatio);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(mesh.tetCount() * 78);
   for (const Tet& tet : mesh.tets) {
@@ -33,8 +33,9 @@ Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonR
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {
         if (tet[a] < tet[b]) continue;
-        const Eigen::Matrix3d block = volume * (lambda * g[a] * g[b].transpose() + mu * g[b] * g[a].transpose() +
-                                                mu * g[a].dot(g[b]) * Eigen::Matrix3d::Identity());
+        const Eigen::Matrix3d block =
+            volume * (material.lambda * g[a] * g[b].transpose() + material.mu * g[b] * g[a].transpose() +
+                      material.mu * g[a].dot(g[b]) * Eigen::Matrix3d::Identity());
         for (int i = 0; i < 3; ++i) {
           for (int j = 0; j < (a == b ? i + 1 : 3); ++j) {
             entries.emplace_back(3 * tet[a] + i, 3 * tet[b] + j, block(i, j));

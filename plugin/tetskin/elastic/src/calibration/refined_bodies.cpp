@@ -10,7 +10,7 @@ namespace {
 
 /// Residual over load at which a displacement counts as found. The response of interest is wrong by its square only.
 constexpr double kTolerance = 1e-3;
-constexpr int kMostIterations = 500;
+constexpr int kMostSolveIterations = 500;
 }  // namespace
 
 RefinedBodies::Level::Level(Refinement made, double poissonRatio)
@@ -65,7 +65,7 @@ Eigen::VectorXd RefinedBodies::solve(std::size_t level, const Eigen::VectorXd& l
   Eigen::VectorXd residual = load - stiffness * displacement;
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(load.size());
   double before = 1.0;
-  for (int k = 0; k < kMostIterations && residual.norm() > kTolerance * load.norm(); ++k) {
+  for (int k = 0; k < kMostSolveIterations && residual.norm() > kTolerance * load.norm(); ++k) {
     const Eigen::VectorXd step = precondition(level, residual);
     const double now = residual.dot(step);
     direction = step + (k == 0 ? 0.0 : now / before) * direction;

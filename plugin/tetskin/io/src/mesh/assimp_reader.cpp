@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/mesh/area_vectors.h>
 #include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/stated_sizes.h>
@@ -117,12 +118,7 @@ std::vector<Instance> instances(const aiScene& scene) {
 /// Smooth normals of the vertices from `firstVertex` on, from the triangles from `firstTriangle` on, by area.
 void appendSmoothNormals(TriangleMesh& mesh, std::size_t firstVertex, std::size_t firstTriangle) {
   std::vector<Eigen::Vector3d> sums(mesh.vertexCount() - firstVertex, Eigen::Vector3d::Zero());
-  for (std::size_t t = firstTriangle; t < mesh.triangleCount(); ++t) {
-    const auto at = [&](int corner) { return static_cast<std::size_t>(mesh.triangles[t][corner]); };
-    const Eigen::Vector3d& p = mesh.positions[at(0)];
-    const Eigen::Vector3d area = (mesh.positions[at(1)] - p).cross(mesh.positions[at(2)] - p);
-    for (int corner = 0; corner < 3; ++corner) sums[at(corner) - firstVertex] += area;
-  }
+  sumAreaVectors(mesh, firstTriangle, [&](std::size_t v) -> Eigen::Vector3d& { return sums[v - firstVertex]; });
   for (const Eigen::Vector3d& sum : sums) mesh.normals.push_back(unitNormal(sum));
 }
 

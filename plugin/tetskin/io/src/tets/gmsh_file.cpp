@@ -42,6 +42,8 @@ class GmshReader {
 
   Status readSection(std::string_view name);
   Status readFormat();
+  template <class Block>
+  Status readBlocks(std::uint64_t numbersEach, Block&& block);
   Status readNodes2();
   Status readNodes4();
   Status readElements2();
@@ -153,32 +155,39 @@ Status GmshReader::readNodes2() {
   return status;
 }
 
-/// Blocks of "dimension entity parametric count", their tags, then their coordinates.
-Status GmshReader::readNodes4() {
+/// Blocks of "dimension entity kind count": block(dimension, kind, count) reads what follows each.
+template <class Block>
+Status GmshReader::readBlocks(std::uint64_t numbersEach, Block&& block) {
   std::uint64_t blocks = 0, total = 0;
   Status status = readCount(4, blocks);
-  if (status.ok()) status = readCount(4, total);
-  if (!status.ok()) return status;
+  if (status.ok()) status = readCount(numbersEach, total);
   in_.restOfLine();  // the smallest and the largest tag
-  for (std::uint64_t b = 0; b < blocks; ++b) {
-    int dimension = 0, parametric = 0;
+  for (std::uint64_t b = 0; status.ok() && b < blocks; ++b) {
+    int dimension = 0, kind = 0;
     std::int64_t entity = 0;
     std::uint64_t count = 0;
-    if (!in_.integer(dimension) || !in_.integer(entity) || !in_.integer(parametric)) return cutShort();
-    status = readCount(4, count);
-    if (!status.ok()) return status;
+    if (!in_.integer(dimension) || !in_.integer(entity) || !in_.integer(kind)) return cutShort();
+    status = readCount(numbersEach, count);
+    if (status.ok()) status = block(dimension, kind, count);
+  }
+  return status;
+}
+
+/// Blocks of nodes of one kind, parametric or not: their tags, then their coordinates.
+Status GmshReader::readNodes4() {
+  return readBlocks(4, [this](int dimension, int parametric, std::uint64_t count) -> Status {
     for (std::uint64_t n = 0; n < count; ++n) {
       std::int64_t tag = 0;
       if (!in_.integer(tag)) return cutShort();
       tags_.emplace_back(tag, static_cast<int>(tags_.size()));
     }
-    for (std::uint64_t n = 0; n < count; ++n) {
+    Status status;
+    for (std::uint64_t n = 0; status.ok() && n < count; ++n) {
       status = readPosition();
-      if (!status.ok()) return status;
       for (int i = 0; parametric != 0 && i < std::min(dimension, 3); ++i) in_.word();
     }
-  }
-  return {};
+    return status;
+  });
 }
 
 /// Lines of "tag type tagCount tags... nodes...".
@@ -194,27 +203,17 @@ Status GmshReader::readElements2() {
   return status;
 }
 
-/// Blocks of "dimension entity type count", then lines of "tag nodes...".
+/// Blocks of elements of one type: lines of "tag nodes...".
 Status GmshReader::readElements4() {
-  std::uint64_t blocks = 0, total = 0;
-  Status status = readCount(4, blocks);
-  if (status.ok()) status = readCount(2, total);
-  if (!status.ok()) return status;
-  in_.restOfLine();  // the smallest and the largest tag
-  for (std::uint64_t b = 0; b < blocks; ++b) {
-    int dimension = 0, type = 0;
-    std::int64_t entity = 0;
-    std::uint64_t count = 0;
-    if (!in_.integer(dimension) || !in_.integer(entity) || !in_.integer(type)) return cutShort();
-    status = readCount(2, count);
+  return readBlocks(2, [this](int, int type, std::uint64_t count) -> Status {
+    Status status;
     for (std::uint64_t e = 0; status.ok() && e < count; ++e) {
       tets_.emplace_back();
       if (!in_.integer(tets_.back().tag)) return cutShort();
       status = readElement(type, 0);
     }
-    if (!status.ok()) return status;
-  }
-  return {};
+    return status;
+  });
 }
 
 /// The rest of an element, of which the last of `tets_` has the tag already; it is dropped again if it is no tet.

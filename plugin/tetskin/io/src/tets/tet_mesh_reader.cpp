@@ -4,7 +4,7 @@
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/text/file_text.h>
-#include <tetskin/io/tet_mesh_reader.h>
+#include <tetskin/io/tet_files.h>
 
 namespace tetskin {
 

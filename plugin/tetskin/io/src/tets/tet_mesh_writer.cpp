@@ -3,7 +3,7 @@
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/number_text.h>
-#include <tetskin/io/tet_mesh_writer.h>
+#include <tetskin/io/tet_files.h>
 
 #include <filesystem>
 

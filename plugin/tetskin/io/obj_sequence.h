@@ -23,7 +23,7 @@ struct ObjStatement;
 ///   would be wrong on a deformed one; without any, every viewer makes its own, and current ones go in by
 ///   `withNormals`;
 /// - a byte order mark, on which some readers stumble.
-class ObjLayout {
+class TETSKIN_IO_API ObjLayout {
  public:
   /// The layout of an OBJ file; its k-th `v` line is vertex k.
   /// Errors: FileNotFound; Malformed, with the line, for a `v` line without three numbers; Empty without `v` lines.
@@ -87,6 +87,38 @@ class ObjLayout {
 /// The layout in which a mesh loaded by `loadMesh(meshPath)` is written: that of the file itself if it is an OBJ file,
 /// otherwise one made from the mesh.
 /// Errors: those of `ObjLayout::fromFile`; SizeMismatch if the file has changed since it was loaded.
-Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh);
+TETSKIN_IO_API Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh);
+
+/// Writes the frames of one deforming mesh as `DIR/frame_0000.obj`, ...: four digits, more from frame 10,000 on.
+/// float positions are written as the shortest numbers that read back as the same floats, double positions as doubles
+/// (about twice as long): no frame loses a digit of what the caller has.
+class TETSKIN_IO_API ObjSequenceWriter {
+ public:
+  ObjSequenceWriter() = default;
+
+  /// Makes the folder, with those above it, and tries to write there. Files already in it stay, unless overwritten.
+  /// Errors: FileNotWritable.
+  static Result<ObjSequenceWriter> create(const std::string& directory, const ObjLayout& layout,
+                                          std::string baseName = "frame_");
+
+  /// Writes one frame, complete or not at all. `frame` must not be negative. Normals, one a vertex, if the layout was
+  /// made for them (`ObjLayout::withNormals`), otherwise none.
+  /// Cost: the buffer for the text, about the size of a file, is allocated by the first frame only.
+  /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
+  Status write(int frame, PointView<const float> positions, PointView<const float> normals = {});
+  Status write(int frame, PointView<const double> positions, PointView<const float> normals = {});
+
+  /// Where a frame goes.
+  std::string framePath(int frame) const;
+
+ private:
+  template <class Scalar>
+  Status writeFrame(int frame, PointView<const Scalar> positions, PointView<const float> normals);
+
+  std::string directory_;
+  std::string baseName_;
+  ObjLayout layout_;
+  std::vector<char> buffer_;
+};
 
 }  // namespace tetskin

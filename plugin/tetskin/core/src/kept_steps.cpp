@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/skinning/kept_steps.h>
+#include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/base/instantiate.h>
 
 #include <algorithm>
 
@@ -32,7 +33,8 @@ void KeptSteps<Scalar>::nodesAt(Scalar alpha, PointView<Scalar> out) const {
   }
 }
 
-template class KeptSteps<float>;
-template class KeptSteps<double>;
+#define TETSKIN_INSTANTIATE(Scalar) template class KeptSteps<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
 
 }  // namespace tetskin

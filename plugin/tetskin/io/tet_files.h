@@ -10,7 +10,7 @@
 namespace tetskin {
 
 /// What a file held besides the tets that were read. Filled also if reading fails, as far as it came.
-struct TetFileReport {
+struct TETSKIN_IO_API TetFileReport {
   std::size_t skippedCells = 0;      ///< cells that are no linear tets: surfaces, lines, hexahedra, quadratic tets, ...
   std::size_t skippedHighOrder = 0;  ///< of these, tets with nodes on their edges
 
@@ -31,6 +31,16 @@ struct TetFileReport {
 /// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
 ///
 /// Errors: FileNotFound; UnsupportedFormat; with the line: Malformed, IndexOutOfRange, NonFinite; Empty without tets.
-Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report = nullptr);
+TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report = nullptr);
+
+/// Writes a tet mesh, complete or not at all; the extension, in any case, tells the format:
+/// - `.vtk`          legacy VTK 2.0, ASCII, one point a line and tets only, so that Bullet's reader takes it
+/// - `.node`, `.ele` both TetGen files, given either; counting from 0, as Bullet's reader expects
+/// - `.msh`          Gmsh 2.2, ASCII: the version that most programs read
+///
+/// Coordinates are the shortest numbers that read back as the same doubles: `loadTetMesh` gives the same mesh.
+/// Errors: UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, as no reader would take the file;
+/// FileNotWritable.
+TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
 
 }  // namespace tetskin

@@ -1,15 +1,48 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Soft bodies in and out: a btSoftBody's nodes and tets as tetskin's types, and a btSoftBody of a cage.
 #pragma once
 
-#include <tetskin/bullet/soft_body_adapter.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodySolverVertexBuffer.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace tetskin {
+
+// tetskin::bullet was configured for one precision; code that includes this in the other would corrupt memory silently.
+#ifdef TETSKIN_BULLET_DOUBLE
+static_assert(sizeof(btScalar) == 8, "tetskin was built for Bullet in double; compile with BT_USE_DOUBLE_PRECISION");
+#else
+static_assert(sizeof(btScalar) == 4, "tetskin was built for Bullet in float; compile without BT_USE_DOUBLE_PRECISION");
+#endif
+
+/// The current node positions, world space, in place: valid until the body's nodes are appended to or it is destroyed.
+TETSKIN_BULLET_API PointView<const btScalar> nodePositions(const btSoftBody& body);
+
+/// The body's tets with its nodes as they are now, by index: node i is `body.m_nodes[i]`, tet t is `body.m_tetras[t]`.
+/// Nothing is repaired. A tet whose node pointers do not point into the node array (Bullet leaves them dangling when
+/// nodes are appended after tets) gets the index -1, which every check reports. Cost O(nodes + tets).
+TETSKIN_BULLET_API TetMesh tetMeshOf(const btSoftBody& body);
+
+/// IndexOutOfRange if there are such tets in what `tetMeshOf` has read: how many, why, and what to do.
+TETSKIN_BULLET_API Status checkDangling(const TetMesh& read);
+
+/// The positions of a Bullet vertex buffer, as a target for skinning: vertexCount points, owned by the buffer's owner.
+TETSKIN_BULLET_API PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount);
+
+inline Eigen::Vector3d toEigen(const btVector3& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+inline btVector3 toBullet(const Eigen::Vector3d& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
 
 /// What holds a body together.
 enum class ForceModel {
@@ -69,18 +102,18 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// `DeformableBody` may be given either).
 ///
 /// worldInfo  of the world that the body will be added to; must outlive the body
-/// Returns    the body, owned by the caller and in no world yet; null on error
+/// Returns    the body, in no world yet; take it out of its world before it goes
 /// Cost       O(T log T) for T tets
 /// Errors     an unusable cage (see `usable`), flat tets, options out of range
-Result<btSoftBody*> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
-                                 const SoftBodyOptions& options = {});
+TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
+                                                                    const SoftBodyOptions& options = {});
 
 /// As the body's own `setMass` (0 pins the node) and `setTotalMass`, but Bullet is left nothing to build: the trees
 /// stay. For bodies made by `makeSoftBody` that are in no `DeformableBody`. Cost O(links + faces).
-void setMass(btSoftBody& body, int node, btScalar mass);
-void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces = false);
+TETSKIN_BULLET_API void setMass(btSoftBody& body, int node, btScalar mass);
+TETSKIN_BULLET_API void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces = false);
 
 /// Node masses as `makeSoftBody` gives them, nodeCount, adding up to totalMass.
-std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass);
+TETSKIN_BULLET_API std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass);
 
 }  // namespace tetskin

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/skin_binding.h>
 
 #include <cstring>
 #include <memory>
@@ -46,20 +47,21 @@ class Threads : public testing::Test {
     options.normals = normals;
     options.order = order;
     MeshSkin<float> alone;
-    const EmbedReport fit = alone.bind(cage, mesh, options);
+    const Result<EmbedReport> fit = alone.bind(cage, mesh, options);
     ASSERT_TRUE(fit.ok());
-    ASSERT_GT(fit.inside, 40000u);
-    ASSERT_GT(fit.outside, 10000u);
-    ASSERT_GT(alone.binding()->quadratic->gradientCount(), 1024u);
-    ASSERT_GT(alone.binding()->quadratic->edgeCount(), 8192u);
-    ASSERT_EQ(alone.update(viewOf(std::as_const(nodes))), nodes.size());
+    ASSERT_GT(fit.value().inside, 40000u);
+    ASSERT_GT(fit.value().outside, 10000u);
+    ASSERT_GT(alone.binding()->parts().quadratic->gradientCount(), 1024u);
+    ASSERT_GT(alone.binding()->parts().quadratic->edgeCount(), 8192u);
+    ASSERT_EQ(alone.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
     for (const int count : {1, 2, 3, 7}) {
       test::ShuffledThreads threads(count);
-      options.threads = &threads;
+      InstanceOptions lent;
+      lent.threads = &threads;
       MeshSkin<float> together;
-      ASSERT_TRUE(together.bind(alone.binding(), viewOf(std::as_const(nodes)), options).ok());
+      ASSERT_TRUE(together.bind(alone.binding(), viewOf(std::as_const(nodes)), lent).ok());
       const int before = threads.runs;
-      ASSERT_EQ(together.update(viewOf(std::as_const(nodes))), nodes.size());
+      ASSERT_EQ(together.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
       // Gradients, edges, positions, normals and tangents, or faces and normals; in the mesh's order, the first three
       // are put in their places besides.
       EXPECT_EQ(threads.runs - before, order == VertexOrder::Mesh ? 8 : 5);

@@ -13,7 +13,8 @@
 //   12 a vertex         by slot: weights of nodes 0, 1, 2, one plane after the other
 //   12 a vertex outside closest weights, likewise
 //   8                   hash of all that precedes
-#include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/hash.h>
+#include <tetskin/core/src/embedding/embedding_data.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,33 +28,15 @@ constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 9 * 8;
 constexpr std::size_t kHashBytes = 8;
 
-/// Every step is one-to-one in the hash so far and in the word, so a change of one word never goes unnoticed.
-class Hash {
- public:
-  void add(std::uint64_t word) {
-    value_ = (value_ ^ word) * 0x9E3779B97F4A7C15u;
-    value_ ^= value_ >> 32;
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF29CE484222325u;
-};
-
 /// Of the nodes' places and the tets' nodes, in their order. 0 and -0 are the same place.
 std::uint64_t hashOf(const TetMesh& cage) {
   Hash hash;
-  hash.add(cage.nodeCount());
+  hash.add(std::uint64_t{cage.nodeCount()});
   for (const Eigen::Vector3d& node : cage.nodes) {
-    for (const double x : {node.x(), node.y(), node.z()}) {
-      const double place = x == 0.0 ? 0.0 : x;
-      std::uint64_t bits;
-      std::memcpy(&bits, &place, sizeof bits);
-      hash.add(bits);
-    }
+    for (const double x : {node.x(), node.y(), node.z()}) hash.add(x);
   }
   for (const Tet& tet : cage.tets) {
-    for (const int node : tet) hash.add(static_cast<std::uint32_t>(node));
+    for (const int node : tet) hash.add(std::uint64_t{static_cast<std::uint32_t>(node)});
   }
   return hash.value();
 }
@@ -70,7 +53,7 @@ std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
   std::size_t k = 0;
   for (; k + 8 <= count; k += 8) hash.add(read(bytes + k, 8));
   if (k < count) hash.add(read(bytes + k, count - k));
-  hash.add(count);
+  hash.add(std::uint64_t{count});
   return hash.value();
 }
 
@@ -182,13 +165,39 @@ Status checkCage(const Header& header, const TetMesh& cage) {
   return usable(cage, checkForUse(cage));
 }
 
+/// Whether the runs are as promised.
+bool runsAreSound(const EmbeddingData& d) {
+  if (d.runs.front().firstSlot != 0 || d.runs[d.insideRunCount].firstSlot != d.insideCount) return false;
+  for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
+    if (d.runs[r].firstSlot >= d.runs[r + 1].firstSlot) return false;
+    if (r + 1 != d.insideRunCount && d.runs[r].tet >= d.runs[r + 1].tet) return false;
+  }
+  return true;
+}
+
+/// Makes vertexSlots from slotVertices. Returns whether these are a permutation, and ascending in every run.
+bool orderVertices(EmbeddingData& d) {
+  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  d.vertexSlots.assign(d.slotVertices.size(), kNone);
+  for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
+    for (std::uint32_t slot = d.runs[r].firstSlot; slot < d.runs[r + 1].firstSlot; ++slot) {
+      const std::uint32_t vertex = d.slotVertices[slot];
+      if (vertex >= d.vertexSlots.size() || d.vertexSlots[vertex] != kNone) return false;
+      if (slot > d.runs[r].firstSlot && vertex <= d.slotVertices[slot - 1]) return false;
+      d.vertexSlots[vertex] = slot;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
-  assert(!empty() && cage.nodeCount() == nodeCount_ && cage.tetCount() == tetCount_);
-  const std::size_t outside = vertexCount() - insideCount_;
-  const Header header{hashOf(cage), nodeCount_,       tetCount_,      vertexCount(),
-                      insideCount_, runs_.size() - 1, insideRunCount_};
+  const EmbeddingData& d = *data_;
+  assert(!empty() && cage.nodeCount() == d.nodeCount && cage.tetCount() == d.tetCount);
+  const std::size_t outside = vertexCount() - d.insideCount;
+  const Header header{hashOf(cage),  d.nodeCount,       d.tetCount,      vertexCount(),
+                      d.insideCount, d.runs.size() - 1, d.insideRunCount};
   Writer writer(header.bytes());
   writer.u64(read(reinterpret_cast<const unsigned char*>(kMagic), sizeof kMagic - 1));
   for (const std::uint64_t value : {kVersion, header.cageHash, header.nodeCount, header.tetCount, header.vertexCount,
@@ -196,12 +205,12 @@ std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
     writer.u64(value);
   }
   for (std::size_t r = 0; r < header.runCount; ++r) {
-    writer.u32(runs_[r].tet);
-    writer.u32(runs_[r].firstSlot);
+    writer.u32(d.runs[r].tet);
+    writer.u32(d.runs[r].firstSlot);
   }
-  for (const std::uint32_t vertex : slotVertices_) writer.u32(vertex);
-  for (int k = 0; k < 3; ++k) writer.plane(weights(k), vertexCount());
-  for (int k = 0; k < 3; ++k) writer.plane(closestWeights(k), outside);
+  for (const std::uint32_t vertex : d.slotVertices) writer.u32(vertex);
+  for (int k = 0; k < 3; ++k) writer.plane(d.weights[static_cast<std::size_t>(k)].data(), vertexCount());
+  for (int k = 0; k < 3; ++k) writer.plane(d.closestWeights[static_cast<std::size_t>(k)].data(), outside);
   writer.u64(hashOf(writer.bytes().data(), writer.bytes().size()));
   return writer.take();
 }
@@ -210,62 +219,37 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
   Header header;
   if (Status status = readHeader(bytes, count, header); !status.ok()) return status;
   if (Status status = checkCage(header, cage); !status.ok()) return status;
-  Embedding e;
-  e.nodeCount_ = cage.nodeCount();
-  e.tetCount_ = cage.tetCount();
-  e.insideCount_ = header.insideCount;
-  e.insideRunCount_ = header.insideRunCount;
+  const auto e = std::make_shared<EmbeddingData>();
+  e->nodeCount = cage.nodeCount();
+  e->tetCount = cage.tetCount();
+  e->insideCount = header.insideCount;
+  e->insideRunCount = header.insideRunCount;
   Reader reader(bytes + kHeaderBytes);
-  e.runs_.resize(header.runCount + 1);
+  e->runs.resize(header.runCount + 1);
   for (std::size_t r = 0; r < header.runCount; ++r) {
-    Run& run = e.runs_[r];
+    EmbeddingData::Run& run = e->runs[r];
     run.tet = reader.u32();
     run.firstSlot = reader.u32();
     if (run.tet >= cage.tetCount()) return damaged("names a tet that does not exist");
     std::copy_n(cage.tets[run.tet].begin(), 4, run.nodes);
   }
-  e.runs_.back() = {{}, static_cast<std::uint32_t>(header.vertexCount), static_cast<std::uint32_t>(e.tetCount_)};
-  e.slotVertices_.resize(header.vertexCount);
-  for (std::uint32_t& vertex : e.slotVertices_) vertex = reader.u32();
+  e->runs.back() = {{}, static_cast<std::uint32_t>(header.vertexCount), static_cast<std::uint32_t>(e->tetCount)};
+  e->slotVertices.resize(header.vertexCount);
+  for (std::uint32_t& vertex : e->slotVertices) vertex = reader.u32();
   bool finite = true;
-  for (std::vector<float>& plane : e.weights_) {
-    plane.resize(header.vertexCount + kPadding);
+  for (std::vector<float>& plane : e->weights) {
+    plane.resize(header.vertexCount + EmbeddingData::kPadding);
     finite &= reader.plane(plane.data(), header.vertexCount);
   }
   const std::size_t outside = header.vertexCount - header.insideCount;
-  for (std::vector<float>& plane : e.closestWeights_) {
-    plane.resize(outside + kPadding);
+  for (std::vector<float>& plane : e->closestWeights) {
+    plane.resize(outside + EmbeddingData::kPadding);
     finite &= reader.plane(plane.data(), outside);
   }
   if (!finite) return damaged("has weights that are not finite");
-  if (!e.runsAreSound()) return damaged("has runs out of order");
-  if (!e.orderVertices()) return damaged("has vertices twice, or out of order");
-  return e;
-}
-
-/// Whether the runs are as `runs()` promises.
-bool Embedding::runsAreSound() const {
-  if (runs_.front().firstSlot != 0 || runs_[insideRunCount_].firstSlot != insideCount_) return false;
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    if (runs_[r].firstSlot >= runs_[r + 1].firstSlot) return false;
-    if (r + 1 != insideRunCount_ && runs_[r].tet >= runs_[r + 1].tet) return false;
-  }
-  return true;
-}
-
-/// Makes vertexSlots from slotVertices. Returns whether these are a permutation, and ascending in every run.
-bool Embedding::orderVertices() {
-  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-  vertexSlots_.assign(slotVertices_.size(), kNone);
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    for (std::uint32_t slot = runs_[r].firstSlot; slot < runs_[r + 1].firstSlot; ++slot) {
-      const std::uint32_t vertex = slotVertices_[slot];
-      if (vertex >= vertexSlots_.size() || vertexSlots_[vertex] != kNone) return false;
-      if (slot > runs_[r].firstSlot && vertex <= slotVertices_[slot - 1]) return false;
-      vertexSlots_[vertex] = slot;
-    }
-  }
-  return true;
+  if (!runsAreSound(*e)) return damaged("has runs out of order");
+  if (!orderVertices(*e)) return damaged("has vertices twice, or out of order");
+  return Embedding(e);
 }
 
 }  // namespace tetskin

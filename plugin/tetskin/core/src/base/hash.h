@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace tetskin {
+
+/// Of a row of words. Every step is one-to-one in the hash so far and in the word, so that a change of one word never
+/// goes unnoticed (the multiplier is the golden ratio's, after Knuth, "The Art of Computer Programming" 3,
+/// section 6.4). Saved embeddings hold such hashes.
+class Hash {
+ public:
+  void add(std::uint64_t word) {
+    value_ = (value_ ^ word) * kMultiplier;
+    value_ ^= value_ >> 32;
+  }
+  /// A coordinate: 0 and -0 are the same place.
+  void add(double x) {
+    x += 0.0;
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    add(bits);
+  }
+  std::uint64_t value() const { return value_; }
+  /// For tables: every bit depends on all of the words'.
+  std::uint32_t mixed() const { return static_cast<std::uint32_t>(value_ * kMultiplier >> 32); }
+
+ private:
+  static constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15u;
+  std::uint64_t value_ = 0xCBF29CE484222325u;
+};
+
+}  // namespace tetskin

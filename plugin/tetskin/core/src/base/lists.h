@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace tetskin {
+
+/// Lists by key, packed: those of key k are values[starts[k]] to values[starts[k + 1] - 1].
+template <class Value = std::uint32_t>
+struct Lists {
+  std::vector<std::uint32_t> starts;  ///< keys + 1
+  std::vector<Value> values;
+};
+
+/// A counting sort; every list has the order of the visits. No memory but the result's.
+/// forEach  is called twice, with a function, which it calls with the key and the value of every entry: the same ones
+template <class Value = std::uint32_t, class ForEach>
+Lists<Value> packLists(std::size_t keys, ForEach&& forEach) {
+  Lists<Value> lists;
+  // Lengths two places late; summed, where each list begins, one place late; filled, where it begins.
+  lists.starts.assign(keys + 2, 0);
+  forEach([&](std::size_t key, const Value&) { ++lists.starts[key + 2]; });
+  std::partial_sum(lists.starts.begin(), lists.starts.end(), lists.starts.begin());
+  lists.values.resize(lists.starts.back());
+  forEach([&](std::size_t key, const Value& value) { lists.values[lists.starts[key + 1]++] = value; });
+  lists.starts.pop_back();
+  return lists;
+}
+
+}  // namespace tetskin

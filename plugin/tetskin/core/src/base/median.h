@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <vector>
+
+namespace tetskin {
+
+/// The middle one of some values, at least one; of an even number, the upper of the two in the middle.
+inline double median(std::vector<double> values) {
+  assert(!values.empty());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace tetskin

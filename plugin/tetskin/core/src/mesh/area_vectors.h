@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/triangle_mesh.h>
+
+namespace tetskin {
+
+/// Adds to the sums of each triangle's corners its area vector: twice its area times its normal.
+/// sumOf  of a vertex: a Vector3d&, where it is added
+template <class SumOf>
+void sumAreaVectors(const TriangleMesh& mesh, std::size_t firstTriangle, SumOf&& sumOf) {
+  for (std::size_t t = firstTriangle; t < mesh.triangleCount(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    const Eigen::Vector3d& a = mesh.positions[static_cast<std::size_t>(corners[0])];
+    const Eigen::Vector3d area = (mesh.positions[static_cast<std::size_t>(corners[1])] - a)
+                                     .cross(mesh.positions[static_cast<std::size_t>(corners[2])] - a);
+    for (const int v : corners) sumOf(static_cast<std::size_t>(v)) += area;
+  }
+}
+
+}  // namespace tetskin

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// All of tetskin that you link, and its version. Each library's target, and tetskin.pc, define TETSKIN_HAS_<LIBRARY>.
+#pragma once
+
+#define TETSKIN_VERSION_MAJOR 0
+#define TETSKIN_VERSION_MINOR 2
+#define TETSKIN_VERSION_PATCH 0
+#define TETSKIN_TEXT_(x) #x
+#define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)
+/// "major.minor.patch"
+#define TETSKIN_VERSION \
+  TETSKIN_TEXT(TETSKIN_VERSION_MAJOR) "." TETSKIN_TEXT(TETSKIN_VERSION_MINOR) "." TETSKIN_TEXT(TETSKIN_VERSION_PATCH)
+
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/types.h>
+#ifdef TETSKIN_HAS_BULLET
+#include <tetskin/bullet/bullet_parallel_for.h>
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/render_nodes.h>
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#endif
+#ifdef TETSKIN_HAS_CAGE
+#include <tetskin/cage/cage_builder.h>
+#endif
+#ifdef TETSKIN_HAS_ELASTIC
+#include <tetskin/elastic/stiffness_calibration.h>
+#endif
+#ifdef TETSKIN_HAS_IO
+#include <tetskin/io/embedding_file.h>
+#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/obj_sequence.h>
+#include <tetskin/io/tet_files.h>
+#endif
+#ifdef TETSKIN_HAS_THREADS
+#include <tetskin/threads/thread_pool.h>
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/core/src/base/hash.h>
+#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/median.h>
+
+#include <map>
+#include <random>
+#include <set>
+
+namespace tetskin {
+namespace {
+
+TEST(PackLists, HoldEveryValueOfTheirKeyInTheOrderOfTheVisits) {
+  std::mt19937 random(4);
+  for (const std::size_t keys : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{1000}}) {
+    std::vector<std::pair<std::size_t, std::uint32_t>> entries;
+    for (std::uint32_t k = 0; keys > 0 && k < 500; ++k) entries.emplace_back(random() % keys, random());
+    std::map<std::size_t, std::vector<std::uint32_t>> expected;
+    for (const auto& [key, value] : entries) expected[key].push_back(value);
+    const Lists<> lists = packLists(keys, [&](auto&& add) {
+      for (const auto& [key, value] : entries) add(key, value);
+    });
+    ASSERT_EQ(lists.starts.size(), keys + 1);
+    ASSERT_EQ(lists.values.size(), entries.size());
+    for (std::size_t k = 0; k < keys; ++k) {
+      const auto begin = lists.values.begin() + lists.starts[k], end = lists.values.begin() + lists.starts[k + 1];
+      EXPECT_EQ(std::vector<std::uint32_t>(begin, end), expected[k]);
+    }
+  }
+}
+
+TEST(Hash, TellsNeighbouringWordsApartAndNotTheSignOfZero) {
+  // As coordinates of a grid are: the last bits of a table's place must depend on the first bits of a word, too.
+  for (const int shift : {0, 32, 48, 52}) {
+    std::set<std::uint32_t> places;
+    for (std::uint64_t word = 0; word < 4096; ++word) {
+      Hash hash;
+      hash.add(word << shift);
+      places.insert(hash.mixed() & 0xFFFFu);
+    }
+    EXPECT_GT(places.size(), 3500u) << shift;
+  }
+  Hash plus, minus;
+  plus.add(0.0);
+  minus.add(-0.0);
+  EXPECT_EQ(plus.value(), minus.value());
+}
+
+TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
+  EXPECT_EQ(median({7.0}), 7.0);
+  EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 3.0);
+}
+
+TEST(Lame, ParametersOfAKnownMaterial) {
+  const Lame quarter(1.0, 0.25);
+  EXPECT_DOUBLE_EQ(quarter.mu, 0.4);
+  EXPECT_DOUBLE_EQ(quarter.lambda, 0.4);
+  EXPECT_EQ(Lame(5.0, 0.0).lambda, 0.0);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/mesh_skin.h>
+
+namespace tetskin {
+
+/// The report of an attempt to embed, and how it ended.
+struct Fit : EmbedReport {
+  Status status;
+  bool ok() const { return status.ok(); }
+};
+
+/// `embed`, with both at once; the embedding is left alone on an error.
+template <class Points>
+Fit embedInto(const TetMesh& cage, const Points& points, const EmbedOptions& options, Embedding& embedding) {
+  Fit fit;
+  Result<Embedding> made = embed(cage, points, options, &fit);
+  fit.status = made.status();
+  if (made.ok()) embedding = std::move(made).value();
+  return fit;
+}
+
+/// What one skin does with a binding that the same options made.
+inline const InstanceOptions& instanceOf(const SkinOptions& options) {
+  return options;
+}
+
+}  // namespace tetskin
