@@ -1,8 +1,11 @@
 # For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
 
-# What the library and the demos need, and what the tests need beyond that. Debian 12, Ubuntu 24.04 and later.
-build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev libbenchmark-dev)
-test_packages=(libgtest-dev clang clang-format clang-tidy python3-matplotlib)
+# What the library and the demos need; what the unit tests need beyond that; what all tests need beyond that. Debian 12,
+# Ubuntu 24.04 and later.
+build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev
+  libbenchmark-dev python3-matplotlib)
+test_packages=(libgtest-dev)
+check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
 require_packages() {
@@ -37,19 +40,20 @@ require_packages() {
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive $install
 }
 
-# Installs what clang needs for the fuzzers (libclang-rt-14-dev on Debian 12). Without it they are driven at random.
-require_fuzzer_runtime() {
+# The package of what clang needs for the fuzzers: libclang-rt-14-dev on Debian 12. Clang itself is there, or will be.
+fuzzer_runtime() {
   local version
-  version=$(dpkg-query -W -f='${Depends}' clang 2>/dev/null | sed -n 's/.*clang-\([0-9]*\).*/\1/p' || true)
-  [ -n "$version" ] || return 0
-  (require_packages "libclang-rt-$version-dev") || echo "No libclang-rt-$version-dev: the fuzzers are driven at random."
+  version=$(apt-cache depends clang 2>/dev/null | sed -n 's/.*Depends: clang-\([0-9]*\).*/\1/p' | head -n 1)
+  echo "libclang-rt-${version:-14}-dev"
 }
 
-# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed.
+# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed. Source files are joined
+# for the compiler (a unity build), which reads the same headers over and over otherwise.
 configure() {
   local repository=$1
   shift
   local generator=()
   if [ ! -f "$repository/build/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
+  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_UNITY_BUILD=ON "$@"
 }

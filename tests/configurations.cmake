@@ -22,41 +22,38 @@ function(tetskin_test_configuration name)
   add_test(NAME configuration.${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
       ${nested_options} ${target_option}
-      --build-options ${arg_OPTIONS} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
+      --build-options ${arg_OPTIONS} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON -DCMAKE_UNITY_BUILD=ON
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error --parallel ${arg_PARALLEL}
       -R ${arg_TESTS})
-  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel})
+  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel} LABELS config)
 endfunction()
 
 # The parts that know of Bullet's precision; the others are templates, tested for both in one build.
 tetskin_test_configuration(double_precision TARGET test_bullet TESTS ^bullet OPTIONS
-  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF -DTETSKIN_DEMOS=OFF)
-# Without the demos, which take longer to build so than all the rest of it.
-tetskin_test_configuration(sanitized OPTIONS
-  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
-# The same code as in the whole build: that it configures, links and runs without the rest is what is tested.
-tetskin_test_configuration(optional_parts_off TARGET fuzzers TESTS ^fuzz OPTIONS
-  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_BULLET=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF
+  -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)
+# Without the demos, which take longer to build so than all the rest of it; and without the fuzzers, which have a
+# configuration of their own.
+tetskin_test_configuration(sanitized TARGET unit_tests TESTS "^(core|threads|cage|elastic|io|bullet)" OPTIONS
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
+# The tests that start threads.
+tetskin_test_configuration(thread_sanitized TARGET test_threads TESTS ^threads OPTIONS
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=thread -DTETSKIN_DEMOS=OFF
+  -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF)
 
-# The fuzzers, a minute each: by libFuzzer if there is a clang with its runtime, otherwise by our random driver.
-find_program(CLANG_CXX NAMES clang++-14 clang++)
+# The fuzzers, a minute each: by libFuzzer if there is a clang with its runtime, otherwise by our random driver. That
+# the rest configures, links and runs without the parts left out is tested by the way.
 set(fuzzed_compiler)
 set(fuzzed_sanitizers address,undefined)
-if(CLANG_CXX)
-  file(WRITE ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
-    "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof 0)) { return 0; }\n")
-  execute_process(COMMAND ${CLANG_CXX} -fsanitize=fuzzer,address,undefined ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
-      -o ${PROJECT_BINARY_DIR}/fuzzer_runtime
-    RESULT_VARIABLE without_runtime OUTPUT_QUIET ERROR_QUIET)
-  if(NOT without_runtime)
-    set(fuzzed_compiler -DCMAKE_CXX_COMPILER=${CLANG_CXX})
-    set(fuzzed_sanitizers fuzzer-no-link,address,undefined)
-  endif()
+if(has_fuzzer_runtime)
+  set(fuzzed_compiler -DCMAKE_CXX_COMPILER=${CLANG_CXX})
+  set(fuzzed_sanitizers fuzzer-no-link,address,undefined)
 endif()
 tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 3 OPTIONS ${fuzzed_compiler}
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
-  -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_DEMOS=OFF)
+  -DTETSKIN_FUZZ_SECONDS=60 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF
+  -DTETSKIN_DEMOS=OFF)
+set_tests_properties(configuration.fuzzed PROPERTIES LABELS fuzz)
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 function(tetskin_test_consumer name)
@@ -65,15 +62,29 @@ function(tetskin_test_consumer name)
       ${PROJECT_BINARY_DIR}/consumers/${name} ${nested_options}
       --build-options -DCMAKE_BUILD_TYPE=Release -DSOURCE=${PROJECT_SOURCE_DIR} ${ARGN}
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
-  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600)
+  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600 LABELS config)
 endfunction()
 
 if(TETSKIN_INSTALL)
   set(prefix ${PROJECT_BINARY_DIR}/consumers/prefix)
-  add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
-  set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed_package)
+  add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DPREFIX=${prefix}
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
+  set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed_package LABELS config)
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
   tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
+  find_package(Eigen3 3.4 CONFIG REQUIRED)
+  get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  add_test(NAME consumer.installed_headers
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DPREFIX=${prefix} -DCOMPILER=${CMAKE_CXX_COMPILER}
+      -DEIGEN=${eigen}
+      -DSTAGED=${PROJECT_BINARY_DIR}/include -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/installed_headers.cmake)
+  if(PKG_CONFIG AND TARGET tetskin_bullet)
+    add_test(NAME consumer.pkg_config
+      COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DPREFIX=${prefix} -DCOMPILER=${CMAKE_CXX_COMPILER}
+        -DPKG_CONFIG=${PKG_CONFIG} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/pkg_config
+        -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/pkg_config.cmake)
+    set_tests_properties(consumer.pkg_config PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
+  endif()
   # The README's first program with flags that the library was not compiled with: what they change in the layout or the
   # allocation of a type must not matter.
   set(package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=program -DCMAKE_BUILD_TYPE=None)
@@ -81,8 +92,9 @@ if(TETSKIN_INSTALL)
   tetskin_test_consumer(flags_native ${package} "-DCMAKE_CXX_FLAGS=-O2 -march=native")
   tetskin_test_consumer(flags_sanitized ${package}
     "-DCMAKE_CXX_FLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all")
-  set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.flags_avx2
-    consumer.flags_native consumer.flags_sanitized PROPERTIES FIXTURES_REQUIRED installed_package)
+  set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.installed_headers
+    consumer.flags_avx2 consumer.flags_native consumer.flags_sanitized
+    PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
   file(WRITE ${PROJECT_BINARY_DIR}/has_avx2.cpp
     "int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }\n")
   try_run(has_avx2 has_avx2_compiled ${PROJECT_BINARY_DIR}/has_avx2 ${PROJECT_BINARY_DIR}/has_avx2.cpp)
@@ -91,10 +103,18 @@ if(TETSKIN_INSTALL)
     set_tests_properties(consumer.flags_avx2 PROPERTIES DISABLED ON)
   endif()
 endif()
+# Shared libraries: what they are called, what they show, and that a program runs with them.
+add_test(NAME consumer.shared
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/shared
+    -DGENERATOR=${CMAKE_GENERATOR} -DVERSION=${PROJECT_VERSION} -DNM=${NM}
+    -DPKG_CONFIG=${PKG_CONFIG} -DCOMPILER=${CMAKE_CXX_COMPILER}
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/shared.cmake)
 add_test(NAME consumer.after_demos_run
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/after_demos_run
     -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
-tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory)
+set_tests_properties(consumer.shared consumer.after_demos_run
+  PROPERTIES TIMEOUT 1200 PROCESSORS ${nested_parallel} LABELS config)
+tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON)
 
 # Configurations that must stop, with a message that says why.
 function(tetskin_test_refusal name message)
@@ -102,7 +122,7 @@ function(tetskin_test_refusal name message)
     COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${PROJECT_BINARY_DIR}/refusals/${name}
       -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF -DTETSKIN_IO=OFF ${ARGN})
   string(REPLACE " " "[^A-Za-z]+" pattern "${message}")  # CMake wraps the lines of its messages
-  set_tests_properties(refusal.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${pattern}")
+  set_tests_properties(refusal.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${pattern}" LABELS config)
 endfunction()
 
 # Bullet configurations as a user's machine may have them: in the other precision, and not saying so.
@@ -129,28 +149,19 @@ if(TARGET tetskin::bullet_physics)
     -DBullet_DIR=${PROJECT_BINARY_DIR}/fake_bullet/lying)
 endif()
 tetskin_test_refusal(demos_without_their_parts "The demos need every part" -DTETSKIN_DEMOS=ON)
+tetskin_test_refusal(tests_of_shared_libraries "tests need static libraries" -DBUILD_SHARED_LIBS=ON -DTETSKIN_TESTS=ON)
 
-add_test(NAME style.readme COMMAND ${CMAKE_COMMAND} -P tests/style/readme.cmake WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-
-# Style, with the one version that the files are formatted with.
-find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)
-find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
-foreach(tool CLANG_FORMAT CLANG_TIDY)
-  set(${tool}_VERSION "")
-  if(${tool})
-    execute_process(COMMAND ${${tool}} --version OUTPUT_VARIABLE ${tool}_VERSION)
-  endif()
-endforeach()
-if(CLANG_FORMAT_VERSION MATCHES "version 14")
-  add_test(NAME style.format COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT}
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-else()
-  message(STATUS "clang-format 14 not found: no test of the format")
+# Style.
+function(tetskin_test_style name)
+  add_test(NAME style.${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(style.${name} PROPERTIES LABELS style TIMEOUT 1800)
+endfunction()
+tetskin_test_style(readme ${CMAKE_COMMAND} -P tests/style/readme.cmake)
+tetskin_test_style(layers ${CMAKE_COMMAND} -P tests/style/layers.cmake)
+if(CLANG_FORMAT)
+  tetskin_test_style(format ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT})
 endif()
-if(CLANG_TIDY_VERSION MATCHES "version 14" AND CMAKE_EXPORT_COMPILE_COMMANDS)
-  add_test(NAME style.tidy COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/style/tidy ${CLANG_TIDY} ${PROJECT_BINARY_DIR}
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(style.tidy PROPERTIES TIMEOUT 1800 PROCESSORS ${nested_parallel})
-else()
-  message(STATUS "clang-tidy 14 or compile commands not found: no test with clang-tidy")
+if(CLANG_TIDY AND CMAKE_EXPORT_COMPILE_COMMANDS)
+  tetskin_test_style(tidy ${CMAKE_CURRENT_SOURCE_DIR}/style/tidy ${CLANG_TIDY} ${PROJECT_BINARY_DIR})
+  set_tests_properties(style.tidy PROPERTIES PROCESSORS ${nested_parallel})
 endif()

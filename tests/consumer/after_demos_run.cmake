@@ -1,11 +1,12 @@
-# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: what demos/run builds can be installed, and the package be found.
+# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: what demos/run --all builds can be installed, and the package be found.
 # Nothing is compiled: see no_compiler.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
 file(READ ${SOURCE}/demos/run demos_run)
-if(NOT demos_run MATCHES "configure \"\\$repository\" ([^\n]+)\ncmake --build \"\\$repository/build\" --target ([a-z]+) ")
+if(NOT demos_run MATCHES
+    "configure \"\\$repository\" ([^\n]+)\nif [^\n]+--all[^\n]+\n  cmake --build \"\\$repository/build\" --target ([a-z]+) ")
   message(FATAL_ERROR "demos/run no longer says what it configures and builds: follow it here")
 endif()
 separate_arguments(options UNIX_COMMAND "${CMAKE_MATCH_1}")

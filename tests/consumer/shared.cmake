@@ -1,0 +1,40 @@
+# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -DVERSION= -DNM= -DPKG_CONFIG= -DCOMPILER= -P: all libraries shared, installed, and used by the README's
+# first program; their names tell the ABI, and private names are hidden.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+set(prefix ${FOLDER}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON
+  -DCMAKE_UNITY_BUILD=ON -DTETSKIN_WARNINGS_AS_ERRORS=ON -DCMAKE_INSTALL_LIBDIR=lib/here)
+run(${CMAKE_COMMAND} --build ${FOLDER}/build --parallel 2)
+run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${prefix})
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${FOLDER}/consumer -G ${GENERATOR} -Dtetskin_DIR=${prefix}/lib/here/cmake/tetskin
+  -DCMAKE_BUILD_TYPE=Release -DCONSUME=program -DSOURCE=${SOURCE})
+run(${CMAKE_COMMAND} --build ${FOLDER}/consumer)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${FOLDER}/consumer --output-on-failure --no-tests=error)
+
+# And without CMake, wherever the libraries are installed.
+if(PKG_CONFIG)
+  run(${CMAKE_COMMAND} -DSOURCE=${SOURCE} -DPREFIX=${prefix} -DCOMPILER=${COMPILER} -DPKG_CONFIG=${PKG_CONFIG}
+    -DFOLDER=${FOLDER}/pkg_config -P ${SOURCE}/tests/consumer/pkg_config.cmake)
+endif()
+
+string(REGEX MATCH "^[0-9]+[.][0-9]+" abi ${VERSION})  # while the major version is 0
+foreach(library core bullet cage elastic io threads)
+  file(GLOB_RECURSE so ${prefix}/libtetskin_${library}.so.${abi})
+  if(NOT so)
+    message(FATAL_ERROR "No library tetskin_${library} with the ABI ${abi} in its name")
+  endif()
+  if(NOT NM)
+    continue()
+  endif()
+  execute_process(COMMAND ${NM} -D -C --defined-only ${so} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
+  # Of functions, tables and classes; templates have their result in front.
+  set(shown " [TWVDRBu] ([a-z ]+ for )?([A-Za-z:]+ )?tetskin::")
+  if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
+    message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
+  endif()
+  if(NOT names MATCHES "${shown}(embed|makeSoftBody|buildCage|calibrateStiffness|loadMesh|ThreadPool)")
+    message(FATAL_ERROR "${so} does not show what is public")
+  endif()
+endforeach()

@@ -1,0 +1,72 @@
+# What tests need besides a compiler. Where it is missing they are left out, and it is said; with
+# TETSKIN_TEST_EVERYTHING, as tests/run --all has it, nothing is left out: that stops.
+set(missing_tools)
+function(tetskin_lacks tool tests)
+  message(STATUS "${tool} not found: no ${tests}")
+  set(missing_tools ${missing_tools} ${tool} PARENT_SCOPE)
+endfunction()
+
+# With the one version that the files are formatted with.
+find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)
+find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
+foreach(tool CLANG_FORMAT CLANG_TIDY)
+  set(${tool}_VERSION "")
+  if(${tool})
+    execute_process(COMMAND ${${tool}} --version OUTPUT_VARIABLE ${tool}_VERSION)
+  endif()
+  if(NOT ${tool}_VERSION MATCHES "version 14")
+    unset(${tool} CACHE)
+    set(${tool} NOTFOUND)
+  endif()
+endforeach()
+if(NOT CLANG_FORMAT)
+  tetskin_lacks("clang-format 14" "test of the format")
+endif()
+if(NOT CLANG_TIDY)
+  tetskin_lacks("clang-tidy 14" "test with clang-tidy")
+endif()
+
+# clang with the runtime of its fuzzer; otherwise fuzzers are driven at random.
+find_program(CLANG_CXX NAMES clang++-14 clang++)
+set(has_fuzzer_runtime FALSE)
+if(CLANG_CXX)
+  file(WRITE ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
+    "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof 0)) { return 0; }\n")
+  execute_process(COMMAND ${CLANG_CXX} -fsanitize=fuzzer,address,undefined ${PROJECT_BINARY_DIR}/fuzzer_runtime.cpp
+      -o ${PROJECT_BINARY_DIR}/fuzzer_runtime
+    RESULT_VARIABLE without_runtime OUTPUT_QUIET ERROR_QUIET)
+  if(NOT without_runtime)
+    set(has_fuzzer_runtime TRUE)
+  endif()
+endif()
+if(NOT has_fuzzer_runtime)
+  tetskin_lacks("clang with libFuzzer (libclang-rt-dev)" "guided fuzzing: at random")
+endif()
+
+find_program(PKG_CONFIG NAMES pkgconf pkg-config)
+if(NOT PKG_CONFIG)
+  tetskin_lacks("pkg-config" "test of tetskin.pc")
+endif()
+find_program(NM NAMES nm)
+if(NOT NM)
+  tetskin_lacks("nm (binutils)" "test of what shared libraries show")
+endif()
+# The first Python with matplotlib: the one in the path may be another than the system's, which has the package.
+find_program(PYTHON_IN_PATH python3)
+find_program(PYTHON_OF_SYSTEM python3 PATHS /usr/bin NO_DEFAULT_PATH)
+foreach(python IN ITEMS ${PYTHON_IN_PATH} ${PYTHON_OF_SYSTEM})
+  execute_process(COMMAND ${python} -c "import matplotlib" RESULT_VARIABLE without_matplotlib OUTPUT_QUIET ERROR_QUIET)
+  if(NOT without_matplotlib)
+    set(python_with_matplotlib ${python})
+    break()
+  endif()
+endforeach()
+if(NOT python_with_matplotlib)
+  tetskin_lacks("Python with matplotlib" "test of the plots")
+endif()
+
+if(TETSKIN_TEST_EVERYTHING AND missing_tools)
+  list(JOIN missing_tools ", " missing_tools)
+  message(FATAL_ERROR "Missing for all tests: ${missing_tools}. Install it, or leave out what needs it: "
+    "TETSKIN_TEST_EVERYTHING=OFF.")
+endif()
