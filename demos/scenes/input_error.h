@@ -8,7 +8,7 @@
 
 namespace tetskin::scenes {
 
-/// Bad arguments or unreadable input: caught by `runDemo`, printed as one line, exit status 2.
+/// Bad arguments or unreadable input: caught by `CommandLine::run`, printed as one line, exit status 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

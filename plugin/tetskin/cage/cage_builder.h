@@ -52,8 +52,8 @@ struct TETSKIN_CAGE_API CageReport {
 };
 
 /// Builds a cage of about `options.targetTets` tets that holds every vertex of the mesh: `embed` of it reports 0
-/// outside. Its tets are positive, conforming, without duplicates, with dihedral angles within kMinDihedralDeg and
-/// kMaxDihedralDeg; its boundary is a manifold; every node is used. Parts thinner than a tet are never lost. Parts
+/// outside. Its tets are positive, conforming, without duplicates, with dihedral angles between 10 and 165
+/// degrees; its boundary is a manifold; every node is used. Parts thinner than a tet are never lost. Parts
 /// nearer to each other than a tet may fuse. Between its vertices, a triangle lies wholly inside an unfitted cage; out
 /// of a fitted one it may stick by a few hundredths of the spacing. The same input gives the same cage.
 ///

@@ -40,7 +40,7 @@ struct TETSKIN_CORE_API TetMeshReport {
   Fault indexOutOfRange;    ///< tets that name a node that does not exist
   Fault nonFiniteNodes;     ///< nodes with a coordinate that is not finite
   Fault repeatedNode;       ///< tets that name one node twice
-  Fault zeroVolume;         ///< tets thinner than `kFlatTet` of their longest edge
+  Fault zeroVolume;         ///< tets of six-fold volumes below 1e-9 of their longest edge cubed
   Fault negativeVolume;     ///< tets with the orientation reversed
   Fault duplicateTets;      ///< tets that name the same four nodes as an earlier one
   Fault unreferencedNodes;  ///< nodes that no tet names

@@ -46,18 +46,21 @@ void SpatialHash::chooseTable(std::size_t mostCells) {
 }
 
 void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_t>& first) {
-  std::vector<std::uint32_t> cellOfPoint(points.size(), kNoCell);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!first.empty() && first[i] != i) continue;
+  const auto placeOf = [&](std::uint32_t i) {
+    if (!first.empty() && first[i] != i) return kNoCell;
     const Eigen::Vector3d p = points[i];
-    if (!box_.contains(p)) continue;
+    if (!box_.contains(p)) return kNoCell;
     const Cell cell = cellOf(p);
-    cellOfPoint[i] = (wrapped(cell[2], 2) * table_[1] + wrapped(cell[1], 1)) * table_[0] + wrapped(cell[0], 0);
-  }
+    return (wrapped(cell[2], 2) * table_[1] + wrapped(cell[1], 1)) * table_[0] + wrapped(cell[0], 0);
+  };
+  std::vector<std::uint32_t> places(points.size());
+  bool known = false;  // from the second time on
   Lists<> cells = packLists(std::size_t{table_[0]} * table_[1] * table_[2], [&](auto&& add) {
-    for (std::uint32_t i = 0; i < cellOfPoint.size(); ++i) {
-      if (cellOfPoint[i] != kNoCell) add(cellOfPoint[i], i);
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+      if (!known) places[i] = placeOf(i);
+      if (places[i] != kNoCell) add(places[i], i);
     }
+    known = true;
   });
   cellStart_ = std::move(cells.starts);
   ids_ = std::move(cells.values);
