@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/export.h>
+
 #include <vector>
 
 namespace tetskin {
@@ -20,7 +22,7 @@ const char* toString(InstructionSet set);
 /// Those that this processor and this build have, narrowest first.
 std::vector<InstructionSet> availableInstructionSets();
 
-InstructionSet instructionSet();
+TETSKIN_CORE_API InstructionSet instructionSet();
 
 /// For tests and measurements: use this one from now on, everywhere. It must be available. Not while others skin.
 void setInstructionSet(InstructionSet set);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+
+template <class S>
+void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads) {
+  matrices_ = std::move(matrices);
+  extra_ = std::move(extra);
+  added_.assign(matrices_.size(), nullptr);
+  rho_ = 0.0;
+  double mass = 0.0;
+  for (BlockMatrix<S>* matrix : matrices_) {
+    rho_ += matrix->lower(threads);
+    mass += matrix->totalMass();
+  }
+  target_ = std::max(limits.tolerance * limits.tolerance * rho_, limits.floor * limits.floor * mass);
+  target_ = std::max(target_, limits.enough);
+  factor_ = 0;
+  iterations_ = 0;
+  most_ = limits.iterations;
+}
+
+template <class S>
+bool ConjugateGradient<S>::step(ParallelFor* threads) {
+  for (BlockMatrix<S>* matrix : matrices_) matrix->backward(factor_, threads);
+  if (extra_) extra_(added_);
+  double bend = 0.0;
+  for (std::size_t k = 0; k < matrices_.size(); ++k) bend += matrices_[k]->forward(added_[k], threads);
+  // An addition that is not positive leaves what has been reached.
+  if (!(bend > 0.0 && std::isfinite(bend))) return false;
+  const auto length = static_cast<S>(rho_ / bend);
+  double rho = 0.0;
+  for (BlockMatrix<S>* matrix : matrices_) rho += matrix->advance(length, threads);
+  factor_ = static_cast<S>(rho / rho_);
+  rho_ = rho;
+  return true;
+}
+
+template <class S>
+bool ConjugateGradient<S>::iterate(int most, ParallelFor* threads) {
+  for (int k = 0; k < most && iterations_ < most_ && !converged(); ++k, ++iterations_) {
+    if (!step(threads)) {
+      rho_ = 0.0;
+      break;
+    }
+  }
+  return converged();
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class ConjugateGradient<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The conjugate gradient over the bodies that something couples, or over one: preconditioned by a symmetric
+// Gauss-Seidel sweep of each, see elastic_kernels.h.
+#pragma once
+
+#include <tetskin/elastic/src/matrix/block_matrix.h>
+
+#include <functional>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+struct SolveLimits {
+  double tolerance = 1e-2;  ///< of the residual, over that at the start, in the preconditioner's norm
+  double floor = 0.0;       ///< an error in velocity that is always small enough
+  double enough = 0.0;      ///< a residual, as `enough()`, that is
+  int iterations = 200;     ///< at most
+};
+
+template <class S>
+class TETSKIN_ELASTIC_API ConjugateGradient {
+ public:
+  using Matrices = std::vector<BlockMatrix<S>*>;
+  /// Told when all matrices have their `stepPoints`: for each matrix, what is to be added to A t, wide, or null.
+  using Extra = std::function<void(std::vector<const S*>&)>;
+
+  /// Of the matrices' residuals, r = b - A x of their solutions. They are transformed: start once.
+  /// extra  a symmetric, positive addition to the matrices; none: each matrix alone. Valid as long as this is used.
+  void start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads);
+  /// Goes on for so many iterations, or until it has converged; returns whether it has.
+  bool iterate(int most, ParallelFor* threads);
+
+  bool converged() const { return !(rho_ > target_); }
+  /// The square of the residual's norm at which it has.
+  double enough() const { return target_; }
+  int iterations() const { return iterations_; }
+  /// Of an earlier solve of the same step, to be counted along.
+  void addIterations(int earlier) { iterations_ += earlier; }
+
+ private:
+  bool step(ParallelFor* threads);
+
+  Matrices matrices_;
+  Extra extra_;
+  std::vector<const S*> added_;
+  double rho_ = 0.0, target_ = 0.0;
+  S factor_ = 0;
+  int iterations_ = 0, most_ = 0;
+};
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/elastic/elastic_body.h>
+#include <tetskin/elastic/src/dynamics/body_dynamics.h>
+
+#include <cmath>
+#include <string>
+
+namespace tetskin {
+namespace {
+
+using elastic_detail::BodyDynamics;
+using kernels::kGroup;
+
+Status invalid(const char* message) {
+  return {StatusCode::InvalidOption, message};
+}
+
+template <class Scalar>
+Status checkValues(const std::vector<double>& values, std::size_t count, const char* name) {
+  if (values.empty()) return {};
+  if (values.size() != count) {
+    return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values, and " +
+                                          std::to_string(count) + " are needed, or none"};
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (values[k] > 0.0 && std::isfinite(static_cast<Scalar>(values[k]))) continue;
+    return {StatusCode::InvalidOption, std::string(name) + "[" + std::to_string(k) + "] must be above 0, and finite"};
+  }
+  return {};
+}
+
+template <class Scalar>
+Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
+  const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
+  if (!(options.youngsModulus > 0.0)) return invalid("a Young's modulus must be above 0, and finite");
+  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
+    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+  }
+  if (!(options.damping >= 0.0 && held(options.damping))) return invalid("damping must not be negative, and finite");
+  if (!(options.density > 0.0 && held(options.density))) return invalid("a density must be above 0, and finite");
+  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.iterations < 1) {
+    return invalid("a tolerance must be at least 0 and below 1, and there must be at least one iteration");
+  }
+  const Lame lame(options.youngsModulus, options.poissonRatio);
+  if (!held(lame.mu) || !held(lame.lambda)) return invalid("a material so stiff is beyond the range of the scalars");
+  if (Status status = checkValues<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale"); !status.ok()) {
+    return status;
+  }
+  return checkValues<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses");
+}
+
+Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
+  if (Status status = usable(cage, report); !status.ok()) return status;
+  const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
+  if (flat.count == 0) return {};
+  return {StatusCode::Degenerate, "tet " + std::to_string(flat.first) + " of the cage is flat: remove flat tets"};
+}
+
+}  // namespace
+
+template <class Scalar>
+struct ElasticBody<Scalar>::Parts {
+  Parts(const TetMesh& cage, const ElasticOptions& options)
+      : dynamics(elastic_detail::restTets(cage), cage.nodeCount()), masses(options.nodeMasses) {
+    for (const Eigen::Vector3d& p : cage.nodes) {
+      for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
+    }
+    velocities.assign(positions.size(), Scalar(0));
+    limits.tolerance = options.tolerance;
+    limits.iterations = options.iterations;
+    const Lame lame(options.youngsModulus, options.poissonRatio);
+    std::vector<elastic_detail::LameOfTet> tets(cage.tetCount(), {lame.mu, lame.lambda});
+    for (std::size_t t = 0; t < options.stiffnessScale.size(); ++t) {
+      tets[t].mu *= options.stiffnessScale[t];
+      tets[t].lambda *= options.stiffnessScale[t];
+    }
+    dynamics.setMaterial(tets);
+    dynamics.setDamping(options.damping);
+    if (masses.empty()) {
+      masses.assign(cage.nodeCount(), 0.0);
+      for (const Tet& tet : cage.tets) {
+        const double quarter = options.density * std::abs(signedVolume(cornersOf(cage, tet))) / 4.0;
+        for (const int n : tet) masses[static_cast<std::size_t>(n)] += quarter;
+      }
+    }
+    for (std::size_t n = 0; n < masses.size(); ++n) dynamics.setMass(n, static_cast<Scalar>(masses[n]));
+  }
+
+  void read(const std::array<double, 3>& push) {
+    for (std::size_t n = 0; n < masses.size(); ++n) {
+      const bool held = dynamics.matrix().mass(n) == Scalar(0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        dynamics.point(n)[k] = positions[3 * n + k];
+        dynamics.velocity(n)[k] = velocities[3 * n + k] + (held ? Scalar(0) : static_cast<Scalar>(push[k]));
+      }
+    }
+  }
+  void write(double seconds) {
+    const Scalar* solution = dynamics.matrix().solution();
+    for (std::size_t n = 0; n < masses.size(); ++n) {
+      const std::size_t wide = dynamics.matrix().wideOf(n);
+      for (std::size_t k = 0; k < 3; ++k) {
+        velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
+        positions[3 * n + k] += static_cast<Scalar>(seconds) * velocities[3 * n + k];
+      }
+    }
+  }
+
+  BodyDynamics<Scalar> dynamics;
+  elastic_detail::ConjugateGradient<Scalar> solve;
+  elastic_detail::SolveLimits limits;
+  std::vector<double> masses;  ///< by node, when it is not held
+  std::vector<Scalar> positions, velocities;
+};
+
+template <class Scalar>
+ElasticBody<Scalar>::ElasticBody() = default;
+template <class Scalar>
+ElasticBody<Scalar>::~ElasticBody() = default;
+template <class Scalar>
+ElasticBody<Scalar>::ElasticBody(ElasticBody&&) noexcept = default;
+template <class Scalar>
+ElasticBody<Scalar>& ElasticBody<Scalar>::operator=(ElasticBody&&) noexcept = default;
+
+template <class Scalar>
+Result<ElasticBody<Scalar>> ElasticBody<Scalar>::make(const TetMesh& cage, const ElasticOptions& options) {
+  TetMesh positive = cage;
+  if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
+  if (Status status = checkOptions<Scalar>(cage, options); !status.ok()) return status;
+  ElasticBody body;
+  body.parts_ = std::make_unique<Parts>(positive, options);
+  return body;
+}
+
+template <class Scalar>
+std::size_t ElasticBody<Scalar>::nodeCount() const {
+  return parts_ ? parts_->masses.size() : 0;
+}
+template <class Scalar>
+PointView<Scalar> ElasticBody<Scalar>::positions() {
+  return {parts_->positions.data(), nodeCount()};
+}
+template <class Scalar>
+PointView<Scalar> ElasticBody<Scalar>::velocities() {
+  return {parts_->velocities.data(), nodeCount()};
+}
+
+template <class Scalar>
+void ElasticBody<Scalar>::hold(std::size_t node, bool held) {
+  assert(node < nodeCount());
+  parts_->dynamics.setMass(node, held ? Scalar(0) : static_cast<Scalar>(parts_->masses[node]));
+}
+
+template <class Scalar>
+int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& acceleration, ParallelFor* threads) {
+  assert(parts_ && seconds > 0.0);
+  Parts& p = *parts_;
+  p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
+  p.dynamics.prepare(seconds, threads);
+  p.dynamics.start(seconds, threads);
+  p.solve.start({&p.dynamics.matrix()}, p.limits, {}, threads);
+  p.solve.iterate(p.limits.iterations, threads);
+  if (!p.dynamics.anyHeld()) p.dynamics.removeMomentum();
+  p.write(seconds);
+  return p.solve.iterations();
+}
+
+template <class Scalar>
+std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
+  parts_->read({});
+  parts_->dynamics.prepareForces(nullptr);
+  std::vector<std::array<double, 3>> out(nodeCount());
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(parts_->dynamics.force(n)[k]);
+  }
+  return out;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::energy() {
+  parts_->read({});
+  return parts_->dynamics.energy(nullptr);
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class ElasticBody<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to the kernels: W rows of the matrix at a time.
+//
+// This work is based on:
+//   Stanley C. Eisenstat, "Efficient Implementation of a Class of Preconditioned Conjugate Gradient Methods", SIAM J.
+//   Sci. Stat. Comput. 2(1), 1981: a product and a symmetric Gauss-Seidel step together cost no more than a product
+#pragma once
+
+#include <tetskin/elastic/src/kernels/wide.h>
+
+namespace tetskin::kernels::TETSKIN_KERNELS {
+
+/// Symmetric 3x3 blocks times vectors.
+template <class S, int W>
+TETSKIN_INLINE WideVector<S, W> symmetricTimes(const S* block, const WideVector<S, W>& v) {
+  using V = Lanes<S, W>;
+  const V xy = wide<S, W>(block + kGroup), xz = wide<S, W>(block + 2 * kGroup), yz = wide<S, W>(block + 4 * kGroup);
+  return {wide<S, W>(block) * v.x + xy * v.y + xz * v.z, xy * v.x + wide<S, W>(block + 3 * kGroup) * v.y + yz * v.z,
+          xz * v.x + yz * v.y + wide<S, W>(block + 5 * kGroup) * v.z};
+}
+
+/// The blocks of entries [first, last) times the points of their neighbours.
+template <class S, int W>
+TETSKIN_INLINE WideVector<S, W> offDiagonal(const RowWork<S>& work, std::uint32_t first, std::uint32_t last, int lane,
+                                            const S* points) {
+  using V = Lanes<S, W>;
+  WideVector<S, W> total{V{}, V{}, V{}};
+  for (std::uint32_t e = first; e < last; ++e) {
+    const WideVector<S, W> v = vectorsAt<S, W>(points, work.neighbours + kGroup * static_cast<std::size_t>(e) + lane);
+    const S* block = work.blocks + kWideBlock * static_cast<std::size_t>(e) + lane;
+    const auto row = [&](int k) {
+      return wide<S, W>(block + 3 * k * kGroup) * v.x + wide<S, W>(block + (3 * k + 1) * kGroup) * v.y +
+             wide<S, W>(block + (3 * k + 2) * kGroup) * v.z;
+    };
+    total = {total.x + row(0), total.y + row(1), total.z + row(2)};
+  }
+  return total;
+}
+
+/// Of symmetric positive blocks; 0 where there is no mass.
+template <class S, int W>
+TETSKIN_INLINE void invert(const Lanes<S, W> d[6], const Lanes<S, W>& mass, S* to) {
+  using V = Lanes<S, W>;
+  const V c00 = d[3] * d[5] - d[4] * d[4], c01 = d[2] * d[4] - d[1] * d[5], c02 = d[1] * d[4] - d[2] * d[3];
+  const V det = d[0] * c00 + d[1] * c01 + d[2] * c02;
+  const auto there = (mass > S(0)) & (det > S(0));
+  const V scale = there ? S(1) / (there ? det : all<S, W>(1)) : V{};
+  put<S, W>(c00 * scale, to);
+  put<S, W>(c01 * scale, to + kGroup);
+  put<S, W>(c02 * scale, to + 2 * kGroup);
+  put<S, W>((d[0] * d[5] - d[2] * d[2]) * scale, to + 3 * kGroup);
+  put<S, W>((d[1] * d[2] - d[0] * d[4]) * scale, to + 4 * kGroup);
+  put<S, W>((d[0] * d[3] - d[1] * d[1]) * scale, to + 5 * kGroup);
+}
+
+/// The block of a pair of nodes: the sum, over the tets around their edge, of
+///   lambda / mu  a b^T + b a^T + (a . b) 1
+/// with a and b as `rotatedGradients` made them.
+template <class S, int W>
+TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
+  using V = Lanes<S, W>;
+  for (int k = 0; k < 9; ++k) block[k] = V{};
+  V trace{};
+  for (std::uint32_t term = work.sums[entry]; term < work.sums[entry + 1]; ++term) {
+    const std::uint32_t* places = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
+    const WidePoints<S, W> p = pointsAt<S, W>(work.corners, places);
+    const WideVector<S, W> q = vectorsAt<S, W>(work.corners, places + kGroup);
+    const V a[3] = {p.x, p.y, p.z}, b[3] = {q.x, q.y, q.z};
+    for (int i = 0; i < 3; ++i) {
+      const V scaled = p.w * a[i];
+      for (int j = 0; j < 3; ++j) block[3 * i + j] += scaled * b[j] + b[i] * a[j];
+      trace += a[i] * b[i];
+    }
+  }
+  for (int i = 0; i < 3; ++i) block[4 * i] += trace;
+}
+
+/// Rows have the sum of their masses, so that a body moves as a whole without resistance.
+template <class S, int W>
+void assemble(const RowWork<S>& work) {
+  using V = Lanes<S, W>;
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      V rowSum[9] = {};
+      for (std::size_t e = work.starts[2 * c]; e < work.starts[2 * c + 2]; ++e) {
+        V block[9];
+        assembleEntry<S, W>(work, e, lane, block);
+        S* to = work.blocks + kWideBlock * e + lane;
+        for (int k = 0; k < 9; ++k) {
+          put<S, W>(block[k], to + k * kGroup);
+          rowSum[k] += block[k];
+        }
+      }
+      const V mass = wide<S, W>(work.masses + kGroup * c + lane);
+      const V d[6] = {mass - rowSum[0], S(-0.5) * (rowSum[1] + rowSum[3]), S(-0.5) * (rowSum[2] + rowSum[6]),
+                      mass - rowSum[4], S(-0.5) * (rowSum[5] + rowSum[7]), mass - rowSum[8]};
+      for (int k = 0; k < 6; ++k) put<S, W>(d[k], work.diagonal + kWideSymmetric * c + k * kGroup + lane);
+      invert<S, W>(d, mass, work.inverse + kWideSymmetric * c + lane);
+    }
+  }
+}
+
+template <class S, int W>
+void multiply(const RowWork<S>& work) {
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const auto v = offDiagonal<S, W>(work, work.starts[2 * c], work.starts[2 * c + 2], lane, work.stepPoints);
+      std::uint32_t own[W];
+      for (int i = 0; i < W; ++i)
+        own[i] = static_cast<std::uint32_t>(kGroup * c) + static_cast<std::uint32_t>(lane + i);
+      const auto d =
+          symmetricTimes<S, W>(work.diagonal + kWideSymmetric * c + lane, vectorsAt<S, W>(work.stepPoints, own));
+      put<S, W>({v.x + d.x, v.y + d.y, v.z + d.z}, work.rest + kWideVector * c + lane);
+    }
+  }
+}
+
+template <class S, int W>
+void backward(const RowWork<S>& work) {
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      const std::size_t block = kWideSymmetric * c + static_cast<std::size_t>(lane);
+      const auto z = symmetricTimes<S, W>(work.diagonal + block, wideVector<S, W>(work.residual + at));
+      const auto before = wideVector<S, W>(work.direction + at);
+      const WideVector<S, W> p{z.x + work.factor * before.x, z.y + work.factor * before.y,
+                               z.z + work.factor * before.z};
+      put<S, W>(p, work.direction + at);
+      const auto u = offDiagonal<S, W>(work, work.starts[2 * c + 1], work.starts[2 * c + 2], lane, work.stepPoints);
+      put<S, W>(u, work.rest + at);
+      const auto t = symmetricTimes<S, W>(work.inverse + block, {p.x - u.x, p.y - u.y, p.z - u.z});
+      put<S, W>(t, work.step + at);
+      putPoints<S, W>(t, work.stepPoints + 4 * (kGroup * c + static_cast<std::size_t>(lane)), 4);
+    }
+  }
+}
+
+/// y = (D + L)^-1 v of W rows.
+template <class S, int W>
+TETSKIN_INLINE WideVector<S, W> solveLower(const RowWork<S>& work, std::size_t c, int lane, const WideVector<S, W>& v) {
+  const auto l = offDiagonal<S, W>(work, work.starts[2 * c], work.starts[2 * c + 1], lane, work.lowerPoints);
+  const auto y = symmetricTimes<S, W>(work.inverse + kWideSymmetric * c + lane, {v.x - l.x, v.y - l.y, v.z - l.z});
+  putPoints<S, W>(y, work.lowerPoints + 4 * (kGroup * c + static_cast<std::size_t>(lane)), 4);
+  return y;
+}
+
+template <class S, int W>
+S forward(const RowWork<S>& work) {
+  Lanes<S, W> total{};
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      WideVector<S, W> v = wideVector<S, W>(work.rest + at);
+      if (work.extra) {
+        const auto e = wideVector<S, W>(work.extra + at);
+        v = {v.x + e.x, v.y + e.y, v.z + e.z};
+      }
+      const auto y = solveLower<S, W>(work, c, lane, v), t = wideVector<S, W>(work.step + at);
+      const WideVector<S, W> image{t.x + y.x, t.y + y.y, t.z + y.z};
+      put<S, W>(image, work.rest + at);
+      total += dot<S, W>(wideVector<S, W>(work.direction + at), image);
+    }
+  }
+  return laneSum<S, W>(total);
+}
+
+template <class S, int W>
+S advance(const RowWork<S>& work) {
+  Lanes<S, W> total{};
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      const auto x = wideVector<S, W>(work.solution + at), t = wideVector<S, W>(work.step + at);
+      put<S, W>({x.x + work.factor * t.x, x.y + work.factor * t.y, x.z + work.factor * t.z}, work.solution + at);
+      const auto r = wideVector<S, W>(work.residual + at), a = wideVector<S, W>(work.rest + at);
+      const WideVector<S, W> now{r.x - work.factor * a.x, r.y - work.factor * a.y, r.z - work.factor * a.z};
+      put<S, W>(now, work.residual + at);
+      total += dot<S, W>(now, symmetricTimes<S, W>(work.diagonal + kWideSymmetric * c + lane, now));
+    }
+  }
+  return laneSum<S, W>(total);
+}
+
+template <class S, int W>
+S lower(const RowWork<S>& work) {
+  Lanes<S, W> total{};
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      S* residual = work.residual + kWideVector * c + lane;
+      const auto y = solveLower<S, W>(work, c, lane, wideVector<S, W>(residual));
+      put<S, W>(y, residual);
+      total += dot<S, W>(y, symmetricTimes<S, W>(work.diagonal + kWideSymmetric * c + lane, y));
+    }
+  }
+  return laneSum<S, W>(total);
+}
+
+}  // namespace tetskin::kernels::TETSKIN_KERNELS

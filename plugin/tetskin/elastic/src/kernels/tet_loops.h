@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to the kernels: corotated linear elasticity of W tets at a time.
+//
+// This work is based on:
+//   Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004 (corotated stiffness)
+//   Matthias Müller, Jan Bender, Nuttapong Chentanez, Miles Macklin, "A Robust Method to Extract the Rotational Part of
+//   Deformations", MIG 2016, doi 10.1145/2994258.2994269 (a quaternion, turned along; here by Newton's step)
+//
+// With F the deformation gradient, R the rotation that maximises tr(R^T F), S = R^T F and E = sym(S) - 1:
+//   energy = V (mu E : E + lambda / 2 tr(E)^2),  force on node a = -V R (2 mu E + lambda tr(E)) g_a
+// which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that has turned inside out
+// has such a rotation, too.
+#pragma once
+
+#include <tetskin/elastic/src/kernels/wide.h>
+
+namespace tetskin::kernels::TETSKIN_KERNELS {
+
+/// The square of the angle in radians below which a step of Newton's is the last: the next one would be of the order of
+/// its square. And most steps: those that are not converged are, a substep later.
+template <class S>
+constexpr S kLastStep = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
+constexpr int kMostSteps = 8;
+
+template <class S, int W>
+struct Quaternions {
+  Lanes<S, W> w, x, y, z;
+};
+
+template <class S, int W>
+TETSKIN_INLINE Quaternions<S, W> quaternions(const S* from) {
+  return {wide<S, W>(from), wide<S, W>(from + kGroup), wide<S, W>(from + 2 * kGroup), wide<S, W>(from + 3 * kGroup)};
+}
+
+/// Row by row.
+template <class S, int W>
+struct WideMatrix {
+  Lanes<S, W> at[9];
+};
+
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> rotationOf(const Quaternions<S, W>& q) {
+  using V = Lanes<S, W>;
+  const V x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  const V xx = q.x * x2, yy = q.y * y2, zz = q.z * z2, xy = q.x * y2, xz = q.x * z2, yz = q.y * z2;
+  const V wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
+  return {{S(1) - (yy + zz), xy - wz, xz + wy, xy + wz, S(1) - (xx + zz), yz - wx, xz - wy, yz + wx, S(1) - (xx + yy)}};
+}
+
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> transposedProduct(const WideMatrix<S, W>& r, const WideMatrix<S, W>& f) {
+  WideMatrix<S, W> s;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      s.at[3 * i + j] = r.at[i] * f.at[j] + r.at[3 + i] * f.at[3 + j] + r.at[6 + i] * f.at[6 + j];
+    }
+  }
+  return s;
+}
+
+/// One step of Newton's on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix
+/// is not safely positive, a step of the gradient's. Returns the squares of the angles.
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
+  using V = Lanes<S, W>;
+  const V* a = s.at;
+  const V bx = a[7] - a[5], by = a[2] - a[6], bz = a[3] - a[1];
+  const V m00 = a[4] + a[8], m11 = a[0] + a[8], m22 = a[0] + a[4];
+  const V m01 = S(-0.5) * (a[1] + a[3]), m02 = S(-0.5) * (a[2] + a[6]), m12 = S(-0.5) * (a[5] + a[7]);
+  const V c00 = m11 * m22 - m12 * m12, c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11;
+  const V c11 = m00 * m22 - m02 * m02, c12 = m01 * m02 - m00 * m12, c22 = m00 * m11 - m01 * m01;
+  const V det = m00 * c00 + m01 * c01 + m02 * c02;
+  const V size = absolute<S, W>(a[0] + a[4] + a[8]) + S(1e-9);
+  const auto good = (det > S(0.02) * size * size * size) & (c22 > S(0)) & (m00 > S(0));
+  const V inverseDet = S(1) / (good ? det : all<S, W>(1)), inverseSize = S(1) / size;
+  const V wx = good ? (c00 * bx + c01 * by + c02 * bz) * inverseDet : bx * inverseSize;
+  const V wy = good ? (c01 * bx + c11 * by + c12 * bz) * inverseDet : by * inverseSize;
+  const V wz = good ? (c02 * bx + c12 * by + c22 * bz) * inverseDet : bz * inverseSize;
+  // q <- q (1, w / 2), of length 1
+  const V hx = S(0.5) * wx, hy = S(0.5) * wy, hz = S(0.5) * wz;
+  const V w = q.w - q.x * hx - q.y * hy - q.z * hz, x = q.x + q.w * hx + q.y * hz - q.z * hy;
+  const V y = q.y + q.w * hy + q.z * hx - q.x * hz, z = q.z + q.w * hz + q.x * hy - q.y * hx;
+  const V unit = S(1) / squareRoots<S, W>(w * w + x * x + y * y + z * z);
+  q = {w * unit, x * unit, y * unit, z * unit};
+  return wx * wx + wy * wy + wz * wz;
+}
+
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, const S* points, int lane) {
+  using V = Lanes<S, W>;
+  const WideVector<S, W> x0 = vectorsAt<S, W>(points, pack.nodes[0] + lane);
+  V edges[9];
+  for (int a = 0; a < 3; ++a) {
+    const WideVector<S, W> x = vectorsAt<S, W>(points, pack.nodes[a + 1] + lane);
+    edges[a] = x.x - x0.x;
+    edges[3 + a] = x.y - x0.y;
+    edges[6 + a] = x.z - x0.z;
+  }
+  WideMatrix<S, W> f;
+  for (int j = 0; j < 3; ++j) {
+    const V g0 = wide<S, W>(pack.gradients[j] + lane), g1 = wide<S, W>(pack.gradients[3 + j] + lane);
+    const V g2 = wide<S, W>(pack.gradients[6 + j] + lane);
+    for (int i = 0; i < 3; ++i) f.at[3 * i + j] = edges[3 * i] * g0 + edges[3 * i + 1] * g1 + edges[3 * i + 2] * g2;
+  }
+  return f;
+}
+
+/// R (m g_a), for the corners 1 to 3, and what makes their sum 0 for the first.
+template <class S, int W, class Carried>
+TETSKIN_INLINE void putCorners(const TetPack<S>& pack, int lane, const Lanes<S, W>& fourth, S* corners,
+                               Carried&& carried) {
+  using V = Lanes<S, W>;
+  WideVector<S, W> first{V{}, V{}, V{}};
+  for (int a = 0; a < 3; ++a) {
+    const S* g = pack.gradients[3 * a] + lane;
+    const WideVector<S, W> v = carried(wide<S, W>(g), wide<S, W>(g + kGroup), wide<S, W>(g + 2 * kGroup));
+    first = {first.x - v.x, first.y - v.y, first.z - v.z};
+    putPoints<S, W>(WidePoints<S, W>{v.x, v.y, v.z, fourth}, corners + 4 * (a + 1), kCorners);
+  }
+  putPoints<S, W>(WidePoints<S, W>{first.x, first.y, first.z, fourth}, corners, kCorners);
+}
+
+template <class S, int W>
+TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S, W>& x, const Lanes<S, W>& y,
+                                        const Lanes<S, W>& z) {
+  return {r.at[0] * x + r.at[1] * y + r.at[2] * z, r.at[3] * x + r.at[4] * y + r.at[5] * z,
+          r.at[6] * x + r.at[7] * y + r.at[8] * z};
+}
+
+template <class S, int W>
+TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
+  using V = Lanes<S, W>;
+  V smallestDot = all<S, W>(1), turned{};
+  double energy = 0.0;
+  for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
+    const TetPack<S>& pack = work.packs[p];
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const WideMatrix<S, W> f = deformationGradient<S, W>(pack, work.points, lane);
+      S* const rotations = work.rotations + 4 * kGroup * p + lane;
+      Quaternions<S, W> q = quaternions<S, W>(rotations);
+      WideMatrix<S, W> r = rotationOf<S, W>(q), s = transposedProduct<S, W>(r, f);
+      for (int step = 0; step < kMostSteps; ++step) {
+        const V angles = turnAlong<S, W>(q, s);
+        r = rotationOf<S, W>(q);
+        s = transposedProduct<S, W>(r, f);
+        if (!anyAbove<S, W>(angles, kLastStep<S>)) break;
+      }
+      put<S, W>(q.w, rotations);
+      put<S, W>(q.x, rotations + kGroup);
+      put<S, W>(q.y, rotations + 2 * kGroup);
+      put<S, W>(q.z, rotations + 3 * kGroup);
+      const Quaternions<S, W> before = quaternions<S, W>(work.assembled + 4 * kGroup * p + lane);
+      const V same = absolute<S, W>(q.w * before.w + q.x * before.x + q.y * before.y + q.z * before.z);
+      smallestDot = smaller(same, smallestDot);
+      turned += S(1) - same;
+
+      const V e0 = s.at[0] - S(1), e4 = s.at[4] - S(1), e8 = s.at[8] - S(1);
+      const V e1 = S(0.5) * (s.at[1] + s.at[3]), e2 = S(0.5) * (s.at[2] + s.at[6]), e5 = S(0.5) * (s.at[5] + s.at[7]);
+      const V shear = wide<S, W>(pack.shear + lane), trace = e0 + e4 + e8;
+      const V pressure = wide<S, W>(pack.bulk + lane) * trace;
+      const V s0 = shear * e0 + pressure, s4 = shear * e4 + pressure, s8 = shear * e8 + pressure;
+      const V s1 = shear * e1, s2 = shear * e2, s5 = shear * e5;
+      putCorners<S, W>(pack, lane, V{}, work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane)),
+                       [&](const V& gx, const V& gy, const V& gz) {
+                         const WideVector<S, W> v = rotated<S, W>(
+                             r, s0 * gx + s1 * gy + s2 * gz, s1 * gx + s4 * gy + s5 * gz, s2 * gx + s5 * gy + s8 * gz);
+                         return WideVector<S, W>{-v.x, -v.y, -v.z};
+                       });
+      if (withEnergy) {
+        const V squares = e0 * e0 + e4 * e4 + e8 * e8 + S(2) * (e1 * e1 + e2 * e2 + e5 * e5);
+        energy += 0.5 * static_cast<double>(laneSum<S, W>(shear * squares + pressure * trace));
+      }
+    }
+  }
+  return {smallest<S, W>(smallestDot), static_cast<double>(laneSum<S, W>(turned)), energy};
+}
+
+template <class S, int W>
+void rotatedGradients(const TetWork<S>& work) {
+  using V = Lanes<S, W>;
+  for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
+    const TetPack<S>& pack = work.packs[p];
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
+      const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(work.alpha * mu);
+      const V ratio = wide<S, W>(pack.bulk + lane) / (mu > S(0) ? mu : all<S, W>(1));
+      putCorners<S, W>(pack, lane, ratio, work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane)),
+                       [&](const V& gx, const V& gy, const V& gz) {
+                         return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);
+                       });
+    }
+  }
+}
+
+/// Four lanes are a point.
+template <class S>
+void sum(const SumWork<S>& work) {
+  using V = Lanes<S, 4>;
+  const auto cornerAt = [&](std::uint32_t k) {
+    V v;
+    ::memcpy(&v, work.from + 4 * static_cast<std::size_t>(work.corners[k]), sizeof v);
+    return v;
+  };
+  for (std::size_t slot = work.firstSlot; slot < work.lastSlot; ++slot) {
+    V total{};
+    for (std::uint32_t k = work.starts[slot]; k < work.starts[slot + 1]; ++k) total += cornerAt(k);
+    ::memcpy(work.points + 4 * slot, &total, sizeof total);
+  }
+}
+
+}  // namespace tetskin::kernels::TETSKIN_KERNELS

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/elastic/src/matrix/block_matrix.h>
+
+#include <cassert>
+#include <numeric>
+
+namespace tetskin::elastic_detail {
+
+using kernels::kGroup;
+using kernels::kWideSymmetric;
+
+namespace {
+
+/// Of a positive matrix: xx xy xz yy yz zz.
+template <class S>
+void invertSymmetric(const S d[6], S out[6]) {
+  const S c00 = d[3] * d[5] - d[4] * d[4], c01 = d[2] * d[4] - d[1] * d[5], c02 = d[1] * d[4] - d[2] * d[3];
+  const S scale = 1 / (d[0] * c00 + d[1] * c01 + d[2] * c02);
+  const S inverse[6] = {c00, c01, c02, d[0] * d[5] - d[2] * d[2], d[1] * d[2] - d[0] * d[4], d[0] * d[3] - d[1] * d[1]};
+  for (int k = 0; k < 6; ++k) out[k] = scale * inverse[k];
+}
+
+}  // namespace
+
+template <class S>
+BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet)
+    : pattern_(blockPattern(nodes, tets, noTet)) {
+  const std::size_t chunks = pattern_.chunkCount(), slots = pattern_.slotCount();
+  masses_.assign(slots, S(0));
+  blocks_.assign((pattern_.sums.size() - 1) * kernels::kWideBlock, S(0));
+  for (AlignedVector<S>* v : {&diagonal_, &inverse_, &freeDiagonal_, &freeInverse_})
+    v->assign(chunks * kWideSymmetric, S(0));
+  for (AlignedVector<S>* v : {&residual_, &direction_, &rest_, &step_, &solution_}) v->assign(wideSize(), S(0));
+  for (AlignedVector<S>* v : {&stepPoints_, &lowerPoints_}) v->assign(4 * slots, S(0));
+  partial_.assign(pattern_.taskCount(), S(0));
+}
+
+template <class S>
+kernels::RowWork<S> BlockMatrix<S>::work() const {
+  // The kernels that write get their targets from members that are not const where they are called.
+  const auto writable = [](const AlignedVector<S>& v) { return const_cast<S*>(v.data()); };
+  kernels::RowWork<S> work;
+  work.starts = pattern_.starts.data();
+  work.neighbours = pattern_.neighbours.data();
+  work.blocks = writable(blocks_);
+  work.diagonal = writable(diagonal_);
+  work.inverse = writable(inverse_);
+  work.masses = masses_.data();
+  work.sums = pattern_.sums.data();
+  work.terms = pattern_.terms.data();
+  work.residual = writable(residual_);
+  work.direction = writable(direction_);
+  work.rest = writable(rest_);
+  work.step = writable(step_);
+  work.solution = writable(solution_);
+  work.stepPoints = writable(stepPoints_);
+  work.lowerPoints = writable(lowerPoints_);
+  return work;
+}
+
+template <class S>
+double BlockMatrix<S>::totalMass() const {
+  return std::accumulate(masses_.begin(), masses_.end(), 0.0);
+}
+
+template <class S>
+template <class Kernel>
+void BlockMatrix<S>::everywhere(ParallelFor* threads, Kernel&& kernel) const {
+  runTasks(threads, pattern_.taskCount(),
+           [&](std::size_t task) { kernel(task, pattern_.taskChunks[task], pattern_.taskChunks[task + 1]); });
+}
+
+/// One colour after the other.
+template <class S>
+template <class Kernel>
+void BlockMatrix<S>::byColours(bool forwards, ParallelFor* threads, Kernel&& kernel) const {
+  const std::size_t colours = pattern_.colours.size() - 1;
+  for (std::size_t k = 0; k < colours; ++k) {
+    const std::size_t c = forwards ? k : colours - 1 - k;
+    const std::size_t first = pattern_.colours[c];
+    runTasks(threads, pattern_.colours[c + 1] - first, [&](std::size_t task) {
+      kernel(first + task, pattern_.taskChunks[first + task], pattern_.taskChunks[first + task + 1]);
+    });
+  }
+}
+
+/// In an order that no number of threads changes.
+template <class S>
+double BlockMatrix<S>::summed() const {
+  double total = 0.0;
+  for (const S part : partial_) total += static_cast<double>(part);
+  return total;
+}
+
+template <class S>
+void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
+  assert(corners || pattern_.neighbours.empty());
+  const auto& table = kernels::elasticInUse<S>();
+  everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.corners = corners;
+    part.diagonal = freeDiagonal_.data();
+    part.inverse = freeInverse_.data();
+    part.firstChunk = first;
+    part.lastChunk = last;
+    table.assemble(part);
+  });
+  free();
+}
+
+template <class S>
+void BlockMatrix<S>::free() {
+  diagonal_ = freeDiagonal_;
+  inverse_ = freeInverse_;
+}
+
+template <class S>
+void BlockMatrix<S>::resistAcross(std::size_t node, const S n[3], S factor) {
+  if (mass(node) == S(0)) return;
+  const std::size_t slot = slotOf(node);
+  S* d = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
+  std::size_t k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j, ++k) d[k * kGroup] += factor * ((i == j ? S(1) : S(0)) - n[i] * n[j]);
+  }
+  S m[6], inverse[6];
+  diagonal(node, m);
+  invertSymmetric(m, inverse);
+  setInverse(slot, inverse);
+}
+
+template <class S>
+void BlockMatrix<S>::setInverse(std::size_t slot, const S inverse[6]) {
+  S* to = &inverse_[slot / kGroup * kWideSymmetric + slot % kGroup];
+  for (std::size_t k = 0; k < 6; ++k) to[k * kGroup] = inverse[k];
+}
+
+template <class S>
+void BlockMatrix<S>::fix(std::size_t node) {
+  const S none[6] = {};
+  setInverse(slotOf(node), none);
+}
+
+template <class S>
+void BlockMatrix<S>::freeInverse(std::size_t node, S out[6]) const {
+  const std::size_t slot = slotOf(node);
+  const S* from = &freeInverse_[slot / kGroup * kWideSymmetric + slot % kGroup];
+  for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
+}
+
+template <class S>
+void BlockMatrix<S>::diagonal(std::size_t node, S out[6]) const {
+  const std::size_t slot = slotOf(node);
+  const S* from = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
+  for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
+}
+
+/// d (d^T D d)^-1 d^T
+template <class S>
+void BlockMatrix<S>::fixAllBut(std::size_t node, const S d[3]) {
+  if (mass(node) == S(0)) return;
+  S m[6];
+  diagonal(node, m);
+  const S bend = m[0] * d[0] * d[0] + m[3] * d[1] * d[1] + m[5] * d[2] * d[2] +
+                 2 * (m[1] * d[0] * d[1] + m[2] * d[0] * d[2] + m[4] * d[1] * d[2]);
+  const S scale = bend > S(0) ? 1 / bend : S(0);
+  const S inverse[6] = {scale * d[0] * d[0], scale * d[0] * d[1], scale * d[0] * d[2],
+                        scale * d[1] * d[1], scale * d[1] * d[2], scale * d[2] * d[2]};
+  setInverse(slotOf(node), inverse);
+}
+
+/// With B the inverse of the block, B - B n (n^T B n)^-1 n^T B is its inverse in the plane.
+template <class S>
+void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
+  if (mass(node) == S(0)) return;
+  S b[6], m[6];
+  diagonal(node, m);
+  invertSymmetric(m, b);
+  const S bn[3] = {b[0] * n[0] + b[1] * n[1] + b[2] * n[2], b[1] * n[0] + b[3] * n[1] + b[4] * n[2],
+                   b[2] * n[0] + b[4] * n[1] + b[5] * n[2]};
+  const S along = bn[0] * n[0] + bn[1] * n[1] + bn[2] * n[2];
+  const S scale = along > S(0) ? 1 / along : S(0);
+  const S inverse[6] = {b[0] - scale * bn[0] * bn[0], b[1] - scale * bn[0] * bn[1], b[2] - scale * bn[0] * bn[2],
+                        b[3] - scale * bn[1] * bn[1], b[4] - scale * bn[1] * bn[2], b[5] - scale * bn[2] * bn[2]};
+  setInverse(slotOf(node), inverse);
+}
+
+template <class S>
+void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
+  const auto& table = kernels::elasticInUse<S>();
+  everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.stepPoints = const_cast<S*>(points);
+    part.rest = wide;
+    part.firstChunk = first;
+    part.lastChunk = last;
+    table.multiply(part);
+  });
+}
+
+template <class S>
+void BlockMatrix<S>::rowTimesSolution(std::size_t node, S out[3]) const {
+  const std::size_t slot = slotOf(node), chunk = slot / kGroup, lane = slot % kGroup;
+  S d[6];
+  diagonal(node, d);
+  const S* own = &solution_[wideOfSlot(slot)];
+  const S x = own[0], y = own[kGroup], z = own[2 * kGroup];
+  out[0] = d[0] * x + d[1] * y + d[2] * z;
+  out[1] = d[1] * x + d[3] * y + d[4] * z;
+  out[2] = d[2] * x + d[4] * y + d[5] * z;
+  for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
+    const S* block = &blocks_[kernels::kWideBlock * e + lane];
+    const S* other = &solution_[wideOfSlot(pattern_.neighbours[kGroup * e + lane])];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) out[i] += block[(3 * i + j) * kGroup] * other[j * kGroup];
+    }
+  }
+}
+
+template <class S>
+double BlockMatrix<S>::lower(ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.firstChunk = first;
+    part.lastChunk = last;
+    partial_[task] = table.lower(part);
+  });
+  return summed();
+}
+
+template <class S>
+void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  byColours(false, threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.factor = factor;
+    part.firstChunk = first;
+    part.lastChunk = last;
+    table.backward(part);
+  });
+}
+
+template <class S>
+double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.extra = extra;
+    part.firstChunk = first;
+    part.lastChunk = last;
+    partial_[task] = table.forward(part);
+  });
+  return summed();
+}
+
+template <class S>
+double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  everywhere(threads, [&](std::size_t task, std::size_t first, std::size_t last) {
+    auto part = work();
+    part.factor = factor;
+    part.firstChunk = first;
+    part.lastChunk = last;
+    partial_[task] = table.advance(part);
+  });
+  return summed();
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class BlockMatrix<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail

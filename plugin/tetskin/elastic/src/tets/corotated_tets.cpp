@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/elastic/src/tets/corotated_tets.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+using kernels::kGroup;
+
+/// Handing work to another thread costs some microseconds, in which these many packs, or nodes, are done.
+constexpr std::size_t kPacksPerTask = 64, kSlotsPerTask = 1024;
+
+std::size_t tasksFor(std::size_t items, std::size_t perTask) {
+  return std::max<std::size_t>(1, (items + perTask - 1) / perTask);
+}
+
+}  // namespace
+
+RestTets restTets(const TetMesh& cage) {
+  RestTets rest;
+  rest.tets = cage.tets;
+  for (const Tet& tet : cage.tets) {
+    const TetCorners corners = cornersOf(cage, tet);
+    const BarycentricMap map(corners);  // of the weights of nodes 0, 1 and 2
+    const Eigen::Vector3d third = -(map.rows[0] + map.rows[1] + map.rows[2]);
+    std::array<double, 9> g{};
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      g[at] = map.rows[1][k];
+      g[3 + at] = map.rows[2][k];
+      g[6 + at] = third[k];
+    }
+    rest.gradients.push_back(g);
+    rest.volumes.push_back(std::abs(signedVolume(corners)));
+  }
+  return rest;
+}
+
+template <class S>
+CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>& slotOf, std::size_t slots)
+    : rest_(std::move(rest)), slots_(slots) {
+  const std::size_t packs = noTet(count()) / kGroup;
+  packs_.resize(packs);
+  rotations_.assign(4 * kGroup * packs, S(0));
+  corners_.assign(kernels::kCorners * (kGroup * packs + 1), S(0));
+  for (std::size_t k = 0; k < kGroup * packs; ++k) {
+    kernels::TetPack<S>& pack = packs_[k / kGroup];
+    const std::size_t lane = k % kGroup, tet = std::min(k, count() - 1);
+    for (std::size_t i = 0; i < 9; ++i) pack.gradients[i][lane] = static_cast<S>(rest_.gradients[tet][i]);
+    for (std::size_t i = 0; i < 4; ++i) pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(rest_.tets[tet][i])];
+    pack.shear[lane] = pack.bulk[lane] = S(0);
+    rotations_[4 * kGroup * (k / kGroup) + lane] = S(1);
+  }
+  assembled_ = rotations_;
+  findings_.resize(tasksFor(packs, kPacksPerTask));
+
+  Lists<> corners = packLists(slots, [&](auto&& visit) {
+    for (std::uint32_t t = 0; t < count(); ++t) {
+      for (std::uint32_t a = 0; a < 4; ++a) visit(slotOf[static_cast<std::size_t>(rest_.tets[t][a])], 4 * t + a);
+    }
+  });
+  cornerStarts_ = std::move(corners.starts);
+  cornersAt_ = std::move(corners.values);
+}
+
+template <class S>
+void CorotatedTets<S>::setMaterial(std::size_t tet, const LameOfTet& lame) {
+  kernels::TetPack<S>& pack = packs_[tet / kGroup];
+  pack.shear[tet % kGroup] = static_cast<S>(2.0 * lame.mu * rest_.volumes[tet]);
+  pack.bulk[tet % kGroup] = static_cast<S>(lame.lambda * rest_.volumes[tet]);
+}
+
+template <class S>
+template <class Kernel>
+void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
+  runTasks(threads, findings_.size(), [&](std::size_t task) {
+    kernels::TetWork<S> work;
+    work.firstPack = task * kPacksPerTask;
+    work.lastPack = std::min(packs_.size(), work.firstPack + kPacksPerTask);
+    work.packs = packs_.data();
+    work.rotations = rotations_.data();
+    work.assembled = assembled_.data();
+    work.corners = corners_.data();
+    kernel(work, task);
+  });
+}
+
+template <class S>
+double CorotatedTets<S>::cornerForces(const S* points, bool energy, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t task) {
+    work.points = points;
+    findings_[task] = table.forces(work, energy);
+  });
+  smallestDot_ = S(1);
+  turned_ = 0.0;
+  double total = 0.0;
+  for (const kernels::TetFindings<S>& part : findings_) {
+    smallestDot_ = std::min(smallestDot_, part.smallestDot);
+    turned_ += part.turned;
+    total += part.energy;
+  }
+  return total;
+}
+
+template <class S>
+void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  cornerForces(points, false, threads);
+  runTasks(threads, tasksFor(slots_, kSlotsPerTask), [&](std::size_t task) {
+    kernels::SumWork<S> work;
+    work.firstSlot = task * kSlotsPerTask;
+    work.lastSlot = std::min(slots_, work.firstSlot + kSlotsPerTask);
+    work.starts = cornerStarts_.data();
+    work.corners = cornersAt_.data();
+    work.from = corners_.data();
+    work.points = out;
+    table.sum(work);
+  });
+}
+
+template <class S>
+double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
+  return cornerForces(points, true, threads);
+}
+
+template <class S>
+double CorotatedTets<S>::meanTurn() const {
+  return std::sqrt(8.0 * std::max(0.0, turned_) / static_cast<double>(noTet(count())));
+}
+
+template <class S>
+double CorotatedTets<S>::mostTurn() const {
+  return 2.0 * std::acos(std::min(1.0, static_cast<double>(smallestDot_)));
+}
+
+template <class S>
+const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  assembled_ = rotations_;
+  byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t) {
+    work.alpha = alpha;
+    table.rotatedGradients(work);
+  });
+  return corners_.data();
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class CorotatedTets<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail
