@@ -22,6 +22,8 @@
 #ifdef TETSKIN_HAS_BULLET
 #include <tetskin/bullet/bullet_parallel_for.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/elastic_force.h>
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
@@ -30,6 +32,7 @@
 #include <tetskin/cage/cage_builder.h>
 #endif
 #ifdef TETSKIN_HAS_ELASTIC
+#include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/stiffness_calibration.h>
 #endif
 #ifdef TETSKIN_HAS_IO

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_solver.h>
 
 #include <cmath>
 #include <memory>
@@ -16,8 +17,16 @@ namespace tetskin::test {
 /// A deformable world without a body of its own.
 class EmptyWorld : public DeformableWorldBase {
  public:
-  EmptyWorld() : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {}
+  explicit EmptyWorld(std::unique_ptr<btDeformableBodySolver> bodySolver = std::make_unique<btDeformableBodySolver>())
+      : DeformableWorldBase(std::move(bodySolver)) {}
   btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
+};
+
+/// The same with the library's solver.
+class TetskinWorld : public EmptyWorld {
+ public:
+  TetskinWorld() : EmptyWorld(std::make_unique<DeformableSolver>()) {}
+  DeformableSolver& bodySolver() { return static_cast<DeformableSolver&>(*softSolver); }
 };
 
 inline std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage,

@@ -9,6 +9,13 @@
 
 namespace tetskin {
 
+/// Whose force a body has, and whose solve.
+enum class SolverPath {
+  Bullet,     ///< Bullet's force
+  ForceOnly,  ///< an ElasticForce in Bullet's solve
+  Solver,     ///< an ElasticForce in the solve of a DeformableSolver
+};
+
 /// A soft body in a deformable world, with gravity and elastic forces of its own: what Bullet leaves to the application
 /// to create, to keep apart and to delete.
 ///
@@ -25,10 +32,12 @@ class TETSKIN_BULLET_API DeformableBody {
   /// what `options.implicit` says, if it is given; nothing else in the world is changed. Step it with
   /// `stepSimulation(dt, 4, dt / 4)` for 60 frames a second; one substep a frame is too few.
   ///
-  /// world   must have been made with a btDeformableBodySolver; its gravity now serves as the scale of the default
-  ///         stiffness
+  /// world   made with a `DeformableSolver`, or else with a btDeformableBodySolver; its gravity now serves as the scale
+  ///         of the default stiffness
   /// cage    where the body shall be, world space
-  /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here
+  /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, and
+  /// for the
+  ///         worlds of reduced bodies
   static Result<std::unique_ptr<DeformableBody>> add(btDeformableMultiBodyDynamicsWorld& world, const TetMesh& cage,
                                                      const SoftBodyOptions& options = {});
   ~DeformableBody();
@@ -37,6 +46,10 @@ class TETSKIN_BULLET_API DeformableBody {
 
   btSoftBody& body();
   const btSoftBody& body() const;
+
+  ForceModel forceModel() const;
+  /// By the world's solver, and its settings in the last step: see `DeformableSolver::solves`.
+  SolverPath solverPath() const;
 
   /// The stiffness in use, in pressure units: the last one set, or that of the options, or the default for this cage,
   /// the world's gravity and `options.timeStep`.

@@ -46,32 +46,40 @@ inline btVector3 toBullet(const Eigen::Vector3d& v) {
 
 /// What holds a body together.
 enum class ForceModel {
-  NeoHookean,        ///< deformable world; large deformations, resists inversion
-  LinearElasticity,  ///< deformable world; cheaper, for moderate rotations
+  Corotated,         ///< deformable world: tetskin's own `ElasticForce`; any rotation, keeps spin
+  NeoHookean,        ///< deformable world: Bullet's; large deformations, loses all spin
+  LinearElasticity,  ///< deformable world: Bullet's; cheaper, loses some
   MassSpring,        ///< the classic worlds: the body's links, solved as constraints
 };
 
 /// What a soft body is made of, beside its shape. Lengths are world lengths. The defaults are stable in Bullet's
 /// deformable world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
-  double mass = 1.0;      ///< total, in kg; ignored where density is given
-  double density = 0.0;   ///< mass per volume; 0: from mass
+  double mass = 1.0;     ///< total, in kg; ignored where density is given
+  double density = 0.0;  ///< mass per volume; 0: from mass
+  /// nodeCount, above 0: instead of the two above, and of the floor under the masses of slivers' nodes. Empty: from
+  /// those.
+  std::vector<double> nodeMasses;
   double margin = -1.0;   ///< collision margin; below 0: 2 % of the largest side of the cage's box
   double friction = 0.5;  ///< Bullet's m_cfg.kDF, 0 to 1
   /// Nodes to hold in place, by their rest position: given infinite mass. Empty: none. See `pinnedIn`.
   std::function<bool(const Eigen::Vector3d& restPosition)> pinned;
 
   /// Also chooses how the body meets rigid ones: MassSpring as the classic worlds expect, the others as the deformable.
-  ForceModel forceModel = ForceModel::NeoHookean;
-  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size, but no more than is stable for
-  /// timeStep: fine cages are softer by default, and need shorter steps to be stiff. For MassSpring Bullet has no such
-  /// unit: there `linkStiffness` counts.
+  ForceModel forceModel = ForceModel::Corotated;
+  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size. Without a `DeformableSolver` that is
+  /// no more than is stable for timeStep: fine cages are softer by default then, and need shorter steps to be stiff.
+  /// For MassSpring Bullet has no such unit: there `linkStiffness` counts.
   double youngsModulus = 0.0;
   /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded by timeStep as said above.
   double relativeStiffness = 50.0;
+  /// tetCount, above 0: times the stiffness, tet by tet; for Corotated alone. Empty: 1.
+  std::vector<double> stiffnessScale;
   double poissonRatio = 0.3;      ///< 0 to below 0.5
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
+  double solverTolerance = 1e-2;  ///< Corotated with a DeformableSolver: see SolverLimits in elastic_force.h
+  int maxIterations = 100;        ///< the same
   double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every
   /// other soft body with trees, in each substep. Without them rays in the deformable world miss the body, those in the

@@ -26,6 +26,10 @@ btDeformableLagrangianForce* noForce() {
 
 }  // namespace
 
+bool isNoForce(const btDeformableLagrangianForce& force) {
+  return &force == noForce();
+}
+
 void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force) {
   for (int i = 0; i < list.size(); ++i) {
     if (list[i] == force) list[i] = noForce();

@@ -24,6 +24,9 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 /// where they are, so that Bullet may be walking over it.
 void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
+/// Whether it is what `replaceByNothing` puts there.
+bool isNoForce(const btDeformableLagrangianForce& force);
+
 /// A force of Bullet's for one body, in a list where nobody's body joins it. It leaves the list when the application
 /// takes the body out of the world; otherwise its owner takes it out.
 template <class Force>

@@ -4,7 +4,9 @@
 #include <BulletSoftBody/btDeformableLinearElasticityForce.h>
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/body_forces.h>
+#include <tetskin/bullet/src/elastic_parts.h>
 #include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
@@ -12,15 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace tetskin {
-
-/// Seconds of damping, and a stiffness.
-struct BodyMaterial {
-  double youngsModulus = 0.0;
-  double poissonRatio = 0.0;
-  double damping = 0.0;
-};
 
 namespace {
 
@@ -31,7 +27,7 @@ constexpr double kStableFrequency = 8.0;
 
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours held, over its mass.
-double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, double mass) {
+double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
   const Lame unit(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
   for (const Tet& tet : cage.tets) {
@@ -40,20 +36,26 @@ double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& option
     const double modulus = (unit.lambda + 2.0 * unit.mu) * std::abs(signedVolume(corners));
     for (int k = 0; k < 4; ++k) stiffness[tet[k]] += modulus * gradients[k] * gradients[k];
   }
-  const std::vector<double> masses = lumpedMasses(cage, mass);
   for (std::size_t n = 0; n < masses.size(); ++n) stiffness[n] /= masses[n];
   return median(std::move(stiffness));
 }
 
-double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, double gravity) {
-  const double volume = totalVolume(cage);
-  const double density = options.density > 0.0 ? options.density : options.mass / volume;
+/// bounded  by what explicit elastic forces can bear
+double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
+                            double gravity, bool bounded) {
+  const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / totalVolume(cage);
   // Without gravity nothing sags; the earth's serves as a scale.
   constexpr double kEarth = 9.81;
   const double wanted = options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) *
                         boundingBox(cage.nodes).sizes().maxCoeff();
-  const double frequency = medianSquaredFrequency(cage, options, density * volume);
+  if (!bounded) return wanted;
+  const double frequency = medianSquaredFrequency(cage, options, masses);
   return std::min(wanted, kStableFrequency / (options.timeStep * options.timeStep * frequency));
+}
+
+std::vector<double> nodeMasses(const TetMesh& cage, const SoftBodyOptions& options) {
+  if (!options.nodeMasses.empty()) return options.nodeMasses;
+  return lumpedMasses(cage, options.density > 0.0 ? options.density * totalVolume(cage) : options.mass);
 }
 
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
@@ -64,8 +66,12 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
   force.setDamping(0, damping);
 }
 
+void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
+  [[maybe_unused]] const Status status = force.setMaterial(material);
+  assert(status.ok());
+}
 template <class Force>
-void setMaterial(Force& force, const BodyMaterial& material) {
+void setMaterial(Force& force, const ElasticMaterial& material) {
   const Lame lame(material.youngsModulus, material.poissonRatio);
   force.setLameParameters(static_cast<btScalar>(lame.mu), static_cast<btScalar>(lame.lambda));
   setDamping(force, static_cast<btScalar>(material.damping));
@@ -75,43 +81,44 @@ Status invalid(const char* message) {
   return {StatusCode::InvalidOption, message};
 }
 
-/// Ok if Bullet's scalars can hold it.
-Status checkRange(const BodyMaterial& material) {
-  const Lame lame(material.youngsModulus, material.poissonRatio);
-  const auto held = [](double value) { return std::isfinite(static_cast<btScalar>(value)); };
-  if (held(lame.mu) && held(lame.lambda) && held(material.damping) && held(lame.lambda * material.damping)) return {};
-  return invalid("a material so stiff, or so strongly damped, is beyond the range of Bullet's numbers");
-}
-
 }  // namespace
 
 /// The members of a DeformableBody, in an order in which forces go before the body that they are for.
 struct DeformableBody::Parts {
-  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, ForceList& ofForces, std::unique_ptr<btSoftBody> made)
-      : world(ofWorld), list(ofForces), body(std::move(made)), gravity(ofWorld, ofForces) {}
+  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
+      : world(ofWorld),
+        solver(ofSolver),
+        list(*ofSolver.getLagrangianForceArray()),
+        body(std::move(made)),
+        gravity(ofWorld, list) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
+  btDeformableBodySolver& solver;
   ForceList& list;
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: what it has when it is not pinned
-  BodyMaterial material;
+  ElasticMaterial material;
+  ForceModel forceModel = ForceModel::Corotated;
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
-  std::function<void(const BodyMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
+  std::function<void(const ElasticMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
 
-  template <class Force>
-  void makeElasticity() {
-    auto force = std::make_unique<OwnForce<Force>>(list);
-    applyMaterial = [to = force.get()](const BodyMaterial& now) { setMaterial(*to, now); };
+  template <class Force, class... Arguments>
+  Force& makeElasticity(Arguments... arguments) {
+    auto force = std::make_unique<OwnForce<Force>>(list, arguments...);
+    Force& made = *force;
+    applyMaterial = [to = &made](const ElasticMaterial& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
+    return made;
   }
-  void apply(const BodyMaterial& now) {
+  void makeElasticity(const SoftBodyOptions& options);
+  void apply(const ElasticMaterial& now) {
     material = now;
     applyMaterial(now);
     body->activate();
   }
-  Status set(const BodyMaterial& now) {
-    Status status = checkRange(now);
+  Status set(const ElasticMaterial& now) {
+    Status status = checkMaterial(now);
     if (status.ok()) apply(now);
     return status;
   }
@@ -134,34 +141,77 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   Result<std::unique_ptr<btSoftBody>> made = makeSoftBody(cage, world.getWorldInfo(), options);
   if (!made.ok()) return made.status();
   std::unique_ptr<btSoftBody> body = std::move(made).value();
+  const bool corotated = options.forceModel == ForceModel::Corotated;
+  if (corotated) {
+    if (Status status = checkTets(*body, options.stiffnessScale); !status.ok()) return status;
+  }
+  // Only bodies in a world know its solver.
+  world.addSoftBody(body.get());
+  auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
+  const std::vector<double> masses = nodeMasses(cage, options);
   const double gravity = static_cast<double>(world.getGravity().length());
-  const double stiffness =
-      options.youngsModulus > 0.0 ? options.youngsModulus : defaultYoungsModulus(cage, options, gravity);
-  const BodyMaterial material{stiffness, options.poissonRatio, options.damping};
-  if (Status status = checkRange(material); !status.ok()) return status;
+  const bool bounded = !(corotated && dynamic_cast<DeformableSolver*>(solver));
+  const ElasticMaterial material{options.youngsModulus > 0.0
+                                     ? options.youngsModulus
+                                     : defaultYoungsModulus(cage, options, masses, gravity, bounded),
+                                 options.poissonRatio, options.damping};
+  Status status = checkMaterial(material);
+  if (solver->isReducedSolver()) {
+    status = invalid(
+        "a world made with a btReducedDeformableBodySolver holds reduced bodies alone; make it with a "
+        "DeformableSolver");
+  }
+  if (!status.ok()) {
+    world.removeSoftBody(body.get());
+    return status;
+  }
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
     if (options.implicit) world.setImplicit(*options.implicit);
   }
-  world.addSoftBody(body.get());
-  auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
 
-  auto parts = std::make_unique<Parts>(world, *solver->getLagrangianForceArray(), std::move(body));
-  const double mass = options.density > 0.0 ? options.density * totalVolume(cage) : options.mass;
-  for (const double m : lumpedMasses(cage, mass)) parts->masses.push_back(static_cast<btScalar>(m));
-  if (options.forceModel == ForceModel::LinearElasticity) {
-    parts->makeElasticity<btDeformableLinearElasticityForce>();
-  } else {
-    parts->makeElasticity<btDeformableNeoHookeanForce>();
-  }
-  parts->apply(material);
+  auto parts = std::make_unique<Parts>(world, *solver, std::move(body));
+  for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
+  parts->forceModel = options.forceModel;
+  parts->material = material;
+  parts->makeElasticity(options);
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
     force->setIndices(solver->getIndices());
   }
   addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
+  if (corotated) {
+    status = static_cast<ElasticForce&>(*parts->elasticity).setStiffnessScale(*parts->body, options.stiffnessScale);
+    assert(status.ok());
+  }
+  parts->apply(material);
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(parts)));
+}
+
+void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options) {
+  switch (options.forceModel) {
+    case ForceModel::LinearElasticity:
+      makeElasticity<btDeformableLinearElasticityForce>();
+      return;
+    case ForceModel::NeoHookean:
+      makeElasticity<btDeformableNeoHookeanForce>();
+      return;
+    default:
+      ElasticForce& force = makeElasticity<ElasticForce>(material);
+      [[maybe_unused]] const Status status = force.setLimits({options.solverTolerance, options.maxIterations});
+      assert(status.ok());
+  }
+}
+
+ForceModel DeformableBody::forceModel() const {
+  return parts_->forceModel;
+}
+
+SolverPath DeformableBody::solverPath() const {
+  if (parts_->forceModel != ForceModel::Corotated) return SolverPath::Bullet;
+  const auto* own = dynamic_cast<const DeformableSolver*>(&parts_->solver);
+  return own && own->solves() ? SolverPath::Solver : SolverPath::ForceOnly;
 }
 
 DeformableBody::~DeformableBody() {

@@ -33,8 +33,31 @@ Status checkOptions(const SoftBodyOptions& options) {
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
     return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};
   }
+  if (!(options.solverTolerance >= 0.0 && options.solverTolerance < 1.0) || options.maxIterations < 1) {
+    return {StatusCode::InvalidOption,
+            "a soft body's solver tolerance must be at least 0 and below 1, and its iterations at least 1"};
+  }
+  if (!options.stiffnessScale.empty() && options.forceModel != ForceModel::Corotated) {
+    return {StatusCode::InvalidOption, "a stiffness for each tet (stiffnessScale) needs ForceModel::Corotated"};
+  }
   if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
     return {StatusCode::InvalidOption, "a soft body's link stiffness must be above 0 and at most 1"};
+  }
+  return {};
+}
+
+/// Of a value for each of something: how many, and each above 0.
+Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, const char* of) {
+  if (values.empty()) return {};
+  if (values.size() != count) {
+    return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values for " +
+                                          std::to_string(count) + " " + of + "s; it takes one for each, or none"};
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto held = static_cast<btScalar>(values[k]);
+    if (held > 0 && std::isfinite(held) && std::isfinite(1 / held)) continue;
+    return {StatusCode::InvalidOption, std::string(name) + " of " + of + " " + std::to_string(k) +
+                                           " must be above 0, and within the range of Bullet's numbers"};
   }
   return {};
 }
@@ -74,7 +97,7 @@ void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   if (options.density > 0.0) {
     mass = options.density * totalVolume(cage);
   }
-  const std::vector<double> masses = lumpedMasses(cage, mass);
+  const std::vector<double> masses = options.nodeMasses.empty() ? lumpedMasses(cage, mass) : options.nodeMasses;
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
     body.setMass(static_cast<int>(n), pinned ? btScalar(0) : static_cast<btScalar>(masses[n]));
@@ -137,6 +160,11 @@ Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBody
   if (Status status = checkOptions(options); !status.ok()) return status;
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
+  if (Status status = checkValues(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"); !status.ok())
+    return status;
+  if (Status status = checkValues(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet"); !status.ok()) {
+    return status;
+  }
 
   std::vector<btVector3> nodes(positive.nodeCount());
   std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);

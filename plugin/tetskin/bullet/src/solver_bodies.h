@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: the bodies of a step, numbered, and which of them are solved for together.
+#pragma once
+
+#include <tetskin/bullet/src/body_forces.h>
+#include <tetskin/bullet/src/elastic_parts.h>
+
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+class btDeformableBackwardEulerObjective;
+
+namespace tetskin {
+
+using VectorStack = btAlignedObjectArray<btVector3>;
+
+/// Where the nodes were when a body's trees were fitted.
+struct FittedTrees {
+  std::vector<btScalar> points;  ///< 3 a node
+  btScalar pad = 0;              ///< around them
+  btScalar drift = 0;            ///< how far a node has moved since, at the beginning of this step
+  bool ready = false;
+
+  void keep(Dynamics& dynamics);
+  btScalar furthest(Dynamics& dynamics) const;
+  /// Whether they still hold nodes that move so far in this step.
+  bool holds(btScalar step) const { return ready && drift + step < pad; }
+};
+
+/// A body awake in this step.
+struct SolvedBody {
+  btSoftBody* body = nullptr;
+  int first = 0;                   ///< the number of its first node in Bullet's vectors
+  ElasticBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
+  const SolverLimits* limits = nullptr;
+  Dynamics* dynamics = nullptr;
+  bool needsDeformation = false;                    ///< Bullet's own gradients
+  std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
+  FittedTrees* fittedTrees = nullptr;
+  elastic_detail::ConjugateGradient<btScalar> solve;
+  bool constrained = false;  ///< by more than held nodes
+  bool touched = false;      ///< something beside elasticity has changed velocities, or shall
+};
+
+/// Bodies that forces couple, and these forces; most are alone.
+struct SolvedSystem {
+  std::vector<std::size_t> bodies;
+  std::vector<btDeformableLagrangianForce*> forces;  ///< but elastic ones
+};
+
+class SolverBodies {
+ public:
+  /// The bodies of the world that are awake; `everyone`: all of them. Returns whether they, or their nodes, are others
+  /// than before, or stand elsewhere.
+  bool collect(const btAlignedObjectArray<btSoftBody*>& all, bool everyone, btAlignedObjectArray<btSoftBody*>& awake);
+  /// Gives all nodes, and all faces, of awake bodies and then of sleeping ones, the numbers they have in Bullet's
+  /// vectors: forces may name nodes of sleeping bodies.
+  void number(btDeformableBackwardEulerObjective& objective);
+  int nodeCount() const { return nodeCount_; }
+  int awakeCount() const { return awakeCount_; }
+
+  /// Which forces act on which bodies; before each step.
+  void assign(const ForceList& forces);
+  /// No body is solved for here: elastic forces act by themselves.
+  void release(const ForceList& forces);
+
+  std::vector<SolvedBody>& bodies() { return bodies_; }
+  const std::vector<SolvedSystem>& systems() const { return systems_; }
+  /// The body of a node, by its number.
+  SolvedBody& bodyOf(int node);
+
+ private:
+  void makeDynamics();
+
+  struct Kept {
+    std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
+    std::vector<btScalar> normalImpulses;
+    FittedTrees fittedTrees;
+  };
+
+  std::vector<btSoftBody*> awake_, asleep_;
+  std::vector<int> nodeCounts_;  ///< of all, as numbered
+  int nodeCount_ = 0, awakeCount_ = 0;
+  std::vector<SolvedBody> bodies_;
+  std::vector<SolvedSystem> systems_;
+  std::unordered_map<const btSoftBody*, Kept> kept_;
+};
+
+}  // namespace tetskin

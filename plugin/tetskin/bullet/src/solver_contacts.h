@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: what Bullet's contact solve leaves for the solve after it.
+#pragma once
+
+#include <tetskin/bullet/src/solver_bodies.h>
+
+class btDeformableContactProjection;
+
+namespace tetskin {
+
+/// Bullet's directions in which a node's velocity stays as its contacts have made it. Marks the bodies that have any
+/// but held nodes.
+void fixContacts(const btDeformableContactProjection& projection, SolverBodies& bodies);
+
+/// What friction does to nodes that slide: on bodies under Bullet's forces impulses, as Bullet has it; on elastic ones
+/// resistance, after their velocities have been read. Before `fixContacts`.
+/// residual  by node number
+void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual);
+
+/// The normal impulses of this step's contacts, of the solution: for the next.
+/// residual  of the solve's right side, beside the body's own: what addDynamicFriction and others gave, by node number
+void keepNormalImpulses(const btDeformableContactProjection& projection, SolverBodies& bodies,
+                        const VectorStack& residual);
+
+}  // namespace tetskin
