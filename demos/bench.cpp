@@ -19,6 +19,7 @@
 #include <memory>
 
 #include "bench/body_cases.h"
+#include "bench/step_cases.h"
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
@@ -348,6 +349,7 @@ int main(int argc, char** argv) {
       registerUpdateSizes(options.tets);
       registerBuildBodySizes();
       bench::registerBodyCases();
+      bench::registerStepCases();
       registerAttachSizes();
       registerBuildCageSizes();
     }

@@ -22,7 +22,7 @@ constexpr double kFloorTolerance = 0.01;
 /// What a scene is made of. Which nodes are held is the scene's own affair.
 struct SceneOptions {
   SoftBodyOptions body;
-  Force force = Force::NeoHookean;
+  Force force = Force::Elastic;
   int substeps = 4;  ///< of a frame
   double frameSeconds = 1.0 / kFrameRate;
   int frames = 0;          ///< of the whole run, over which the scene spreads what happens; 0: its own

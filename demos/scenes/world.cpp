@@ -11,6 +11,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_solver.h>
 
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
@@ -19,8 +20,19 @@ namespace tetskin::scenes {
 namespace {
 
 ForceModel modelOf(Force force) {
-  if (force == Force::MassSpring) return ForceModel::MassSpring;
-  return force == Force::LinearElasticity ? ForceModel::LinearElasticity : ForceModel::NeoHookean;
+  switch (force) {
+    case Force::MassSpring:
+      return ForceModel::MassSpring;
+    case Force::LinearElasticity:
+      return ForceModel::LinearElasticity;
+    case Force::NeoHookean:
+    case Force::BulletCorotated:
+      return ForceModel::NeoHookean;
+    case Force::Elastic:
+    case Force::ElasticForceOnly:
+      break;
+  }
+  return ForceModel::Corotated;
 }
 
 }  // namespace
@@ -45,7 +57,8 @@ void World::makeClassic() {
 }
 
 void World::makeDeformable() {
-  bodySolver_ = std::make_unique<btDeformableBodySolver>();
+  bodySolver_ = force_ == Force::Elastic ? std::unique_ptr<btDeformableBodySolver>(std::make_unique<DeformableSolver>())
+                                         : std::make_unique<btDeformableBodySolver>();
   auto solver = std::make_unique<btDeformableMultiBodyConstraintSolver>();
   solver->setDeformableSolver(bodySolver_.get());
   auto world = std::make_unique<btDeformableMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver.get(),
@@ -64,7 +77,7 @@ World::~World() {
 
 btSoftBody& World::add(const TetMesh& cage, SoftBodyOptions options) {
   options.forceModel = modelOf(force_);
-  if (deformable_ && force_ != Force::Corotated) {
+  if (deformable_ && force_ != Force::BulletCorotated) {
     auto made = DeformableBody::add(*deformable_, cage, options);
     require(made.status());
     deformableBodies_.push_back(std::move(made).value());
@@ -97,6 +110,10 @@ void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
   deformable_->addForce(&body, forces_.back().get());
 }
 
+void World::setThreads(ParallelFor* threads) {
+  if (force_ == Force::Elastic) static_cast<DeformableSolver&>(*bodySolver_).setThreads(threads);
+}
+
 int World::step(double seconds) {
   return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
 }
@@ -122,6 +139,8 @@ void World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform&
   if (mass > 0.0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
   auto body = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, shape.get(), inertia);
   body->setWorldTransform(where);
+  // Bullet looks for contacts of soft bodies with this one, and does not set it itself.
+  body->setInterpolationWorldTransform(where);
   body->setFriction(1);
   world_->addRigidBody(body.get());
   shapes_.push_back(std::move(shape));

@@ -23,7 +23,8 @@ class btRigidBody;
 
 namespace tetskin {
 class DeformableBody;
-}
+class ParallelFor;
+}  // namespace tetskin
 
 namespace tetskin::scenes {
 
@@ -35,9 +36,11 @@ constexpr double kEarth = 9.81;
 /// What holds soft bodies together, and with it the world that they need.
 enum class Force {
   MassSpring,        ///< Bullet's classic world
-  LinearElasticity,  ///< the deformable world, as the next
+  LinearElasticity,  ///< the deformable world, as all that follow
   NeoHookean,
-  Corotated,  ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
+  BulletCorotated,   ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
+  Elastic,           ///< the library's force and its solver
+  ElasticForceOnly,  ///< the library's force with Bullet's solver
 };
 
 /// A world of the kind that a force needs, with everything it takes to make one, and its bodies, all owned here.
@@ -58,6 +61,8 @@ class World {
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
   int step(double seconds);
+  /// Lends threads to the library's solver, if it is in use.
+  void setThreads(ParallelFor* threads);
 
   btDiscreteDynamicsWorld& bullet() { return *world_; }
   /// Of the body added last, in the deformable world by a force of the library's.
@@ -89,7 +94,7 @@ class World {
   std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
 };
 
-/// The stiffness that the library gives a neo-Hookean body of this cage by default, under the earth's gravity.
+/// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.
 double defaultStiffness(const TetMesh& cage, const SoftBodyOptions& options);
 
 /// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "bench/step_cases.h"
+
+#include <benchmark/benchmark.h>
+#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/cage/cage_builder.h>
+
+#include <algorithm>
+#include <string>
+
+#include "bench/xpbd.h"
+#include "scenes/input_error.h"
+#include "scenes/placement.h"
+#include "scenes/serpent.h"
+#include "scenes/table.h"
+
+namespace tetskin::bench {
+namespace {
+
+using benchmark::State;
+using scenes::Force;
+
+/// A third of a second of falling, and two of landing and rocking.
+constexpr int kFrames = 140;
+/// Of XPBD, a frame.
+constexpr int kXpbdSubsteps = 10;
+
+/// In the world's size.
+TetMesh worldCage(std::size_t tets) {
+  CageOptions options;
+  options.targetTets = tets;
+  TetMesh cage = buildCage(scenes::makeSerpent(), options).value();
+  return scenes::placementOf(boundingBox(cage.nodes)).toWorld(std::move(cage));
+}
+
+/// Times frames of a run of kFrames that are spread evenly over it, however few the library asks for: a landing costs
+/// more than a fall.
+/// restart  begins the run, untimed
+/// step     makes one frame
+template <class Restart, class Step>
+void timeFrames(State& state, Restart&& restart, Step&& step) {
+  const auto wanted = static_cast<int>(std::min<benchmark::IterationCount>(state.max_iterations, kFrames));
+  int frame = 0, timed = wanted;
+  for (auto _ : state) {
+    const bool over = timed == wanted;
+    const int next = over ? kFrames / (2 * wanted) : (2 * timed + 1) * kFrames / (2 * wanted);
+    if (over || frame != next) {
+      state.PauseTiming();
+      if (over) {
+        restart();
+        frame = timed = 0;
+      }
+      for (; frame < next; ++frame) step();
+      state.ResumeTiming();
+    }
+    step();
+    ++frame;
+    ++timed;
+  }
+}
+
+/// The drop scene, each frame of four steps; the same Young's modulus for all forces: the default of bodies in Bullet's
+/// solver, which their steps can bear.
+void drop(State& state, Force force, std::size_t tets) {
+  const TetMesh cage = worldCage(tets);
+  scenes::SceneOptions options;
+  options.force = force;
+  options.body.youngsModulus = scenes::defaultStiffness(cage, options.body);
+  std::unique_ptr<scenes::Scene> scene;
+  int frame = 0;
+  const auto restart = [&] {
+    scene = scenes::sceneNamed("obstacles").make(cage, options);
+    frame = 0;
+  };
+  timeFrames(state, restart, [&] { scene->step(++frame); });
+  if (scene->check().exploded) state.SkipWithError("the body has exploded");
+  state.counters["tets"] = static_cast<double>(cage.tetCount());
+}
+
+void dropXpbd(State& state, std::size_t tets) {
+  constexpr double kAboveFloor = 0.9;
+  TetMesh cage = worldCage(tets);
+  const double lift = kAboveFloor - boundingBox(cage.nodes).min().y();
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += lift;
+  std::unique_ptr<Xpbd> body;
+  timeFrames(
+      state, [&] { body = std::make_unique<Xpbd>(cage); }, [&] { body->step(1.0f / 60.0f, kXpbdSubsteps); });
+  if (!(body->heights()[1] < 10.0f)) state.SkipWithError("the body has exploded");
+  const auto count = static_cast<double>(cage.tetCount());
+  state.counters["tets"] = count;
+  state.counters["s_per_tet_and_substep"] = benchmark::Counter(
+      count * kXpbdSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// 500 bodies of 200 tets in free fall, of which 450 sleep.
+void crowd(State& state, Force force) {
+  constexpr std::size_t kBodies = 500, kAsleep = 450;
+  scenes::SceneOptions options;
+  options.force = force;
+  options.bodies = kBodies;
+  const auto scene = scenes::sceneNamed("crowd").make(worldCage(200), options);
+  for (std::size_t b = 0; b < kAsleep; ++b) scene->body(b).forceActivationState(ISLAND_SLEEPING);
+  int frame = 0;
+  for (auto _ : state) scene->step(++frame);
+  std::size_t asleep = 0;
+  for (std::size_t b = 0; b < kBodies; ++b) asleep += !scene->body(b).isActive();
+  state.counters["asleep"] = static_cast<double>(asleep);
+}
+
+}  // namespace
+
+void registerStepCases() {
+  const std::pair<const char*, Force> forces[] = {{"bullet_neo_hookean", Force::NeoHookean},
+                                                  {"bullet_linear", Force::LinearElasticity},
+                                                  {"tetskin_force", Force::ElasticForceOnly},
+                                                  {"tetskin", Force::Elastic}};
+  for (const std::size_t tets : {300, 3000, 10000, 30000, 100000}) {
+    const std::string size = "/tets:" + std::to_string(tets);
+    for (const auto& [name, force] : forces) {
+      const auto run = [force = force, tets](State& state) { drop(state, force, tets); };
+      benchmark::RegisterBenchmark(("Step/" + std::string(name) + size).c_str(), run)->Unit(benchmark::kMillisecond);
+    }
+    benchmark::RegisterBenchmark(("Step/xpbd" + size).c_str(), [tets](State& state) {
+      dropXpbd(state, tets);
+    })->Unit(benchmark::kMillisecond);
+  }
+  for (const auto& [name, force] : {forces[0], forces[3]}) {
+    const auto run = [force = force](State& state) { crowd(state, force); };
+    benchmark::RegisterBenchmark(("Step/sleeping_crowd/" + std::string(name)).c_str(), run)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace tetskin::bench
