@@ -24,7 +24,7 @@ struct ElasticMaterial {
 /// How closely the velocities of a step are solved for. The defaults are for what is looked at; see the README for what
 /// they cost in accuracy.
 struct SolverLimits {
-  double tolerance = 1e-2;  ///< of the residual over that without elasticity; 0 to below 1
+  double tolerance = 5e-3;  ///< of the residual over that without elasticity; 0 to below 1
   int iterations = 100;     ///< of the conjugate gradient in a step, at most; at least 1
 };
 

@@ -78,7 +78,7 @@ struct SoftBodyOptions {
   double poissonRatio = 0.3;      ///< 0 to below 0.5
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
-  double solverTolerance = 1e-2;  ///< Corotated with a DeformableSolver: see SolverLimits in elastic_force.h
+  double solverTolerance = 5e-3;  ///< Corotated with a DeformableSolver: see SolverLimits in elastic_force.h
   int maxIterations = 100;        ///< the same
   double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every

@@ -21,7 +21,7 @@ struct ElasticOptions {
   double density = 1.0;                ///< mass per volume
   std::vector<double> stiffnessScale;  ///< tetCount, above 0: times the stiffness; empty: 1
   std::vector<double> nodeMasses;      ///< nodeCount, above 0: instead of a quarter of each tet's; empty: from density
-  double tolerance = 1e-2;             ///< of a step's residual over that at its start; 0 to below 1
+  double tolerance = 5e-3;             ///< of a step's residual over that at its start; 0 to below 1
   int iterations = 200;                ///< of the conjugate gradient in a step, at most; at least 1
 };
 

@@ -383,7 +383,7 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
   if (again) return solveAgain(system, inner);
   if (!first.elastic) return;
   first.solve.iterate(first.limits->iterations, inner);
-  if (!first.dynamics->anyHeld()) first.dynamics->removeMomentum();
+  first.dynamics->removeMomentum();
 }
 
 void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor* inner) {

@@ -19,16 +19,19 @@ Status invalid(const char* message) {
   return {StatusCode::InvalidOption, message};
 }
 
+/// times  what becomes of them must be within the range of the scalars, too
 template <class Scalar>
-Status checkValues(const std::vector<double>& values, std::size_t count, const char* name) {
+Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, double times = 1.0) {
   if (values.empty()) return {};
   if (values.size() != count) {
     return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values, and " +
                                           std::to_string(count) + " are needed, or none"};
   }
   for (std::size_t k = 0; k < count; ++k) {
-    if (values[k] > 0.0 && std::isfinite(static_cast<Scalar>(values[k]))) continue;
-    return {StatusCode::InvalidOption, std::string(name) + "[" + std::to_string(k) + "] must be above 0, and finite"};
+    const auto held = static_cast<Scalar>(values[k] * times);
+    if (held > Scalar(0) && std::isfinite(held) && std::isfinite(1 / held)) continue;
+    return {StatusCode::InvalidOption,
+            std::string(name) + "[" + std::to_string(k) + "] must be above 0, and within the range of the scalars"};
   }
   return {};
 }
@@ -41,13 +44,16 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
     return invalid("a Poisson's ratio must be at least 0 and below 0.5");
   }
   if (!(options.damping >= 0.0 && held(options.damping))) return invalid("damping must not be negative, and finite");
-  if (!(options.density > 0.0 && held(options.density))) return invalid("a density must be above 0, and finite");
+  if (!(options.density > 0.0 && held(options.density) && held(1.0 / options.density)))
+    return invalid("a density must be above 0, and finite");
   if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.iterations < 1) {
     return invalid("a tolerance must be at least 0 and below 1, and there must be at least one iteration");
   }
   const Lame lame(options.youngsModulus, options.poissonRatio);
   if (!held(lame.mu) || !held(lame.lambda)) return invalid("a material so stiff is beyond the range of the scalars");
-  if (Status status = checkValues<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale"); !status.ok()) {
+  if (Status status =
+          checkValues<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", lame.mu + lame.lambda);
+      !status.ok()) {
     return status;
   }
   return checkValues<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses");
@@ -55,6 +61,9 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
 
 Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
   if (Status status = usable(cage, report); !status.ok()) return status;
+  if (const std::size_t far = firstUnusable(viewOf(cage.nodes)); far < cage.nodeCount()) {
+    return {StatusCode::NonFinite, "node " + std::to_string(far) + " of the cage is beyond what can be simulated"};
+  }
   const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
   if (flat.count == 0) return {};
   return {StatusCode::Degenerate, "tet " + std::to_string(flat.first) + " of the cage is flat: remove flat tets"};
@@ -82,10 +91,14 @@ struct ElasticBody<Scalar>::Parts {
     dynamics.setDamping(options.damping);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
+      double total = 0.0;
       for (const Tet& tet : cage.tets) {
         const double quarter = options.density * std::abs(signedVolume(cornersOf(cage, tet))) / 4.0;
         for (const int n : tet) masses[static_cast<std::size_t>(n)] += quarter;
+        total += 4.0 * quarter;
       }
+      // A node of no tet is a point that falls.
+      for (double& m : masses) m = m > 0.0 ? m : total / static_cast<double>(masses.size());
     }
     for (std::size_t n = 0; n < masses.size(); ++n) dynamics.setMass(n, static_cast<Scalar>(masses[n]));
   }
@@ -142,10 +155,12 @@ std::size_t ElasticBody<Scalar>::nodeCount() const {
 }
 template <class Scalar>
 PointView<Scalar> ElasticBody<Scalar>::positions() {
+  if (!parts_) return {};
   return {parts_->positions.data(), nodeCount()};
 }
 template <class Scalar>
 PointView<Scalar> ElasticBody<Scalar>::velocities() {
+  if (!parts_) return {};
   return {parts_->velocities.data(), nodeCount()};
 }
 
@@ -164,7 +179,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   p.dynamics.start(seconds, threads);
   p.solve.start({&p.dynamics.matrix()}, p.limits, {}, threads);
   p.solve.iterate(p.limits.iterations, threads);
-  if (!p.dynamics.anyHeld()) p.dynamics.removeMomentum();
+  p.dynamics.removeMomentum();
   p.write(seconds);
   return p.solve.iterations();
 }

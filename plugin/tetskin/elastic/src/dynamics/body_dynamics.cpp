@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/dynamics/part_motion.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -22,9 +23,26 @@ constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
 template <class S>
 BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
     : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), held_(nodes) {
+  findParts(rest.tets);
   if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
   for (AlignedVector<S>* v : {&points_, &velocities_, &relative_, &forces_}) v->assign(4 * matrix_.slotCount(), S(0));
   for (AlignedVector<S>* v : {&rightSide_, &image_}) v->assign(matrix_.wideSize(), S(0));
+}
+
+/// Slots without node, which have no mass, belong to the first.
+template <class S>
+void BodyDynamics<S>::findParts(const std::vector<Tet>& tets) {
+  DisjointSets sets(nodeCount());
+  for (const Tet& tet : tets) {
+    for (std::size_t k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
+  }
+  partOf_.assign(matrix_.slotCount(), 0);
+  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // from 1
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
+    if (number == 0) number = ++parts_;
+    partOf_[matrix_.slotOf(n)] = number - 1;
+  }
 }
 
 template <class S>
@@ -134,7 +152,6 @@ double BodyDynamics<S>::energy(ParallelFor* threads) {
 
 template <class S>
 void BodyDynamics<S>::removeMomentum() {
-  assert(!anyHeld());
   using Vector = Eigen::Vector3d;
   S* solution = matrix_.solution();
   const auto solutionAt = [&](std::size_t wide) {
@@ -143,28 +160,33 @@ void BodyDynamics<S>::removeMomentum() {
   const auto pointAt = [&](std::size_t slot) {
     return Vector(points_[4 * slot], points_[4 * slot + 1], points_[4 * slot + 2]);
   };
-  double mass = 0.0;
-  Vector momentum = Vector::Zero(), centre = Vector::Zero();
+  std::vector<PartMotion> parts(parts_);
+  if (held_ > 0) {
+    for (std::size_t n = 0; n < nodeCount(); ++n) {
+      const std::size_t slot = matrix_.slotOf(n);
+      if (matrix_.massAt(slot) == S(0)) parts[partOf_[slot]].pivot.add(pointAt(slot));
+    }
+  }
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    PartMotion& part = parts[partOf_[slot]];
     const auto m = static_cast<double>(matrix_.massAt(slot));
-    mass += m;
-    momentum += m * solutionAt(wide);
-    centre += m * pointAt(slot);
+    part.mass += m;
+    part.push += m * solutionAt(wide);
+    part.about += m * pointAt(slot);
   });
-  const Vector push = momentum / mass;
-  centre /= mass;
-  Vector spin = Vector::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (PartMotion& part : parts) part.finishPush();
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    PartMotion& part = parts[partOf_[slot]];
     const auto m = static_cast<double>(matrix_.massAt(slot));
-    const Vector arm = pointAt(slot) - centre;
-    spin += m * arm.cross(solutionAt(wide));
-    inertia += m * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+    const Vector arm = pointAt(slot) - part.about;
+    part.rate += m * arm.cross(solutionAt(wide));
+    part.inertia += m * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
   });
-  const Vector rate = inertia.ldlt().solve(spin);
-  if (!push.allFinite() || !rate.allFinite()) return;
+  for (PartMotion& part : parts) part.finishRate();
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    const Vector rigid = push + rate.cross(pointAt(slot) - centre);
+    if (matrix_.massAt(slot) == S(0)) return;
+    const PartMotion& part = parts[partOf_[slot]];
+    const Vector rigid = part.push + part.rate.cross(pointAt(slot) - part.about);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(rigid[static_cast<int>(k)]);
   });
 }

@@ -56,8 +56,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   S* scratchPoints() { return relative_.data(); }
   double energy(ParallelFor* threads);
 
-  /// The solution becomes free of linear and angular momentum: internal forces have none, but a solve that is cut short
-  /// has. For bodies of which nothing is held.
+  /// The solution becomes free of the linear and the angular momentum that internal forces cannot give, but a solve
+  /// that is cut short does: of each part that shares no node with others; held at a node, of momentum about the node,
+  /// held along a line, about the line.
   void removeMomentum();
   bool anyHeld() const { return held_ > 0; }
 
@@ -65,14 +66,17 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
  private:
   double alphaFor(double seconds) const;
+  void findParts(const std::vector<Tet>& tets);
 
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;
   AlignedVector<S> points_, velocities_, relative_, forces_;  ///< by slot
   AlignedVector<S> rightSide_, image_;                        ///< wide
   double damping_ = 0.0, alpha_ = 0.0;
-  bool changed_ = true;  ///< masses or material, since the last assembly
-  std::size_t held_;
+  bool changed_ = true;                ///< masses or material, since the last assembly
+  std::size_t held_;                   ///< nodes
+  std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node
+  std::uint32_t parts_ = 0;
 };
 
 }  // namespace tetskin::elastic_detail

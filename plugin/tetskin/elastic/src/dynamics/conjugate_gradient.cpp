@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tetskin::elastic_detail {
 
@@ -21,6 +22,10 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, E
   }
   target_ = std::max(limits.tolerance * limits.tolerance * rho_, limits.floor * limits.floor * mass);
   target_ = std::max(target_, limits.enough);
+  // Below, products of residuals lose their digits, and the next lengths would be anything.
+  constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+  target_ = std::max(target_, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));
+  stopped_ = false;
   factor_ = 0;
   iterations_ = 0;
   most_ = limits.iterations;
@@ -44,11 +49,8 @@ bool ConjugateGradient<S>::step(ParallelFor* threads) {
 
 template <class S>
 bool ConjugateGradient<S>::iterate(int most, ParallelFor* threads) {
-  for (int k = 0; k < most && iterations_ < most_ && !converged(); ++k, ++iterations_) {
-    if (!step(threads)) {
-      rho_ = 0.0;
-      break;
-    }
+  for (int k = 0; k < most && iterations_ < most_ && !stopped_ && !converged(); ++k, ++iterations_) {
+    stopped_ = !step(threads);
   }
   return converged();
 }

@@ -39,14 +39,19 @@ TETSKIN_INLINE WideVector<S, W> offDiagonal(const RowWork<S>& work, std::uint32_
   return total;
 }
 
-/// Of symmetric positive blocks; 0 where there is no mass.
+/// Of symmetric positive blocks; 0 where there is no mass. Of their ratios to the trace: products of three of the
+/// stiffest would leave float's range.
 template <class S, int W>
-TETSKIN_INLINE void invert(const Lanes<S, W> d[6], const Lanes<S, W>& mass, S* to) {
+TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, S* to) {
   using V = Lanes<S, W>;
+  const V trace = block[0] + block[3] + block[5];
+  const V unit = S(1) / (trace > S(0) ? trace : all<S, W>(1));
+  V d[6];
+  for (int k = 0; k < 6; ++k) d[k] = block[k] * unit;
   const V c00 = d[3] * d[5] - d[4] * d[4], c01 = d[2] * d[4] - d[1] * d[5], c02 = d[1] * d[4] - d[2] * d[3];
   const V det = d[0] * c00 + d[1] * c01 + d[2] * c02;
   const auto there = (mass > S(0)) & (det > S(0));
-  const V scale = there ? S(1) / (there ? det : all<S, W>(1)) : V{};
+  const V scale = there ? unit / (there ? det : all<S, W>(1)) : V{};
   put<S, W>(c00 * scale, to);
   put<S, W>(c01 * scale, to + kGroup);
   put<S, W>(c02 * scale, to + 2 * kGroup);

@@ -82,8 +82,11 @@ TETSKIN_INLINE Lanes<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W
   const V hx = S(0.5) * wx, hy = S(0.5) * wy, hz = S(0.5) * wz;
   const V w = q.w - q.x * hx - q.y * hy - q.z * hz, x = q.x + q.w * hx + q.y * hz - q.z * hy;
   const V y = q.y + q.w * hy + q.z * hx - q.x * hz, z = q.z + q.w * hz + q.x * hy - q.y * hx;
-  const V unit = S(1) / squareRoots<S, W>(w * w + x * x + y * y + z * z);
-  q = {w * unit, x * unit, y * unit, z * unit};
+  // It is at least 1, of what is finite; a tet that was not begins again.
+  const V squared = w * w + x * x + y * y + z * z;
+  const auto finite = (squared > S(0.5)) & (squared < S(1e18));
+  const V unit = S(1) / squareRoots<S, W>(finite ? squared : all<S, W>(1));
+  q = {finite ? w * unit : all<S, W>(1), finite ? x * unit : V{}, finite ? y * unit : V{}, finite ? z * unit : V{}};
   return wx * wx + wy * wy + wz * wz;
 }
 

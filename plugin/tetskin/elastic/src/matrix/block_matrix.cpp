@@ -15,9 +15,12 @@ namespace {
 
 /// Of a positive matrix: xx xy xz yy yz zz.
 template <class S>
-void invertSymmetric(const S d[6], S out[6]) {
+void invertSymmetric(const S block[6], S out[6]) {
+  const S unit = 1 / (block[0] + block[3] + block[5]);
+  S d[6];
+  for (int k = 0; k < 6; ++k) d[k] = block[k] * unit;
   const S c00 = d[3] * d[5] - d[4] * d[4], c01 = d[2] * d[4] - d[1] * d[5], c02 = d[1] * d[4] - d[2] * d[3];
-  const S scale = 1 / (d[0] * c00 + d[1] * c01 + d[2] * c02);
+  const S scale = unit / (d[0] * c00 + d[1] * c01 + d[2] * c02);
   const S inverse[6] = {c00, c01, c02, d[0] * d[5] - d[2] * d[2], d[1] * d[2] - d[0] * d[4], d[0] * d[3] - d[1] * d[1]};
   for (int k = 0; k < 6; ++k) out[k] = scale * inverse[k];
 }

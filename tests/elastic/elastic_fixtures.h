@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies for the tests of elasticity, and the same matrix by another way.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tetskin/core/src/kernels/instruction_set.h>
+#include <tetskin/core/tet_mesh.h>
+#include <tetskin/elastic/src/matrix/block_matrix.h>
+#include <tetskin/elastic/src/tets/corotated_tets.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace tetskin::test {
+
+using Points = std::vector<Eigen::Vector3d>;
+using elastic_detail::BlockMatrix;
+using elastic_detail::CorotatedTets;
+using elastic_detail::LameOfTet;
+
+/// Calls visit() with each instruction set that this processor has.
+template <class Visit>
+void onEachInstructionSet(Visit&& visit) {
+  const InstructionSet before = instructionSet();
+  for (const InstructionSet set : availableInstructionSets()) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, toString(set));
+    setInstructionSet(set);
+    visit();
+  }
+  setInstructionSet(before);
+}
+
+/// From -1 to 1, the same on every standard library.
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  double operator()() { return static_cast<double>(generator_()) / 2147483648.0 - 1.0; }
+  Eigen::Vector3d vector() {
+    const double x = (*this)(), y = (*this)();
+    return {x, y, (*this)()};
+  }
+  Eigen::VectorXd vector(std::size_t size) {
+    Eigen::VectorXd v(static_cast<Eigen::Index>(size));
+    for (double& x : v) x = (*this)();
+    return v;
+  }
+
+ private:
+  std::mt19937 generator_;
+};
+
+inline Eigen::Matrix3d turnBy(double degrees, const Eigen::Vector3d& axis) {
+  return Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180.0, axis.normalized()).toRotationMatrix();
+}
+
+inline Points mapped(Points points, const Eigen::Matrix3d& gradient, const Eigen::Vector3d& shift) {
+  for (Eigen::Vector3d& p : points) p = (gradient * p + shift).eval();
+  return points;
+}
+
+inline Points scattered(Points points, double amount, unsigned seed) {
+  Random random(seed);
+  for (Eigen::Vector3d& p : points) p += amount * random.vector();
+  return points;
+}
+
+/// Of another stiffness and another Poisson's ratio in every tet.
+inline std::vector<LameOfTet> variedMaterial(std::size_t tets) {
+  Random random(31);
+  std::vector<LameOfTet> material(tets);
+  for (LameOfTet& m : material) {
+    m.mu = 2.0 + random();
+    m.lambda = 1.5 * (1.0 + random());
+  }
+  return material;
+}
+
+/// A deformed body with its matrix, as the library puts them together.
+template <class S>
+struct AssembledBody {
+  explicit AssembledBody(const TetMesh& rest, double amount = 0.1, double alphaOfMatrix = 0.3)
+      : cage(rest),
+        nodes(scattered(mapped(rest.nodes, turnBy(75.0, {1, -2, 0.5}), {0.3, 0.2, -0.7}), amount, 32)),
+        material(variedMaterial(rest.tetCount())),
+        alpha(alphaOfMatrix),
+        matrix(rest.nodeCount(), rest.tets, CorotatedTets<S>::noTet(rest.tetCount())),
+        tets(elastic_detail::restTets(rest), matrix.pattern().slotOf, matrix.slotCount()) {
+    Random random(33);
+    for (std::size_t n = 0; n < rest.nodeCount(); ++n) masses.push_back(1.5 + random());
+    for (std::size_t t = 0; t < material.size(); ++t) tets.setMaterial(t, material[t]);
+    assemble();
+  }
+
+  void hold(std::size_t node) { masses[node] = 0.0; }
+
+  void assemble(ParallelFor* threads = nullptr) {
+    const std::size_t slots = matrix.slotCount();
+    std::vector<S> points(4 * slots), forces(4 * slots);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      matrix.setMass(n, static_cast<S>(masses[n]));
+      for (int k = 0; k < 3; ++k)
+        points[4 * matrix.slotOf(n) + static_cast<std::size_t>(k)] = static_cast<S>(nodes[n][k]);
+    }
+    // More than once, as rotations are turned along a few steps at a time.
+    for (int k = 0; k < 3; ++k) tets.forces(points.data(), forces.data(), threads);
+    matrix.assemble(tets.cornersForMatrix(static_cast<S>(alpha), threads), threads);
+  }
+
+  /// M + alpha K, three rows a node, by polar decompositions.
+  Eigen::MatrixXd dense() const {
+    const auto size = static_cast<Eigen::Index>(3 * nodes.size());
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      a.diagonal().segment<3>(static_cast<Eigen::Index>(3 * n)).setConstant(masses[n]);
+    }
+    for (std::size_t t = 0; t < cage.tetCount(); ++t) addTet(t, a);
+    return a;
+  }
+
+  Eigen::VectorXd fromWide(const S* wide) const {
+    Eigen::VectorXd v(static_cast<Eigen::Index>(3 * nodes.size()));
+    for (std::size_t i = 0; i < 3 * nodes.size(); ++i) v[static_cast<Eigen::Index>(i)] = wide[wideIndex(i)];
+    return v;
+  }
+  void toWide(const Eigen::VectorXd& v, S* wide) const {
+    for (std::size_t i = 0; i < 3 * nodes.size(); ++i)
+      wide[wideIndex(i)] = static_cast<S>(v[static_cast<Eigen::Index>(i)]);
+  }
+  /// Four scalars a slot, of which the last means nothing.
+  std::vector<S> toPoints(const Eigen::VectorXd& v) const {
+    std::vector<S> points(4 * matrix.slotCount(), S(0));
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        points[4 * matrix.slotOf(n) + k] = static_cast<S>(v[static_cast<Eigen::Index>(3 * n + k)]);
+      }
+      points[4 * matrix.slotOf(n) + 3] = std::numeric_limits<S>::quiet_NaN();
+    }
+    return points;
+  }
+  Eigen::VectorXd times(const Eigen::VectorXd& v, ParallelFor* threads = nullptr) const {
+    std::vector<S> wide(matrix.wideSize());
+    matrix.multiply(toPoints(v).data(), wide.data(), threads);
+    return fromWide(wide.data());
+  }
+
+  TetMesh cage;
+  Points nodes;
+  std::vector<LameOfTet> material;
+  std::vector<double> masses;
+  double alpha;
+  BlockMatrix<S> matrix;
+  CorotatedTets<S> tets;
+
+ private:
+  std::size_t wideIndex(std::size_t i) const { return matrix.wideOf(i / 3) + i % 3 * kernels::kGroup; }
+
+  void addTet(std::size_t t, Eigen::MatrixXd& a) const {
+    Eigen::Matrix3d rest, now;
+    for (int k = 0; k < 3; ++k) {
+      rest.col(k) = cage.nodes[cage.tets[t][k + 1]] - cage.nodes[cage.tets[t][0]];
+      now.col(k) = nodes[cage.tets[t][k + 1]] - nodes[cage.tets[t][0]];
+    }
+    const Eigen::Matrix3d gradients = rest.inverse();  // rows: of the weights of nodes 1, 2 and 3
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(now * gradients, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+    ASSERT_GT(turn.determinant(), 0.0) << "the reference is for tets that are not inside out";
+    Eigen::Matrix<double, 3, 4> h;
+    h.rightCols<3>() = turn * gradients.transpose();
+    h.col(0) = -h.rightCols<3>().rowwise().sum();
+    const double volume = std::abs(rest.determinant()) / 6.0, mu = material[t].mu, lambda = material[t].lambda;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        a.block<3, 3>(3 * cage.tets[t][i], 3 * cage.tets[t][j]) +=
+            alpha * volume *
+            (lambda * h.col(i) * h.col(j).transpose() + mu * h.col(j) * h.col(i).transpose() +
+             mu * h.col(i).dot(h.col(j)) * Eigen::Matrix3d::Identity());
+      }
+    }
+  }
+};
+
+}  // namespace tetskin::test

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies that move, for the tests of ElasticBody.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/elastic/elastic_body.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "elastic_fixtures.h"
+
+namespace tetskin::test {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline ElasticOptions soft() {
+  ElasticOptions options;
+  options.youngsModulus = 1e4;
+  options.density = 100.0;
+  return options;
+}
+
+template <class S>
+ElasticBody<S> made(const TetMesh& cage, const ElasticOptions& options) {
+  Result<ElasticBody<S>> body = ElasticBody<S>::make(cage, options);
+  EXPECT_TRUE(body.ok()) << body.status().message;
+  return std::move(body).value();
+}
+
+template <class S>
+Points pointsOf(PointView<S> view) {
+  Points points(view.size());
+  for (std::size_t n = 0; n < view.size(); ++n) points[n] = Eigen::Vector3d(view[n][0], view[n][1], view[n][2]);
+  return points;
+}
+
+template <class S>
+void fill(PointView<S> view, const Points& points) {
+  for (std::size_t n = 0; n < view.size(); ++n) {
+    for (int k = 0; k < 3; ++k) view[n][k] = static_cast<S>(points[n][k]);
+  }
+}
+
+/// A quarter of each tet's, for a density of 1.
+inline std::vector<double> lumped(const TetMesh& cage) {
+  std::vector<double> masses(cage.nodeCount(), 0.0);
+  for (const Tet& tet : cage.tets) {
+    for (const int n : tet) masses[static_cast<std::size_t>(n)] += std::abs(signedVolume(cornersOf(cage, tet))) / 4.0;
+  }
+  return masses;
+}
+
+/// Of a tet, over that at rest; below 0 inside out.
+inline double smallestVolume(const TetMesh& cage, const Points& nodes) {
+  const TetMesh now{nodes, cage.tets};
+  double least = kInfinity;
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    const double ratio = signedVolume(cornersOf(now, cage.tets[t])) / signedVolume(cornersOf(cage, cage.tets[t]));
+    if (std::isnan(ratio)) return -kInfinity;
+    least = std::min(least, ratio);
+  }
+  return least;
+}
+
+/// Infinite if something is not finite.
+template <class S>
+double fastest(ElasticBody<S>& body) {
+  double most = 0.0;
+  for (const Eigen::Vector3d& v : pointsOf(body.velocities())) {
+    if (!v.allFinite()) return kInfinity;
+    most = std::max(most, v.norm());
+  }
+  return most;
+}
+
+/// The nodes at x = 0, of a bar along x.
+template <class S>
+void holdTheEnd(ElasticBody<S>& body, const TetMesh& cage) {
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    if (cage.nodes[n].x() == 0.0) body.hold(n);
+  }
+}
+
+}  // namespace tetskin::test

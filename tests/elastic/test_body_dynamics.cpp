@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/elastic/src/dynamics/body_dynamics.h>
+
+#include <limits>
+
+#include "elastic_fixtures.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using elastic_detail::BodyDynamics;
+using test::AssembledBody;
+using test::onEachInstructionSet;
+using test::Points;
+
+TetMesh smallCage() {
+  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+}
+
+constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * (kDamping + kSeconds);
+
+/// The body of a reference, with velocities.
+template <class S>
+BodyDynamics<S> dynamicsOf(const AssembledBody<S>& body, const VectorXd& velocities) {
+  BodyDynamics<S> dynamics(elastic_detail::restTets(body.cage), body.nodes.size());
+  dynamics.setMaterial(body.material);
+  dynamics.setDamping(kDamping);
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    dynamics.setMass(n, static_cast<S>(body.masses[n]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      dynamics.point(n)[k] = static_cast<S>(body.nodes[n][static_cast<Eigen::Index>(k)]);
+      dynamics.velocity(n)[k] = static_cast<S>(velocities[static_cast<Eigen::Index>(3 * n + k)]);
+    }
+  }
+  return dynamics;
+}
+
+template <class S>
+class BodyDynamicsOf : public testing::Test {
+ protected:
+  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(BodyDynamicsOf, Scalars);
+
+TYPED_TEST(BodyDynamicsOf, StartsAStepWithForcesAndWhatDampingAndTheStepTakeFromThem) {
+  onEachInstructionSet([&] {
+    AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
+    body.hold(3);
+    body.assemble();
+    // Of a drift so fast that the rounding of its stiffness would be seen.
+    const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
+    const VectorXd relative = test::Random(51).vector(3 * body.nodes.size());
+    const VectorXd v = relative + VectorXd::Constant(size, 100.0);
+    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
+    EXPECT_TRUE(dynamics.anyHeld());
+    for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
+    EXPECT_NEAR(dynamics.alpha(), kAlpha, 1e-15);
+    dynamics.start(kSeconds, nullptr);
+    VectorXd forces(size), right(size), masses(size);
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+      TypeParam r[3];
+      dynamics.rightSide(n, r);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto i = static_cast<Eigen::Index>(3 * n + k);
+        forces[i] = dynamics.force(n)[k];
+        right[i] = r[k];
+        masses[i] = body.masses[n];
+      }
+    }
+    const VectorXd expected = kSeconds * forces - (body.dense() * relative - masses.cwiseProduct(relative));
+    EXPECT_LT((right - expected).norm(), 300.0 * this->kEpsilon * expected.norm());
+    EXPECT_EQ(body.fromWide(dynamics.matrix().residual()), right);
+    EXPECT_EQ(body.fromWide(dynamics.matrix().solution()), VectorXd::Zero(size));
+  });
+}
+
+TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
+  onEachInstructionSet([&] {
+    AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
+    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, test::Random(51).vector(3 * body.nodes.size()));
+    for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
+    dynamics.start(kSeconds, nullptr);
+    const VectorXd right = body.fromWide(dynamics.matrix().residual());
+    const VectorXd x = test::Random(52).vector(3 * body.nodes.size());
+    body.toWide(x, dynamics.matrix().solution());
+    dynamics.startAgain(nullptr);
+    const VectorXd image = body.dense() * x;
+    EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - (right - image)).norm(),
+              10.0 * this->kEpsilon * (right.norm() + image.norm()));
+    EXPECT_LT((body.fromWide(dynamics.times(body.toPoints(x).data())) - image).norm(),
+              10.0 * this->kEpsilon * image.norm());
+    const std::vector<TypeParam> points = body.toPoints(x);
+    std::copy(points.begin(), points.end(), dynamics.scratchPoints());
+    EXPECT_EQ(body.fromWide(dynamics.times(dynamics.scratchPoints())), body.fromWide(dynamics.times(points.data())));
+  });
+}
+
+TYPED_TEST(BodyDynamicsOf, TakesMomentumOutOfASolutionAndNothingElse) {
+  AssembledBody<TypeParam> body(smallCage());
+  BodyDynamics<TypeParam> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
+  EXPECT_FALSE(dynamics.anyHeld());
+  dynamics.prepare(kSeconds, nullptr);
+  const VectorXd some = test::Random(53).vector(3 * body.nodes.size());
+  body.toWide(some, dynamics.matrix().solution());
+  dynamics.removeMomentum();
+  const VectorXd free = body.fromWide(dynamics.matrix().solution());
+  Vector3d push = Vector3d::Zero(), turn = Vector3d::Zero();
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    const Vector3d momentum = body.masses[n] * free.segment<3>(static_cast<Eigen::Index>(3 * n));
+    push += momentum;
+    turn += body.nodes[n].cross(momentum);
+  }
+  EXPECT_LT(push.norm(), 100.0 * this->kEpsilon);
+  EXPECT_LT(turn.norm(), 100.0 * this->kEpsilon);
+  // A rigid motion more changes nothing.
+  VectorXd more = free;
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    more.segment<3>(static_cast<Eigen::Index>(3 * n)) += Vector3d(1, -2, 3) + Vector3d(0.5, 2, -1).cross(body.nodes[n]);
+  }
+  body.toWide(more, dynamics.matrix().solution());
+  dynamics.removeMomentum();
+  EXPECT_LT((body.fromWide(dynamics.matrix().solution()) - free).norm(), 200.0 * this->kEpsilon);
+}
+
+/// Whether a change of the body is seen by its matrix at the next `prepare`.
+template <class Change>
+bool changesTheMatrix(Change&& change) {
+  AssembledBody<double> body(smallCage(), 0.0, kAlpha);
+  BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
+  for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
+  const std::vector<double> x = body.toPoints(test::Random(54).vector(3 * body.nodes.size()));
+  const VectorXd before = body.fromWide(dynamics.times(x.data()));
+  const double seconds = change(dynamics, body);
+  dynamics.prepare(seconds, nullptr);
+  return (body.fromWide(dynamics.times(x.data())) - before).norm() > 1e-6 * before.norm();
+}
+
+double turned(BodyDynamics<double>& dynamics, const AssembledBody<double>& body, double degrees) {
+  const Points nodes = test::mapped(body.nodes, test::turnBy(degrees, {1, 2, 3}), {0, 0, 0});
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) dynamics.point(n)[k] = nodes[n][static_cast<Eigen::Index>(k)];
+  }
+  return kSeconds;
+}
+
+TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
+  using Dynamics = BodyDynamics<double>;
+  using Body = AssembledBody<double>;
+  EXPECT_FALSE(changesTheMatrix([](Dynamics&, const Body&) { return kSeconds; }));
+  EXPECT_TRUE(changesTheMatrix([](Dynamics&, const Body&) { return 0.5 * kSeconds; }));
+  EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body&) {
+    dynamics.setDamping(2.0 * kDamping);
+    return kSeconds;
+  }));
+  EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body&) {
+    dynamics.setMass(4, 9.0);
+    return kSeconds;
+  }));
+  EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body& body) {
+    dynamics.setMaterial(std::vector<test::LameOfTet>(body.cage.tetCount(), {5.0, 5.0}));
+    return kSeconds;
+  }));
+  EXPECT_FALSE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 0.3); })) << "hardly";
+  EXPECT_TRUE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 3.0); }));
+}
+
+TEST(BodyDynamics, AssemblesItsMatrixWhenASingleTetHasTurnedFar) {
+  // One tet apart from a thousand that stay: the mean is small.
+  TetMesh cage = test::latticeCage(6, 6, 6);
+  const auto first = static_cast<int>(cage.nodeCount());
+  for (const Vector3d& p : test::singleTet().nodes) cage.nodes.push_back(p + Vector3d(20, 0, 0));
+  cage.tets.push_back({first, first + 1, first + 2, first + 3});
+  BodyDynamics<double> dynamics(elastic_detail::restTets(cage), cage.nodeCount());
+  dynamics.setMaterial(std::vector<test::LameOfTet>(cage.tetCount(), {1.0, 1.0}));
+  const auto place = [&](std::size_t n, const Vector3d& p) {
+    for (std::size_t k = 0; k < 3; ++k) dynamics.point(n)[k] = p[static_cast<Eigen::Index>(k)];
+  };
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    dynamics.setMass(n, 1.0);
+    place(n, cage.nodes[n]);
+  }
+  const auto blockOf = [&](std::size_t node) {
+    double d[6];
+    dynamics.prepare(kSeconds, nullptr);
+    dynamics.matrix().diagonal(node, d);
+    return std::vector<double>(d, d + 6);
+  };
+  const std::size_t node = cage.nodeCount() - 2;  // of the single tet, unlike along all axes
+  const std::vector<double> before = blockOf(node);
+  const auto turn = [&](double degrees) {
+    for (std::size_t n = cage.nodeCount() - 4; n < cage.nodeCount(); ++n) {
+      place(n, test::turnBy(degrees, {1, 2, 3}) * cage.nodes[n]);
+    }
+  };
+  turn(10.0);
+  EXPECT_EQ(blockOf(node), before);
+  turn(25.0);
+  EXPECT_NE(blockOf(node), before);
+}
+
+TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
+  BodyDynamics<TypeParam> dynamics({}, 3);
+  for (std::size_t n = 0; n < 3; ++n) {
+    dynamics.setMass(n, static_cast<TypeParam>(n + 1));
+    dynamics.velocity(n)[0] = 5;
+  }
+  EXPECT_FALSE(dynamics.anyHeld());
+  dynamics.prepare(kSeconds, nullptr);
+  dynamics.start(kSeconds, nullptr);
+  EXPECT_EQ(dynamics.alpha(), 0.0);
+  EXPECT_EQ(dynamics.energy(nullptr), 0.0);
+  std::vector<TypeParam> points(4 * dynamics.matrix().slotCount(), 2);
+  for (std::size_t n = 0; n < 3; ++n) {
+    TypeParam right[3];
+    dynamics.rightSide(n, right);
+    EXPECT_EQ(right[0], TypeParam(0));
+    EXPECT_EQ(dynamics.times(points.data())[dynamics.matrix().wideOf(n)], static_cast<TypeParam>(2 * (n + 1)));
+  }
+  dynamics.setMass(1, 0);
+  EXPECT_TRUE(dynamics.anyHeld());
+  dynamics.setMass(1, 0);
+  dynamics.setMass(1, 4);
+  EXPECT_FALSE(dynamics.anyHeld());
+}
+
+}  // namespace
+}  // namespace tetskin

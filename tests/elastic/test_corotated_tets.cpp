@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/elastic/src/tets/corotated_tets.h>
+
+#include <cmath>
+
+#include "elastic_fixtures.h"
+#include "support/odd_meshes.h"
+#include "support/shuffled_threads.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using elastic_detail::CorotatedTets;
+using elastic_detail::LameOfTet;
+using test::onEachInstructionSet;
+using test::Points;
+using test::turnBy;
+
+/// The tets of a cage by themselves, with nodes in slots of another order, and slots that are of no node.
+template <class S>
+class Tets {
+ public:
+  Tets(const TetMesh& cage, const std::vector<LameOfTet>& material)
+      : slotOf_(slots(cage.nodeCount())), tets_(elastic_detail::restTets(cage), slotOf_, cage.nodeCount() + kSpare) {
+    for (std::size_t t = 0; t < material.size(); ++t) tets_.setMaterial(t, material[t]);
+  }
+
+  Points forces(const Points& nodes, ParallelFor* threads = nullptr) {
+    std::vector<S> out(4 * (nodes.size() + kSpare), S(-77));
+    tets_.forces(toSlots(nodes).data(), out.data(), threads);
+    Points result(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (int k = 0; k < 3; ++k) result[n][k] = out[4 * slotOf_[n] + static_cast<std::size_t>(k)];
+    }
+    return result;
+  }
+  double energy(const Points& nodes, ParallelFor* threads = nullptr) {
+    return tets_.energy(toSlots(nodes).data(), threads);
+  }
+  /// Rotations that have come to their ends.
+  void settle(const Points& nodes) {
+    for (int k = 0; k < 10; ++k) forces(nodes);
+  }
+  CorotatedTets<S>& tets() { return tets_; }
+
+ private:
+  static constexpr std::size_t kSpare = 5;
+
+  static std::vector<std::uint32_t> slots(std::size_t nodes) {
+    std::vector<std::uint32_t> slotOf(nodes);
+    for (std::size_t n = 0; n < nodes; ++n) slotOf[n] = static_cast<std::uint32_t>(nodes + kSpare - 1 - n);
+    return slotOf;
+  }
+  std::vector<S> toSlots(const Points& nodes) const {
+    std::vector<S> points(4 * (nodes.size() + kSpare), std::numeric_limits<S>::quiet_NaN());
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (int k = 0; k < 3; ++k) points[4 * slotOf_[n] + static_cast<std::size_t>(k)] = static_cast<S>(nodes[n][k]);
+    }
+    return points;
+  }
+
+  std::vector<std::uint32_t> slotOf_;
+  CorotatedTets<S> tets_;
+};
+
+/// No multiple of eight tets, none like another.
+TetMesh oddCage() {
+  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+}
+
+double largest(const Points& vectors) {
+  double most = 0.0;
+  for (const Vector3d& v : vectors) {
+    if (!v.allFinite()) return std::numeric_limits<double>::infinity();
+    most = std::max(most, v.norm());
+  }
+  return most;
+}
+
+double farthest(const Points& a, const Points& b) {
+  Points apart;
+  for (std::size_t k = 0; k < a.size(); ++k) apart.push_back(a[k] - b[k]);
+  return largest(apart);
+}
+
+template <class S>
+class CorotatedTetsOf : public testing::Test {
+ protected:
+  static constexpr bool kDouble = sizeof(S) == sizeof(double);
+  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(CorotatedTetsOf, Scalars);
+
+void expectForcesAreTheSlopeOfTheEnergy(const TetMesh& cage, const Points& nodes) {
+  Tets<double> tets(cage, test::variedMaterial(cage.tetCount()));
+  tets.settle(nodes);
+  const Points forces = tets.forces(nodes);
+  constexpr double kStep = 1e-6;
+  Points slopes(nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (int k = 0; k < 3; ++k) {
+      Points before = nodes, after = nodes;
+      before[n][k] -= kStep;
+      after[n][k] += kStep;
+      slopes[n][k] = (tets.energy(before) - tets.energy(after)) / (2.0 * kStep);
+    }
+  }
+  EXPECT_LT(farthest(forces, slopes), 1e-8 * largest(forces));
+}
+
+TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergy) {
+  const TetMesh cage = oddCage();
+  onEachInstructionSet([&] {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      const Points turned = test::mapped(cage.nodes, turnBy(40.0 * seed, {1, 2, -1}), {1, 2, 3});
+      expectForcesAreTheSlopeOfTheEnergy(cage, test::scattered(turned, 0.1 * seed, seed));
+    }
+  });
+}
+
+TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergyInsideOut) {
+  const TetMesh cage = oddCage();
+  Matrix3d mirror = Vector3d(1.3, 0.9, -0.7).asDiagonal();
+  onEachInstructionSet([&] {
+    expectForcesAreTheSlopeOfTheEnergy(
+        cage, test::scattered(test::mapped(cage.nodes, turnBy(30.0, {1, 2, -1}) * mirror, {1, 2, 3}), 0.03, 5));
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, AreFreeOfForceAtRestAndAfterRigidMotions) {
+  const TetMesh cage = oddCage();
+  onEachInstructionSet([&] {
+    for (const double degrees : {0.0, 1.0, 30.0, 90.0, 135.0}) {
+      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+      const Points nodes = test::mapped(cage.nodes, turnBy(degrees, {0.3, -1, 0.8}), {0.5, -1, 2});
+      const double force = largest(tets.forces(nodes)), energy = tets.energy(nodes);
+      EXPECT_LT(force, 150.0 * this->kEpsilon);
+      EXPECT_LT(energy, 1000.0 * this->kEpsilon * this->kEpsilon);
+    }
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, FindARotationByAlmostHalfATurn) {
+  const TetMesh cage = oddCage();
+  onEachInstructionSet([&] {
+    for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(0.3, -1, 0.8)}) {
+      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+      const Points nodes = test::mapped(cage.nodes, turnBy(179.0, axis), {0, 0, 0});
+      int calls = 1;
+      while (calls < 20 && !(largest(tets.forces(nodes)) < 150.0 * this->kEpsilon)) ++calls;
+      EXPECT_LE(calls, 3);
+    }
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, PushAndTurnNothingAsAWhole) {
+  const TetMesh cage = oddCage();
+  onEachInstructionSet([&] {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+      const Points nodes =
+          test::scattered(test::mapped(cage.nodes, turnBy(50.0, {1, 1, 0}), {0, 1, 0}), 0.15 * seed, seed);
+      tets.settle(nodes);
+      const Points forces = tets.forces(nodes);
+      Vector3d push = Vector3d::Zero(), turn = Vector3d::Zero();
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        push += forces[n];
+        turn += nodes[n].cross(forces[n]);
+      }
+      ASSERT_GT(largest(forces), 0.3);
+      EXPECT_LT(push.norm(), 15.0 * this->kEpsilon * largest(forces));
+      EXPECT_LT(turn.norm(), 30.0 * this->kEpsilon * largest(forces));
+    }
+  });
+}
+
+/// Nodes that no face of the boundary has.
+std::vector<std::size_t> innerNodes(const TetMesh& cage) {
+  std::vector<bool> outside(cage.nodeCount(), false);
+  for (const auto& face : boundaryFaces(cage)) {
+    for (const int n : face) outside[static_cast<std::size_t>(n)] = true;
+  }
+  std::vector<std::size_t> inner;
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    if (!outside[n]) inner.push_back(n);
+  }
+  return inner;
+}
+
+TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
+  const TetMesh cage = test::jittered(test::latticeCage(4, 3, 3), 0.15, 4);
+  const std::vector<std::size_t> inner = innerNodes(cage);
+  ASSERT_EQ(inner.size(), 12u);
+  Matrix3d strain;
+  strain << 0.02, 0.01, -0.03, 0.01, -0.04, 0.02, -0.03, 0.02, 0.03;
+  const LameOfTet material{1.5, 2.5};
+  const double density = material.mu * strain.squaredNorm() + 0.5 * material.lambda * strain.trace() * strain.trace();
+  onEachInstructionSet([&] {
+    Tets<TypeParam> tets(cage, std::vector<LameOfTet>(cage.tetCount(), material));
+    const Points nodes =
+        test::mapped(cage.nodes, turnBy(70.0, {1, 2, 3}) * (Matrix3d::Identity() + strain), {0.1, 0.2, 0.3});
+    tets.settle(nodes);
+    const Points forces = tets.forces(nodes);
+    ASSERT_GT(largest(forces), 0.05);
+    double most = 0.0;
+    for (const std::size_t n : inner) most = std::max(most, forces[n].norm());
+    EXPECT_LT(most, 300.0 * this->kEpsilon);
+    EXPECT_NEAR(tets.energy(nodes) / (totalVolume(cage) * density), 1.0, 30.0 * this->kEpsilon);
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, ForcesAreInProportionToTheStiffnessOfEachTet) {
+  const TetMesh cage = oddCage();
+  const Points nodes = test::scattered(cage.nodes, 0.2, 8);
+  const std::vector<LameOfTet> material = test::variedMaterial(cage.tetCount());
+  onEachInstructionSet([&] {
+    Tets<TypeParam> tets(cage, material);
+    tets.settle(nodes);
+    const Points forces = tets.forces(nodes);
+    const double energy = tets.energy(nodes);
+    // A power of two, which rounds nothing.
+    for (std::size_t t = 0; t < material.size(); ++t)
+      tets.tets().setMaterial(t, {4 * material[t].mu, 4 * material[t].lambda});
+    const Points stiff = tets.forces(nodes);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      EXPECT_LT((stiff[n] - 4.0 * forces[n]).norm(), 1000.0 * this->kEpsilon * largest(stiff));
+    }
+    EXPECT_NEAR(tets.energy(nodes) / energy, 4.0, 1000.0 * this->kEpsilon);
+    // One tet alone.
+    for (std::size_t t = 0; t < material.size(); ++t) tets.tets().setMaterial(t, material[t]);
+    tets.tets().setMaterial(11, {3 * material[11].mu, material[11].lambda});
+    const Points other = tets.forces(nodes);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const Tet& tet = cage.tets[11];
+      const bool corner = std::find(tet.begin(), tet.end(), static_cast<int>(n)) != tet.end();
+      const double change = (other[n] - forces[n]).norm();
+      EXPECT_EQ(change > 1e-3 * largest(forces), corner) << n << " " << change;
+    }
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, FlatCollapsedAndMirroredTetsHaveFiniteForces) {
+  const TetMesh cage = oddCage();
+  const Matrix3d flat = Vector3d(1, 1, 0).asDiagonal(), thread = Vector3d(1, 0, 0).asDiagonal();
+  const Matrix3d mirror = Vector3d(1, -1, 1).asDiagonal();
+  onEachInstructionSet([&] {
+    for (const Matrix3d& gradient : {flat, thread, mirror, Matrix3d(-Matrix3d::Identity()), Matrix3d(Matrix3d::Zero()),
+                                     Matrix3d(1e-20 * mirror), Matrix3d(1e6 * mirror)}) {
+      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+      const Points nodes = test::mapped(cage.nodes, gradient, {0.1, 0.2, 0.3});
+      for (int k = 0; k < 5; ++k) {
+        const double force = largest(tets.forces(nodes));
+        EXPECT_TRUE(std::isfinite(force)) << gradient;
+        EXPECT_GT(force, 0.1) << gradient;
+      }
+      EXPECT_TRUE(std::isfinite(tets.energy(nodes))) << gradient;
+      // And they have not spoilt anything.
+      const Points rest = cage.nodes;
+      tets.settle(rest);
+      EXPECT_LT(largest(tets.forces(rest)), 100.0 * this->kEpsilon) << gradient;
+    }
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, InstructionSetsAgreeToRounding) {
+  const TetMesh cage = oddCage();
+  const Points nodes = test::scattered(test::mapped(cage.nodes, turnBy(100.0, {1, 2, -1}), {1, 2, 3}), 0.1, 9);
+  Points expected;
+  double energy = 0.0;
+  onEachInstructionSet([&] {
+    Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+    tets.settle(nodes);
+    const Points forces = tets.forces(nodes);
+    if (expected.empty()) {
+      expected = forces;
+      energy = tets.energy(nodes);
+    }
+    EXPECT_LT(farthest(forces, expected), 30.0 * this->kEpsilon * largest(expected));
+    EXPECT_NEAR(tets.energy(nodes) / energy, 1.0, 30.0 * this->kEpsilon);
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, HaveTheSameBitsOnAnyThreads) {
+  const TetMesh cage = test::jittered(test::latticeCage(10, 10, 10), 0.15, 10);
+  const Points nodes = test::scattered(test::mapped(cage.nodes, turnBy(20.0, {1, 2, -1}), {1, 2, 3}), 0.2, 11);
+  Tets<TypeParam> alone(cage, test::variedMaterial(cage.tetCount()));
+  const Points forces = alone.forces(nodes);
+  const double energy = alone.energy(nodes), turn = alone.tets().meanTurn();
+  for (const int count : {1, 2, 3}) {
+    test::ShuffledThreads threads(count);
+    Tets<TypeParam> shared(cage, test::variedMaterial(cage.tetCount()));
+    EXPECT_EQ(shared.forces(nodes, &threads), forces);
+    EXPECT_EQ(shared.energy(nodes, &threads), energy);
+    EXPECT_EQ(shared.tets().meanTurn(), turn);
+    EXPECT_EQ(threads.runs, 3);  // corners, their sums, corners again
+    EXPECT_GT(threads.mostTasks, 5u);
+  }
+}
+
+TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {
+  const TetMesh cage = oddCage();
+  onEachInstructionSet([&] {
+    Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+    for (const double degrees : {1.0, 5.0, 20.0, -70.0}) {
+      const Points before = test::mapped(cage.nodes, turnBy(40.0, {1, 2, -1}), {1, 2, 3});
+      const Points after = test::mapped(before, turnBy(degrees, {0, 1, 3}), {1, 2, 3});
+      const double angle = std::abs(degrees) * 3.14159265358979323846 / 180.0;
+      tets.settle(before);
+      static_cast<void>(tets.tets().cornersForMatrix(1, nullptr));
+      tets.forces(before);
+      // The angle is a root of what is rounded.
+      EXPECT_LT(tets.tets().meanTurn(), 10.0 * std::sqrt(this->kEpsilon));
+      EXPECT_LT(tets.tets().mostTurn(), 10.0 * std::sqrt(this->kEpsilon));
+      tets.settle(after);
+      EXPECT_NEAR(tets.tets().mostTurn() / angle, 1.0, 0.01);
+      EXPECT_NEAR(tets.tets().meanTurn() / angle, 1.0, 0.03);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace tetskin

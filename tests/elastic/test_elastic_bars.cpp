@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/elastic/elastic_body.h>
+
+#include <cmath>
+#include <limits>
+
+#include "elastic_motion.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Vector3d;
+using test::fill;
+using test::holdTheEnd;
+using test::lumped;
+using test::made;
+using test::Points;
+using test::pointsOf;
+using test::soft;
+
+constexpr double kPi = 3.14159265358979323846;
+
+template <class S>
+class ElasticBarsOf : public testing::Test {
+ protected:
+  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(ElasticBarsOf, Scalars);
+
+/// The mean displacement of the nodes at the other end.
+template <class S>
+Vector3d tipOf(ElasticBody<S>& body, const TetMesh& cage, double length) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    if (std::abs(cage.nodes[n].x() - length) > 1e-9) continue;
+    sum += pointsOf(body.positions())[n] - cage.nodes[n];
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Steps so long that little is left of the motion but its end.
+template <class S>
+void settle(ElasticBody<S>& body, const std::array<double, 3>& acceleration, int steps) {
+  for (int k = 0; k < steps; ++k) body.step(0.1, acceleration);
+}
+
+TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
+  constexpr double kLength = 2.0, kGravity = 9.8;
+  const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
+  ElasticOptions options = soft();
+  options.tolerance = 1e-4;
+  options.poissonRatio = 0.0;  // the held end may not get thinner
+  ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+  holdTheEnd(body, cage);
+  settle(body, {kGravity, 0, 0}, 150);
+  const double expected = options.density * kGravity * kLength * kLength / (2.0 * options.youngsModulus);
+  ASSERT_GT(expected, 0.05);
+  EXPECT_NEAR(tipOf(body, cage, kLength).x() / expected, 1.0, 0.002);
+}
+
+TYPED_TEST(ElasticBarsOf, APulledBarIsAsLongAsTheTextbookSays) {
+  constexpr double kLength = 2.0;
+  const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
+  const double area = 0.0625, force = 20.0;
+  // All mass is at the other end, so that gravity pulls there alone.
+  ElasticOptions options = soft();
+  options.tolerance = 1e-5;
+  options.poissonRatio = 0.3;
+  options.nodeMasses.assign(cage.nodeCount(), 1e-9);
+  double sum = 0.0;
+  const std::vector<double> shares = lumped(cage);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+      if (cage.nodes[n].x() != kLength) continue;
+      if (pass == 0) sum += shares[n];
+      if (pass == 1) options.nodeMasses[n] = shares[n] / sum;
+    }
+  }
+  ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+  holdTheEnd(body, cage);
+  settle(body, {force, 0, 0}, 60);
+  const double expected = force * kLength / (options.youngsModulus * area);
+  EXPECT_NEAR(tipOf(body, cage, kLength).x() / expected, 1.0, 0.002);
+}
+
+TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
+  constexpr double kLength = 2.0, kHeight = 0.25;
+  ElasticOptions options;
+  options.youngsModulus = 1e6;
+  options.poissonRatio = 0.0;
+  options.density = 1.0;
+  options.tolerance = 1e-6;
+  options.iterations = 2000;
+  const double weight = kHeight * kHeight, inertia = std::pow(kHeight, 4) / 12.0;
+  const double gravity = 10.0;
+  const double expected = weight * gravity * std::pow(kLength, 4) / (8.0 * options.youngsModulus * inertia);
+  double before = 0.0;
+  for (const int across : {1, 2, 4}) {
+    const TetMesh cage = test::latticeCage(8 * across, across, across, kHeight / across);
+    ElasticBody<double> body = made<double>(cage, options);
+    holdTheEnd(body, cage);
+    settle(body, {0, 0, -gravity}, 20);
+    const double error = 1.0 + tipOf(body, cage, kLength).z() / expected;
+    EXPECT_GT(error, 0.0) << "cages are too stiff";
+    if (across > 1) {
+      EXPECT_LT(error, before / 1.7);
+    }
+    before = error;
+  }
+}
+
+TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
+  constexpr double kLength = 2.0;
+  const TetMesh cage = test::latticeCage(16, 1, 1, kLength / 16);
+  ElasticOptions options = soft();
+  options.poissonRatio = 0.0;
+  options.tolerance = 1e-4;
+  ElasticBody<double> body = made<double>(cage, options);
+  holdTheEnd(body, cage);
+  Points positions = cage.nodes;  // its softest longitudinal vibration, at its greatest
+  for (Vector3d& p : positions) p.x() += 0.01 * std::sin(0.5 * kPi * p.x() / kLength);
+  fill(body.positions(), positions);
+  const double period = 4.0 * kLength / std::sqrt(options.youngsModulus / options.density), dt = period / 400.0;
+  // From the first passage through rest to the third, a period.
+  std::vector<double> passages;
+  double before = tipOf(body, cage, kLength).x();
+  for (int k = 1; k <= 700; ++k) {
+    body.step(dt);
+    const double now = tipOf(body, cage, kLength).x();
+    if (before * now < 0.0) passages.push_back((k - now / (now - before)) * dt);
+    before = now;
+  }
+  ASSERT_GE(passages.size(), 3u);
+  EXPECT_NEAR((passages[2] - passages[0]) / period, 1.0, 0.01);
+}
+
+TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
+  constexpr double kLength = 1.0, kTime = 0.32;
+  const TetMesh cage = test::latticeCage(4, 1, 1, kLength / 4);
+  ElasticOptions options = soft();
+  options.youngsModulus = 2e4;
+  options.tolerance = 1e-8;
+  const auto nodesAfter = [&](int steps) {
+    ElasticBody<double> body = made<double>(cage, options);
+    holdTheEnd(body, cage);
+    for (int k = 0; k < steps; ++k) body.step(kTime / steps, {0, 0, -9.8});
+    return pointsOf(body.positions());
+  };
+  const int coarsest = 100;
+  const Points right = nodesAfter(64 * coarsest);
+  ASSERT_LT(right.back().z() - cage.nodes.back().z(), -0.05) << "it swings far";
+  double before = 0.0;
+  for (const int steps : {coarsest, 2 * coarsest, 4 * coarsest, 8 * coarsest}) {
+    const Points nodes = nodesAfter(steps);
+    double error = 0.0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) error = std::max(error, (nodes[n] - right[n]).norm());
+    if (before > 0.0) {
+      EXPECT_GT(std::log2(before / error), 0.9) << steps;
+    }
+    before = error;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/elastic/elastic_body.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "elastic_motion.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using test::fill;
+using test::kInfinity;
+using test::lumped;
+using test::made;
+using test::onEachInstructionSet;
+using test::Points;
+using test::pointsOf;
+using test::soft;
+using test::turnBy;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+template <class S>
+class ElasticBodyOf : public testing::Test {
+ protected:
+  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(ElasticBodyOf, Scalars);
+
+/// Options that are.
+struct Refused {
+  const char* word;  ///< in the message
+  std::function<void(ElasticOptions&)> spoil;
+  StatusCode code = StatusCode::InvalidOption;
+};
+
+TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
+  const TetMesh cage = test::latticeCage(1, 1, 1);
+  std::vector<Refused> refused;
+  for (const double value : {0.0, -1.0, kNan, kInfinity}) {
+    if (value != kInfinity) refused.push_back({"Young's modulus", [=](auto& o) { o.youngsModulus = value; }});
+    refused.push_back({"density", [=](auto& o) { o.density = value; }});
+    refused.push_back({"stiffnessScale[3]", [=](auto& o) {
+                         o.stiffnessScale.assign(6, 1.0);
+                         o.stiffnessScale[3] = value;
+                       }});
+    refused.push_back({"nodeMasses[7]", [=](auto& o) {
+                         o.nodeMasses.assign(8, 1.0);
+                         o.nodeMasses[7] = value;
+                       }});
+  }
+  refused.push_back({"stiff", [](auto& o) { o.youngsModulus = kInfinity; }});
+  refused.push_back({"stiff", [](auto& o) {
+                       o.youngsModulus = 0.99 * std::numeric_limits<TypeParam>::max(), o.poissonRatio = 0.49;
+                     }});
+  for (const double value : {-0.1, 0.5, 0.7, kNan}) {
+    refused.push_back({"Poisson's ratio", [=](auto& o) { o.poissonRatio = value; }});
+  }
+  for (const double value : {-1.0, kNan, kInfinity}) {
+    refused.push_back({"damping", [=](auto& o) { o.damping = value; }});
+  }
+  for (const double value : {-1.0, 1.0, kNan}) {
+    refused.push_back({"tolerance", [=](auto& o) { o.tolerance = value; }});
+  }
+  for (const int value : {0, -1}) refused.push_back({"iteration", [=](auto& o) { o.iterations = value; }});
+  refused.push_back(
+      {"stiffnessScale has 5 values", [](auto& o) { o.stiffnessScale.assign(5, 1.0); }, StatusCode::SizeMismatch});
+  refused.push_back(
+      {"nodeMasses has 9 values", [](auto& o) { o.nodeMasses.assign(9, 1.0); }, StatusCode::SizeMismatch});
+  for (const Refused& wrong : refused) {
+    ElasticOptions options = soft();
+    ASSERT_TRUE(ElasticBody<TypeParam>::make(cage, options).ok());
+    wrong.spoil(options);
+    const Result<ElasticBody<TypeParam>> body = ElasticBody<TypeParam>::make(cage, options);
+    EXPECT_EQ(body.status().code, wrong.code) << wrong.word;
+    EXPECT_NE(body.status().message.find(wrong.word), std::string::npos) << wrong.word << ": " << body.status().message;
+    EXPECT_EQ(body.value().nodeCount(), 0u);
+  }
+}
+
+TYPED_TEST(ElasticBodyOf, RefusesCagesThatCannotBeUsed) {
+  const auto codeOf = [](const TetMesh& cage) { return ElasticBody<TypeParam>::make(cage, soft()).status().code; };
+  EXPECT_EQ(codeOf({}), StatusCode::Empty);
+  TetMesh cage = test::latticeCage(1, 1, 1);
+  cage.tets[2][1] = 99;
+  EXPECT_EQ(codeOf(cage), StatusCode::IndexOutOfRange);
+  cage = test::latticeCage(1, 1, 1);
+  cage.nodes[5].y() = kNan;
+  EXPECT_EQ(codeOf(cage), StatusCode::NonFinite);
+  cage = test::latticeCage(1, 1, 1);
+  cage.tets.push_back({0, 1, 2, 3});  // one face of a cube
+  Result<ElasticBody<TypeParam>> flat = ElasticBody<TypeParam>::make(cage, soft());
+  EXPECT_EQ(flat.status().code, StatusCode::Degenerate);
+  EXPECT_NE(flat.status().message.find("tet 6"), std::string::npos) << flat.status().message;
+  cage.tets.back() = {0, 0, 1, 7};
+  EXPECT_EQ(codeOf(cage), StatusCode::Degenerate);
+}
+
+TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
+  ElasticBody<TypeParam> nothing;
+  EXPECT_EQ(nothing.nodeCount(), 0u);
+  ElasticBody<TypeParam> body = made<TypeParam>(test::singleTet(), soft());
+  EXPECT_EQ(body.nodeCount(), 4u);
+  nothing = std::move(body);
+  EXPECT_EQ(nothing.nodeCount(), 4u);
+  EXPECT_EQ(nothing.positions()[1][0], 1);
+  EXPECT_EQ(body.nodeCount(), 0u);  // NOLINT: moved from
+  const ElasticBody<TypeParam> last(std::move(nothing));
+  EXPECT_EQ(last.nodeCount(), 4u);
+  EXPECT_EQ(nothing.nodeCount(), 0u);  // NOLINT: moved from
+}
+
+TYPED_TEST(ElasticBodyOf, IsAtRestWhereTheCageIs) {
+  TetMesh cage = test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  for (std::size_t t = 0; t < cage.tetCount(); t += 2) std::swap(cage.tets[t][0], cage.tets[t][1]);  // negative
+  ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(body.positions()[n][k], static_cast<TypeParam>(cage.nodes[n][k]));
+      EXPECT_EQ(body.velocities()[n][k], TypeParam(0));
+    }
+  }
+  const double stiffness = 1e4;
+  double most = 0.0;
+  for (const auto& f : body.forces()) most = std::max(most, Vector3d(f[0], f[1], f[2]).norm());
+  EXPECT_LT(most, 15.0 * stiffness * this->kEpsilon);
+  EXPECT_LT(body.energy(), 100.0 * stiffness * this->kEpsilon * this->kEpsilon);
+}
+
+TYPED_TEST(ElasticBodyOf, StoresTheEnergyOfItsStrain) {
+  const TetMesh cage = test::jittered(test::latticeCage(2, 2, 2), 0.15, 3);
+  Matrix3d strain;
+  strain << 0.02, 0.01, -0.03, 0.01, -0.04, 0.02, -0.03, 0.02, 0.03;
+  for (const double poisson : {0.0, 0.3, 0.49}) {
+    ElasticOptions options = soft();
+    options.poissonRatio = poisson;
+    options.stiffnessScale.assign(cage.tetCount(), 0.5);
+    const double modulus = 0.5 * options.youngsModulus;
+    const double mu = modulus / (2.0 * (1.0 + poisson));
+    const double lambda = modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
+    ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+    fill(body.positions(),
+         test::mapped(cage.nodes, turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain), {1, 2, 3}));
+    // At a Poisson's ratio of 0.49 the rounding of volumes counts fifty times.
+    EXPECT_NEAR(body.energy() / (totalVolume(cage) * density), 1.0, 300.0 * this->kEpsilon);
+  }
+}
+
+TYPED_TEST(ElasticBodyOf, FallsFreely) {
+  const TetMesh cage = test::jittered(test::latticeCage(3, 2, 2), 0.15, 3);
+  ElasticOptions options = soft();
+  options.nodeMasses.assign(cage.nodeCount(), 1.0);
+  for (std::size_t n = 0; n < cage.nodeCount(); n += 3) options.nodeMasses[n] = 50.0;
+  const double dt = 0.01;
+  const Vector3d g(1.0, -9.8, 0.5);
+  onEachInstructionSet([&] {
+    ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+    for (int k = 0; k < 100; ++k) body.step(dt, {g[0], g[1], g[2]});
+    const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
+    double velocity = 0.0, place = 0.0;
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+      velocity = std::max(velocity, (velocities[n] - 100 * dt * g).norm() / g.norm());
+      place = std::max(place, (positions[n] - cage.nodes[n] - 5050 * dt * dt * g).norm() / g.norm());
+    }
+    EXPECT_LT(velocity, 200.0 * this->kEpsilon);
+    EXPECT_LT(place, 20.0 * this->kEpsilon);
+  });
+}
+
+/// What a motion keeps.
+struct Motion {
+  Vector3d momentum = Vector3d::Zero(), angular = Vector3d::Zero();
+  double kinetic = 0.0, elastic = 0.0;
+
+  double energy() const { return kinetic + elastic; }
+};
+
+template <class S>
+Motion motionOf(ElasticBody<S>& body, const std::vector<double>& masses) {
+  const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
+  Motion motion;
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    motion.momentum += masses[n] * velocities[n];
+    motion.angular += masses[n] * positions[n].cross(velocities[n]);
+    motion.kinetic += 0.5 * masses[n] * velocities[n].squaredNorm();
+  }
+  motion.elastic = body.energy();
+  return motion;
+}
+
+TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
+  const TetMesh cage = test::jittered(test::latticeCage(4, 2, 2, 0.25), 0.03, 3);
+  const std::vector<double> masses = lumped(cage);
+  Vector3d centre = Vector3d::Zero();
+  for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
+  ElasticOptions options = soft();
+  options.density = 1.0;
+  options.youngsModulus = 500.0;
+  onEachInstructionSet([&] {
+    ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+    const Vector3d spin(1.0, 2.0, 8.0), drift(0.02, -0.01, 0.03);
+    Points velocities, positions = test::scattered(cage.nodes, 0.02, 12);
+    for (const Vector3d& p : cage.nodes) velocities.push_back(spin.cross(p - centre) + drift);
+    velocities = test::scattered(velocities, 0.2, 13);
+    fill(body.positions(), positions);
+    fill(body.velocities(), velocities);
+    const Motion start = motionOf(body, masses);
+    ASSERT_GT(start.elastic, 0.1 * start.kinetic);
+    double push = 0.0, turn = 0.0, energy = 0.0, speed = 0.0;
+    for (const Vector3d& v : velocities) speed = std::max(speed, v.norm());
+    Motion now;
+    double before = start.energy();
+    for (int k = 0; k < 600; ++k) {
+      body.step(1.0 / 240.0);
+      now = motionOf(body, masses);
+      push = std::max(push, (now.momentum - start.momentum).norm());
+      turn = std::max(turn, (now.angular - start.angular).norm());
+      energy = std::max(energy, now.energy() / before);
+      before = now.energy();
+    }
+    const double unit = totalVolume(cage) * speed, size = 0.5;
+    EXPECT_LT(push, 20.0 * this->kEpsilon * unit);
+    EXPECT_LT(turn, 20.0 * this->kEpsilon * unit * size);
+    EXPECT_LT(energy, 1.0001) << "from step to step";
+    EXPECT_GT(now.energy(), 0.2 * start.energy()) << "it still turns";
+  });
+}
+
+TEST(ElasticBody, DampingTakesTheVibrationAndLeavesTheTurning) {
+  const TetMesh cage = test::latticeCage(3, 2, 2, 0.25);
+  const std::vector<double> masses = lumped(cage);
+  Vector3d centre = Vector3d::Zero();
+  for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
+  const auto energies = [&](double damping) {
+    ElasticOptions options = soft();
+    options.density = 1.0;
+    options.damping = damping;
+    ElasticBody<double> body = made<double>(cage, options);
+    Points velocities;
+    for (const Vector3d& p : cage.nodes) velocities.push_back(Vector3d(0, 0, 1).cross(p - centre));
+    fill(body.velocities(), velocities);
+    fill(body.positions(), test::mapped(cage.nodes, Vector3d(1.05, 0.98, 1.0).asDiagonal(), Vector3d::Zero()));
+    const Motion start = motionOf(body, masses);
+    for (int k = 0; k < 1000; ++k) body.step(1e-4);
+    const Motion end = motionOf(body, masses);
+    EXPECT_LT((end.angular - start.angular).norm(), 1e-10);
+    return std::make_pair(end.energy() / start.energy(), end.kinetic / start.kinetic);
+  };
+  const auto free = energies(0.0), damped = energies(0.01);
+  EXPECT_GT(free.first, 0.1);
+  EXPECT_LT(damped.first, 0.02);
+  EXPECT_NEAR(damped.second, 1.0, 0.15);
+}
+
+TYPED_TEST(ElasticBodyOf, HeldNodesMoveAsTheyAreToldAndByNothingElse) {
+  const TetMesh cage = test::latticeCage(3, 1, 1);
+  onEachInstructionSet([&] {
+    ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
+    body.hold(0);
+    body.hold(5);
+    body.velocities()[5][1] = TypeParam(0.5);
+    TypeParam expected = body.positions()[5][1];
+    for (int k = 0; k < 50; ++k) {
+      body.step(0.01, {0, 0, -9.8});
+      expected += TypeParam(0.01) * TypeParam(0.5);
+      EXPECT_EQ(body.positions()[5][1], expected);
+    }
+    for (const std::size_t n : {0u, 5u}) {
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(body.velocities()[n][k], n == 5 && k == 1 ? TypeParam(0.5) : TypeParam(0));
+        if (n == 5 && k == 1) continue;
+        EXPECT_EQ(body.positions()[n][k], static_cast<TypeParam>(cage.nodes[n][k]));
+      }
+    }
+    EXPECT_LT(body.positions()[3][2], TypeParam(-0.1)) << "the others fall";
+    body.hold(5, false);
+    body.step(0.01, {0, 0, -9.8});
+    EXPECT_NE(body.velocities()[5][1], TypeParam(0.5));
+    EXPECT_LT(body.velocities()[5][2], TypeParam(0));
+    // Held by nothing at all, it falls as a whole.
+    body.hold(0, false);
+    const std::vector<double> masses = lumped(cage);
+    const Vector3d before = motionOf(body, masses).momentum;
+    body.step(0.01, {0, 0, -9.8});
+    EXPECT_NEAR((motionOf(body, masses).momentum - before).z() / (-0.098 * totalVolume(cage)), 1.0, 1e-3);
+  });
+}
+
+}  // namespace
+}  // namespace tetskin
