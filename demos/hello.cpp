@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The smallest whole program: a bar of 192 tets, held at one end, carries a surface of 20,000 vertices. No files.
-#include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <btBulletCollisionCommon.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ int main() {
   btSoftBodyRigidBodyCollisionConfiguration configuration;  // Bullet's usual five objects
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
-  btDeformableBodySolver bodySolver;
+  tetskin::DeformableSolver bodySolver;  // instead of a btDeformableBodySolver
   btDeformableMultiBodyConstraintSolver solver;
   solver.setDeformableSolver(&bodySolver);
   btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration, &bodySolver);

@@ -34,7 +34,8 @@ plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.rig
 
 
 HEAD = ("| tets | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | simulation, ms | "
-        "skin, µs | total, ms | speed-up | attach, ms | memory, MB |\n" + 13 * "|---" + "|\n")
+        "skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 13 * "|---" + "|{lines}\n")
+AGAINST = " error against Bullet's reference | speed-up against it |"
 SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
 CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, are those of smooth maps; here the body is clamped "
            "along edges, where its strain is not smooth, the reference is itself linear in each tet, and coarse cages have "
@@ -51,18 +52,21 @@ def is_choice(row):
     return row["interpolation"] not in ("reference", "bullet") and row["finite"]
 
 
-def table_line(row, reference_error):
+def table_line(row, reference_error, integrator, against):
     tets, memory = f"{row['tets']:,.0f}", f"{row['memory_bytes'] / 1e6:.1f}"
     if row["interpolation"] == "reference":
-        return (f"| {tets} | reference | about {reference_error:.1e} | | | | | {row['simulation_ms']:.3g} | | "
-                f"{row['total_ms']:.3g} | 1 | | {memory} |\n")
+        whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's force, {row['integrator']}"
+        about = f"about {reference_error:.1e}" if row["integrator"] == integrator else ""
+        return (f"| {tets} | {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
+                f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
     if not row["finite"]:
         surface += " (exploded)"
     return (f"| {tets} | {surface} | {row['error_total_rms']:.2e} | {row['error_total_max']:.1e} | "
             f"{row['error_embedding_rms']:.1e} | {row['error_simulation_rms']:.1e} | {row['normal_error_mean_deg']:.2f} | "
             f"{row['simulation_ms']:.3g} | {row['skin_us']:.0f} | {row['total_ms']:.3g} | {row['speedup']:.3g} | "
-            f"{row['attach_ms']:.3g} | {memory} |\n")
+            f"{row['attach_ms']:.3g} | {memory} |"
+            + (f" {row['error_against_bullet_rms']:.2e} | {row['speedup_against_bullet']:.4g} |" if against else "") + "\n")
 
 
 def orders_text(scene):
@@ -93,8 +97,13 @@ def tables(results, target):
             "thread, medians over the frames. Bold: nothing is both faster and more accurate.\n")
     for scene in results["scenes"]:
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
-        text += f"\n## {scene['scene']}{integrator}\n\n" + HEAD
-        text += "".join(table_line(row, scene["reference_error"]) for row in scene["rows"])
+        against = any(row["speedup_against_bullet"] > 0 for row in scene["rows"])
+        text += f"\n## {scene['scene']}{integrator}\n\n"
+        text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
+        text += "".join(table_line(row, scene["reference_error"], scene["integrator"], against) for row in scene["rows"])
+        if against:
+            text += ("\nTwo references of the same cage and material: by the library's force and solver, and by Bullet's "
+                     "own force, which turns and damps otherwise.\n")
         if scene["reference_error"] > 0:
             text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
                      "nothing. Calibrated cages aim at the body itself, not at the reference, which is too stiff as well: "

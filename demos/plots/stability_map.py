@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""stability_map.py STRESS.json MAP.png: draws the stability map of tetskin_stress --json: stiffness against time step,
-one cell a run, coloured by how large the body became, crossed out where it exploded."""
+"""stability_map.py STRESS.json MAP.png: draws the stability maps of tetskin_stress --json: stiffness against time step,
+one cell a run, coloured by how large the body became, crossed out where it exploded. Bullet's force is in MAP.png, with
+both integrators; tetskin's is in MAP_tetskin.png, with a ring where Bullet's explodes with both. One of them may be
+missing in STRESS.json."""
 import json
 import math
+import os
 import sys
 
 import matplotlib
@@ -25,6 +28,8 @@ def draw(axes, cells):
         extents[row][column] = min(cell["extent_max"], LARGEST) if cell["simulation_finite"] else LARGEST
         if not cell["simulation_bounded"]:
             axes.text(column, row, "×", ha="center", va="center", fontsize=13)
+        elif cell["bullet_cannot_tetskin_can"]:
+            axes.text(column, row, "○", ha="center", va="center", fontsize=10)
     image = axes.imshow(extents, origin="lower", aspect="auto", cmap="YlOrRd", norm=LogNorm(1.0, LARGEST))
     axes.set_xticks(range(len(steps)), [f"1/{round(1.0 / step)}" for step in steps])
     axes.set_yticks(range(len(stiffnesses)), [f"$10^{round(math.log10(value))}$" for value in stiffnesses])
@@ -36,13 +41,7 @@ def draw(axes, cells):
     return image
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    with open(sys.argv[1], encoding="utf-8") as file:
-        cells = [case for case in json.load(file) if case["group"] == "map"]
-    if not cells:
-        sys.exit(f"{sys.argv[1]}: has no cells of the map")
+def draw_bullets(cells, path):
     figure, both = plt.subplots(1, 2, figsize=(9.5, 3.8), sharey=True, layout="constrained")
     for axes, implicit in zip(both, (False, True)):
         image = draw(axes, [cell for cell in cells if cell["implicit"] == implicit])
@@ -50,7 +49,33 @@ def main():
     both[0].set_ylabel("Young's modulus, Pa")
     bar = figure.colorbar(image, ax=both, extend="max")
     bar.set_label("largest extent, times the body's; × exploded")
-    figure.savefig(sys.argv[2], dpi=110)
+    figure.savefig(path, dpi=110)
+
+
+def draw_ours(cells, path):
+    figure, axes = plt.subplots(figsize=(6.2, 4.4), layout="constrained")
+    image = draw(axes, cells)
+    axes.set_title("tetskin's force and solver")
+    axes.set_ylabel("Young's modulus, Pa")
+    bar = figure.colorbar(image, ax=axes, extend="max")
+    bar.set_label("largest extent, times the body's; × exploded\n○ Bullet's force explodes, both ways (run to $10^7$ Pa)")
+    figure.savefig(path, dpi=110)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    with open(sys.argv[1], encoding="utf-8") as file:
+        cells = [case for case in json.load(file) if case["group"] == "map"]
+    if not cells:
+        sys.exit(f"{sys.argv[1]}: has no cells of a map")
+    bullets = [cell for cell in cells if cell["force"] == "neo_hookean"]
+    ours = [cell for cell in cells if cell["force"] == "tetskin"]
+    name, extension = os.path.splitext(sys.argv[2])
+    if bullets:
+        draw_bullets(bullets, sys.argv[2])
+    if ours:
+        draw_ours(ours, f"{name}_tetskin{extension}")
 
 
 if __name__ == "__main__":

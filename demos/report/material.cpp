@@ -25,20 +25,27 @@ double landingStiffness(const TetMesh& cage, double wish, double substep) {
 
 }  // namespace
 
+const char* nameOf(Elasticity elasticity) {
+  constexpr const char* kNames[] = {"tetskin", "explicit", "implicit"};
+  return kNames[static_cast<std::size_t>(elasticity)];
+}
+
 scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const TetMesh& reference, double relativeStiffness,
-                                bool implicit) {
+                                Elasticity elasticity) {
   scenes::SceneOptions options;
   SoftBodyOptions& body = options.body;
   body.density = kReferenceMass / totalVolume(reference);
   body.margin = kMarginShare * scenes::kSize;
-  body.implicit = implicit;
+  body.implicit = elasticity == Elasticity::BulletImplicit;
   const double relative = relativeStiffness > 0.0 ? relativeStiffness : scene.lands ? kLandingStiffness : kStiffness;
   body.youngsModulus = relative * body.density * scenes::kEarth * scenes::kSize;
   if (!scene.lands) {
     options.force = scenes::Force::LinearElasticity;
     body.damping = kDampingSubsteps * options.substep();
+    if (elasticity == Elasticity::Tetskin) options.force = scenes::Force::Elastic;
     return options;
   }
+  options.force = scenes::Force::NeoHookean;
   constexpr double kReached = 0.999;
   double stiffness = landingStiffness(reference, body.youngsModulus, options.substep());
   while (stiffness < kReached * body.youngsModulus && options.substeps < kMostSubsteps) {
@@ -46,6 +53,10 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const TetMesh& 
     stiffness = landingStiffness(reference, body.youngsModulus, options.substep());
   }
   body.youngsModulus = stiffness;
+  if (elasticity == Elasticity::Tetskin) {
+    options.force = scenes::Force::Elastic;
+    options.substeps = scenes::SceneOptions().substeps;
+  }
   return options;
 }
 

@@ -59,8 +59,12 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
     result.rows.insert(result.rows.end(), rows->begin(), rows->end());
   }
   const Row& first = result.rows.front();
+  const auto bullets =
+      std::find_if(std::next(result.rows.begin()), result.rows.end(), [](const Row& row) { return row.isReference(); });
+  const double bulletsMs = bullets == result.rows.end() ? 0.0 : bullets->totalMs;
   for (Row& row : result.rows) {
     if (first.isReference()) row.speedup = first.totalMs / row.totalMs;
+    row.speedupAgainstBullet = bulletsMs / row.totalMs;
   }
   markPareto(result.rows);
   result.referenceError = referenceError(result.rows);
@@ -77,9 +81,10 @@ ReportResult makeReport(const ReportOptions& options) {
   std::vector<std::unique_ptr<SceneRunner>> runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
-    for (const bool implicit : {false, true}) {
-      if (implicit && (!options.implicit || scene == kExact)) continue;
-      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, scene, implicit));
+    for (const Elasticity elasticity :
+         {options.bullet ? Elasticity::BulletExplicit : Elasticity::Tetskin, Elasticity::BulletImplicit}) {
+      if (elasticity == Elasticity::BulletImplicit && (!options.implicit || scene == kExact)) continue;
+      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, scene, elasticity));
       for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
     }
   }

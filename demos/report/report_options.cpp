@@ -34,7 +34,9 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addFlag("--quick", quick_, "A small report, in half a minute");
   line.addWord("--interpolation", interpolation_, {"linear", "quadratic"},
                "Only linear, or only quadratic (default: both, and Bullet's own)");
-  line.addFlag("--implicit", o.implicit, "Implicit elasticity as well, beside the explicit one");
+  line.addWord("--force", force_, {"bullet", "tetskin"},
+               "Whose elastic forces (default: tetskin, with its solver, and compared with both references)");
+  line.addFlag("--implicit", o.implicit, "With --force bullet: implicit elasticity as well, beside the explicit one");
   line.addFlag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
   line.addCount("--frames", o.frames, "Frames of 1/60 s (default: the scene's)", 100000);
   line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
@@ -62,6 +64,8 @@ const ReportOptions& ReportCommandLine::finish() {
   if (interpolation_ == "linear") o.surfaces = {SurfaceKind::Linear};
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
   o.calibrated = !noCalibration_;
+  o.bullet = force_ == "bullet";
+  if (o.implicit && !o.bullet) throw scenes::InputError("--implicit is about Bullet's forces: add --force bullet");
   std::sort(o.tets.begin(), o.tets.end());
   o.tets.erase(std::unique(o.tets.begin(), o.tets.end()), o.tets.end());
   if (o.tets.empty() || o.tets.back() >= o.referenceTets) {

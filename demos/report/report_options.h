@@ -19,7 +19,8 @@ struct ReportOptions {
   std::size_t referenceTets = 30000;
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   bool calibrated = true;        ///< with calibrated rows
-  bool implicit = false;         ///< implicit rows beside the explicit ones
+  bool bullet = false;           ///< bodies by Bullet's forces instead of the library's
+  bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
   int frames = 0;                ///< 0: the scene's own
   double stiffness = 0.0;        ///< over density x gravity x size; 0: the scene's own
   std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
@@ -38,7 +39,7 @@ class ReportCommandLine {
  private:
   ReportOptions options_;
   scenes::CommandLine& line_;
-  std::string interpolation_;
+  std::string interpolation_, force_ = "tetskin";
   bool quick_ = false, full_ = false, noCalibration_ = false;
 };
 

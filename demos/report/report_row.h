@@ -13,18 +13,21 @@ namespace tetskin::report {
 
 struct Row {
   std::string scene;
-  std::string integrator;     ///< explicit, implicit; none where nothing is simulated
-  std::string material;       ///< same: as the reference's; calibrated: softened by `stiffness_factor`
+  std::string integrator;  ///< tetskin: by the library's force; by Bullet's: explicit, implicit; none where nothing is
+                           ///< simulated
+  std::string material;    ///< same: as the reference's; calibrated: softened by `stiffness_factor`
   std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
 
   double tets = 0, nodes = 0;
   double edge = 0;  ///< mean length of the cage's edges
   double stiffnessFactor = 1;
+  double errorAgainstBullet = 0;  ///< total, RMS, against a reference by Bullet's forces; 0 without
   double errorTotalRms = 0, errorTotalMax = 0, errorEmbeddingRms = 0, errorSimulationRms = 0;
   double normalErrorMeanDeg = 0;
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< a frame
   double attachMs = 0, calibrateMs = 0;              ///< once
   double speedup = 0;                                ///< against the reference's total; 0 where nothing is simulated
+  double speedupAgainstBullet = 0;                   ///< the same against a reference by Bullet's forces; 0 without
   double memoryBytes = 0;
   double frames = 0;    ///< compared
   double finite = 1;    ///< 0: it exploded; errors are those of the frames before

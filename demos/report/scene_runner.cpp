@@ -9,13 +9,12 @@
 
 #include "report/build_id.h"
 #include "report/coloured_mesh.h"
-#include "report/material.h"
 
 namespace tetskin::report {
 namespace {
 
 /// Of what is stored: raise it when rows of before are no longer comparable.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 /// The finest cage that is compared, for the estimate of the reference's own error, has the reference's tets over this.
 constexpr std::size_t kCoarserLevel = 3;
 /// A cage this near to that level serves for it.
@@ -28,7 +27,7 @@ std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
   return kinds;
 }
 
-std::vector<Job> jobsOf(bool exact, const ReportOptions& options, std::size_t vertexCount) {
+std::vector<Job> jobsOf(bool exact, const ReportOptions& options, bool both, std::size_t vertexCount) {
   std::vector<Job> jobs;
   const std::size_t level = options.referenceTets / kCoarserLevel;
   std::vector<std::size_t> sizes = options.tets;
@@ -39,12 +38,13 @@ std::vector<Job> jobsOf(bool exact, const ReportOptions& options, std::size_t ve
   };
   const std::size_t shown = *std::min_element(options.tets.begin(), options.tets.end(),
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  if (!exact) jobs.push_back({options.referenceTets, false, {}, false});
+  if (!exact) jobs.push_back({options.referenceTets, false, {}, false, false});
+  if (!exact && both) jobs.push_back({options.referenceTets, false, {}, false, true});
   for (const std::size_t tets : sizes) {
     const bool bullet = static_cast<double>(tets) * static_cast<double>(vertexCount) <= kMostBulletPairs;
-    jobs.push_back({tets, false, bullet ? options.surfaces : ours(options.surfaces), tets == shown});
+    jobs.push_back({tets, false, bullet ? options.surfaces : ours(options.surfaces), tets == shown, false});
     const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
-    if (!exact && options.calibrated && asked) jobs.push_back({tets, true, ours(options.surfaces), false});
+    if (!exact && options.calibrated && asked) jobs.push_back({tets, true, ours(options.surfaces), false, false});
   }
   return jobs;
 }
@@ -52,26 +52,30 @@ std::vector<Job> jobsOf(bool exact, const ReportOptions& options, std::size_t ve
 }  // namespace
 
 SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store,
-                         const ReportOptions& options, const std::string& scene, bool implicit)
+                         const ReportOptions& options, const std::string& scene, Elasticity elasticity)
     : model_(model),
       cages_(cages),
       store_(store),
       options_(options),
       entry_(scenes::sceneNamed(scene)),
       frames_(options.frames > 0 && !isExact() ? options.frames : entry_.frames),
-      implicit_(implicit),
-      jobs_(jobsOf(isExact(), options, model.mesh.vertexCount())) {}
+      elasticity_(elasticity),
+      jobs_(jobsOf(isExact(), options, elasticity == Elasticity::Tetskin, model.mesh.vertexCount())) {}
 
 std::string SceneRunner::integrator() const {
   if (isExact()) return "none";
-  return implicit_ ? "implicit" : "explicit";
+  return nameOf(elasticity_);
 }
 
 double SceneRunner::costOf(const Job& job) const {
-  constexpr double kImplicit = 5.0, kCompareOneFrame = 30000.0;  // in tets stepped once
+  constexpr double kImplicit = 5.0, kTetskin = 0.15, kCompareOneFrame = 30000.0;  // in tets stepped once by Bullet
   const auto tets = static_cast<double>(job.tets);
   if (isExact()) return kCompareOneFrame;
-  return frames_ * (tets * (implicit_ ? kImplicit : 1.0) + (isReference(job) ? 0.0 : kCompareOneFrame));
+  const double step = job.bullets                                 ? 1.0
+                      : elasticity_ == Elasticity::BulletImplicit ? kImplicit
+                      : elasticity_ == Elasticity::Tetskin        ? kTetskin
+                                                                  : 1.0;
+  return frames_ * (tets * step + (isReference(job) ? 0.0 : kCompareOneFrame));
 }
 
 nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
@@ -87,6 +91,7 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["tets"] = job.tets;
   json["calibrated"] = job.calibrated;
   json["coloured"] = job.coloured;
+  json["bullets"] = job.bullets;
   json["surfaces"] = nlohmann::ordered_json::array();
   for (const SurfaceKind kind : job.surfaces) json["surfaces"].push_back(nameOf(kind));
   return json;
@@ -102,13 +107,21 @@ std::optional<std::string> SceneRunner::colouredMesh() const {
   return job == jobs_.end() ? std::nullopt : store_.text(settings(*job));
 }
 
-const scenes::SceneOptions& SceneRunner::material() {
-  if (!material_) {
-    material_ = materialOf(entry_, cages_.cage(options_.referenceTets), options_.stiffness, implicit_);
-    material_->frames = frames_;
-    material_->box = boundingBox(model_.mesh.positions);
+const Job* SceneRunner::referenceJob(bool bullets) const {
+  const auto found = std::find_if(jobs_.begin(), jobs_.end(),
+                                  [&](const Job& job) { return isReference(job) && job.bullets == bullets; });
+  return found == jobs_.end() ? nullptr : &*found;
+}
+
+const scenes::SceneOptions& SceneRunner::material(bool bullets) {
+  std::optional<scenes::SceneOptions>& made = right_[bullets].material;
+  if (!made) {
+    made = materialOf(entry_, cages_.cage(options_.referenceTets), options_.stiffness,
+                      bullets ? Elasticity::BulletExplicit : elasticity_);
+    made->frames = frames_;
+    made->box = boundingBox(model_.mesh.positions);
   }
-  return *material_;
+  return *made;
 }
 
 Row SceneRunner::rowOf(const Job& job, const TetMesh& cage) const {
@@ -123,53 +136,55 @@ Row SceneRunner::rowOf(const Job& job, const TetMesh& cage) const {
   return row;
 }
 
-std::vector<Row> SceneRunner::referenceRows(const std::function<void(double)>& share) {
-  const Job& job = jobs_.front();
+std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& share) {
   const TetMesh& cage = cages_.cage(job.tets);
   int frame = 0;
-  Simulation simulation =
-      simulate(entry_, cage, material(), model_.mesh, {}, [&] { share(static_cast<double>(++frame) / frames_); });
+  Simulation simulation = simulate(entry_, cage, material(job.bullets), model_.mesh, {},
+                                   [&] { share(static_cast<double>(++frame) / frames_); });
   Row row = rowOf(job, cage);
   row.interpolation = "reference";
+  if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
   row.simulationMs = row.totalMs = simulation.milliseconds;
   row.memoryBytes = static_cast<double>(simulation.bytes);
   row.frames = static_cast<double>(simulation.trajectory.size() - 1);
   row.finite = simulation.finite;
   row.speedup = 1.0;
-  referenceTrajectory_ = std::move(simulation.trajectory);
-  store_.keep(settings(job), referenceTrajectory_);
+  right_[job.bullets].trajectory = std::move(simulation.trajectory);
+  store_.keep(settings(job), right_[job.bullets].trajectory);
   store_.keep(settings(job), std::vector<Row>{row});
   return {row};
 }
 
-Reference& SceneRunner::reference() {
-  if (reference_) return *reference_;
+Reference& SceneRunner::reference(bool bullets) {
+  Right& right = right_[bullets];
+  if (right.reference) return *right.reference;
   if (isExact()) {
-    reference_ =
+    right.reference =
         std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
-    return *reference_;
+    return *right.reference;
   }
-  if (referenceTrajectory_.empty()) {
-    if (std::optional<Trajectory> kept = store_.trajectory(settings(jobs_.front()))) {
-      referenceTrajectory_ = std::move(*kept);
+  const Job& job = *referenceJob(bullets);
+  if (right.trajectory.empty()) {
+    if (std::optional<Trajectory> kept = store_.trajectory(settings(job))) {
+      right.trajectory = std::move(*kept);
     } else {
-      (void)referenceRows([](double) {});
+      (void)referenceRows(job, [](double) {});
     }
   }
-  reference_ =
-      std::make_unique<SimulatedReference>(model_.mesh, cages_.cage(options_.referenceTets), referenceTrajectory_);
-  return *reference_;
+  right.reference =
+      std::make_unique<SimulatedReference>(model_.mesh, cages_.cage(options_.referenceTets), right.trajectory);
+  return *right.reference;
 }
 
 void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame) {
-  const Points& positions = reference_->surfaceAt(frame).positions;
+  const Points& positions = reference().surfaceAt(frame).positions;
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
 }
 
 SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share) {
   Motion motion;
   motion.row = rowOf(job, cage);
-  motion.driven = reference_->drive(cage);
+  motion.driven = reference().drive(cage);
   if (isExact()) {
     motion.nodes = motion.driven;
     motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
@@ -200,7 +215,7 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const
 }
 
 std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
-  if (isReference(job)) return referenceRows(share);
+  if (isReference(job)) return referenceRows(job, share);
   Reference& right = reference();
   const TetMesh& cage = cages_.cage(job.tets);
   const Motion motion = move(job, cage, share);
@@ -214,6 +229,9 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
     row.errorTotalMax = total.max;
     row.normalErrorMeanDeg = total.normalMeanDeg;
     row.errorByFrame = total.rmsByFrame;
+    if (referenceJob(true)) {
+      row.errorAgainstBullet = surfaceErrors(reference(true), model_.mesh, cage, kind, motion.nodes).rms;
+    }
     row.errorEmbeddingRms = surfaceErrors(right, model_.mesh, cage, kind, motion.driven).rms;
     row.skinUs = cost.updateUs;
     row.totalMs = row.simulationMs + cost.updateUs / 1000.0;

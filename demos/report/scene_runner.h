@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "report/cage_shelf.h"
+#include "report/material.h"
 #include "report/reference.h"
 #include "report/report_options.h"
 #include "report/report_row.h"
@@ -21,8 +22,9 @@ namespace tetskin::report {
 struct Job {
   std::size_t tets = 0;
   bool calibrated = false;
-  std::vector<SurfaceKind> surfaces;
-  bool coloured = false;  ///< also colour a mesh by the errors
+  std::vector<SurfaceKind> surfaces;  ///< none: a reference
+  bool coloured = false;              ///< also colour a mesh by the errors
+  bool bullets = false;               ///< a reference by Bullet's forces, beside ours
 };
 
 /// The mesh of the report.
@@ -42,7 +44,7 @@ class SceneRunner {
  public:
   /// All outlive this object.
   SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store, const ReportOptions& options,
-              const std::string& scene, bool implicit);
+              const std::string& scene, Elasticity elasticity);
 
   const std::string& scene() const { return entry_.name; }
   std::string integrator() const;
@@ -69,10 +71,18 @@ class SceneRunner {
   bool isExact() const { return entry_.name == kExact; }
   bool isReference(const Job& job) const { return job.surfaces.empty(); }
   nlohmann::ordered_json settings(const Job& job) const;
-  const scenes::SceneOptions& material();
-  Reference& reference();
+  /// Of a reference, and of all that it counts as right for.
+  struct Right {
+    std::optional<scenes::SceneOptions> material;
+    Trajectory trajectory;
+    std::unique_ptr<Reference> reference;
+  };
+
+  const Job* referenceJob(bool bullets) const;
+  const scenes::SceneOptions& material(bool bullets = false);
+  Reference& reference(bool bullets = false);
   Motion move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share);
-  std::vector<Row> referenceRows(const std::function<void(double)>& share);
+  std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& share);
   Row rowOf(const Job& job, const TetMesh& cage) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);
 
@@ -82,11 +92,9 @@ class SceneRunner {
   const ReportOptions& options_;
   const scenes::SceneEntry& entry_;
   int frames_;
-  bool implicit_;
+  Elasticity elasticity_;
   std::vector<Job> jobs_;
-  std::optional<scenes::SceneOptions> material_;
-  Trajectory referenceTrajectory_;
-  std::unique_ptr<Reference> reference_;
+  Right right_[2];  ///< by the elasticity of the cages; by Bullet's, if that is another one
 };
 
 }  // namespace tetskin::report

@@ -125,6 +125,11 @@ void CommandLine::addModelOptions(ModelOptions& options) {
   parser_->app.get_option("--cage")->excludes("--tets");
 }
 
+void CommandLine::addForceOption(Force& force) {
+  addChoice(parser_->app, "--force", force, {{"bullet", Force::NeoHookean}, {"tetskin", Force::Elastic}},
+            "Whose elastic forces and solver: the library's, or Bullet's neo-Hookean ones");
+}
+
 void CommandLine::addInterpolationOption(SkinOptions& options) {
   addChoice(parser_->app, "--interpolation", options.interpolation,
             {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "scenes/model.h"
+#include "scenes/world.h"
 
 namespace tetskin::scenes {
 
@@ -67,6 +68,8 @@ class CommandLine {
   void addMeshOptions(ModelOptions& options);
   /// Those and --cage, instead of --tets.
   void addModelOptions(ModelOptions& options);
+  /// --force: bullet (neo-Hookean) or tetskin.
+  void addForceOption(Force& force);
   /// --interpolation.
   void addInterpolationOption(SkinOptions& options);
   /// --normals, --outside, --max-distance.

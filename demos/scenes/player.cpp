@@ -11,11 +11,21 @@
 
 namespace tetskin::scenes {
 
-Player::Player(const ModelOptions& options, const std::string& scene)
+namespace {
+
+SceneOptions withForce(Force force) {
+  SceneOptions options;
+  options.force = force;
+  return options;
+}
+
+}  // namespace
+
+Player::Player(const ModelOptions& options, const std::string& scene, Force force)
     : options_(options),
       model_(loadModel(options)),
       place_(placementOf(boundingBox(model_.cage.nodes))),
-      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage))) {
+      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), withForce(force))) {
   place_.offset = scene_->offset;
 }
 

@@ -25,9 +25,14 @@ std::string heldWord(const Verdict& verdict) {
   return verdict.held() ? "held" : "NOT HELD: " + joined(verdict.broken);
 }
 
+std::string cannotWord(const Row& row, const std::vector<Row>& rows) {
+  const std::optional<bool> cannot = bulletCannot(row, rows);
+  return !cannot ? "" : *cannot ? "yes" : "no";
+}
+
 /// One line a stiffness, one letter a time step.
-void printMapOf(const std::vector<const Row*>& cells, const char* integrator) {
-  std::printf("\n%s: stable (o) or not (x); stiffness against steps a second\n%10s", integrator, "");
+void printMapOf(const std::vector<const Row*>& cells, const char* title) {
+  std::printf("\n%s: stable (o) or not (x); stiffness against steps a second\n%10s", title, "");
   double stiffness = -1.0;
   for (const Row* cell : cells) {
     if (cell->stressCase.stiffness == cells.front()->stressCase.stiffness) {
@@ -46,9 +51,21 @@ void printMapOf(const std::vector<const Row*>& cells, const char* integrator) {
 
 }  // namespace
 
+std::optional<bool> bulletCannot(const Row& ours, const std::vector<Row>& rows) {
+  bool any = false, bullet = false;
+  for (const Row& row : rows) {
+    if (!areTwins(ours.stressCase, row.stressCase)) continue;
+    any = true;
+    bullet = bullet || row.verdict.simulationBounded;
+  }
+  if (!any) return {};
+  return ours.verdict.simulationBounded && !bullet;
+}
+
 nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
   auto json = nlohmann::ordered_json::array();
-  for (const auto& [stressCase, verdict] : rows) {
+  for (const Row& each : rows) {
+    const auto& [stressCase, verdict] = each;
     nlohmann::ordered_json row;
     row["name"] = stressCase.name;
     row["group"] = stressCase.group;
@@ -62,8 +79,11 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["normal_error"] = verdict.normalError;
     row["weight_error"] = verdict.weightError;
     row["extent_max"] = verdict.extentMax;
+    row["expected"] = toString(stressCase.simulation);
     row["held"] = verdict.held();
     row["broken"] = verdict.broken;
+    const std::optional<bool> cannot = bulletCannot(each, rows);
+    row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();
     row["milliseconds"] = verdict.milliseconds;
     row["force"] = toString(stressCase.force);
     row["implicit"] = stressCase.implicit;
@@ -85,18 +105,20 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
 std::string toMarkdown(const std::vector<Row>& rows) {
   std::string text;
   std::string group;
-  for (const auto& [stressCase, verdict] : rows) {
+  for (const Row& row : rows) {
+    const auto& [stressCase, verdict] = row;
     if (stressCase.group != group) {
       group = stressCase.group;
-      text += "\n## " + group +
-              "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | expectations "
-              "|\n|---|---|---|---|---|---|---|---|\n";
+      text +=
+          "\n## " + group +
+          "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | bullet cannot, "
+          "tetskin can | expectations |\n|---|---|---|---|---|---|---|---|---|\n";
     }
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, " | %s | %.3g | %s | %s | %.4f | %.1e | ", simulationWord(verdict).c_str(),
                   verdict.extentMax, verdict.skinFinite ? "finite" : "not finite", verdict.status.c_str(),
                   verdict.amplification, verdict.restError);
-    text += "| " + stressCase.name + numbers + heldWord(verdict) + " |\n";
+    text += "| " + stressCase.name + numbers + cannotWord(row, rows) + " | " + heldWord(verdict) + " |\n";
   }
   return text;
 }
@@ -109,15 +131,19 @@ void printRow(const Row& row) {
 }
 
 void printMap(const std::vector<Row>& rows) {
-  for (const bool implicit : {false, true}) {
+  const auto print = [&rows](const char* title, bool ours, bool implicit) {
     std::vector<const Row*> cells;
     for (const Row& row : rows) {
-      if (row.stressCase.group == "map" && row.stressCase.implicit == implicit) cells.push_back(&row);
+      const StressCase& cell = row.stressCase;
+      if (cell.group == "map" && isOurs(cell.force) == ours && cell.implicit == implicit) cells.push_back(&row);
     }
     std::stable_sort(cells.begin(), cells.end(),
                      [](const Row* a, const Row* b) { return a->stressCase.stiffness < b->stressCase.stiffness; });
-    if (!cells.empty()) printMapOf(cells, implicit ? "implicit" : "explicit");
-  }
+    if (!cells.empty()) printMapOf(cells, title);
+  };
+  print("Bullet's force, explicit", false, false);
+  print("Bullet's force, implicit", false, true);
+  print("tetskin's force and solver", true, false);
 }
 
 }  // namespace tetskin::stress

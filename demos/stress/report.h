@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,15 @@ struct Row {
   Verdict verdict;
 };
 
+/// Whether a body of the library's force stayed bounded, and none of its twins did that are among the rows. Empty:
+/// there are none.
+std::optional<bool> bulletCannot(const Row& ours, const std::vector<Row>& rows);
+
 /// A list of one object a case.
 nlohmann::ordered_json toJson(const std::vector<Row>& rows);
 /// A table a group.
 std::string toMarkdown(const std::vector<Row>& rows);
-/// On standard output: a line a case, and the stability map in letters.
+/// On standard output: a line a case, and the stability maps in letters.
 void printRow(const Row& row);
 void printMap(const std::vector<Row>& rows);
 

@@ -11,12 +11,12 @@ namespace {
 /// RMS in diagonals, under its own weight or shortly after an event, of a shape that counts as recovered.
 constexpr double kRecovered = 0.02;
 
-void expectOfBullet(const StressCase& stressCase, Verdict& verdict) {
-  if (stressCase.recovers) verdict.expect(verdict.shapeError <= kRecovered, "Bullet recovers the body's shape");
+void expectOfBody(const StressCase& stressCase, Verdict& verdict) {
+  if (stressCase.recovers) verdict.expect(verdict.shapeError <= kRecovered, "the body comes back to its shape");
   if (stressCase.simulation == Simulation::Either) return;
   const bool bounded = stressCase.simulation == Simulation::Bounded;
   verdict.expect(verdict.simulationBounded == bounded,
-                 bounded ? "Bullet stays bounded" : "Bullet does not stay bounded");
+                 bounded ? "the body stays bounded" : "the body does not stay bounded");
 }
 
 scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressModel& model) {
@@ -81,7 +81,7 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   const Status fit = skin.bind(scene->body(), model.cage, model.mesh, options).status();
   if (!fit.ok() || stressCase.refusal != StatusCode::Ok) return expectRefusal(stressCase, fit, skin, verdict);
   simulate(stressCase, model, *scene, skin, verdict);
-  expectOfBullet(stressCase, verdict);
+  expectOfBody(stressCase, verdict);
 }
 
 }  // namespace

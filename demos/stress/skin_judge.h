@@ -19,7 +19,7 @@ struct Verdict {
   bool simulationBounded = true;
   double extentMax = 1.0;  ///< largest side of the nodes' box, over that at rest
   /// RMS in diagonals of the mesh: how far the surface was from its rest shape, wherever it lay, when the event was
-  /// over: whether Bullet has recovered.
+  /// over: whether the body has recovered.
   double shapeError = 0.0;
   bool skinFinite = true;  ///< at every update
   std::string status;      ///< the worst that `update` said, or why there is no skin

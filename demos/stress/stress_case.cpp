@@ -3,6 +3,7 @@
 #include "stress/stress_case.h"
 
 #include <iterator>
+#include <tuple>
 
 namespace tetskin::stress {
 namespace {
@@ -16,9 +17,26 @@ const char* nameIn(const char* const (&names)[N], Enum value) {
 
 }  // namespace
 
+bool isOurs(scenes::Force force) {
+  return force == scenes::Force::Elastic || force == scenes::Force::ElasticForceOnly;
+}
+
+bool areTwins(const StressCase& ours, const StressCase& bullets) {
+  const auto felt = [](const StressCase& c) {
+    return std::tie(c.stiffness, c.poisson, c.damping, c.timeStep, c.substeps, c.frames, c.scene, c.cage);
+  };
+  return isOurs(ours.force) && bullets.force == scenes::Force::NeoHookean && felt(ours) == felt(bullets);
+}
+
 const char* toString(scenes::Force force) {
-  static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean", "corotated"};
+  static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean",
+                                       "corotated",   "tetskin",           "tetskin_force_only"};
   return nameIn(kNames, force);
+}
+
+const char* toString(Simulation simulation) {
+  static const char* const kNames[] = {"bounded", "unbounded", "either"};
+  return nameIn(kNames, simulation);
 }
 
 const char* toString(Cage cage) {

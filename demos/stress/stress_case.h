@@ -39,11 +39,11 @@ enum class Surface {
   NoVertices,    ///< must be refused
 };
 
-/// What Bullet is expected to do. Its behaviour where it is not documented to be stable may differ between versions
-/// and machines: there the expectation is all about the skin.
+/// What the body is expected to do. Bullet's behaviour where it is not documented to be stable may differ between
+/// versions and machines: there the expectation is all about the skin.
 enum class Simulation { Bounded, Unbounded, Either };
 
-/// One row of the table: what is simulated, what the skin is asked for, and what Bullet and `bind` shall do. What the
+/// One row of the table: what is simulated, what the skin is asked for, and what the body and `bind` shall do. What the
 /// skin shall do follows: see `SkinJudge`.
 struct StressCase {
   std::string group;
@@ -68,21 +68,29 @@ struct StressCase {
   Normals normals = Normals::None;
 
   Simulation simulation = Simulation::Bounded;
-  bool recovers = false;                ///< Bullet shall bring the body back to its shape
+  bool recovers = false;                ///< the body shall come back to its shape
   StatusCode refusal = StatusCode::Ok;  ///< of makeSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
 
   double substep() const { return timeStep / substeps; }
 };
 
+/// Whether the force is the library's own.
+bool isOurs(scenes::Force force);
+
+/// Whether a case of Bullet's neo-Hookean force is the same as one of the library's in all that a body feels but its
+/// force and integrator. The skins may differ, and so may default stiffnesses.
+bool areTwins(const StressCase& ours, const StressCase& bullets);
+
 /// Names for reports.
 const char* toString(scenes::Force force);
+const char* toString(Simulation simulation);
 const char* toString(Cage cage);
 const char* toString(Surface surface);
 const char* toString(Interpolation interpolation);
 const char* toString(Normals normals);
 
-/// All cases, in groups: first the stability map, whose cells are runs of their own.
+/// All cases, in groups: first the stability maps, whose cells are runs of their own.
 std::vector<StressCase> stressCases();
 
 }  // namespace tetskin::stress

@@ -114,12 +114,12 @@ class ErrorVsTime : public testing::Test {
     arguments.insert(arguments.begin(), {"PYTHONPATH=" + folder.path("python"), program});
     return folder.run("env", arguments);
   }
-  /// The small scene of the tests below, explicit.
+  /// The small scene of the tests below, with Bullet's explicit forces.
   std::vector<std::string> small(const std::string& scene, const std::vector<std::string>& more = {},
                                  const std::string& out = "out") const {
     std::vector<std::string> all = {
-        "--quick", "--quiet",     "--scene", scene,      "--tets", "300,900", "--reference-tets",
-        "2700",    "--triangles", "2000",    "--frames", "6",      "--out",   out};
+        "--quick",     "--quiet", "--scene",  scene, "--tets", "300,900", "--reference-tets", "2700",
+        "--triangles", "2000",    "--frames", "6",   "--out",  out,       "--force",          "bullet"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -175,7 +175,14 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
   for (const char* name : {"sag", "twist", "drop"}) {
     const auto& scene = sceneOf(json, name);
     EXPECT_GT(number(scene, "reference_error"), 0.0);
-    EXPECT_EQ(rowsOf(scene, "reference").size(), 1u);
+    EXPECT_EQ(rowsOf(scene, "reference").size(), 2u);
+    for (const auto& row : rowsOf(scene, "quadratic")) {
+      // The two references are of one body: their motions differ by far less than coarse cages do.
+      EXPECT_NEAR(number(row, "error_against_bullet_rms"), number(row, "error_total_rms"),
+                  0.3 * number(row, "error_total_rms") + 1e-3)
+          << name;
+      EXPECT_GT(number(row, "speedup_against_bullet"), 4.0 * number(row, "speedup")) << name;
+    }
     EXPECT_EQ(rowsOf(scene, "bullet").size(), 3u);
     EXPECT_EQ(rowsOf(scene, "linear", "calibrated").size(), 3u);
     for (const char* interpolation : {"linear", "quadratic"}) {
@@ -337,6 +344,26 @@ TEST_F(ErrorVsTime, TakesAnySceneOfTheTable) {
   const auto json = folder.json("out/error_vs_time.json");
   EXPECT_EQ(json.at("scenes").at(0).at("scene"), "float");
   for (const auto& row : json.at("scenes").at(0).at("rows")) EXPECT_LT(number(row, "error_simulation_rms"), 1e-6);
+}
+
+TEST_F(ErrorVsTime, ComparesWithBothReferencesUnlessBulletsForcesAreAsked) {
+  std::vector<std::string> arguments = small("sag", {"--no-calibration"});
+  ASSERT_EQ(run(arguments).status, 0);
+  const auto bullets = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(bullets.at("scenes").at(0).at("integrator"), "explicit");
+  EXPECT_EQ(rowsOf(bullets.at("scenes").at(0), "reference").size(), 1u);
+  for (const auto& row : bullets.at("scenes").at(0).at("rows")) EXPECT_EQ(number(row, "speedup_against_bullet"), 0.0);
+
+  *std::find(arguments.begin(), arguments.end(), "bullet") = "tetskin";
+  ASSERT_EQ(run(arguments).status, 0);
+  const auto ours = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(ours.at("scenes").at(0).at("integrator"), "tetskin");
+  const auto references = rowsOf(ours.at("scenes").at(0), "reference");
+  ASSERT_EQ(references.size(), 2u);
+  EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(0).at("integrator"), "tetskin");
+  EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(1).at("integrator"), "explicit");
+  expectRefused(run({"--implicit", "--quick"}), "--force bullet");
+  expectRefused(run({"--force", "havok"}), "--force");
 }
 
 TEST_F(ErrorVsTime, ImplicitRowsStandBesideTheOthers) {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <map>
 #include <set>
 
 #include "command.h"
@@ -29,8 +29,9 @@ TEST_F(StressCommand, QuickCasesHold) {
   const auto cases = folder.json("s.json");
   ASSERT_TRUE(cases.is_array());
   EXPECT_GT(cases.size(), 100u);
-  std::set<std::string> names;
+  std::set<std::string> names, ours;
   std::set<bool> bounded;
+  int gained = 0;
   const std::string markdown = folder.read("s.md");
   for (const auto& row : cases) {
     const std::string name = row["name"];
@@ -42,14 +43,25 @@ TEST_F(StressCommand, QuickCasesHold) {
     EXPECT_GE(row["amplification"], 0.0);
     EXPECT_GE(row["rest_error"], 0.0);
     bounded.insert(row["simulation_bounded"].get<bool>());
+    if (row["force"] == "tetskin") {
+      ours.insert(row["group"].get<std::string>());
+      EXPECT_TRUE(row["expected"] != "bounded" || row["simulation_bounded"].get<bool>()) << row;
+    } else {
+      EXPECT_TRUE(row.at("bullet_cannot_tetskin_can").is_null()) << row;
+    }
+    gained += row.at("bullet_cannot_tetskin_can") == true;
     EXPECT_NE(result.out.find(name), std::string::npos) << name;
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
   }
   EXPECT_EQ(bounded.size(), 2u) << "it tells what explodes from what does not";
+  EXPECT_EQ(ours, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage"}));
+  EXPECT_GT(gained, 5) << "what Bullet's force cannot hold, and ours can";
+  EXPECT_NE(markdown.find("| bullet cannot, tetskin can |"), std::string::npos);
 #ifdef TETSKIN_PYTHON
   const CommandResult drawn = folder.run(TETSKIN_PYTHON, {TETSKIN_PLOTS "/stability_map.py", "s.json", "map.png"});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_TRUE(folder.exists("map.png"));
+  EXPECT_TRUE(folder.exists("map_tetskin.png"));
 #endif
 }
 
@@ -66,7 +78,49 @@ TEST_F(StressCommand, RunsTheCasesNamed) {
   }
 }
 
+/// As far as the stiffness is promised, at every step of the map that is not longer than a frame of 60 a second.
+TEST_F(StressCommand, OurMapIsStable) {
+  const CommandResult result = stress({"--force", "tetskin", "--only", "map/", "--json", "s.json", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  std::set<double> stiffnesses;
+  for (const auto& cell : folder.json("s.json")) {
+    EXPECT_EQ(cell["force"], "tetskin");
+    EXPECT_TRUE(cell["bullet_cannot_tetskin_can"].is_null()) << "there is nothing to compare with";
+    stiffnesses.insert(cell["stiffness"].get<double>());
+    if (cell["stiffness"] > 1e7 || cell["time_step"] > 1.0 / 60) continue;
+    EXPECT_TRUE(cell["simulation_bounded"].get<bool>()) << cell;
+    EXPECT_EQ(cell["expected"], "bounded") << cell;
+  }
+  EXPECT_EQ(stiffnesses.size(), 10u);
+  EXPECT_EQ(*stiffnesses.rbegin(), 1e9);
+}
+
+TEST_F(StressCommand, BulletCannotWhatOursCan) {
+  const CommandResult result = stress({"--only", "/E=1e+07/dt=1/240", "--json", "s.json", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  std::map<std::string, nlohmann::json> rows;
+  for (const auto& row : folder.json("s.json")) rows[row["name"]] = row;
+  // A body of 1 kg under a box of 1,000; one that was flat; one that was inside out.
+  for (const std::string scene : {"heavy_box", "squash_flat", "mirror"}) {
+    const std::string what = scene + "/E=1e+07/dt=1/240";
+    EXPECT_FALSE(rows["stiff/neo_hookean/explicit/" + what]["simulation_bounded"].get<bool>()) << what;
+    EXPECT_TRUE(rows["stiff/tetskin/" + what]["simulation_bounded"].get<bool>()) << what;
+    EXPECT_TRUE(rows["stiff/tetskin/" + what]["bullet_cannot_tetskin_can"].get<bool>()) << what;
+  }
+  EXPECT_FALSE(rows["stiff/tetskin/teleport/E=1e+07/dt=1/240"]["bullet_cannot_tetskin_can"].get<bool>()) << "both can";
+}
+
+TEST_F(StressCommand, RunsTheCasesOfOneForce) {
+  const CommandResult result = stress({"--force", "bullet", "--only", "substeps/", "--json", "s.json", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  std::set<std::string> forces;
+  for (const auto& row : folder.json("s.json")) forces.insert(row["force"].get<std::string>());
+  EXPECT_EQ(forces, (std::set<std::string>{"mass_spring", "linear_elasticity", "neo_hookean"}));
+}
+
 TEST_F(StressCommand, RefusesBadInput) {
+  expectRefused(stress({"--force", "spring"}), "spring");
+  expectRefused(stress({"--force", "tetskin", "--only", "mesh/"}), "mesh/");
   expectRefused(stress({"--only", "no such case"}), "no such case");
   expectRefused(stress({"--often"}), "--often");
   expectRefused(stress({"--only", "mesh/non_finite/linear", "--json", "no/where.json"}), "no/where.json");
