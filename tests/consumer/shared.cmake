@@ -31,6 +31,11 @@ foreach(library core bullet cage elastic io threads)
   execute_process(COMMAND ${NM} -D -C --defined-only ${so} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
   # Of functions, tables and classes; templates have their result in front.
   set(shown " [TWVDRBu] ([a-z ]+ for )?([A-Za-z:]+ )?tetskin::")
+  # Bodies in Bullet's worlds are stepped by these.
+  if(library STREQUAL elastic)
+    string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets)[^\n]*" ""
+      names "${names}")
+  endif()
   if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()

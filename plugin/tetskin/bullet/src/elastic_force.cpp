@@ -32,9 +32,9 @@ RestTets restTetsOf(const btSoftBody& body) {
     Tet tet{};
     for (std::size_t k = 0; k < 4; ++k) tet[k] = nodeNumber(body, tetra.m_n[k]);
     std::array<double, 9> gradients{};
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j)
-        gradients[static_cast<std::size_t>(3 * i + j)] = static_cast<double>(tetra.m_Dm_inverse[i][j]);
+    for (std::size_t k = 0; k < gradients.size(); ++k) {
+      const btVector3& row = tetra.m_Dm_inverse[static_cast<int>(k / 3)];
+      gradients[k] = static_cast<double>(row[static_cast<int>(k % 3)]);
     }
     rest.tets.push_back(tet);
     rest.gradients.push_back(gradients);
