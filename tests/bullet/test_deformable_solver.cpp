@@ -131,6 +131,31 @@ TEST_P(Landing, HoldsInLongSteps) {
   EXPECT_GT(lowest(body->body()), -0.005);
 }
 
+/// Beside each other, one of them held at a side.
+TEST_P(Landing, HoldsForSeveralBodiesAndWithPins) {
+  for (const int substeps : {4, 1}) {
+    TetskinWorld world;
+    std::vector<std::unique_ptr<DeformableBody>> bodies;
+    for (int b = 0; b < 3; ++b) {
+      TetMesh cage = cageAbove(0.3);
+      for (Vector& p : cage.nodes) p.x() += 2.0 * b;
+      SoftBodyOptions options;
+      options.relativeStiffness = GetParam();
+      if (b == 1) options.pinned = pinnedIn(Box3(Vector(1.9, 0.0, -1.0), Vector(2.01, 2.0, 2.0)));
+      bodies.push_back(added(world, cage, options));
+    }
+    const auto steps = static_cast<btScalar>(substeps);
+    for (int f = 0; f < 240; ++f) {
+      world.deformable().stepSimulation(btScalar(1) / 60, substeps, btScalar(1) / 60 / steps);
+    }
+    for (const auto& body : bodies) {
+      EXPECT_LT(rmsSpeed(body->body()), 0.05) << substeps;
+      EXPECT_GT(lowest(body->body()), -0.005) << substeps;
+    }
+    EXPECT_GT(lowest(bodies[1]->body()) - lowest(bodies[0]->body()), -1e-3);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(DeformableSolver, Landing, testing::Values(50.0, 300.0, 1e4));
 
 TEST(DeformableSolver, DoesNotBoundTheDefaultStiffnessByTheStep) {

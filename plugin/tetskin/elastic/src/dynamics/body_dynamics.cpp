@@ -17,6 +17,8 @@ using kernels::kGroup;
 /// A matrix whose tets have turned by no more, in radians, in the mean and at most, still serves: forces are those of
 /// the tets as they are.
 constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
+/// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
+constexpr double kFullTurnStep = 1.0 / 240.0;
 
 }  // namespace
 
@@ -78,7 +80,8 @@ void BodyDynamics<S>::prepare(double seconds, ParallelFor* threads) {
   const double alpha = alphaFor(seconds);
   const bool other = changed_ || alpha != alpha_;
   prepareForces(threads);
-  if (other || (tets_ && (tets_->meanTurn() > kMeanTurn || tets_->mostTurn() > kMostTurn))) {
+  const double share = std::min(1.0, seconds / kFullTurnStep);
+  if (other || (tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * kMostTurn))) {
     matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
     alpha_ = alpha;
     changed_ = false;
