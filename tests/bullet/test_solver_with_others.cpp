@@ -9,6 +9,8 @@
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 
+#include <tetskin/bullet/elastic_force.h>
+
 #include <cmath>
 
 namespace tetskin {
@@ -303,6 +305,137 @@ TEST(SolverWithOthers, SleepersStayWhereTheyAreAndWake) {
   step(world, 6);
   EXPECT_GT(lowest(bodies[3]->body()), 0.1);
   EXPECT_EQ(asleep(), 5);
+}
+
+TEST(SolverWithOthers, FollowsABodyThatIsScaled) {
+  TetskinWorld world;
+  const auto body = added(world, smallCageAbove(50));
+  step(world, 2);
+  body->body().scale(btVector3(2, 2, 2));
+  step(world, 40);
+  btScalar low = 1e9f, high = -1e9f;
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    low = std::min(low, body->body().m_nodes[n].m_x.z());
+    high = std::max(high, body->body().m_nodes[n].m_x.z());
+  }
+  EXPECT_NEAR(static_cast<double>(high - low), 2 * 0.9, 0.01);
+}
+
+/// Bullet's tets dangle after `appendNode`: they are not stepped any more, and nothing is read past its end.
+TEST(SolverWithOthers, SurvivesNodesThatAreAppended) {
+  TetskinWorld world;
+  const auto body = added(world, smallCageAbove(5));
+  step(world, 2);
+  body->body().appendNode(btVector3(0, 9, 0), btScalar(0.1));
+  body->body().m_tetras.resize(0);  // or Bullet itself reads through them
+  step(world, 5);
+  EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
+}
+
+TEST(SolverWithOthers, TwoForcesOfOneBodyBothAct) {
+  for (const bool ours : {false, true}) {
+    std::unique_ptr<EmptyWorld> world = ours ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
+    const auto body = added(*world, smallCageAbove(5));
+    const int tets = body->body().m_tetras.size();
+    ElasticForce first({1e3}), second({1e3});
+    ASSERT_TRUE(first.addTo(world->deformable(), body->body()).ok());
+    ASSERT_TRUE(second.addTo(world->deformable(), body->body()).ok());
+    step(*world, 10);
+    EXPECT_EQ(body->body().m_tetras.size(), tets);
+    first.removeFrom(body->body());
+    second.removeFrom(body->body());
+    step(*world, 10);
+    EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
+  }
+}
+
+/// Bullet's addForce joins objects of one type: not those that a DeformableBody has for itself.
+TEST(SolverWithOthers, ABodyGivenAForceByBulletsMeansHasThatForce) {
+  TetskinWorld world;
+  const auto ours = added(world, smallCageAbove(5));
+  const auto own = makeSoftBody(smallCageAbove(9), world.deformable().getWorldInfo()).value();
+  ElasticForce force({1e3});
+  world.deformable().addSoftBody(own.get());
+  world.deformable().addForce(own.get(), &force);
+  EXPECT_EQ(force.m_softBodies.size(), 1);
+  step(world, 5);
+  // It has no gravity, as it was given none.
+  EXPECT_LT(rmsSpeed(*own), 1e-3);
+  force.removeFrom(*own);
+  EXPECT_EQ(force.m_softBodies.size(), 0);
+  world.deformable().removeSoftBody(own.get());
+  step(world, 5);
+}
+
+TEST(SolverWithOthers, BodiesMayGoInBulletsCallbacks) {
+  for (const bool afterSolve : {false, true}) {
+    TetskinWorld world;
+    struct Bodies {
+      std::vector<std::unique_ptr<DeformableBody>> all;
+      int calls = 0;
+      static void goes(btScalar, btDeformableMultiBodyDynamicsWorld* in) {
+        auto& bodies = *static_cast<Bodies*>(in->getWorldUserInfo());
+        if (++bodies.calls == 8) bodies.all.erase(bodies.all.begin());
+      }
+    } bodies;
+    for (int b = 0; b < 3; ++b) bodies.all.push_back(added(world, cageAbove(0.021 + 1.5 * b)));
+    world.deformable().setWorldUserInfo(&bodies);
+    if (afterSolve) {
+      world.deformable().setSolverCallback(Bodies::goes);  // before and after
+    } else {
+      const auto tick = [](btDynamicsWorld* in, btScalar) {
+        Bodies::goes(0, static_cast<btDeformableMultiBodyDynamicsWorld*>(in));
+      };
+      world.deformable().setInternalTickCallback(tick, &bodies, false);
+    }
+    step(world, 30);
+    EXPECT_EQ(bodies.all.size(), 2u);
+    for (const auto& body : bodies.all) EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
+    world.deformable().setSolverCallback(nullptr);
+    world.deformable().setInternalTickCallback(nullptr);
+  }
+}
+
+TEST(SolverWithOthers, IsElasticAgainAfterANodeWasNotANumber) {
+  TetskinWorld world;
+  const auto body = added(world, cageAbove(5));
+  body->setGravity(btVector3(0, 0, 0));
+  step(world, 2);
+  std::vector<btVector3> before;
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) before.push_back(body->body().m_nodes[n].m_x);
+  body->body().m_nodes[7].m_v.setX(btScalar(NAN));
+  step(world, 2);
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body->body().m_nodes[n];
+    node.m_x = node.m_q = before[static_cast<std::size_t>(n)] * btVector3(btScalar(1.2), 1, 1);
+    node.m_v = node.m_vn = btVector3(0, 0, 0);
+  }
+  step(world, 120);
+  btScalar length = 0;
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    length = std::max(length, (body->body().m_nodes[n].m_x - body->body().m_nodes[0].m_x).x());
+  }
+  EXPECT_NEAR(static_cast<double>(length), 1.0, 0.01);
+}
+
+/// The world's choice is known in its first step only after the solver has been asked to begin it.
+TEST(SolverWithOthers, WorldsWithoutProjectionKeepTheirRigidBodies) {
+  TetskinWorld world;
+  SoftBodyOptions options;
+  options.configureWorld = false;
+  world.deformable().setUseProjection(false);
+  const auto body = added(world, cageAbove(0.01), options);
+  btBoxShape shape(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.3)));
+  btVector3 inertia;
+  shape.calculateLocalInertia(btScalar(0.1), inertia);
+  btRigidBody box(btScalar(0.1), nullptr, &shape, inertia);
+  btTransform above(btQuaternion::getIdentity(), btVector3(btScalar(0.5), btScalar(0.9), btScalar(0.5)));
+  box.setWorldTransform(above);
+  box.setInterpolationWorldTransform(above);
+  world.deformable().addRigidBody(&box);
+  step(world, 10);
+  EXPECT_TRUE(std::isfinite(box.getWorldTransform().getOrigin().length()));
+  world.deformable().removeRigidBody(&box);
 }
 
 TEST(SolverWithOthers, BodiesComeAndGo) {

@@ -46,13 +46,16 @@ class TETSKIN_BULLET_API ElasticForce : public btDeformableLagrangianForce {
   ElasticForce(const ElasticForce&) = delete;
   ElasticForce& operator=(const ElasticForce&) = delete;
 
-  /// Acts on the body from now on, in the world that it is in. The tets' rest shapes are Bullet's (m_Dm_inverse), as
-  /// `makeSoftBody` and Bullet's own helpers leave them.
-  /// stiffnessScale  tetCount, above 0: times the material's stiffness; empty: 1
-  /// Errors          SizeMismatch, InvalidOption; Degenerate for a body without tets, or with flat ones, or with tets
-  /// that
+  /// Acts on the body from now on, in this world, which it must be in. The tets' rest shapes are Bullet's
+  /// (m_Dm_inverse), as `makeSoftBody` and Bullet's own helpers leave them. stiffnessScale  tetCount, above 0: times
+  /// the material's stiffness; empty: 1 Errors          SizeMismatch, InvalidOption; Degenerate for a body without
+  /// tets, or with flat ones, or with tets that
   ///                 name no node of it
   Status addTo(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, std::vector<double> stiffnessScale = {});
+
+  /// Takes it from the body, and out of the world if it has no other; Bullet's `removeForce` finds the first force of a
+  /// type, which may be another one.
+  void removeFrom(btSoftBody& body);
 
   const ElasticMaterial& material() const;
   /// Of all bodies, from the next step on; they are not woken. Error: InvalidOption

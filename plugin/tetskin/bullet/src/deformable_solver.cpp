@@ -11,6 +11,7 @@
 #include <tetskin/bullet/src/solver_contacts.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tetskin {
 namespace {
@@ -71,6 +72,7 @@ struct DeformableSolver::Parts {
   void addExtra(const SolvedSystem& system, std::vector<const btScalar*>& added);
   void writeVelocities(SolvedBody& of) const;
   void hideLonely();
+  void unhide(const btAlignedObjectArray<btSoftBody*>& alive);
 
   DeformableSolver& solver;
   SolverBodies bodies;
@@ -86,6 +88,8 @@ struct DeformableSolver::Parts {
 
 DeformableSolver::DeformableSolver() : parts_(std::make_unique<Parts>(*this)) {
   m_useProjection = true;
+  m_implicit = false;
+  m_dt = 0;
 }
 DeformableSolver::~DeformableSolver() = default;
 
@@ -118,6 +122,7 @@ bool DeformableSolver::Parts::collect(const btAlignedObjectArray<btSoftBody*>& w
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
   Parts& parts = *parts_;
   parts.solving = solves();
+  parts.unhide(softBodies);
   parts.all.copyFromArray(softBodies);
   const bool changed = parts.collect(softBodies);
   for (int i = 0; i < (changed ? m_numNodes : parts.bodies.awakeCount()); ++i) {
@@ -129,12 +134,13 @@ void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& sof
     m_dt = dt;
     m_objective->setDt(dt);
   }
+  // They may make a body's dynamics anew.
+  for (int i = 0; i < parts.forces().size(); ++i) parts.forces()[i]->reinitialize(changed);
   if (parts.solving) {
     parts.bodies.assign(parts.forces());
   } else {
     parts.bodies.release(parts.forces());
   }
-  for (int i = 0; i < parts.forces().size(); ++i) parts.forces()[i]->reinitialize(changed);
   if (!parts.solving || m_implicit) resetEffectiveMasses(m_softBodies);
   updateSoftBodies();
 }
@@ -206,8 +212,8 @@ void DeformableSolver::Parts::predict(SolvedBody& of, ParallelFor* inner) {
   limits.tolerance = of.limits->tolerance;
   limits.iterations = of.limits->iterations;
   limits.floor = kUnseen * static_cast<double>(dt());
-  of.solve.start({&dynamics.matrix()}, limits, {}, inner);
-  of.solve.iterate(touched ? kIterationsBeforeContacts : limits.iterations, inner);
+  of.solve->start({&dynamics.matrix()}, limits, {}, inner);
+  of.solve->iterate(touched ? kIterationsBeforeContacts : limits.iterations, inner);
 }
 
 void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
@@ -236,6 +242,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     // The world's settings have changed since the step before.
     parts.solving = solves();
     parts.collect(parts.all);
+    if (!parts.solving) resetEffectiveMasses(m_softBodies);
     parts.solving ? parts.bodies.assign(parts.forces()) : parts.bodies.release(parts.forces());
   }
   if (!parts.solving) return btDeformableBodySolver::predictMotion(dt);
@@ -266,6 +273,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     body.m_faceNodeContactsCCD.resize(0);
     // Bullet's own also refits the trees of faces.
     if (m_implicit || body.m_bUpdateRtCst || meetsByFaces(body)) {
+      of.fittedTrees->ready = false;
       predictDeformableMotion(&body, dt);
     } else {
       parts.predictPositions(of);
@@ -298,6 +306,7 @@ void DeformableSolver::Parts::predictPositions(SolvedBody& of) const {
     node.m_constrained = false;
   }
   FittedTrees& fitted = *of.fittedTrees;
+  if (fitted.pad != kPadding * margin) fitted.ready = false;
   fitted.pad = kPadding * margin;
   fitted.drift = fitted.ready ? fitted.furthest(*of.dynamics) : fitted.pad;
   if (fitted.holds(btSqrt(most) * dt())) return;
@@ -382,7 +391,7 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
   for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
   if (again) return solveAgain(system, inner);
   if (!first.elastic) return;
-  first.solve.iterate(first.limits->iterations, inner);
+  first.solve->iterate(first.limits->iterations, inner);
   first.dynamics->removeMomentum();
 }
 
@@ -401,7 +410,7 @@ void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor
     matrices.push_back(&of.dynamics->matrix());
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    if (of.elastic) limits.enough += of.solve.enough();
+    if (of.elastic) limits.enough += of.solve->enough();
     of.dynamics->startAgain(inner);
     btScalar* residual = of.dynamics->matrix().residual();
     for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
@@ -416,7 +425,7 @@ void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor
   }
   Solve::Extra extra;
   if (coupled) extra = [&](std::vector<const btScalar*>& added) { addExtra(system, added); };
-  Solve& solve = bodies.bodies()[system.bodies.front()].solve;
+  Solve& solve = *bodies.bodies()[system.bodies.front()].solve;
   const int before = solve.iterations();
   solve.start(std::move(matrices), limits, std::move(extra), inner);
   solve.iterate(limits.iterations, inner);
@@ -448,7 +457,9 @@ void DeformableSolver::Parts::hideLonely() {
   std::vector<Entry> entries;
   for (const SolvedBody& of : bodies.bodies()) {
     const btDbvtNode* root = of.body->m_ndbvt.m_root;
-    if (root) entries.push_back({&of, root->volume.Mins(), root->volume.Maxs(), false});
+    // What is not a number has no place among the others.
+    if (root && std::isfinite(root->volume.Mins().x()))
+      entries.push_back({&of, root->volume.Mins(), root->volume.Maxs(), false});
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.low.x() < b.low.x(); });
   for (std::size_t a = 0; a < entries.size(); ++a) {
@@ -469,6 +480,15 @@ void DeformableSolver::Parts::hideLonely() {
     marked.emplace_back(&body, body.getActivationState());
     body.forceActivationState(ISLAND_SLEEPING);
   }
+}
+
+/// Unless somebody has woken a body, or put it to sleep, or taken it out of the world.
+void DeformableSolver::Parts::unhide(const btAlignedObjectArray<btSoftBody*>& alive) {
+  for (const auto& [body, state] : marked) {
+    if (alive.findLinearSearch(body) == alive.size()) continue;
+    if (body->getActivationState() == ISLAND_SLEEPING) body->forceActivationState(state);
+  }
+  marked.clear();
 }
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
@@ -498,7 +518,7 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   runTasks(inner ? nullptr : parts.threads, own.size(), [&](std::size_t k) { parts.solve(*own[k], inner); });
 
   parts.iterations = 0;
-  for (SolvedBody& of : bodies) parts.iterations += of.solve.iterations();
+  for (SolvedBody& of : bodies) parts.iterations += of.solve->iterations();
   keepNormalImpulses(projection, parts.bodies, m_residual);
   for (SolvedBody& of : bodies) parts.writeVelocities(of);
   parts.hideLonely();
@@ -506,11 +526,7 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
 
 void DeformableSolver::applyTransforms(btScalar dt) {
   Parts& parts = *parts_;
-  for (const auto& [body, state] : parts.marked) {
-    // Unless somebody has woken it, or put it to sleep.
-    if (body->getActivationState() == ISLAND_SLEEPING) body->forceActivationState(state);
-  }
-  parts.marked.clear();
+  parts.unhide(m_softBodies);
   // A body that has fallen asleep since the step began was not solved for: its velocities are not to be used.
   for (int i = 0; i < m_softBodies.size(); ++i) {
     btSoftBody& body = *m_softBodies[i];

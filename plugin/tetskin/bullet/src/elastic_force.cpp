@@ -47,6 +47,18 @@ btDeformableBodySolver* solverOf(const btSoftBody& body) {
   return static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
 }
 
+/// Of some of the tets: another one if the body has been scaled, or given another rest shape.
+btScalar restMeasureOf(const btSoftBody& body) {
+  btScalar sum = 0;
+  const int last = body.m_tetras.size() - 1;
+  for (const int t : {0, last / 3, 2 * last / 3, last}) {
+    const btSoftBody::Tetra& tetra = body.m_tetras[t];
+    sum += tetra.m_element_measure;
+    for (int i = 0; i < 3; ++i) sum += tetra.m_Dm_inverse[i].length2();
+  }
+  return sum;
+}
+
 /// Whether a force needs what Bullet keeps for each tet and updates in every step.
 bool needsDeformation(btDeformableLagrangianForce& force) {
   if (dynamic_cast<ElasticForce*>(&force) || dynamic_cast<btDeformableGravityForce*>(&force)) return false;
@@ -179,7 +191,7 @@ void ElasticForce::Parts::applyMaterial(ElasticBody& to) const {
 void ElasticForce::Parts::build(ElasticBody& of) const {
   if (of.stiffnessScale.size() != static_cast<std::size_t>(of.body->m_tetras.size())) of.stiffnessScale.clear();
   of.dynamics = std::make_unique<Dynamics>(restTetsOf(*of.body), static_cast<std::size_t>(of.body->m_nodes.size()));
-  of.restMeasure = of.body->m_tetras[0].m_element_measure;
+  of.restMeasure = restMeasureOf(*of.body);
   applyMaterial(of);
 }
 
@@ -192,7 +204,7 @@ ElasticBody* ElasticForce::Parts::find(const btSoftBody* body) {
 
 /// The first elastic force of a step installs its own, the others join it: the world resets what is installed.
 void ElasticForce::Parts::precondition(btDeformableBodySolver& solver, ElasticBody& of) {
-  if (!solver.m_useProjection) return;
+  if (!solver.m_useProjection || of.dynamics->alpha() == 0.0) return;
   btDeformableBackwardEulerObjective& objective = *solver.m_objective;
   auto* installed = dynamic_cast<Preconditioner*>(objective.m_preconditioner);
   if (!installed) {
@@ -224,6 +236,7 @@ double dampingTime(const ElasticForce::Parts& parts, const btSoftBody& body) {
 template <class In>
 void addStiffness(ElasticBody& of, double factor, In&& in, btAlignedObjectArray<btVector3>& out) {
   Dynamics& dynamics = *of.dynamics;
+  if (dynamics.alpha() == 0.0) return;  // woken in the middle of its first step
   const auto& matrix = dynamics.matrix();
   const auto scale = static_cast<btScalar>(factor / dynamics.alpha());
   btScalar* points = dynamics.scratchPoints();
@@ -262,7 +275,7 @@ void addDamping(const ElasticForce::Parts& parts, ElasticBody& of, btScalar scal
 /// Bullet updates deformation gradients of its own between `reinitialize` and the first force of a step, which takes as
 /// long as all that we do, and only its own forces read them. It finds no tets then.
 void hideTets(ElasticBody& of) {
-  if (of.hiddenTets >= 0 || !of.alone || of.solved) return;
+  if (of.hiddenTets >= 0 || !of.alone || of.solved || of.body->m_tetras.size() == 0) return;
   of.hiddenTets = of.body->m_tetras.size();
   of.body->m_tetras.resizeNoInitialize(0);
 }
@@ -310,11 +323,13 @@ Status ElasticForce::setLimits(const SolverLimits& limits) {
   return {};
 }
 
-Status ElasticForce::addTo(btDeformableMultiBodyDynamicsWorld&, btSoftBody& body, std::vector<double> stiffnessScale) {
+Status ElasticForce::addTo(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
+                           std::vector<double> stiffnessScale) {
   if (Status status = checkMaterial(parts_->material); !status.ok()) return status;
   if (Status status = checkTets(body, stiffnessScale); !status.ok()) return status;
+  const auto& inWorld = world.getSoftBodyArray();
   btDeformableBodySolver* solver = solverOf(body);
-  if (!solver || !body.getBroadphaseHandle()) {
+  if (!solver || inWorld.findLinearSearch(&body) == inWorld.size()) {
     return {StatusCode::InvalidOption, "add the body to the world before its forces"};
   }
   if (solver->isReducedSolver()) {
@@ -334,12 +349,21 @@ Status ElasticForce::setStiffnessScale(btSoftBody& body, std::vector<double> sti
   if (!of) return {StatusCode::IndexOutOfRange, "the body is none of this force's"};
   if (Status status = checkTets(body, stiffnessScale); !status.ok()) return status;
   of->stiffnessScale = std::move(stiffnessScale);
-  parts_->applyMaterial(*of);
+  const bool same = of->dynamics->tets()->count() == static_cast<std::size_t>(body.m_tetras.size());
+  same ? parts_->applyMaterial(*of) : parts_->build(*of);
   return {};
 }
 
 btDeformableLagrangianForceType ElasticForce::getForceType() {
-  return kOwnForceType;
+  // One that Bullet does not use, nor forces that belong to a DeformableBody.
+  return static_cast<btDeformableLagrangianForceType>(0);
+}
+
+void ElasticForce::removeFrom(btSoftBody& body) {
+  if (!parts_->find(&body)) return;
+  removeSoftBody(&body);
+  btDeformableBodySolver* solver = solverOf(body);
+  if (solver && m_softBodies.size() == 0) removeFromList(*solver->getLagrangianForceArray(), this);
 }
 
 void ElasticForce::addSoftBody(btSoftBody* body) {
@@ -363,22 +387,30 @@ void ElasticForce::removeSoftBody(btSoftBody* body) {
 
 void ElasticForce::reinitialize(bool nodeUpdated) {
   showTets(*parts_);
+  std::vector<btSoftBody*> lost;  // whose tets name no nodes any more
   for (const auto& of : parts_->bodies) {
     const btSoftBody& body = *of->body;
     const bool same = of->dynamics->nodeCount() == static_cast<std::size_t>(body.m_nodes.size()) &&
                       of->dynamics->tets()->count() == static_cast<std::size_t>(body.m_tetras.size());
-    if (same && body.m_tetras[0].m_element_measure == of->restMeasure) continue;
-    if (checkTets(body, {}).ok()) parts_->build(*of);
+    if (same && restMeasureOf(body) == of->restMeasure) continue;
+    if (checkTets(body, {}).ok()) {
+      parts_->build(*of);
+    } else if (!same) {
+      lost.push_back(of->body);
+    }
   }
+  for (btSoftBody* body : lost) removeSoftBody(body);
   const bool removal = parts_->bodyRemoved;
   parts_->bodyRemoved = false;
   const bool solved =
       std::all_of(parts_->bodies.begin(), parts_->bodies.end(), [](const auto& of) { return of->solved; });
   if (removal || solved) return;
   const ForceList& list = *solverOf(*parts_->bodies.front()->body)->getLagrangianForceArray();
-  if (nodeUpdated || parts_->knownForces != list.size()) {
+  int known = list.size();
+  for (int i = 0; i < list.size(); ++i) known += list[i]->m_softBodies.size();
+  if (nodeUpdated || parts_->knownForces != known) {
     for (const auto& of : parts_->bodies) of->alone = isAlone(*of->body, list);
-    parts_->knownForces = list.size();
+    parts_->knownForces = known;
   }
   forActive(*parts_, hideTets);
 }
@@ -422,6 +454,7 @@ void ElasticForce::addScaledElasticForceDifferential(btScalar scale, const TVSta
 
 void ElasticForce::buildDampingForceDifferentialDiagonal(btScalar scale, TVStack& diagonal) {
   forActive(*parts_, [&](ElasticBody& of) {
+    if (of.dynamics->alpha() == 0.0) return;
     const double factor = -static_cast<double>(scale) * dampingTime(*parts_, *of.body) / of.dynamics->alpha();
     const int first = of.body->m_nodes[0].index;
     for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {

@@ -24,7 +24,7 @@ struct ElasticBody {
   btSoftBody* body = nullptr;
   std::vector<double> stiffnessScale;  ///< by tet, or empty
   std::unique_ptr<Dynamics> dynamics;
-  btScalar restMeasure = 0;  ///< of tet 0: another one has been scaled
+  btScalar restMeasure = 0;  ///< of some tets: another one has been scaled
   bool solved = false;       ///< by a DeformableSolver: the force keeps out of it
   bool alone = false;        ///< no other force needs Bullet's own deformation gradients
   int hiddenTets = -1;       ///< how many are kept from Bullet; -1: none

@@ -168,6 +168,7 @@ void SolverBodies::makeDynamics() {
     const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
     of.normalImpulses = &kept.normalImpulses;
     of.fittedTrees = &kept.fittedTrees;
+    of.solve = &kept.solve;
     if (kept.fittedTrees.points.size() != 3 * nodes) kept.fittedTrees.ready = false;
     if (of.elastic) {
       kept.normalImpulses.resize(nodes, btScalar(0));

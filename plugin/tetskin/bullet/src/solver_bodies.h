@@ -40,7 +40,7 @@ struct SolvedBody {
   bool needsDeformation = false;                    ///< Bullet's own gradients
   std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
   FittedTrees* fittedTrees = nullptr;
-  elastic_detail::ConjugateGradient<btScalar> solve;
+  elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   bool constrained = false;  ///< by more than held nodes
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
 };
@@ -79,6 +79,7 @@ class SolverBodies {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
     std::vector<btScalar> normalImpulses;
     FittedTrees fittedTrees;
+    elastic_detail::ConjugateGradient<btScalar> solve;
   };
 
   std::vector<btSoftBody*> awake_, asleep_;

@@ -26,6 +26,7 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, E
   constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
   target_ = std::max(target_, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));
   stopped_ = false;
+  if (!std::isfinite(rho_)) stop();
   factor_ = 0;
   iterations_ = 0;
   most_ = limits.iterations;
@@ -48,9 +49,15 @@ bool ConjugateGradient<S>::step(ParallelFor* threads) {
 }
 
 template <class S>
+void ConjugateGradient<S>::stop() {
+  stopped_ = true;
+  for (BlockMatrix<S>* matrix : matrices_) matrix->clear();
+}
+
+template <class S>
 bool ConjugateGradient<S>::iterate(int most, ParallelFor* threads) {
   for (int k = 0; k < most && iterations_ < most_ && !stopped_ && !converged(); ++k, ++iterations_) {
-    stopped_ = !step(threads);
+    if (!step(threads)) stop();
   }
   return converged();
 }

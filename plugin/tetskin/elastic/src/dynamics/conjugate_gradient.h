@@ -42,6 +42,7 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
 
  private:
   bool step(ParallelFor* threads);
+  void stop();
 
   Matrices matrices_;
   Extra extra_;

@@ -260,6 +260,11 @@ double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
 }
 
 template <class S>
+void BlockMatrix<S>::clear() {
+  for (AlignedVector<S>* v : {&direction_, &stepPoints_, &lowerPoints_}) v->assign(v->size(), S(0));
+}
+
+template <class S>
 double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t task, std::size_t first, std::size_t last) {

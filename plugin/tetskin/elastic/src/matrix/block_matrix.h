@@ -83,6 +83,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   double forward(const S* extra, ParallelFor* threads);
   double advance(S factor, ParallelFor* threads);
 
+  /// Forgets what sweeps have left, if that may not be finite: products with it would not be, though its factors are 0.
+  void clear();
+
   S* residual() { return residual_.data(); }
   S* solution() { return solution_.data(); }
   const S* solution() const { return solution_.data(); }
