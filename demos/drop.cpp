@@ -24,6 +24,16 @@ struct DropOptions {
   bool writeCage = false;
 };
 
+/// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
+constexpr double kDamping = 0.04;
+
+SceneOptions howOf(const DropOptions& options) {
+  SceneOptions how;
+  how.force = options.force;
+  if (options.force == Force::Elastic) how.body.damping = kDamping;
+  return how;
+}
+
 /// Slower than this many sizes a second over the last half second is at rest.
 constexpr double kRestSpeed = 0.05;
 
@@ -46,7 +56,7 @@ class Drop {
  public:
   explicit Drop(const DropOptions& options)
       : options_(options),
-        player_(options.model, "obstacles", options.force),
+        player_(options.model, "obstacles", howOf(options)),
         surface_(player_.carry(options.skin)),
         restExtent_(bounds().sizes().maxCoeff()) {}
 

@@ -11,21 +11,11 @@
 
 namespace tetskin::scenes {
 
-namespace {
-
-SceneOptions withForce(Force force) {
-  SceneOptions options;
-  options.force = force;
-  return options;
-}
-
-}  // namespace
-
-Player::Player(const ModelOptions& options, const std::string& scene, Force force)
+Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
       place_(placementOf(boundingBox(model_.cage.nodes))),
-      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), withForce(force))) {
+      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), how)) {
   place_.offset = scene_->offset;
 }
 

@@ -36,7 +36,7 @@ using OfFrame = std::function<void(int frame)>;
 class Player {
  public:
   /// Loads the model. Throws InputError.
-  Player(const ModelOptions& options, const std::string& scene, Force force = Force::Elastic);
+  Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how = {});
 
   /// Adds a surface; all later ones share the binding of the first, and may leave out its quadratic skinning. Throws
   /// InputError if mesh and cage do not fit.

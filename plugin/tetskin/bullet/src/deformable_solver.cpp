@@ -21,7 +21,7 @@ using Solve = elastic_detail::ConjugateGradient<btScalar>;
 
 /// Iterations before contacts are looked for, where there were some in the step before: what they find is refined after
 /// them.
-constexpr int kIterationsBeforeContacts = 2;
+constexpr int kIterationsBeforeContacts = 3;
 /// An error in velocity that nobody sees, over what the earth's gravity gives in a step.
 constexpr double kUnseen = 1e-3 * 9.81;
 
