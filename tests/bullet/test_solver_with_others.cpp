@@ -119,6 +119,8 @@ TEST(SolverWithOthers, BodiesOfAllKindsLandInImplicitWorlds) {
     SoftBodyOptions options;
     options.forceModel = ForceModel::NeoHookean;
     const auto a = added(world, cageAbove(0.3)), b = added(world, cageAbove(2.5), options);
+    // Bullet's line search reads past the end of an array where a neo-Hookean body sleeps.
+    b->body().setActivationState(DISABLE_DEACTIVATION);
     EXPECT_EQ(a->solverPath(), SolverPath::Solver);
     step(world, 1);
     EXPECT_EQ(a->solverPath(), lineSearch ? SolverPath::ForceOnly : SolverPath::Solver);

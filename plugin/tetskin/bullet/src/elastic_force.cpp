@@ -286,13 +286,16 @@ void showTets(ElasticForce::Parts& parts) {
   }
 }
 
+/// No other elastic force either: it would find no tets, and take the body for a changed one.
 bool isAlone(const btSoftBody& body, const ForceList& list) {
+  int elastic = 0;
   for (int i = 0; i < list.size(); ++i) {
     const auto& bodies = list[i]->m_softBodies;
     const bool acts = bodies.size() == 0 || bodies.findLinearSearch(const_cast<btSoftBody*>(&body)) < bodies.size();
     if (acts && needsDeformation(*list[i])) return false;
+    if (acts && dynamic_cast<ElasticForce*>(list[i])) ++elastic;
   }
-  return true;
+  return elastic <= 1;
 }
 
 }  // namespace
