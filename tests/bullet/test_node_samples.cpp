@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/node_samples.h>
+#include <tetskin/bullet/src/skins/node_samples.h>
 
 #include <set>
 #include <vector>

@@ -47,7 +47,7 @@ TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
   const TetMesh cage = test::latticeCage(1, 1, 1);
   std::vector<Refused> refused;
   for (const double value : {0.0, -1.0, kNan, kInfinity}) {
-    if (value != kInfinity) refused.push_back({"Young's modulus", [=](auto& o) { o.youngsModulus = value; }});
+    refused.push_back({"Young's modulus", [=](auto& o) { o.youngsModulus = value; }});
     refused.push_back({"density", [=](auto& o) { o.density = value; }});
     refused.push_back({"stiffnessScale[3]", [=](auto& o) {
                          o.stiffnessScale.assign(6, 1.0);
@@ -58,7 +58,6 @@ TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
                          o.nodeMasses[7] = value;
                        }});
   }
-  refused.push_back({"stiff", [](auto& o) { o.youngsModulus = kInfinity; }});
   refused.push_back({"stiff", [](auto& o) {
                        o.youngsModulus = 0.99 * std::numeric_limits<TypeParam>::max(), o.poissonRatio = 0.49;
                      }});

@@ -3,6 +3,7 @@ set(core_stages base mesh kernels search embedding skinning normals)
 set(cage_stages surface lattice fit)
 set(io_stages text mesh tets)
 set(elastic_stages calibration kernels tets matrix dynamics)
+set(bullet_stages bodies skins forces solver)
 
 set(faults)
 set(seen 0)

@@ -5,8 +5,8 @@
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/bullet/src/body_forces.h>
-#include <tetskin/bullet/src/elastic_parts.h>
+#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
@@ -240,17 +240,14 @@ double DeformableBody::damping() const {
 }
 
 Status DeformableBody::setYoungsModulus(double pressure) {
-  if (!(pressure > 0.0 && std::isfinite(pressure))) return invalid("a Young's modulus must be above 0, and finite");
   return parts_->set({pressure, poissonRatio(), damping()});
 }
 
 Status DeformableBody::setPoissonRatio(double ratio) {
-  if (!(ratio >= 0.0 && ratio < 0.5)) return invalid("a Poisson's ratio must be at least 0 and below 0.5");
   return parts_->set({youngsModulus(), ratio, damping()});
 }
 
 Status DeformableBody::setDamping(double seconds) {
-  if (!(seconds >= 0.0 && std::isfinite(seconds))) return invalid("damping must not be negative, and must be finite");
   return parts_->set({youngsModulus(), poissonRatio(), seconds});
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/dynamics/body_dynamics.h>
 
 #include <cmath>
-#include <string>
 
 namespace tetskin {
 namespace {
@@ -15,48 +14,28 @@ namespace {
 using elastic_detail::BodyDynamics;
 using kernels::kGroup;
 
-Status invalid(const char* message) {
-  return {StatusCode::InvalidOption, message};
-}
-
-/// times  what becomes of them must be within the range of the scalars, too
-template <class Scalar>
-Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, double times = 1.0) {
-  if (values.empty()) return {};
-  if (values.size() != count) {
-    return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values, and " +
-                                          std::to_string(count) + " are needed, or none"};
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto held = static_cast<Scalar>(values[k] * times);
-    if (held > Scalar(0) && std::isfinite(held) && std::isfinite(1 / held)) continue;
-    return {StatusCode::InvalidOption,
-            std::string(name) + "[" + std::to_string(k) + "] must be above 0, and within the range of the scalars"};
-  }
-  return {};
-}
-
 template <class Scalar>
 Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
-  if (!(options.youngsModulus > 0.0)) return invalid("a Young's modulus must be above 0, and finite");
-  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
-    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
-  }
-  if (!(options.damping >= 0.0 && held(options.damping))) return invalid("damping must not be negative, and finite");
-  if (!(options.density > 0.0 && held(options.density) && held(1.0 / options.density)))
-    return invalid("a density must be above 0, and finite");
-  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.iterations < 1) {
-    return invalid("a tolerance must be at least 0 and below 1, and there must be at least one iteration");
-  }
-  const Lame lame(options.youngsModulus, options.poissonRatio);
-  if (!held(lame.mu) || !held(lame.lambda)) return invalid("a material so stiff is beyond the range of the scalars");
   if (Status status =
-          checkValues<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", lame.mu + lame.lambda);
+          elastic_detail::checkMaterial<Scalar>(options.youngsModulus, options.poissonRatio, options.damping);
       !status.ok()) {
     return status;
   }
-  return checkValues<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses");
+  if (!(options.density > 0.0 && held(options.density) && held(1.0 / options.density))) {
+    return {StatusCode::InvalidOption, "a density must be above 0, and finite"};
+  }
+  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.iterations < 1) {
+    return {StatusCode::InvalidOption,
+            "a tolerance must be at least 0 and below 1, and there must be at least one iteration"};
+  }
+  const Lame lame(options.youngsModulus, options.poissonRatio);
+  if (Status status = checkPositive<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet",
+                                            lame.mu + lame.lambda);
+      !status.ok()) {
+    return status;
+  }
+  return checkPositive<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node");
 }
 
 Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
@@ -82,12 +61,7 @@ struct ElasticBody<Scalar>::Parts {
     limits.tolerance = options.tolerance;
     limits.iterations = options.iterations;
     const Lame lame(options.youngsModulus, options.poissonRatio);
-    std::vector<elastic_detail::LameOfTet> tets(cage.tetCount(), {lame.mu, lame.lambda});
-    for (std::size_t t = 0; t < options.stiffnessScale.size(); ++t) {
-      tets[t].mu *= options.stiffnessScale[t];
-      tets[t].lambda *= options.stiffnessScale[t];
-    }
-    dynamics.setMaterial(tets);
+    dynamics.setMaterial(elastic_detail::lameOfTets(lame, cage.tetCount(), options.stiffnessScale));
     dynamics.setDamping(options.damping);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);

@@ -8,6 +8,7 @@
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/elastic/src/kernels/elastic_kernels.h>
+#include <tetskin/elastic/src/tets/material.h>
 
 #include <array>
 #include <cstdint>
@@ -26,12 +27,6 @@ struct RestTets {
 
 /// Of a cage without flat tets. Cost O(T).
 TETSKIN_ELASTIC_API RestTets restTets(const TetMesh& cage);
-
-/// Of one tet, in pressure units.
-struct LameOfTet {
-  double mu = 0.0;      ///< above 0
-  double lambda = 0.0;  ///< at least 0
-};
 
 template <class S>
 class TETSKIN_ELASTIC_API CorotatedTets {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/body_forces.h>
-#include <tetskin/bullet/src/body_trees.h>
+#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/forces/body_forces.h>
 
 #include <cassert>
 

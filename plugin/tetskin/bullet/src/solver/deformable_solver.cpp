@@ -8,7 +8,7 @@
 //   solveDeformableConstraints  goes on where nothing was met; else solves again, with what contacts have fixed
 //   applyTransforms             positions
 #include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/bullet/src/solver_contacts.h>
+#include <tetskin/bullet/src/solver/solver_contacts.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
-#include <tetskin/bullet/src/body_forces.h>
-#include <tetskin/bullet/src/elastic_parts.h>
+#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/core/src/base/lame.h>
 
 #include <algorithm>

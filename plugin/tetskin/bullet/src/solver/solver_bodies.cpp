@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
-#include <tetskin/bullet/src/solver_bodies.h>
+#include <tetskin/bullet/src/solver/solver_bodies.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 
 #include <algorithm>

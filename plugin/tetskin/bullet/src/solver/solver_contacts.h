@@ -4,7 +4,7 @@
 // Internal to DeformableSolver: what Bullet's contact solve leaves for the solve after it.
 #pragma once
 
-#include <tetskin/bullet/src/solver_bodies.h>
+#include <tetskin/bullet/src/solver/solver_bodies.h>
 
 class btDeformableContactProjection;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/body_trees.h>
+#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>
@@ -42,22 +43,6 @@ Status checkOptions(const SoftBodyOptions& options) {
   }
   if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
     return {StatusCode::InvalidOption, "a soft body's link stiffness must be above 0 and at most 1"};
-  }
-  return {};
-}
-
-/// Of a value for each of something: how many, and each above 0.
-Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, const char* of) {
-  if (values.empty()) return {};
-  if (values.size() != count) {
-    return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values for " +
-                                          std::to_string(count) + " " + of + "s; it takes one for each, or none"};
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto held = static_cast<btScalar>(values[k]);
-    if (held > 0 && std::isfinite(held) && std::isfinite(1 / held)) continue;
-    return {StatusCode::InvalidOption, std::string(name) + " of " + of + " " + std::to_string(k) +
-                                           " must be above 0, and within the range of Bullet's numbers"};
   }
   return {};
 }
@@ -160,10 +145,9 @@ Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBody
   if (Status status = checkOptions(options); !status.ok()) return status;
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
-  if (Status status = checkValues(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"); !status.ok())
-    return status;
-  if (Status status = checkValues(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet"); !status.ok()) {
-    return status;
+  for (Status status : {checkPositive<btScalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"),
+                        checkPositive<btScalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet")}) {
+    if (!status.ok()) return status;
   }
 
   std::vector<btVector3> nodes(positive.nodeCount());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/bullet/src/node_samples.h>
+#include <tetskin/bullet/src/skins/node_samples.h>
 #include <tetskin/core/src/skin_binding.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableContactProjection.h>
-#include <tetskin/bullet/src/solver_contacts.h>
+#include <tetskin/bullet/src/solver/solver_contacts.h>
 
 #include <algorithm>
 

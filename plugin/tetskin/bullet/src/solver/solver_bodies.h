@@ -4,8 +4,8 @@
 // Internal to DeformableSolver: the bodies of a step, numbered, and which of them are solved for together.
 #pragma once
 
-#include <tetskin/bullet/src/body_forces.h>
-#include <tetskin/bullet/src/elastic_parts.h>
+#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/forces/forced_bodies.h>
 
 #include <memory>
 #include <unordered_map>

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/types.h>
+
+#include <cmath>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// Of one tet, in pressure units.
+struct LameOfTet {
+  double mu = 0.0;      ///< above 0
+  double lambda = 0.0;  ///< at least 0
+};
+
+/// Ok, or what of a material makes no sense, or is beyond the range of Scalar.
+/// damping  seconds
+template <class Scalar>
+Status checkMaterial(double youngsModulus, double poissonRatio, double damping) {
+  const auto invalid = [](const char* message) { return Status{StatusCode::InvalidOption, message}; };
+  const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
+  if (!(youngsModulus > 0.0 && std::isfinite(youngsModulus))) {
+    return invalid("a Young's modulus must be above 0, and finite");
+  }
+  if (!(poissonRatio >= 0.0 && poissonRatio < 0.5)) {
+    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+  }
+  if (!(damping >= 0.0 && std::isfinite(damping))) return invalid("damping must not be negative, and must be finite");
+  const Lame lame(youngsModulus, poissonRatio);
+  if (held(lame.mu) && held(lame.lambda) && held(damping) && held(lame.lambda * damping)) return {};
+  return invalid(sizeof(Scalar) == sizeof(float)
+                     ? "a material so stiff, or so strongly damped, is beyond the range of float"
+                     : "a material so stiff, or so strongly damped, is beyond the range of double");
+}
+
+/// stiffnessScale  by tet, or empty: 1
+inline std::vector<LameOfTet> lameOfTets(const Lame& lame, std::size_t tets,
+                                         const std::vector<double>& stiffnessScale) {
+  std::vector<LameOfTet> scaled(tets, {lame.mu, lame.lambda});
+  for (std::size_t t = 0; t < stiffnessScale.size(); ++t) {
+    scaled[t].mu *= stiffnessScale[t];
+    scaled[t].lambda *= stiffnessScale[t];
+  }
+  return scaled;
+}
+
+}  // namespace tetskin::elastic_detail
