@@ -103,7 +103,7 @@ void updateQuadratic(State& state, const Bench& bench) {
 
 /// The normals alone, in the order of Update/linear.
 void normalsTransformed(State& state, const Bench& bench) {
-  const TetMesh& cage = bench.model.cage;
+  const Cage& cage = bench.model.cage;
   const Embedding embedding = embed(cage, bench.model.mesh).value();
   const auto factors = DirectionFactors::ofNormals(cage, embedding, restNormals(bench.model.mesh));
   PackedNodes<btScalar> nodes(cage.nodeCount());
@@ -224,7 +224,7 @@ std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t coun
   return points;
 }
 
-TetMesh cageOf(const TriangleMesh& mesh, std::size_t tets) {
+Cage cageOf(const TriangleMesh& mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
   return buildCage(mesh, options).value();
@@ -233,7 +233,7 @@ TetMesh cageOf(const TriangleMesh& mesh, std::size_t tets) {
 /// Attaching to a cage of a tenth as many tets. Time per vertex should not depend on the size.
 void attachSize(State& state, std::size_t vertices) {
   TriangleMesh mesh = makeSerpent({2 * vertices});
-  const TetMesh cage = cageOf(mesh, vertices / 10);
+  const Cage cage = cageOf(mesh, vertices / 10);
   const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
   mesh = {};
   for (auto _ : state) {

@@ -52,7 +52,7 @@ int run(CageCommand command) {
   command.cage.targetTets = command.model.tets;
   command.cage.fit = !command.loose;
   CageReport report;
-  const TetMesh cage = cageFor(surface, command.cage, &report);
+  const Cage cage = cageFor(surface, command.cage, &report);
   require(saveTetMesh(cage, command.output));
 
   // Counted as an application would see it, not as the builder believes it to be.

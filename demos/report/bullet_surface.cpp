@@ -11,7 +11,7 @@
 
 namespace tetskin::report {
 
-BulletSurface::BulletSurface(const TetMesh& cage, const TriangleMesh& mesh) {
+BulletSurface::BulletSurface(const Cage& cage, const TriangleMesh& mesh) {
   auto body = makeSoftBody(cage, worldInfo_);
   scenes::require(body.status());
   body_ = std::unique_ptr<btSoftBody>(std::move(body).value());

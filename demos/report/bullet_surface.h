@@ -16,7 +16,7 @@ namespace tetskin::report {
 class BulletSurface {
  public:
   /// Throws InputError if Bullet cannot make a body of the cage.
-  BulletSurface(const TetMesh& cage, const TriangleMesh& mesh);
+  BulletSurface(const Cage& cage, const TriangleMesh& mesh);
 
   /// Node positions, nodeCount x 3.
   template <class Points>

@@ -8,19 +8,19 @@
 
 namespace tetskin::report {
 
-double meanEdge(const TetMesh& cage) {
+double meanEdge(const Cage& cage) {
   const std::vector<std::array<int, 2>> edges = uniqueEdges(cage);
   double sum = 0.0;
   for (const auto& [a, b] : edges) sum += (cage.nodes[a] - cage.nodes[b]).norm();
   return sum / static_cast<double>(edges.size());
 }
 
-const TetMesh& CageShelf::cage(std::size_t tets) {
+const Cage& CageShelf::cage(std::size_t tets) {
   const auto found = cages_.find(tets);
   if (found != cages_.end()) return found->second;
   CageOptions options;
   options.targetTets = tets;
-  Result<TetMesh> cage = buildCage(mesh_, options);
+  Result<Cage> cage = buildCage(mesh_, options);
   scenes::require(cage.status());
   return cages_[tets] = std::move(cage).value();
 }

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/elastic/stiffness_calibration.h>
 
@@ -12,7 +12,7 @@
 namespace tetskin::report {
 
 /// Mean length of a cage's edges.
-double meanEdge(const TetMesh& cage);
+double meanEdge(const Cage& cage);
 
 /// The cages of one mesh by the number of tets wished for, each built, and calibrated, when it is first asked for.
 /// Throws InputError.
@@ -21,12 +21,12 @@ class CageShelf {
   /// mesh  outlives this object
   explicit CageShelf(const TriangleMesh& mesh) : mesh_(mesh) {}
 
-  const TetMesh& cage(std::size_t tets);
+  const Cage& cage(std::size_t tets);
   const StiffnessCalibration& calibration(std::size_t tets, double poissonRatio);
 
  private:
   const TriangleMesh& mesh_;
-  std::map<std::size_t, TetMesh> cages_;
+  std::map<std::size_t, Cage> cages_;
   std::map<std::size_t, StiffnessCalibration> calibrations_;
 };
 

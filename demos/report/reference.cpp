@@ -8,7 +8,7 @@ namespace tetskin::report {
 namespace {
 
 /// Points carried by a cage in double.
-MeshSkin<double> skinOf(const TetMesh& cage, const TriangleMesh& points, Normals normals) {
+MeshSkin<double> skinOf(const Cage& cage, const TriangleMesh& points, Normals normals) {
   SkinOptions options;
   options.interpolation = Interpolation::Quadratic;
   options.normals = normals;
@@ -31,7 +31,7 @@ Points toDouble(const std::vector<Eigen::Vector3f>& nodes) {
   return result;
 }
 
-SimulatedReference::SimulatedReference(const TriangleMesh& mesh, const TetMesh& cage, const Trajectory& trajectory)
+SimulatedReference::SimulatedReference(const TriangleMesh& mesh, const Cage& cage, const Trajectory& trajectory)
     : cage_(cage), trajectory_(trajectory), skin_(skinOf(cage, mesh, Normals::Transformed)) {}
 
 const ReferenceSurface& SimulatedReference::surfaceAt(int frame) {
@@ -46,7 +46,7 @@ const ReferenceSurface& SimulatedReference::surfaceAt(int frame) {
   return surface_;
 }
 
-Trajectory SimulatedReference::drive(const TetMesh& cage) const {
+Trajectory SimulatedReference::drive(const Cage& cage) const {
   TriangleMesh points;
   points.positions = cage.nodes;
   MeshSkin<double> skin = skinOf(cage_, points, Normals::None);
@@ -82,7 +82,7 @@ const ReferenceSurface& ExactReference::surfaceAt(int frame) {
   return surface_;
 }
 
-Trajectory ExactReference::drive(const TetMesh& cage) const {
+Trajectory ExactReference::drive(const Cage& cage) const {
   Trajectory driven(2);
   for (int frame = 0; frame < 2; ++frame) {
     for (const Eigen::Vector3d& p : cage.nodes) driven[frame].emplace_back(twistAt(frame).point(p).cast<float>());

@@ -29,7 +29,7 @@ class Reference {
   /// Valid until the next call.
   virtual const ReferenceSurface& surfaceAt(int frame) = 0;
   /// Where the nodes of a cage would be if they followed the reference, by frame.
-  virtual Trajectory drive(const TetMesh& cage) const = 0;
+  virtual Trajectory drive(const Cage& cage) const = 0;
 };
 
 /// A simulated cage. Both the mesh and the nodes of other cages follow it by quadratic skinning, which continues its
@@ -37,14 +37,14 @@ class Reference {
 class SimulatedReference : public Reference {
  public:
   /// All outlive this object. Throws InputError.
-  SimulatedReference(const TriangleMesh& mesh, const TetMesh& cage, const Trajectory& trajectory);
+  SimulatedReference(const TriangleMesh& mesh, const Cage& cage, const Trajectory& trajectory);
 
   int frameCount() const override { return static_cast<int>(trajectory_.size()); }
   const ReferenceSurface& surfaceAt(int frame) override;
-  Trajectory drive(const TetMesh& cage) const override;
+  Trajectory drive(const Cage& cage) const override;
 
  private:
-  const TetMesh& cage_;
+  const Cage& cage_;
   const Trajectory& trajectory_;
   MeshSkin<double> skin_;
   ReferenceSurface surface_;
@@ -57,7 +57,7 @@ class ExactReference : public Reference {
 
   int frameCount() const override { return 2; }
   const ReferenceSurface& surfaceAt(int frame) override;
-  Trajectory drive(const TetMesh& cage) const override;
+  Trajectory drive(const Cage& cage) const override;
 
  private:
   scenes::Twist twistAt(int frame) const;

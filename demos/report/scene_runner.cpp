@@ -124,7 +124,7 @@ const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   return *made;
 }
 
-Row SceneRunner::rowOf(const Job& job, const TetMesh& cage) const {
+Row SceneRunner::rowOf(const Job& job, const Cage& cage) const {
   Row row;
   row.scene = scene();
   row.integrator = integrator();
@@ -137,7 +137,7 @@ Row SceneRunner::rowOf(const Job& job, const TetMesh& cage) const {
 }
 
 std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& share) {
-  const TetMesh& cage = cages_.cage(job.tets);
+  const Cage& cage = cages_.cage(job.tets);
   int frame = 0;
   Simulation simulation = simulate(entry_, cage, material(job.bullets), model_.mesh, {},
                                    [&] { share(static_cast<double>(++frame) / frames_); });
@@ -181,7 +181,7 @@ void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame)
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
 }
 
-SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share) {
+SceneRunner::Motion SceneRunner::move(const Job& job, const Cage& cage, const std::function<void(double)>& share) {
   Motion motion;
   motion.row = rowOf(job, cage);
   motion.driven = reference().drive(cage);
@@ -217,7 +217,7 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const TetMesh& cage, const
 std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
   if (isReference(job)) return referenceRows(job, share);
   Reference& right = reference();
-  const TetMesh& cage = cages_.cage(job.tets);
+  const Cage& cage = cages_.cage(job.tets);
   const Motion motion = move(job, cage, share);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {

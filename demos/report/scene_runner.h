@@ -81,9 +81,9 @@ class SceneRunner {
   const Job* referenceJob(bool bullets) const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
-  Motion move(const Job& job, const TetMesh& cage, const std::function<void(double)>& share);
+  Motion move(const Job& job, const Cage& cage, const std::function<void(double)>& share);
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& share);
-  Row rowOf(const Job& job, const TetMesh& cage) const;
+  Row rowOf(const Job& job, const Cage& cage) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);
 
   const ReportModel& model_;

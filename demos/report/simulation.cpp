@@ -25,7 +25,7 @@ std::size_t indexOf(SurfaceKind kind) {
 /// Surfaces of one body, and the time that each takes.
 class TimedSurfaces {
  public:
-  TimedSurfaces(const btSoftBody& body, const TetMesh& cage, const TriangleMesh& mesh,
+  TimedSurfaces(const btSoftBody& body, const Cage& cage, const TriangleMesh& mesh,
                 const std::vector<SurfaceKind>& kinds)
       : kinds_(kinds) {
     for (const SurfaceKind kind : kinds) {
@@ -104,7 +104,7 @@ Interpolation interpolationOf(SurfaceKind kind) {
   return kind == SurfaceKind::Quadratic ? Interpolation::Quadratic : Interpolation::Linear;
 }
 
-Simulation simulate(const scenes::SceneEntry& entry, const TetMesh& cage, const scenes::SceneOptions& options,
+Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const scenes::SceneOptions& options,
                     const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds, const FrameDone& done) {
   Simulation result;
   const std::size_t before = scenes::heapBytes();
@@ -128,7 +128,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const TetMesh& cage, const 
   return result;
 }
 
-SurfaceCosts surfaceCosts(const TetMesh& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds) {
+SurfaceCosts surfaceCosts(const Cage& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds) {
   btSoftBodyWorldInfo worldInfo;
   auto body = makeSoftBody(cage, worldInfo);
   scenes::require(body.status());

@@ -52,10 +52,10 @@ using FrameDone = std::function<void()>;
 /// Runs a scene with a cage.
 /// kinds  the mesh is carried in these ways, to see what each costs; with none it is not looked at
 /// Throws InputError if cage or mesh cannot be used
-Simulation simulate(const scenes::SceneEntry& entry, const TetMesh& cage, const scenes::SceneOptions& options,
+Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const scenes::SceneOptions& options,
                     const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds, const FrameDone& done);
 
 /// What surfaces cost on a body that is in no world.
-SurfaceCosts surfaceCosts(const TetMesh& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds);
+SurfaceCosts surfaceCosts(const Cage& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds);
 
 }  // namespace tetskin::report

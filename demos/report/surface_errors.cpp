@@ -21,7 +21,7 @@ double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 /// A surface on a cage, by any of the three ways.
 class CarriedSurface {
  public:
-  CarriedSurface(const TetMesh& cage, const TriangleMesh& mesh, SurfaceKind kind) {
+  CarriedSurface(const Cage& cage, const TriangleMesh& mesh, SurfaceKind kind) {
     if (kind == SurfaceKind::Bullet) {
       bullet_ = std::make_unique<BulletSurface>(cage, mesh);
       staleNormals_ = restNormals(mesh);
@@ -54,7 +54,7 @@ class CarriedSurface {
 
 }  // namespace
 
-SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const TetMesh& cage, SurfaceKind kind,
+SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes) {
   const double diagonal = boundingBox(mesh.positions).diagonal().norm();
   const std::size_t count = mesh.vertexCount();

@@ -20,7 +20,7 @@ struct SurfaceErrors {
 
 /// Of the surface that the nodes of a cage carry.
 /// nodes  by frame; no more frames than the reference has
-SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const TetMesh& cage, SurfaceKind kind,
+SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes);
 
 /// Root mean square distance of a cage's nodes to where the reference would take them, likewise.

@@ -34,7 +34,7 @@ Surface loadSurface(const ModelOptions& options) {
   return {options.mesh, std::move(mesh).value()};
 }
 
-TetMesh loadCage(const std::string& path) {
+Cage loadCage(const std::string& path) {
   Result<TetMesh> cage = loadTetMesh(path);
   require(cage.status());
   if (const Status status = usable(cage.value(), checkTetMesh(cage.value())); !status.ok()) {
@@ -43,8 +43,8 @@ TetMesh loadCage(const std::string& path) {
   return std::move(cage).value();
 }
 
-TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
-  Result<TetMesh> cage = buildCage(surface.mesh, options, report);
+Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
+  Result<Cage> cage = buildCage(surface.mesh, options, report);
   if (!cage.ok()) throw InputError(surface.name + ": " + cage.status().message);
   return std::move(cage).value();
 }

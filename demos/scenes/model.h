@@ -33,15 +33,15 @@ struct Surface {
   TriangleMesh mesh;
 };
 struct Model : Surface {
-  TetMesh cage;
+  Cage cage;
   ObjLayout layout;  ///< in which frames are written
 };
 
 /// These load or make; they throw InputError, with the file and the fault.
 Surface loadSurface(const ModelOptions& options);
 /// A usable cage, its tets as the file has them.
-TetMesh loadCage(const std::string& path);
-TetMesh cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
+Cage loadCage(const std::string& path);
+Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 /// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);
 

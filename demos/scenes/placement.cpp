@@ -12,8 +12,9 @@ void Placement::toModel(std::vector<Eigen::Vector3d>& points) const {
   for (Eigen::Vector3d& p : points) p = toModel(p);
 }
 
-TetMesh Placement::toWorld(TetMesh cage) const {
-  toWorld(cage.nodes);
+Cage Placement::toWorld(Cage cage) const {
+  for (Eigen::Vector3d& node : cage.nodes) node -= centre;
+  cage.scaleBy(scale);
   return cage;
 }
 

@@ -21,7 +21,7 @@ struct Placement {
   Eigen::Vector3d toModel(const Eigen::Vector3d& p) const { return (p - offset) / scale + centre; }
   void toWorld(std::vector<Eigen::Vector3d>& points) const;
   void toModel(std::vector<Eigen::Vector3d>& points) const;
-  TetMesh toWorld(TetMesh cage) const;
+  Cage toWorld(Cage cage) const;
 
   /// A skin's surface in the model's space, vertexCount.
   void readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3d>& surface) const;

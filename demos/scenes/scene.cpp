@@ -76,7 +76,7 @@ void Scene::restore() {
   }
 }
 
-btSoftBody& Scene::add(const TetMesh& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
+btSoftBody& Scene::add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
                        const Eigen::Vector3d& shift) {
   SoftBodyOptions options = options_.body;
   options.pinned = held;
@@ -113,11 +113,11 @@ int eventFrame(const SceneOptions& options) {
   return std::min(6, options.frames);
 }
 
-Box3 layoutBox(const SceneOptions& options, const TetMesh& cage) {
+Box3 layoutBox(const SceneOptions& options, const Cage& cage) {
   return options.box.isEmpty() ? boundingBox(cage.nodes) : options.box;
 }
 
-std::vector<int> nodesWhere(const TetMesh& cage, const std::function<bool(const Eigen::Vector3d&)>& chosen) {
+std::vector<int> nodesWhere(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& chosen) {
   std::vector<int> found;
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
     if (chosen(cage.nodes[n])) found.push_back(static_cast<int>(n));

@@ -5,6 +5,7 @@
 // `sceneTable` (scenes/table.h) lists them all.
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -74,7 +75,7 @@ class Scene {
   /// Adds a body, which never falls asleep: every step is to be seen.
   /// held   nodes to pin, by their place in the cage
   /// shift  from there, beside that of the options
-  btSoftBody& add(const TetMesh& cage, const std::function<bool(const Eigen::Vector3d&)>& held = {},
+  btSoftBody& add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held = {},
                   const Eigen::Vector3d& shift = Eigen::Vector3d::Zero());
   /// A fixed box, its upper side so many sizes below what the scene is laid out by: below the body if the options do
   /// not say, which must have been added then.
@@ -103,9 +104,9 @@ void placeNode(btSoftBody::Node& node, const btVector3& where);
 int eventFrame(const SceneOptions& options);
 
 /// What a scene is laid out by.
-Box3 layoutBox(const SceneOptions& options, const TetMesh& cage);
+Box3 layoutBox(const SceneOptions& options, const Cage& cage);
 
 /// Indices of the cage's nodes that a rule chooses. Throws InputError if there are none.
-std::vector<int> nodesWhere(const TetMesh& cage, const std::function<bool(const Eigen::Vector3d&)>& chosen);
+std::vector<int> nodesWhere(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& chosen);
 
 }  // namespace tetskin::scenes

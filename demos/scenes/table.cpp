@@ -34,7 +34,7 @@ namespace tetskin::scenes {
   SCENE(NodeTooFar, "node_too_far", 30, false, "a node is beyond what a surface can follow, for one update")
 
 #define DECLARE(maker, name, frames, lands, about) \
-  std::unique_ptr<Scene> make##maker(const TetMesh& cage, const SceneOptions& options);
+  std::unique_ptr<Scene> make##maker(const Cage& cage, const SceneOptions& options);
 TETSKIN_SCENES(DECLARE)
 #undef DECLARE
 
@@ -58,7 +58,7 @@ const SceneEntry& sceneNamed(const std::string& name) {
   throw InputError("there is no scene '" + name + "'; there are: " + sceneNames());
 }
 
-std::unique_ptr<Scene> SceneEntry::make(const TetMesh& cage, SceneOptions options) const {
+std::unique_ptr<Scene> SceneEntry::make(const Cage& cage, SceneOptions options) const {
   if (options.frames == 0) options.frames = frames;
   return maker(cage, options);
 }

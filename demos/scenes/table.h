@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace tetskin::scenes {
 
 /// Makes a scene with a cage that is already as large as it shall be in Bullet's world (see `placementOf`), centred at
 /// the origin. Throws InputError if Bullet cannot make a body of it, or if the scene holds none of its nodes.
-using MakeScene = std::unique_ptr<Scene> (*)(const TetMesh& cage, const SceneOptions& options);
+using MakeScene = std::unique_ptr<Scene> (*)(const Cage& cage, const SceneOptions& options);
 
 struct SceneEntry {
   std::string name;
@@ -21,7 +22,7 @@ struct SceneEntry {
   std::string about;  ///< for people: what happens to the body
   MakeScene maker;
 
-  std::unique_ptr<Scene> make(const TetMesh& cage, SceneOptions options = {}) const;
+  std::unique_ptr<Scene> make(const Cage& cage, SceneOptions options = {}) const;
 };
 
 /// All scenes.

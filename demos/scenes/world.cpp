@@ -75,7 +75,7 @@ World::~World() {
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
 }
 
-btSoftBody& World::add(const TetMesh& cage, SoftBodyOptions options) {
+btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {
   options.forceModel = modelOf(force_);
   if (deformable_ && force_ != Force::BulletCorotated) {
     auto made = DeformableBody::add(*deformable_, cage, options);
@@ -147,7 +147,7 @@ void World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform&
   rigid_.push_back(std::move(body));
 }
 
-double defaultStiffness(const TetMesh& cage, const SoftBodyOptions& options) {
+double defaultStiffness(const Cage& cage, const SoftBodyOptions& options) {
   World world(Force::NeoHookean, btVector3(0, static_cast<btScalar>(-kEarth), 0));
   world.add(cage, options);
   return world.youngsModulus();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <memory>
@@ -53,7 +54,7 @@ class World {
 
   /// Makes a soft body of a cage, where it is; it stays as long as the world. The force is the world's, whatever the
   /// options say: another solver would be chosen here. Throws InputError if Bullet cannot make a body of the cage.
-  btSoftBody& add(const TetMesh& cage, SoftBodyOptions options);
+  btSoftBody& add(const Cage& cage, SoftBodyOptions options);
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
   void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
@@ -95,7 +96,7 @@ class World {
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.
-double defaultStiffness(const TetMesh& cage, const SoftBodyOptions& options);
+double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
 
 /// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
 /// changes that by no force: so it arrives, and its neighbours feel it move.

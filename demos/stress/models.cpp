@@ -29,7 +29,7 @@ BarModel makeBarModel(std::size_t triangles, std::size_t tets) {
   bar.mesh = scenes::makeBar(triangles);
   CageOptions options;
   options.targetTets = tets;
-  Result<TetMesh> cage = buildCage(bar.mesh, options);
+  Result<tetskin::Cage> cage = buildCage(bar.mesh, options);
   scenes::require(cage.status());
   bar.cage = std::move(cage).value();
   const scenes::Placement place = scenes::placementOf(boundingBox(bar.cage.nodes));

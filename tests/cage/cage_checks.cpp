@@ -129,7 +129,7 @@ std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fi
   CageOptions options;
   options.targetTets = targetTets;
   options.fit = fit;
-  const Result<TetMesh> cage = buildCage(mesh, options, &used);
+  const Result<Cage> cage = buildCage(mesh, options, &used);
   std::string fault = cage.ok() ? faultOfCage(mesh, cage.value(), used) : cage.status().message;
   if (fault.empty() && !used.targetMet()) fault = std::to_string(used.tets) + " tets";
   return fault.empty() ? "" : "at " + std::to_string(targetTets) + " tets: " + fault;

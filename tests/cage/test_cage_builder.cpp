@@ -30,7 +30,7 @@ Built build(const TriangleMesh& mesh, std::size_t target = 3000, bool fit = true
   CageOptions options;
   options.targetTets = target;
   options.fit = fit;
-  Result<TetMesh> made = buildCage(mesh, options, &built.report);
+  Result<Cage> made = buildCage(mesh, options, &built.report);
   built.status = made.status();
   built.cage = std::move(made).value();
   return built;
@@ -39,7 +39,7 @@ Built build(const TriangleMesh& mesh, std::size_t target = 3000, bool fit = true
 Status failure(const TriangleMesh& mesh, std::size_t target = 3000) {
   CageOptions options;
   options.targetTets = target;
-  const Result<TetMesh> result = buildCage(mesh, options);
+  const Result<Cage> result = buildCage(mesh, options);
   EXPECT_TRUE(result.value().tets.empty());
   EXPECT_EQ(result.ok(), result.status().message.empty());
   return result.status();

@@ -9,7 +9,7 @@
 namespace tetskin::scenes {
 
 /// Any of its bodies may sleep.
-std::unique_ptr<Scene> makeCrowd(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeCrowd(const Cage& cage, const SceneOptions& options) {
   constexpr double kSpacing = 2.0;  // of neighbours, in sizes
   auto scene = std::make_unique<Scene>(options, kEarth);
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.bodies))));

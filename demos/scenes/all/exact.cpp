@@ -6,7 +6,7 @@
 namespace tetskin::scenes {
 
 /// What is wrong with a surface here is its interpolation alone.
-std::unique_ptr<Scene> makeExact(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeExact(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, 0.0);
   const Twist map = smoothTwistOf(layoutBox(options, cage));
   (void)scene->add(cage, [](const Eigen::Vector3d&) { return true; });

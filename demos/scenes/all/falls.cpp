@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNear = 0.05;  ///< sizes: from the body to the floor, and to the box above it
 
-std::unique_ptr<Scene> makeFall(const TetMesh& cage, const SceneOptions& options, double gap) {
+std::unique_ptr<Scene> makeFall(const Cage& cage, const SceneOptions& options, double gap) {
   auto scene = std::make_unique<Scene>(options, kEarth);
   scene->add(cage);
   scene->addFloor(gap);
@@ -19,15 +19,15 @@ std::unique_ptr<Scene> makeFall(const TetMesh& cage, const SceneOptions& options
 }  // namespace
 
 /// The floor is hit after a third of a second.
-std::unique_ptr<Scene> makeDrop(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeDrop(const Cage& cage, const SceneOptions& options) {
   return makeFall(cage, options, 0.25);
 }
 
-std::unique_ptr<Scene> makeLand(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeLand(const Cage& cage, const SceneOptions& options) {
   return makeFall(cage, options, kNear);
 }
 
-std::unique_ptr<Scene> makeImpact(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeImpact(const Cage& cage, const SceneOptions& options) {
   constexpr double kLengths = 100.0;  // a second
   auto scene = makeFall(cage, options, kNear);
   scene->beforeFrame = [s = scene.get()](int frame, const Moved&) {
@@ -37,7 +37,7 @@ std::unique_ptr<Scene> makeImpact(const TetMesh& cage, const SceneOptions& optio
   return scene;
 }
 
-std::unique_ptr<Scene> makeHeavyBox(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeHeavyBox(const Cage& cage, const SceneOptions& options) {
   constexpr double kMass = 1000.0;  // times the body's
   auto scene = makeFall(cage, options, kNear);
   const Box3 box = boundingBox(nodePositions(scene->body()));

@@ -5,7 +5,7 @@
 namespace tetskin::scenes {
 
 /// Each body a little higher than the one before: their boxes overlap.
-std::unique_ptr<Scene> makeFloat(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeFloat(const Cage& cage, const SceneOptions& options) {
   constexpr double kShift = 0.05;  // in sizes
   auto scene = std::make_unique<Scene>(options, 0.0);
   for (std::size_t k = 0; k < options.bodies; ++k) {

@@ -10,7 +10,7 @@ namespace tetskin::scenes {
 namespace {
 
 /// The node farthest out along x, or against it.
-int endNode(const TetMesh& cage, double direction) {
+int endNode(const Cage& cage, double direction) {
   const auto further = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return direction * a.x() < direction * b.x();
   };
@@ -19,7 +19,7 @@ int endNode(const TetMesh& cage, double direction) {
 
 }  // namespace
 
-std::unique_ptr<Scene> makeSpin(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeSpin(const Cage& cage, const SceneOptions& options) {
   constexpr double kTurnsPerSecond = 100.0, kTwoPi = 6.283185307179586;
   auto scene = std::make_unique<Scene>(options, 0.0);
   btSoftBody& body = scene->add(cage);
@@ -33,7 +33,7 @@ std::unique_ptr<Scene> makeSpin(const TetMesh& cage, const SceneOptions& options
 }
 
 /// Bullet moves a node without mass by its velocity.
-std::unique_ptr<Scene> makePull(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makePull(const Cage& cage, const SceneOptions& options) {
   constexpr double kLengths = 3.0;
   auto scene = std::make_unique<Scene>(options, 0.0);
   const int end = endNode(cage, 1);

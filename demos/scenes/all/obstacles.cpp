@@ -16,7 +16,7 @@ constexpr double kGroundHalfSide = 10.0;
 }  // namespace
 
 /// The body may fall asleep.
-std::unique_ptr<Scene> makeObstacles(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeObstacles(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, kEarth);
   World& world = scene->world();
   scene->floorY = 0.0;

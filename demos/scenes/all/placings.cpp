@@ -13,14 +13,14 @@ namespace {
 /// Where a node shall be, by where it is and by the middle of the body's box.
 using Place = std::function<btVector3(const btVector3& node, const btVector3& centre)>;
 
-std::unique_ptr<Scene> makeFree(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeFree(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, 0.0);
   scene->add(cage);
   return scene;
 }
 
 /// All nodes go elsewhere once.
-std::unique_ptr<Scene> makePlacing(const TetMesh& cage, const SceneOptions& options, const Place& place) {
+std::unique_ptr<Scene> makePlacing(const Cage& cage, const SceneOptions& options, const Place& place) {
   auto scene = makeFree(cage, options);
   const btVector3 centre = toBullet(boundingBox(nodePositions(scene->body())).center());
   scene->beforeFrame = [s = scene.get(), centre, place](int frame, const Moved& moved) {
@@ -31,7 +31,7 @@ std::unique_ptr<Scene> makePlacing(const TetMesh& cage, const SceneOptions& opti
   return scene;
 }
 
-std::unique_ptr<Scene> makeLonger(const TetMesh& cage, const SceneOptions& options, double factor) {
+std::unique_ptr<Scene> makeLonger(const Cage& cage, const SceneOptions& options, double factor) {
   const auto longer = static_cast<btScalar>(factor);
   return makePlacing(cage, options, [longer](const btVector3& p, const btVector3& c) {
     return btVector3(c.x() + longer * (p.x() - c.x()), p.y(), p.z());
@@ -39,7 +39,7 @@ std::unique_ptr<Scene> makeLonger(const TetMesh& cage, const SceneOptions& optio
 }
 
 /// One node has a coordinate that no surface can follow, for one update.
-std::unique_ptr<Scene> makeSpoilt(const TetMesh& cage, const SceneOptions& options, btScalar coordinate) {
+std::unique_ptr<Scene> makeSpoilt(const Cage& cage, const SceneOptions& options, btScalar coordinate) {
   auto scene = makeFree(cage, options);
   scene->beforeFrame = [s = scene.get(), coordinate](int frame, const Moved& moved) {
     if (frame != eventFrame(s->options())) return;
@@ -55,28 +55,28 @@ std::unique_ptr<Scene> makeSpoilt(const TetMesh& cage, const SceneOptions& optio
 
 }  // namespace
 
-std::unique_ptr<Scene> makePluck(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makePluck(const Cage& cage, const SceneOptions& options) {
   return makeLonger(cage, options, 1.01);
 }
 
-std::unique_ptr<Scene> makeStretch(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeStretch(const Cage& cage, const SceneOptions& options) {
   constexpr double kStretch = 10.0;
   auto scene = makeLonger(cage, options, kStretch);
   scene->extent = kStretch;
   return scene;
 }
 
-std::unique_ptr<Scene> makeSquashFlat(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeSquashFlat(const Cage& cage, const SceneOptions& options) {
   return makePlacing(cage, options,
                      [](const btVector3& p, const btVector3& c) { return btVector3(p.x(), c.y(), p.z()); });
 }
 
-std::unique_ptr<Scene> makeMirror(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeMirror(const Cage& cage, const SceneOptions& options) {
   return makePlacing(cage, options,
                      [](const btVector3& p, const btVector3& c) { return btVector3(2 * c.x() - p.x(), p.y(), p.z()); });
 }
 
-std::unique_ptr<Scene> makePermute(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makePermute(const Cage& cage, const SceneOptions& options) {
   auto scene = makeFree(cage, options);
   scene->beforeFrame = [s = scene.get()](int frame, const Moved& moved) {
     if (frame != eventFrame(s->options())) return;
@@ -92,7 +92,7 @@ std::unique_ptr<Scene> makePermute(const TetMesh& cage, const SceneOptions& opti
   return scene;
 }
 
-std::unique_ptr<Scene> makeTeleport(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeTeleport(const Cage& cage, const SceneOptions& options) {
   constexpr double kLengths = 1000.0;
   auto scene = makeFree(cage, options);
   scene->beforeFrame = [s = scene.get()](int frame, const Moved& moved) {
@@ -105,15 +105,15 @@ std::unique_ptr<Scene> makeTeleport(const TetMesh& cage, const SceneOptions& opt
   return scene;
 }
 
-std::unique_ptr<Scene> makeNodeNaN(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeNodeNaN(const Cage& cage, const SceneOptions& options) {
   return makeSpoilt(cage, options, std::numeric_limits<btScalar>::quiet_NaN());
 }
 
-std::unique_ptr<Scene> makeNodeInfinite(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeNodeInfinite(const Cage& cage, const SceneOptions& options) {
   return makeSpoilt(cage, options, -std::numeric_limits<btScalar>::infinity());
 }
 
-std::unique_ptr<Scene> makeNodeTooFar(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeNodeTooFar(const Cage& cage, const SceneOptions& options) {
   return makeSpoilt(cage, options, btScalar(1e30));
 }
 

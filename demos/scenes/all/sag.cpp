@@ -5,7 +5,7 @@
 namespace tetskin::scenes {
 
 /// Held at its lower end, as if it stood in the ground.
-std::unique_ptr<Scene> makeSag(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeSag(const Cage& cage, const SceneOptions& options) {
   constexpr double kFootShare = 0.35;  // of the height
   auto scene = std::make_unique<Scene>(options, kEarth);
   const Box3 box = layoutBox(options, cage);

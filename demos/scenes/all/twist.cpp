@@ -17,7 +17,7 @@ constexpr double kTurningShare = 0.75;
 
 }  // namespace
 
-std::unique_ptr<Scene> makeTwist(const TetMesh& cage, const SceneOptions& options) {
+std::unique_ptr<Scene> makeTwist(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, 0.0);
   const Box3 box = layoutBox(options, cage);
   Twist twist = twistOf(box, 0.0);

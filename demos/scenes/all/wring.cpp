@@ -24,7 +24,7 @@ double turnAt(int frame) {
 }
 
 /// Lets go of the moved end.
-void release(btSoftBody& body, const TetMesh& cage, double mass, const Twist& twist, std::vector<int>& held) {
+void release(btSoftBody& body, const Cage& cage, double mass, const Twist& twist, std::vector<int>& held) {
   const std::vector<double> masses = lumpedMasses(cage, mass);
   const auto stays =
       std::partition(held.begin(), held.end(), [&](int n) { return cage.nodes[n][twist.axis] < twist.to; });
@@ -42,7 +42,7 @@ Twist wringAt(const Box3& cage, int frame) {
   return twist;
 }
 
-std::unique_ptr<Scene> makeWring(const TetMesh& cage, const SceneOptions& wished) {
+std::unique_ptr<Scene> makeWring(const Cage& cage, const SceneOptions& wished) {
   SceneOptions options = wished;
   options.body.damping = kDamping;
   auto scene = std::make_unique<Scene>(options, 0.0);

@@ -45,10 +45,10 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// mesh      in the cage's rest space
   /// Returns   the fit; on an error this skin is left as it was
   /// Cost      see `embed`; 20 to 50 microseconds more a node that carries vertices for quadratic skinning; allocates
-  Result<EmbedReport> bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
+  Result<EmbedReport> bind(const btSoftBody& body, const Cage& restCage, const TriangleMesh& mesh,
                            const SkinOptions& options = {});
   /// The same for vertices alone: no triangles, hence no recomputed normals.
-  Result<EmbedReport> bind(const btSoftBody& body, const TetMesh& restCage, PointView<const double> vertices,
+  Result<EmbedReport> bind(const btSoftBody& body, const Cage& restCage, PointView<const double> vertices,
                            const SkinOptions& options = {});
   /// The same with the body's nodes as they are now for rest: the mesh must fit the body where it is. Refused once
   /// Bullet's own tets dangle: see `checkDangling`.

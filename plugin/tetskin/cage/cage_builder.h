@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <cstddef>
@@ -65,7 +65,7 @@ struct TETSKIN_CAGE_API CageReport {
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
 ///          kLargestTargetTets), Degenerate (all vertices in one point, or so near each other, or so far apart, that
 ///          double cannot hold a lattice)
-TETSKIN_CAGE_API Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options = {},
-                                           CageReport* report = nullptr);
+TETSKIN_CAGE_API Result<Cage> buildCage(const TriangleMesh& mesh, const CageOptions& options = {},
+                                        CageReport* report = nullptr);
 
 }  // namespace tetskin

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
@@ -29,7 +30,9 @@ struct TETSKIN_CORE_API EmbedReport {
   std::size_t inside = 0;       ///< vertices in some tet
   std::size_t outside = 0;      ///< vertices in no tet, carried by one nevertheless
   std::size_t unbound = 0;      ///< vertices without a tet: all if there is no embedding, otherwise none
-  std::size_t overlapping = 0;  ///< vertices with weights above 1e-6 in two tets or more: the cage overlaps itself
+  std::size_t mapped = 0;       ///< vertices whose tet the cage's map told: all or none
+  std::size_t overlapping = 0;  ///< vertices with weights above 1e-6 in two tets or more, and no map: the cage overlaps
+                                ///< itself, and which of the tets is the vertex's own is a guess
   std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
   std::size_t flatTets = 0;     ///< tets without volume, never used
   double worstDistance = 0.0;   ///< longest distance from a vertex to the nearest tet; under Barycentric, to its own
@@ -150,7 +153,9 @@ TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const fl
 /// the cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn
 /// together. It does not stay where all tets of that part would extrapolate it: its largest weight may be no more than
 /// 4 times what it is otherwise, or times 1. Takes some 150 bytes more for each vertex outside while it works.
-TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, const TriangleMesh& mesh,
-                                         const EmbedOptions& options = {}, EmbedReport* report = nullptr);
+/// A cage with a map, `Cage::vertexTets`, is believed: every vertex belongs to the tet that it names, and nothing is
+/// searched. Error: CageMismatch if the vertices are others, or not in their tets.
+TETSKIN_CORE_API Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options = {},
+                                         EmbedReport* report = nullptr);
 
 }  // namespace tetskin

@@ -102,12 +102,12 @@ class TETSKIN_CORE_API SkinBinding {
   /// report  of the fit, written if not null, on failure too
   /// Errors  `embed`'s; before anything is embedded, SizeMismatch if the mesh's normals or tangents are not one a
   ///         vertex, and InvalidOption for a hardEdgeDegrees below 0 or NaN
-  static Result<Pointer> make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options = {},
+  static Result<Pointer> make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options = {},
                               EmbedReport* report = nullptr);
   /// The same with an embedding made before, such as a loaded one; the options' rule for vertices outside, and how far
   /// they may be, were its maker's to choose. Errors: SizeMismatch if mesh or cage differ in count from what was
   /// embedded; those of `usable`; those of the mesh and the options as above.
-  static Result<Pointer> make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options,
+  static Result<Pointer> make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
                               const Embedding& embedding);
   ~SkinBinding();
 

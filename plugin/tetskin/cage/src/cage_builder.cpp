@@ -133,7 +133,7 @@ void reportCage(const TetMesh& cage, CageReport& report) {
 }
 
 /// The build proper: everything in the report but the time.
-Result<TetMesh> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
+Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
   report.targetTets = options.targetTets;
   if (Status status = checkInput(mesh, options); !status.ok()) return status;
   const Surface surface = cage_detail::prepareSurface(mesh);
@@ -147,7 +147,10 @@ Result<TetMesh> build(const TriangleMesh& mesh, const CageOptions& options, Cage
   reportCage(bound.lattice.mesh, report);
   report.verticesOutside =
       cage_detail::countOutside(bound.points, surface.points.size(), bound.lattice.mesh, bound.tetOf);
-  return std::move(bound.lattice.mesh);
+  Cage cage(std::move(bound.lattice.mesh));
+  for (const int point : surface.pointOf) cage.vertexTets.push_back(bound.tetOf[point]);
+  cage.meshHash = positionsHash(mesh.positions);
+  return cage;
 }
 
 }  // namespace
@@ -178,12 +181,12 @@ std::string CageReport::describe() const {
   return text.str();
 }
 
-Result<TetMesh> buildCage(const TriangleMesh& mesh, const CageOptions& options, CageReport* report) {
+Result<Cage> buildCage(const TriangleMesh& mesh, const CageOptions& options, CageReport* report) {
   const auto start = std::chrono::steady_clock::now();
   CageReport unread;
   CageReport& now = report ? *report : unread;
   now = {};
-  Result<TetMesh> cage = build(mesh, options, now);
+  Result<Cage> cage = build(mesh, options, now);
   now.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   assert(!cage.ok() || checkTetMesh(cage.value()).clean());
   return cage;

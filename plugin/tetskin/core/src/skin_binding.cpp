@@ -46,7 +46,7 @@ Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedd
 }
 
 template <class Scalar>
-void addQuadratic(const TetMesh& cage, SkinParts<Scalar>& parts) {
+void addQuadratic(const Cage& cage, SkinParts<Scalar>& parts) {
   const auto start = std::chrono::steady_clock::now();
   const QuadraticStencils<Scalar>& made = parts.quadratic.emplace(cage, parts.embedding);
   QuadraticReport& report = parts.quadraticReport;
@@ -62,7 +62,7 @@ void addQuadratic(const TetMesh& cage, SkinParts<Scalar>& parts) {
 
 /// What the options ask for beyond the embedding that is there.
 template <class Scalar>
-std::unique_ptr<const SkinParts<Scalar>> partsFor(const TetMesh& cage, const TriangleMesh& mesh,
+std::unique_ptr<const SkinParts<Scalar>> partsFor(const Cage& cage, const TriangleMesh& mesh,
                                                   const BindingOptions& options, const Embedding& embedding) {
   auto made = std::make_unique<SkinParts<Scalar>>();
   made->options = options;
@@ -134,7 +134,7 @@ template <class Scalar>
 SkinBinding<Scalar>::~SkinBinding() = default;
 
 template <class Scalar>
-auto SkinBinding<Scalar>::make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options,
+auto SkinBinding<Scalar>::make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
                                EmbedReport* report) -> Result<Pointer> {
   if (Status status = checkBinding(mesh, options); !status.ok()) {
     if (report) *report = notEmbedded(mesh);
@@ -149,7 +149,7 @@ auto SkinBinding<Scalar>::make(const TetMesh& cage, const TriangleMesh& mesh, co
 }
 
 template <class Scalar>
-auto SkinBinding<Scalar>::make(const TetMesh& cage, const TriangleMesh& mesh, const BindingOptions& options,
+auto SkinBinding<Scalar>::make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
                                const Embedding& embedding) -> Result<Pointer> {
   if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
   if (Status status = checkBinding(mesh, options); !status.ok()) return status;

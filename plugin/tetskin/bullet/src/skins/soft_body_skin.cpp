@@ -37,7 +37,7 @@ constexpr std::size_t kInFlight = 8;
 
 }  // namespace
 
-Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage, const TriangleMesh& mesh,
+Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const Cage& restCage, const TriangleMesh& mesh,
                                        const SkinOptions& options) {
   if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return s;
   if (Status s = checkNodes(nodePositions(body)); !s.ok()) return s;
@@ -50,8 +50,8 @@ Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TetMesh& re
   return report;
 }
 
-Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TetMesh& restCage,
-                                       PointView<const double> vertices, const SkinOptions& options) {
+Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const Cage& restCage, PointView<const double> vertices,
+                                       const SkinOptions& options) {
   TriangleMesh mesh;
   mesh.positions.reserve(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {

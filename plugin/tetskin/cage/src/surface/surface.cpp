@@ -104,11 +104,11 @@ void measure(Surface& surface) {
 
 Surface prepareSurface(const TriangleMesh& mesh) {
   Surface surface;
-  const std::vector<int> pointOf = weld(mesh, surface);
+  surface.pointOf = weld(mesh, surface);
   surface.box = boundingBox(surface.points);
   std::vector<std::array<int, 3>> triangles(mesh.triangleCount());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) triangles[t][i] = pointOf[mesh.triangles[t][i]];
+    for (int i = 0; i < 3; ++i) triangles[t][i] = surface.pointOf[mesh.triangles[t][i]];
   }
   addDistinct(triangles, surface);
   const auto solidEnd = std::stable_partition(surface.triangles.begin(), surface.triangles.end(),

@@ -19,6 +19,7 @@ constexpr double kSheetVolume = 1e-6;
 
 struct Surface {
   std::vector<Eigen::Vector3d> points;        ///< distinct positions of the mesh's vertices, rest space
+  std::vector<int> pointOf;                   ///< by vertex of the mesh: its point
   std::vector<std::array<int, 3>> triangles;  ///< distinct ones; the first `solidCount` of them have an area
   std::size_t solidCount = 0;
   std::vector<int> loosePoints;  ///< points that no triangle uses

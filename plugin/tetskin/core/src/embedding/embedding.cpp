@@ -5,6 +5,7 @@
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/embedding/embedding_data.h>
+#include <tetskin/core/src/embedding/mapped_vertices.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/src/mesh/weld.h>
 #include <tetskin/core/src/search/outside_neighbours.h>
@@ -97,10 +98,9 @@ std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, cons
   return std::move(search.tetOf);
 }
 
-Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const Triangles* triangles,
-                                const EmbedOptions& options, EmbedReport& report) {
-  if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
-  const std::vector<std::int32_t> tetOf = tetsOf(cage, vertices, triangles, options.outside, report);
+/// The embedding of vertices whose tets are known.
+Result<Embedding> embedIn(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
+                          const EmbedOptions& options, EmbedReport& report) {
   EmbeddingFit fit;
   Embedding made = embeddingFromTets(cage, vertices, tetOf, &fit);
   reportFit(fit, report);
@@ -116,13 +116,29 @@ Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const
   return made;
 }
 
-Result<Embedding> timedEmbed(const TetMesh& cage, PointReader vertices, const Triangles* triangles,
-                             const EmbedOptions& options, EmbedReport* report) {
+Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const Triangles* triangles,
+                                const EmbedOptions& options, EmbedReport& report) {
+  if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
+  return embedIn(cage, vertices, tetsOf(cage, vertices, triangles, options.outside, report), options, report);
+}
+
+Result<Embedding> embedMapped(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options,
+                              EmbedReport& report) {
+  const PointReader vertices = viewOf(mesh.positions);
+  if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
+  const auto tetOf = mappedTets(cage, mesh, report);
+  if (!tetOf.ok()) return tetOf.status();
+  return embedIn(cage, vertices, tetOf.value(), options, report);
+}
+
+/// make  does the embedding, and writes the report
+template <class Make>
+Result<Embedding> timed(EmbedReport* report, Make&& make) {
   const auto start = std::chrono::steady_clock::now();
   EmbedReport unread;
   EmbedReport& now = report ? *report : unread;
   now = {};
-  Result<Embedding> made = embedVertices(cage, vertices, triangles, options, now);
+  Result<Embedding> made = make(now);
   now.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return made;
 }
@@ -169,6 +185,7 @@ std::string EmbedReport::describe() const {
         rescued, kLargestWeight, largestWeight);
     result += text;
   }
+  if (overlapping > 0) result += "where a cage of copies overlaps itself, only a Cage with its map tells them apart\n";
   if (unitsDiffer()) result += "mesh and cage do not fit: " + unitsFault() + "\n";
   return result;
 }
@@ -213,21 +230,23 @@ std::vector<VertexBinding> Embedding::bindings() const {
 
 Result<Embedding> embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                         EmbedReport* report) {
-  return timedEmbed(cage, vertices, nullptr, options, report);
+  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, nullptr, options, now); });
 }
 
 Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
                         EmbedReport* report) {
-  return timedEmbed(cage, vertices, nullptr, options, report);
+  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, nullptr, options, now); });
 }
 
-Result<Embedding> embed(const TetMesh& cage, const TriangleMesh& mesh, const EmbedOptions& options,
-                        EmbedReport* report) {
+Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options, EmbedReport* report) {
   if (Status status = checkTriangleMesh(mesh); !status.ok()) {
     if (report) *report = notEmbedded(mesh);
     return status;
   }
-  return timedEmbed(cage, viewOf(mesh.positions), &mesh.triangles, options, report);
+  return timed(report, [&](EmbedReport& now) {
+    if (!cage.vertexTets.empty()) return embedMapped(cage, mesh, options, now);
+    return embedVertices(cage, viewOf(mesh.positions), &mesh.triangles, options, now);
+  });
 }
 
 }  // namespace tetskin

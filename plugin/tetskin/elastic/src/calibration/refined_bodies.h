@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/mesh/uniform_refinement.h>
 #include <tetskin/elastic/src/calibration/elastic_modes.h>
-#include <tetskin/elastic/src/calibration/uniform_refinement.h>
 
 #include <cstddef>
 #include <memory>

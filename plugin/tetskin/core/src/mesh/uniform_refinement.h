@@ -24,6 +24,6 @@ struct Refinement {
 ///   Jürgen Bey, "Tetrahedral Grid Refinement", Computing 55, 1995
 ///
 /// coarse  indices in range
-Refinement refineUniformly(const TetMesh& coarse);
+TETSKIN_CORE_API Refinement refineUniformly(const TetMesh& coarse);
 
 }  // namespace tetskin

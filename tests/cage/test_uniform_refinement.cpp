@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
-#include <tetskin/elastic/src/calibration/uniform_refinement.h>
+#include <tetskin/core/src/mesh/uniform_refinement.h>
 
 #include "support/odd_meshes.h"
 

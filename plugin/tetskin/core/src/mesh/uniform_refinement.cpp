@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/elastic/src/calibration/uniform_refinement.h>
+#include <tetskin/core/src/mesh/uniform_refinement.h>
 
 #include <algorithm>
 #include <map>
