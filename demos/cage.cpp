@@ -37,7 +37,7 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
   json["vertices_outside"] = fit.outside;
   json["min_dihedral_deg"] = report.minDihedralDeg;
   json["max_dihedral_deg"] = report.maxDihedralDeg;
-  json["components"] = report.cageComponents;
+  json["components"] = report.parts;
   json["mesh_components"] = report.meshComponents;
   json["spacing"] = report.spacing;
   json["volume_ratio"] = report.volumeRatio;

@@ -4,7 +4,7 @@
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
-#include <tetskin/elastic/stiffness_calibration.h>
+#include <tetskin/elastic/calibration.h>
 
 #include <cstddef>
 #include <map>

@@ -33,7 +33,7 @@
 #endif
 #ifdef TETSKIN_HAS_ELASTIC
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/elastic/stiffness_calibration.h>
+#include <tetskin/elastic/calibration.h>
 #endif
 #ifdef TETSKIN_HAS_IO
 #include <tetskin/io/embedding_file.h>

@@ -3,7 +3,7 @@
 //
 // An application that uses Eigen's matrices of any size itself, beside a part of the library that does.
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/elastic/stiffness_calibration.h>
+#include <tetskin/elastic/calibration.h>
 
 #include <Eigen/Dense>
 #include <cstdio>
@@ -16,7 +16,8 @@ int main() {
   pyramid.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   tetskin::CageOptions options;
   options.targetTets = 200;
-  const auto calibrated = tetskin::calibrateStiffness(tetskin::buildCage(pyramid, options).value());
+  tetskin::Cage cage = tetskin::buildCage(pyramid, options).value();
+  const auto calibrated = tetskin::calibrate(cage);
   if (!calibrated.ok()) return std::fprintf(stderr, "%s\n", calibrated.status().message.c_str()), 1;
   return ones.isOnes() ? 0 : 1;
 }

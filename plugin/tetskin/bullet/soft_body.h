@@ -6,7 +6,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodySolverVertexBuffer.h>
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/types.h>
 
 #include <functional>
@@ -56,9 +56,9 @@ enum class ForceModel {
 /// deformable world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
   double mass = 1.0;     ///< total, in kg; ignored where density is given
-  double density = 0.0;  ///< mass per volume; 0: from mass
+  double density = 0.0;  ///< mass per volume, of the mesh if the cage knows it, else of the cage; 0: from mass
   /// nodeCount, above 0: instead of the two above, and of the floor under the masses of slivers' nodes. Empty: from
-  /// those.
+  /// those, distributed as the cage's masses are if it has any.
   std::vector<double> nodeMasses;
   double margin = -1.0;   ///< collision margin; below 0: 2 % of the largest side of the cage's box
   double friction = 0.5;  ///< Bullet's m_cfg.kDF, 0 to 1
@@ -73,7 +73,8 @@ struct SoftBodyOptions {
   double youngsModulus = 0.0;
   /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded by timeStep as said above.
   double relativeStiffness = 50.0;
-  /// tetCount, above 0: times the stiffness, tet by tet; for Corotated alone. Empty: 1.
+  /// tetCount, above 0: times the stiffness, tet by tet; not for MassSpring. Of Bullet's own forces, by
+  /// `Tetra::m_element_measure`, which the body's `scale` sets anew. Empty: the cage's, by its fill and factor.
   std::vector<double> stiffnessScale;
   double poissonRatio = 0.3;      ///< 0 to below 0.5
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
@@ -99,10 +100,15 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
   return [box](const Eigen::Vector3d& p) { return box.contains(p); };
 }
 
+/// The options with what the cage knows, where they leave it to that: node masses, and the stiffness of each tet (but
+/// for MassSpring, whose links take none). What `makeSoftBody` and `DeformableBody` do by themselves.
+TETSKIN_BULLET_API SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options);
+
 /// Makes a soft body of a cage: a node for every node, in order; a tet for every tet, in order; each edge once as a
 /// link and each boundary face once, in the order of btSoftBodyHelpers::CreateFromVtkFile; rest volumes and inverse
-/// rest matrices. Negative tets are reoriented, flat ones refused. Node masses are a quarter of each tet's around the
-/// node, but at least 0.3 of the mean: slivers' nodes would otherwise be too light to be stable.
+/// rest matrices. Negative tets are reoriented, flat ones refused. Node masses are the cage's, if it has any; otherwise
+/// a quarter of each tet's around the node, but at least 0.3 of the mean: slivers' nodes would be too light to be
+/// stable.
 ///
 /// The body collides with rigid bodies by its nodes. Its trees of faces and nodes are ready: Bullet would build them in
 /// the first step or ray test, in quadratic time, and without end for a body of several parts. In the deformable world,
@@ -113,7 +119,7 @@ inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
 /// Returns    the body, in no world yet; take it out of its world before it goes
 /// Cost       O(T log T) for T tets
 /// Errors     an unusable cage (see `usable`), flat tets, options out of range
-TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
+TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
                                                                     const SoftBodyOptions& options = {});
 
 /// As the body's own `setMass` (0 pins the node) and `setTotalMass`, but Bullet is left nothing to build: the trees

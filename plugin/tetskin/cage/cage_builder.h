@@ -16,6 +16,9 @@ constexpr std::size_t kLargestTargetTets = 20'000'000;
 struct CageOptions {
   /// How many tets the cage should have. Met within 10 % but for very small numbers, see `CageReport::targetMet`.
   std::size_t targetTets = 3000;
+  /// Where parts of the mesh lie nearer to each other than a tet, or it folds back on itself, give each a tet of its
+  /// own: see Cage. Nothing changes where nothing splits.
+  bool split = true;
   /// Pull boundary nodes towards the surface: a smaller cage, of tets that are no longer all alike.
   bool fit = true;
 };
@@ -33,7 +36,9 @@ struct TETSKIN_CAGE_API CageReport {
   std::size_t verticesOutside = 0;  ///< distinct positions of the mesh's vertices in no tet: 0
   double minDihedralDeg = 0.0;
   double maxDihedralDeg = 0.0;
-  std::size_t cageComponents = 0;  ///< parts connected by nodes; fewer than the mesh's where parts have fused
+  std::size_t copies = 0;          ///< tets beyond the first at their place: splitting made them
+  std::size_t parts = 0;           ///< of the cage, connected by nodes
+  std::size_t fusedParts = 0;      ///< components and loose vertices of the mesh, less the cage's parts
   std::size_t meshComponents = 0;  ///< sets of triangles connected by coincident vertices
   std::size_t looseVertices = 0;   ///< distinct positions that no triangle uses; inside the cage as well
   std::size_t openEdges = 0;       ///< edges of the mesh without a partner triangle on the other side: holes

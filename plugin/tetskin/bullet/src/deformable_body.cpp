@@ -30,10 +30,12 @@ constexpr double kStableFrequency = 8.0;
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
   const Lame unit(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
-  for (const Tet& tet : cage.tets) {
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    const Tet& tet = cage.tets[t];
     const TetCorners corners = cornersOf(cage, tet);
     const Eigen::Vector4d gradients = BarycentricMap(corners).gradientLengths();
-    const double modulus = (unit.lambda + 2.0 * unit.mu) * std::abs(signedVolume(corners));
+    const double scale = options.stiffnessScale.empty() ? 1.0 : options.stiffnessScale[t];
+    const double modulus = scale * (unit.lambda + 2.0 * unit.mu) * std::abs(signedVolume(corners));
     for (int k = 0; k < 4; ++k) stiffness[tet[k]] += modulus * gradients[k] * gradients[k];
   }
   for (std::size_t n = 0; n < masses.size(); ++n) stiffness[n] /= masses[n];
@@ -41,9 +43,11 @@ double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& option
 }
 
 /// bounded  by what explicit elastic forces can bear
-double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
+double defaultYoungsModulus(const Cage& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
                             double gravity, bool bounded) {
-  const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / totalVolume(cage);
+  const double volume =
+      cage.masses.empty() ? totalVolume(cage) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
+  const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / volume;
   // Without gravity nothing sags; the earth's serves as a scale.
   constexpr double kEarth = 9.81;
   const double wanted = options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) *
@@ -131,8 +135,10 @@ struct DeformableBody::Parts {
 
 DeformableBody::DeformableBody(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
-Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world,
-                                                            const TetMesh& cage, const SoftBodyOptions& options) {
+Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
+                                                            const SoftBodyOptions& given) {
+  if (Status status = cage.check(); !status.ok()) return status;
+  const SoftBodyOptions options = withCage(cage, given);
   if (options.forceModel == ForceModel::MassSpring) {
     return invalid(
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "

@@ -9,9 +9,15 @@
 //     coverSurface     tets that triangles touch                         surface_cover, bcc_lattice
 //     fillInside       tets inside                                       inside_fill, winding_number
 //     joinPinches      tets that make the boundary a manifold            cage_joints
-//   bindPoints       which tet holds which vertex                        cage_binding
+//   sampleSurface    points that the cage has to hold                    surface_samples
+//   bindPoints       which tet of the lattice holds which of them        cage_binding
+//   findMaterial     which part of each tet is inside                    tet_material, tet_cells
+//   copyTets         a copy of a tet for each part of the mesh in it     tet_copies
+//   splitLattice     copies joined where they hang together              split_lattice
 //   fitCage          pull the boundary towards the surface               cage_fit
+//   fillOf           how much of each tet is material, and masses        cage_fill
 #include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/src/fill/cage_fill.h>
 #include <tetskin/cage/src/fit/cage_binding.h>
 #include <tetskin/cage/src/fit/cage_fit.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
@@ -30,6 +36,8 @@ namespace {
 using cage_detail::LatticeCage;
 using cage_detail::LatticeMesh;
 using cage_detail::Surface;
+using cage_detail::SurfaceSamples;
+using cage_detail::WindingTree;
 
 /// Sizes and coordinates outside this range cannot be raised to the powers that areas and their squares need.
 constexpr double kLargestLength = 1e60;
@@ -37,6 +45,9 @@ constexpr double kLargestLength = 1e60;
 constexpr std::size_t kAttempts = 4;
 /// Origins between two attempts; more than one search uses.
 constexpr std::size_t kOriginsPerAttempt = 100;
+/// Searches for the number of tets, where splitting changes it, and how near ends them.
+constexpr int kSizeRounds = 4;
+constexpr double kSizeTolerance = 0.07;
 /// Distance of the points on large triangles that fitting has to keep inside, in half cubes: a cube's face is then
 /// supported by several, while meshes finer than the lattice get none.
 constexpr double kHoldStep = 0.5;
@@ -75,30 +86,71 @@ Status checkExtent(const Surface& surface) {
   return {};
 }
 
-/// A lattice cage as a mesh, with the points it has to hold.
+/// A cage on a lattice, with the points that it has to hold.
 struct BoundCage {
   LatticeCage cage;
   LatticeMesh lattice;
-  std::vector<Eigen::Vector3d> points;
-  std::vector<int> tetOf;
+  SurfaceSamples samples;
+  cage_detail::CageTets tets;
   std::size_t outside = 0;  ///< of the surface's own points
 };
 
-BoundCage bindCage(const Surface& surface, std::size_t target, std::size_t firstOrigin, bool fit) {
+/// Splits the lattice where that makes copies; otherwise it stays whole.
+cage_detail::CageTets splitTets(const Surface& surface, const WindingTree& winding, const BoundCage& bound,
+                                const std::vector<int>& tetOf, bool split) {
+  const cage_detail::LatticeFrame& frame = bound.cage.frame;
+  const auto material = cage_detail::findMaterial(surface, winding, frame, bound.cage.set, bound.lattice);
+  if (split && surface.oriented) {
+    const cage_detail::LatticeLinks links(bound.cage.set, bound.lattice);
+    const auto copies =
+        cage_detail::copyTets(surface, bound.samples, tetOf, material, frame, bound.cage.set, bound.lattice, links);
+    cage_detail::CageTets tets = cage_detail::splitLattice(copies, bound.samples, bound.lattice, links);
+    if (tets.copies() > 0) return tets;
+  }
+  return cage_detail::wholeLattice(bound.lattice, material, tetOf);
+}
+
+BoundCage bindCage(const Surface& surface, const WindingTree& winding, std::size_t target, std::size_t firstOrigin,
+                   const CageOptions& options) {
   BoundCage bound;
-  bound.cage = cage_detail::searchLattice(surface, target, firstOrigin);
+  bound.cage = cage_detail::searchLattice(surface, winding, target, firstOrigin);
   bound.lattice = cage_detail::meshOf(bound.cage.set, bound.cage.frame);
-  bound.points = fit ? cage_detail::pointsToHold(surface, kHoldStep * bound.cage.frame.half) : surface.points;
-  bound.tetOf = cage_detail::bindPoints(bound.points, bound.cage.set, bound.cage.frame, bound.lattice);
-  bound.outside = cage_detail::countOutside(bound.points, surface.points.size(), bound.lattice.mesh, bound.tetOf);
+  bound.samples = cage_detail::sampleSurface(surface, kHoldStep * bound.cage.frame.half);
+  const std::vector<int> tetOf =
+      cage_detail::bindPoints(bound.samples.points, bound.cage.set, bound.cage.frame, bound.lattice);
+  bound.tets = splitTets(surface, winding, bound, tetOf, options.split);
+  bound.outside = cage_detail::countOutside(surface.points, surface.points.size(), bound.tets.mesh, bound.tets.tetOf);
   return bound;
 }
 
+/// Splitting adds and removes tets: how many is known afterwards only.
+BoundCage bindCageOfSize(const Surface& surface, const WindingTree& winding, const CageOptions& options,
+                         std::size_t firstOrigin) {
+  const auto target = static_cast<double>(options.targetTets);
+  const auto miss = [&](const BoundCage& bound) {
+    return std::abs(static_cast<double>(bound.tets.mesh.tetCount()) / target - 1.0);
+  };
+  BoundCage best;
+  double wanted = target;
+  std::size_t lattices = 0;
+  for (int round = 0; round < kSizeRounds; ++round) {
+    BoundCage bound = bindCage(surface, winding, static_cast<std::size_t>(std::max(wanted, 1.0)), firstOrigin, options);
+    lattices += bound.cage.lattices;
+    const double grown = static_cast<double>(bound.tets.mesh.tetCount()) / target;
+    const bool whole = bound.tets.copies() == 0;
+    if (round == 0 || miss(bound) < miss(best)) best = std::move(bound);
+    if (whole || miss(best) <= kSizeTolerance) break;
+    wanted /= grown;
+  }
+  best.cage.lattices = lattices;
+  return best;
+}
+
 /// The first cage in which all vertices are inside; otherwise the one with the fewest outside.
-BoundCage firstCageThatHolds(const Surface& surface, const CageOptions& options) {
+BoundCage firstCageThatHolds(const Surface& surface, const WindingTree& winding, const CageOptions& options) {
   BoundCage best;
   for (std::size_t i = 0; i < kAttempts; ++i) {
-    BoundCage bound = bindCage(surface, options.targetTets, i * kOriginsPerAttempt, options.fit);
+    BoundCage bound = bindCageOfSize(surface, winding, options, i * kOriginsPerAttempt);
     if (i == 0 || bound.outside < best.outside) best = std::move(bound);
     if (best.outside == 0) break;
   }
@@ -116,7 +168,8 @@ void reportLattice(const BoundCage& bound, CageReport& report) {
   report.joiningTets = bound.cage.joiningTets;
   report.spacing = 2.0 * bound.cage.frame.half;
   report.lattices = bound.cage.lattices;
-  report.cageVolumeUnfitted = totalVolume(bound.lattice.mesh);
+  report.cageVolumeUnfitted = totalVolume(bound.tets.mesh);
+  report.copies = bound.tets.copies();
 }
 
 void reportCage(const TetMesh& cage, CageReport& report) {
@@ -125,11 +178,31 @@ void reportCage(const TetMesh& cage, CageReport& report) {
   const DihedralRange range = dihedralRange(cage);
   report.minDihedralDeg = range.minDeg;
   report.maxDihedralDeg = range.maxDeg;
-  report.cageComponents = cage_detail::connectedComponents(cage);
+  const std::vector<int> parts = cage_detail::partNumbers(cage);
+  report.parts = parts.empty() ? 0 : static_cast<std::size_t>(*std::max_element(parts.begin(), parts.end())) + 1;
+  const std::size_t meshParts = report.meshComponents + report.looseVertices;
+  report.fusedParts = meshParts > report.parts ? meshParts - report.parts : 0;
   report.cageVolume = totalVolume(cage);
   if (!(report.meshVolume > 0.0)) return;
   report.volumeRatio = report.cageVolume / report.meshVolume;
   report.volumeRatioUnfitted = report.cageVolumeUnfitted / report.meshVolume;
+}
+
+Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
+  Cage cage(bound.tets.mesh);
+  // Of a sheet, or where inside and outside cannot be told apart, all of a tet counts.
+  const bool solid = surface.oriented && surface.volume > 0.0;
+  if (solid) {
+    cage_detail::CageFill fill = cage_detail::fillOf(bound.tets, bound.cage.frame, bound.cage.set, bound.lattice);
+    cage.fill = std::move(fill.fill);
+    cage.fineFill = std::move(fill.fine);
+  }
+  cage.masses = cage_detail::nodeMasses(cage, cage.fill, solid ? surface.volume : totalVolume(cage));
+  cage.latticeTets = std::move(bound.tets.latticeTets);
+  cage.parts = cage_detail::partNumbers(cage);
+  for (const int point : surface.pointOf) cage.vertexTets.push_back(bound.tets.tetOf[point]);
+  cage.meshHash = positionsHash(mesh.positions);
+  return cage;
 }
 
 /// The build proper: everything in the report but the time.
@@ -140,17 +213,15 @@ Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageRep
   if (Status status = checkExtent(surface); !status.ok()) return status;
   reportSurface(surface, report);
 
-  BoundCage bound = firstCageThatHolds(surface, options);
-  assert(!bound.lattice.mesh.tets.empty());
+  const WindingTree winding(surface);
+  BoundCage bound = firstCageThatHolds(surface, winding, options);
+  assert(!bound.tets.mesh.tets.empty());
   reportLattice(bound, report);
-  if (options.fit) cage_detail::fitCage(bound.lattice, bound.cage.frame.half, bound.points, bound.tetOf);
-  reportCage(bound.lattice.mesh, report);
+  if (options.fit) cage_detail::fitCage(bound.tets, bound.cage.frame.half, bound.samples.points);
+  reportCage(bound.tets.mesh, report);
   report.verticesOutside =
-      cage_detail::countOutside(bound.points, surface.points.size(), bound.lattice.mesh, bound.tetOf);
-  Cage cage(std::move(bound.lattice.mesh));
-  for (const int point : surface.pointOf) cage.vertexTets.push_back(bound.tetOf[point]);
-  cage.meshHash = positionsHash(mesh.positions);
-  return cage;
+      cage_detail::countOutside(surface.points, surface.points.size(), bound.tets.mesh, bound.tets.tetOf);
+  return cageOf(mesh, surface, std::move(bound));
 }
 
 }  // namespace
@@ -166,8 +237,9 @@ std::string CageReport::describe() const {
   if (!targetMet()) text << " (" << targetTets << " tets were asked for; no lattice comes nearer)";
   text << "\n" << verticesOutside << " vertices outside\n";
   text << "dihedral angles " << minDihedralDeg << " to " << maxDihedralDeg << " degrees\n";
-  text << meshComponents << " components of the mesh, " << cageComponents << " of the cage";
-  if (cageComponents < meshComponents + looseVertices) text << " (some lie so near to each other that they have fused)";
+  text << meshComponents << " components of the mesh, " << parts << " of the cage";
+  if (fusedParts > 0) text << " (" << fusedParts << " lie so near to others that they have fused)";
+  if (copies > 0) text << "; " << copies << " tets are copies, for what lies nearer than a tet";
   text << "\n";
   if (openEdges > 0) text << openEdges << " open edges: holes are closed where they see less than half of the inside\n";
   if (looseVertices > 0) text << looseVertices << " loose vertices, which no triangle uses, have tets of their own\n";

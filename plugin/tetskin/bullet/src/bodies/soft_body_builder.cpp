@@ -38,8 +38,10 @@ Status checkOptions(const SoftBodyOptions& options) {
     return {StatusCode::InvalidOption,
             "a soft body's solver tolerance must be at least 0 and below 1, and its iterations at least 1"};
   }
-  if (!options.stiffnessScale.empty() && options.forceModel != ForceModel::Corotated) {
-    return {StatusCode::InvalidOption, "a stiffness for each tet (stiffnessScale) needs ForceModel::Corotated"};
+  if (!options.stiffnessScale.empty() && options.forceModel == ForceModel::MassSpring) {
+    return {StatusCode::InvalidOption,
+            "mass-spring bodies take no stiffness for each tet (stiffnessScale); leave it out, or choose another "
+            "ForceModel"};
   }
   if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
     return {StatusCode::InvalidOption, "a soft body's link stiffness must be above 0 and at most 1"};
@@ -86,6 +88,13 @@ void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
     body.setMass(static_cast<int>(n), pinned ? btScalar(0) : static_cast<btScalar>(masses[n]));
+  }
+}
+
+/// By the measure of a tet, Bullet's forces multiply all that they compute.
+void scaleMeasures(const std::vector<double>& scale, btSoftBody& body) {
+  for (std::size_t t = 0; t < scale.size(); ++t) {
+    body.m_tetras[static_cast<int>(t)].m_element_measure *= static_cast<btScalar>(scale[t]);
   }
 }
 
@@ -140,9 +149,23 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
   return masses;
 }
 
-Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBodyWorldInfo& worldInfo,
-                                                 const SoftBodyOptions& options) {
-  if (Status status = checkOptions(options); !status.ok()) return status;
+SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options) {
+  if (options.nodeMasses.empty() && !cage.masses.empty()) {
+    const double volume = std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
+    const double density = options.density > 0.0 ? options.density : options.mass / volume;
+    for (const double mass : cage.masses) options.nodeMasses.push_back(density * mass);
+  }
+  if (options.stiffnessScale.empty() && options.forceModel != ForceModel::MassSpring) {
+    options.stiffnessScale = cage.stiffnessScale();
+  }
+  return options;
+}
+
+Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                                 const SoftBodyOptions& given) {
+  if (Status status = checkOptions(given); !status.ok()) return status;
+  if (Status status = cage.check(); !status.ok()) return status;
+  const SoftBodyOptions options = withCage(cage, given);
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
   for (Status status : {checkPositive<btScalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"),
@@ -156,6 +179,7 @@ Result<std::unique_ptr<btSoftBody>> makeSoftBody(const TetMesh& cage, btSoftBody
   configure(positive, options, *body);
   appendElements(positive, *body);
   setMasses(positive, options, *body);
+  if (options.forceModel != ForceModel::Corotated) scaleMeasures(options.stiffnessScale, *body);
   finish(options, *body);
   return std::unique_ptr<btSoftBody>(std::move(body));
 }

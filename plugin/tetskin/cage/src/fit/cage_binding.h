@@ -12,11 +12,6 @@
 
 namespace tetskin::cage_detail {
 
-/// Points that a cage has to hold: those of the surface first, then points on those of its triangles that are longer
-/// than `step`, in rows a step apart. Without these a cage pulled tight could cut through a large triangle. Count:
-/// O(points + area / step^2 + length / step).
-std::vector<Eigen::Vector3d> pointsToHold(const Surface& surface, double step);
-
 /// The tet of every point, evaluated exactly as `embed` does: barycentric distance at most 0 in double. -1 if there is
 /// none, which happens to points within rounding error of a face of the lattice only.
 std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const LatticeSet& set,

@@ -82,13 +82,15 @@ class PointLists {
 
 class CageFit {
  public:
-  CageFit(LatticeMesh& lattice, double half, const std::vector<Eigen::Vector3d>& points, std::vector<int>& tetOf)
-      : mesh_(lattice.mesh),
-        openFaces_(lattice.openFaces),
+  CageFit(CageTets& cage, double half, const std::vector<Eigen::Vector3d>& points)
+      : mesh_(cage.mesh),
+        openFaces_(cage.openFaces),
+        latticeTets_(cage.latticeTets),
+        copied_(cage.mesh.tetCount(), 0),
         points_(points),
         half_(half),
         stars_(tetsAroundNodes(mesh_)),
-        lists_(mesh_.tetCount(), tetOf),
+        lists_(mesh_.tetCount(), cage.tetOf),
         boundary_(mesh_.nodeCount(), 0),
         step_(mesh_.nodeCount(), kFirstStep),
         blocker_(mesh_.nodeCount(), -1),
@@ -99,6 +101,7 @@ class CageFit {
         for (int k = 1; k < 4; ++k) boundary_[mesh_.tets[t][(corner + k) % 4]] = 1;
       }
     }
+    markCopied();
   }
 
   void run() {
@@ -115,6 +118,12 @@ class CageFit {
   }
 
  private:
+  void markCopied() {
+    std::vector<int> tets(static_cast<std::size_t>(*std::max_element(latticeTets_.begin(), latticeTets_.end())) + 1, 0);
+    for (const int home : latticeTets_) ++tets[home];
+    for (std::size_t t = 0; t < copied_.size(); ++t) copied_[t] = tets[latticeTets_[t]] > 1;
+  }
+
   int starSize(int n) const { return static_cast<int>(stars_.starts[n + 1] - stars_.starts[n]); }
   int starTet(int n, int k) const {
     return static_cast<int>(stars_.values[stars_.starts[n] + static_cast<std::uint32_t>(k)]);
@@ -227,9 +236,18 @@ class CageFit {
   int holder(int n, int k, int point) const {
     if (holds(starTet(n, k), k, point)) return k;
     for (int j = 0; j < starSize(n); ++j) {
-      if (j != k && holds(starTet(n, j), j, point)) return j;
+      if (j != k && mayTake(starTet(n, j), starTet(n, k)) && holds(starTet(n, j), j, point)) return j;
     }
     return -1;
+  }
+
+  /// Of several copies at a place, only one that shares a face with the point's tet is known to be of its part.
+  bool mayTake(int tet, int from) const {
+    if (!copied_[tet] && !copied_[from]) return true;
+    const Tet& own = mesh_.tets[from];
+    const auto shared = std::count_if(mesh_.tets[tet].begin(), mesh_.tets[tet].end(),
+                                      [&](int n) { return std::find(own.begin(), own.end(), n) != own.end(); });
+    return latticeTets_[tet] != latticeTets_[from] && shared == 3;
   }
 
   bool holds(int tet, int k, int point) const {
@@ -243,6 +261,8 @@ class CageFit {
 
   TetMesh& mesh_;
   const std::vector<std::uint8_t>& openFaces_;
+  const std::vector<int>& latticeTets_;
+  std::vector<char> copied_;  ///< by tet: it is not the only one of its lattice tet
   const std::vector<Eigen::Vector3d>& points_;
   double half_;
   Lists<> stars_;  ///< by node: the tets around it
@@ -257,9 +277,9 @@ class CageFit {
 
 }  // namespace
 
-void fitCage(LatticeMesh& lattice, double half, const std::vector<Eigen::Vector3d>& points, std::vector<int>& tetOf) {
-  assert(points.size() == tetOf.size() && half > 0.0);
-  CageFit(lattice, half, points, tetOf).run();
+void fitCage(CageTets& cage, double half, const std::vector<Eigen::Vector3d>& points) {
+  assert(points.size() == cage.tetOf.size() && half > 0.0);
+  CageFit(cage, half, points).run();
 }
 
 }  // namespace tetskin::cage_detail

@@ -20,15 +20,19 @@ std::array<double, 6> dihedralCosines(const TetCorners& p) {
   return {cosine(0, 1), cosine(0, 2), cosine(0, 3), cosine(1, 2), cosine(1, 3), cosine(2, 3)};
 }
 
-std::size_t connectedComponents(const TetMesh& mesh) {
+std::vector<int> partNumbers(const TetMesh& mesh) {
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
-    for (int i = 1; i < 4; ++i) sets.unite(tet[0], tet[i]);
+    for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < mesh.nodeCount(); ++n)
-    count += sets.find(static_cast<int>(n)) == static_cast<int>(n) ? 1 : 0;
-  return count;
+  std::vector<int> number(mesh.nodeCount(), -1), parts;
+  int count = 0;
+  for (const Tet& tet : mesh.tets) {
+    int& part = number[sets.find(tet[0])];
+    if (part < 0) part = count++;
+    parts.push_back(part);
+  }
+  return parts;
 }
 
 }  // namespace cage_detail

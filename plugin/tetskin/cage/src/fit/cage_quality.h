@@ -29,8 +29,8 @@ namespace cage_detail {
 /// (0,3) (1,2) (1,3) (2,3) of the corners opposite to the faces.
 std::array<double, 6> dihedralCosines(const TetCorners& p);
 
-/// Number of parts connected by nodes. Cost O(tets).
-std::size_t connectedComponents(const TetMesh& mesh);
+/// By tet, the number of its part: tets that are connected by nodes. Cost O(tets).
+std::vector<int> partNumbers(const TetMesh& mesh);
 
 }  // namespace cage_detail
 }  // namespace tetskin

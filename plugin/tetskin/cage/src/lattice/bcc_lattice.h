@@ -125,6 +125,12 @@ struct LatticeMesh {
   TetMesh mesh;
   std::vector<std::int32_t> tetOf;      ///< 12 a cube of the set: index of its tet t at 12 i + t, or -1
   std::vector<std::uint8_t> openFaces;  ///< one a tet: bit c is set if no tet lies beyond the face opposite to corner c
+
+  /// Of a tet of the set that the mesh was made of, or -1 if it is not in it.
+  int indexOf(const LatticeSet& set, const LatticeTet& tet) const {
+    const int cube = set.find(tet.cube);
+    return cube < 0 ? -1 : tetOf[kTetsPerCube * static_cast<std::size_t>(cube) + static_cast<std::size_t>(tet.local)];
+  }
 };
 LatticeMesh meshOf(const LatticeSet& set, const LatticeFrame& frame);
 

@@ -73,9 +73,9 @@ double firstSpacing(const Surface& surface, double target) {
 
 class Search {
  public:
-  Search(const Surface& surface, std::size_t target)
+  Search(const Surface& surface, const WindingTree& winding, std::size_t target)
       : surface_(surface),
-        winding_(surface),
+        winding_(winding),
         target_(static_cast<double>(target)),
         limit_(kCountLimit * target + kCountLimitMore) {}
 
@@ -143,7 +143,7 @@ class Search {
   }
 
   const Surface& surface_;
-  WindingTree winding_;
+  const WindingTree& winding_;
   double target_;
   std::size_t limit_;
   LatticeCage best_;
@@ -158,8 +158,9 @@ double smallestSpacing(const Surface& surface) {
                   surface.box.sizes().maxCoeff() / kLargestCube);
 }
 
-LatticeCage searchLattice(const Surface& surface, std::size_t target, std::size_t firstOrigin) {
-  return Search(surface, target).run(firstOrigin);
+LatticeCage searchLattice(const Surface& surface, const WindingTree& winding, std::size_t target,
+                          std::size_t firstOrigin) {
+  return Search(surface, winding, target).run(firstOrigin);
 }
 
 }  // namespace tetskin::cage_detail

@@ -4,6 +4,7 @@
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/cage/src/surface/winding_number.h>
 
 namespace tetskin::cage_detail {
 
@@ -23,7 +24,8 @@ struct LatticeCage {
 /// bracketed at one origin first, then at others, until the count is good; the best is returned in any case.
 /// firstOrigin  where to start in the sequence of origins: another one gives another lattice
 /// Cost: lattices * O(triangles + target). Spacings never fall below `smallestSpacing`, even if that means fewer tets.
-LatticeCage searchLattice(const Surface& surface, std::size_t target, std::size_t firstOrigin);
+LatticeCage searchLattice(const Surface& surface, const WindingTree& winding, std::size_t target,
+                          std::size_t firstOrigin);
 
 /// Smallest half cube, rest space, whose tets double can represent without visible distortion at the surface's
 /// coordinates, and whose cubes can be counted in 32 bits over its box.

@@ -100,9 +100,20 @@ bool isDeep(const Eigen::Vector3d& p) {
 
 class Cover {
  public:
-  Cover(LatticeSet& set, std::size_t limit) : set_(set), limit_(limit) {}
+  /// A tet that a triangle touches.
+  struct Touch {
+    LatticeTet tet;
+    std::uint32_t triangle = 0;
+  };
+
+  /// touches  if given, receives all of them
+  Cover(LatticeSet& set, std::size_t limit, std::vector<Touch>* touches = nullptr)
+      : set_(set), limit_(limit), touches_(touches) {}
 
   bool full() const { return set_.tetCount() > limit_; }
+
+  /// Of the triangles to come.
+  void setTriangle(std::uint32_t triangle) { triangle_ = triangle; }
 
   void addTriangle(const Corners& corners, const LatticeTet& start) {
     const TriangleProbe probe(corners);
@@ -119,7 +130,10 @@ class Cover {
     }
   }
 
-  void addTet(const LatticeTet& tet) { set_.add(tet); }
+  void addTet(const LatticeTet& tet) {
+    set_.add(tet);
+    if (touches_) touches_->push_back({tet, triangle_});
+  }
 
  private:
   bool visited(const LatticeTet& tet) const {
@@ -134,10 +148,13 @@ class Cover {
     if (kTetsPerCube * set_.cubeCount() > stamps_.size()) stamps_.resize(2 * kTetsPerCube * set_.cubeCount(), 0);
     stamps_[kTetsPerCube * i + static_cast<std::size_t>(tet.local)] = stamp_;
     stack_.push_back(tet);
+    if (touches_) touches_->push_back({tet, triangle_});
   }
 
   LatticeSet& set_;
   std::size_t limit_;
+  std::vector<Touch>* touches_;
+  std::uint32_t triangle_ = 0;
   std::vector<std::uint32_t> stamps_;  ///< last triangle that visited tet t of cube i, at 12 i + t
   std::uint32_t stamp_ = 0;
   std::vector<LatticeTet> stack_;
@@ -155,19 +172,22 @@ bool sameTet(const Located& a, const Located& b) {
 
 }  // namespace
 
-bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set) {
+namespace {
+
+bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
   std::vector<Located> points(surface.points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     points[p].position = frame.toLattice(surface.points[p]);
     points[p].tet = locate(points[p].position);
     points[p].deep = isDeep(points[p].position);
   }
-  Cover cover(set, limit);
   for (const int p : surface.loosePoints) {
     cover.addTriangle({points[p].position, points[p].position, points[p].position}, points[p].tet);
     if (cover.full()) return false;
   }
-  for (const auto& t : surface.triangles) {
+  for (std::uint32_t k = 0; k < surface.triangles.size(); ++k) {
+    const auto& t = surface.triangles[k];
+    cover.setTriangle(k);
     const Located &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
     // Tets are convex: a triangle whose corners are deep in one touches no other.
     if (a.deep && b.deep && c.deep && sameTet(a, b) && sameTet(a, c)) {
@@ -178,6 +198,30 @@ bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t
     if (cover.full()) return false;
   }
   return true;
+}
+
+}  // namespace
+
+bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set) {
+  Cover cover(set, limit);
+  return coverAll(surface, frame, cover);
+}
+
+Lists<> trianglesByTet(const Surface& surface, const LatticeFrame& frame, const LatticeSet& set,
+                       const LatticeMesh& lattice) {
+  std::vector<Cover::Touch> touches;
+  LatticeSet touched;
+  Cover cover(touched, std::numeric_limits<std::size_t>::max(), &touches);
+  Surface solid;  // loose points are no triangles
+  solid.points = surface.points;
+  solid.triangles = surface.triangles;
+  (void)coverAll(solid, frame, cover);
+  return packLists(lattice.mesh.tetCount(), [&](auto&& add) {
+    for (const Cover::Touch& touch : touches) {
+      const int tet = lattice.indexOf(set, touch.tet);
+      if (tet >= 0) add(static_cast<std::size_t>(tet), touch.triangle);
+    }
+  });
 }
 
 }  // namespace tetskin::cage_detail

@@ -4,6 +4,7 @@
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/core/src/base/lists.h>
 
 namespace tetskin::cage_detail {
 
@@ -18,5 +19,10 @@ constexpr double kTouch = 2e-5;
 /// limit   stop at more tets than that
 /// Returns false if stopped.
 bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set);
+
+/// The same triangles by tet of a lattice mesh that was made of such a set: which of them touch it, ascending. Tets
+/// that are not in the mesh are passed over.
+Lists<> trianglesByTet(const Surface& surface, const LatticeFrame& frame, const LatticeSet& set,
+                       const LatticeMesh& lattice);
 
 }  // namespace tetskin::cage_detail

@@ -20,25 +20,23 @@ constexpr Diagonal kDiagonals[3] = {
     {{{0, 3}, {1, 2}}, {{0, 1}, {1, 3}, {2, 3}, {0, 2}}},
 };
 
-/// The midpoints of a tet's edges, by the ends.
-using Midpoints = std::array<std::array<int, 4>, 4>;
-
-void appendCorners(const Tet& tet, const Midpoints& middle, std::vector<Tet>& tets) {
-  for (int k = 0; k < 4; ++k) {
-    Tet corner{};
-    for (int j = 0; j < 4; ++j) corner[j] = j == k ? tet[k] : middle[k][j];
-    tets.push_back(corner);
-  }
-}
-
-void appendOctahedron(const std::vector<Eigen::Vector3d>& nodes, const Midpoints& middle, std::vector<Tet>& tets) {
+/// The eight tets of one whose edges have these midpoints: by what stands for its corners and for the midpoints.
+/// length  squared, between two midpoints
+template <class Node, class Length>
+std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
+                                             const std::array<std::array<Node, 4>, 4>& middle, Length&& length) {
   const auto at = [&](const int(&ends)[2]) { return middle[ends[0]][ends[1]]; };
-  const auto length = [&](const Diagonal& d) { return (nodes[at(d.ends[0])] - nodes[at(d.ends[1])]).squaredNorm(); };
-  const Diagonal& shortest = *std::min_element(std::begin(kDiagonals), std::end(kDiagonals),
-                                               [&](const auto& a, const auto& b) { return length(a) < length(b); });
+  std::array<std::array<Node, 4>, 8> eight;
   for (int k = 0; k < 4; ++k) {
-    tets.push_back({at(shortest.ends[0]), at(shortest.ring[(k + 1) % 4]), at(shortest.ring[k]), at(shortest.ends[1])});
+    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : middle[k][j];
   }
+  const auto lengthOf = [&](const Diagonal& d) { return length(at(d.ends[0]), at(d.ends[1])); };
+  const Diagonal& shortest = *std::min_element(std::begin(kDiagonals), std::end(kDiagonals),
+                                               [&](const auto& a, const auto& b) { return lengthOf(a) < lengthOf(b); });
+  for (int k = 0; k < 4; ++k) {
+    eight[4 + k] = {at(shortest.ends[0]), at(shortest.ring[(k + 1) % 4]), at(shortest.ring[k]), at(shortest.ends[1])};
+  }
+  return eight;
 }
 
 }  // namespace
@@ -54,16 +52,25 @@ Refinement refineUniformly(const TetMesh& coarse) {
   }
   result.mesh.tets.reserve(8 * coarse.tetCount());
   for (const Tet& tet : coarse.tets) {
-    Midpoints middle{};
+    std::array<std::array<int, 4>, 4> middle{};
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
         middle[a][b] = middle[b][a] = middleOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
       }
     }
-    appendCorners(tet, middle, result.mesh.tets);
-    appendOctahedron(result.mesh.nodes, middle, result.mesh.tets);
+    const auto eight = eightTets(
+        tet, middle, [&](int a, int b) { return (result.mesh.nodes[a] - result.mesh.nodes[b]).squaredNorm(); });
+    result.mesh.tets.insert(result.mesh.tets.end(), eight.begin(), eight.end());
   }
   return result;
+}
+
+std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
+  std::array<std::array<Eigen::Vector3d, 4>, 4> middle;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) middle[a][b] = middle[b][a] = 0.5 * (p[a] + p[b]);
+  }
+  return eightTets(p, middle, [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).squaredNorm(); });
 }
 
 }  // namespace tetskin

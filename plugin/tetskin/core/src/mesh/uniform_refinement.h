@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <array>
@@ -25,5 +26,8 @@ struct Refinement {
 ///
 /// coarse  indices in range
 TETSKIN_CORE_API Refinement refineUniformly(const TetMesh& coarse);
+
+/// The same eight tets of one alone, in the same order.
+TETSKIN_CORE_API std::array<TetCorners, 8> refinedTet(const TetCorners& corners);
 
 }  // namespace tetskin

@@ -10,6 +10,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cassert>
 
 namespace tetskin::elastic_detail {
 namespace {
@@ -22,23 +23,35 @@ std::array<Eigen::Vector3d, 4> gradientsOf(const TetCorners& corners) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio) {
+Eigen::Matrix<double, 12, 12> tetStiffness(const TetCorners& corners, double poissonRatio) {
   const Lame material(1.0, poissonRatio);
+  const double volume = std::abs(signedVolume(corners));
+  const std::array<Eigen::Vector3d, 4> g = gradientsOf(corners);
+  Eigen::Matrix<double, 12, 12> stiffness;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      stiffness.block<3, 3>(3 * a, 3 * b) =
+          volume * (material.lambda * g[a] * g[b].transpose() + material.mu * g[b] * g[a].transpose() +
+                    material.mu * g[a].dot(g[b]) * Eigen::Matrix3d::Identity());
+    }
+  }
+  return stiffness;
+}
+
+Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio,
+                                            const std::vector<double>& scale) {
+  assert(scale.size() == mesh.tetCount());
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(mesh.tetCount() * 78);
-  for (const Tet& tet : mesh.tets) {
-    const TetCorners corners = cornersOf(mesh, tet);
-    const double volume = std::abs(signedVolume(corners));
-    const std::array<Eigen::Vector3d, 4> g = gradientsOf(corners);
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    const Eigen::Matrix<double, 12, 12> stiffness = scale[t] * tetStiffness(cornersOf(mesh, tet), poissonRatio);
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {
         if (tet[a] < tet[b]) continue;
-        const Eigen::Matrix3d block =
-            volume * (material.lambda * g[a] * g[b].transpose() + material.mu * g[b] * g[a].transpose() +
-                      material.mu * g[a].dot(g[b]) * Eigen::Matrix3d::Identity());
         for (int i = 0; i < 3; ++i) {
           for (int j = 0; j < (a == b ? i + 1 : 3); ++j) {
-            entries.emplace_back(3 * tet[a] + i, 3 * tet[b] + j, block(i, j));
+            entries.emplace_back(3 * tet[a] + i, 3 * tet[b] + j, stiffness(3 * a + i, 3 * b + j));
           }
         }
       }
@@ -50,11 +63,12 @@ Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonR
   return matrix;
 }
 
-Eigen::VectorXd lumpedVolumes(const TetMesh& mesh) {
+Eigen::VectorXd lumpedVolumes(const TetMesh& mesh, const std::vector<double>& fill) {
+  assert(fill.size() == mesh.tetCount());
   Eigen::VectorXd masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * mesh.nodeCount()));
-  for (const Tet& tet : mesh.tets) {
-    const double quarter = std::abs(signedVolume(cornersOf(mesh, tet))) / 4.0;
-    for (const int n : tet) masses.segment<3>(3 * n).array() += quarter;
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    const double quarter = fill[t] * std::abs(signedVolume(cornersOf(mesh, mesh.tets[t]))) / 4.0;
+    for (const int n : mesh.tets[t]) masses.segment<3>(3 * n).array() += quarter;
   }
   return masses;
 }

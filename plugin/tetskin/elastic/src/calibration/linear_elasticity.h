@@ -5,6 +5,7 @@
 // displacements. Vectors hold three displacements a node: 3 x nodeCount.
 #pragma once
 
+#include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <Eigen/SparseCore>
@@ -14,10 +15,15 @@ namespace tetskin::elastic_detail {
 
 /// Forces over displacements for a Young's modulus of 1, 3N x 3N, symmetric, lower triangle only; positive but for
 /// rigid motions. The tets must not be flat.
-Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio);
+/// scale  by tet: times its stiffness
+Eigen::SparseMatrix<double> stiffnessMatrix(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale);
+
+/// The stiffness of one tet, for a Young's modulus of 1.
+Eigen::Matrix<double, 12, 12> tetStiffness(const TetCorners& corners, double poissonRatio);
 
 /// Masses for a density of 1, a quarter of each tet's at its nodes; 3N, each node's mass three times.
-Eigen::VectorXd lumpedVolumes(const TetMesh& mesh);
+/// fill  by tet: share of it that has a mass
+Eigen::VectorXd lumpedVolumes(const TetMesh& mesh, const std::vector<double>& fill);
 
 /// The rigid motions of each part of a mesh: elasticity does not resist them.
 class RigidMotions {

@@ -2,48 +2,58 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/mesh/uniform_refinement.h>
-#include <tetskin/elastic/src/calibration/elastic_modes.h>
+#include <tetskin/elastic/src/calibration/block_rows.h>
+#include <tetskin/elastic/src/calibration/rest_body.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 namespace tetskin::elastic_detail {
 
-/// A body and its uniform refinements: the same shape, with eight times the tets from level to level. Displacements of
+/// A cage and its uniform refinements: the same shape, with eight times the tets from level to level. Displacements of
 /// a level are those of the next as well, once its midpoints are filled in.
 class RefinedBodies {
  public:
-  /// Check `ok()`.
-  RefinedBodies(const TetMesh& coarsest, double poissonRatio, int refinements);
+  /// The cage is as its body will be; the finer levels see the material at their own resolution, as `Cage::fineFill`
+  /// has it. Check `ok()`. cage         every node of it in a tet refinements  at most two
+  RefinedBodies(const Cage& cage, double poissonRatio, int refinements);
 
   bool ok() const { return direct_.ok(); }
-  std::size_t levelCount() const { return levels_.size(); }
-  const ElasticBody& body(std::size_t level) const { return levels_[level]->body; }
-  /// Of the coarsest level.
+  std::size_t levelCount() const { return levels_.size() + 1; }
+  /// The cage itself.
+  const RestBody& coarsest() const { return coarsest_; }
   const DirectSolver& direct() const { return direct_; }
+  const Eigen::VectorXd& masses(std::size_t level) const { return level == 0 ? coarsest_.masses : at(level).masses; }
+  /// See RigidMotions, of each field.
+  void balance(std::size_t level, Fields& loads) const;
 
-  /// A displacement of `level` in terms of `level + 1`.
-  Eigen::VectorXd refined(std::size_t level, const Eigen::VectorXd& displacement) const;
-  /// The displacement under a balanced load, starting from a guess: conjugate gradients, preconditioned by all coarser
+  /// Displacements of `level` in terms of `level + 1`.
+  Fields refined(std::size_t level, const Fields& displacements) const;
+  /// What the nodes of `level - 1` feel of loads on `level`: the transpose of `refined`.
+  Fields coarsened(std::size_t level, const Fields& loads) const;
+  /// The displacements under balanced loads, starting from a guess: conjugate gradients, preconditioned by all coarser
   /// levels, so that the number of iterations does not grow with the size or slenderness of the body.
-  Eigen::VectorXd solve(std::size_t level, const Eigen::VectorXd& load, const Eigen::VectorXd& guess) const;
+  Fields solve(std::size_t level, const Fields& loads, const Fields& guess) const;
 
  private:
   struct Level {
-    Level(Refinement refinement, double poissonRatio);
-    Refinement refinement;  ///< of the level before; for the first, the mesh without edges
-    ElasticBody body;
-    Eigen::VectorXd diagonal;  ///< of the stiffness
+    Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill);
+    Refinement refinement;  ///< of the level before
+    BlockRows stiffness;
+    Eigen::VectorXd masses, diagonal;
+    RigidMotions rigid;
   };
 
-  /// What the nodes of `level - 1` feel of a load on `level`: the transpose of `refined`.
-  Eigen::VectorXd coarsened(std::size_t level, const Eigen::VectorXd& load) const;
-  Eigen::VectorXd precondition(std::size_t level, const Eigen::VectorXd& load) const;
+  const Level& at(std::size_t level) const { return *levels_[level - 1]; }
+  Fields precondition(std::size_t level, const Fields& loads) const;
 
-  std::vector<std::unique_ptr<Level>> levels_;
+  RestBody coarsest_;
   DirectSolver direct_;
+  std::vector<std::unique_ptr<Level>> levels_;
 };
 
 }  // namespace tetskin::elastic_detail

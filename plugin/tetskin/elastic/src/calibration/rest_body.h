@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/elastic/src/calibration/block_rows.h>
 #include <tetskin/elastic/src/calibration/linear_elasticity.h>
 
 #include <Eigen/Core>
@@ -10,10 +11,12 @@
 namespace tetskin::elastic_detail {
 
 /// A body at rest that nothing holds, as small displacements see it.
-struct ElasticBody {
-  explicit ElasticBody(const TetMesh& mesh, double poissonRatio)
-      : stiffness(stiffnessMatrix(mesh, poissonRatio)), masses(lumpedVolumes(mesh)), rigid(mesh, masses) {}
-  ElasticBody(const ElasticBody&) = delete;
+struct RestBody {
+  /// scale     by tet: times the stiffness of a Young's modulus of 1
+  /// ofNodes   see `lumpedVolumes`
+  RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale, Eigen::VectorXd ofNodes)
+      : stiffness(stiffnessMatrix(mesh, poissonRatio, scale)), masses(std::move(ofNodes)), rigid(mesh, masses) {}
+  RestBody(const RestBody&) = delete;
 
   Eigen::SparseMatrix<double> stiffness;
   Eigen::VectorXd masses;
@@ -24,13 +27,15 @@ struct ElasticBody {
 /// tets.
 class DirectSolver {
  public:
-  explicit DirectSolver(const ElasticBody& body);
+  explicit DirectSolver(const RestBody& body);
   bool ok() const { return factors_.info() == Eigen::Success; }
   /// load  balanced (see RigidMotions). Without rigid motion.
   Eigen::VectorXd solve(const Eigen::VectorXd& load) const;
+  /// The same of several.
+  Fields solve(const Fields& loads) const;
 
  private:
-  const ElasticBody& body_;
+  const RestBody& body_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
 };
 
@@ -39,6 +44,6 @@ class DirectSolver {
 ///
 /// This work is based on:
 ///   Klaus-Jürgen Bathe, "Finite Element Procedures", 2014, section 11.6 (subspace iteration)
-Eigen::MatrixXd softestModes(const ElasticBody& body, const DirectSolver& solver, int count);
+Eigen::MatrixXd softestModes(const RestBody& body, const DirectSolver& solver, int count);
 
 }  // namespace tetskin::elastic_detail

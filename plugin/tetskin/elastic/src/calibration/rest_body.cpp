@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/elastic/src/calibration/elastic_modes.h>
+#include <tetskin/elastic/src/calibration/rest_body.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr int kMostIterations = 20;
 /// Relative change of the wanted frequencies' squares at which they count as found.
 constexpr double kConverged = 1e-4;
 
-Eigen::SparseMatrix<double> shifted(const ElasticBody& body) {
+Eigen::SparseMatrix<double> shifted(const RestBody& body) {
   Eigen::SparseMatrix<double> matrix = body.stiffness;
   const double shift = kShift * body.stiffness.diagonal().sum() / body.masses.sum();
   matrix.diagonal() += shift * body.masses;
@@ -38,7 +38,7 @@ Eigen::MatrixXd startVectors(Eigen::Index rows, Eigen::Index columns) {
 
 }  // namespace
 
-DirectSolver::DirectSolver(const ElasticBody& body) : body_(body), factors_(shifted(body)) {}
+DirectSolver::DirectSolver(const RestBody& body) : body_(body), factors_(shifted(body)) {}
 
 Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& load) const {
   Eigen::VectorXd displacement = factors_.solve(load);
@@ -46,7 +46,13 @@ Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& load) const {
   return displacement;
 }
 
-Eigen::MatrixXd softestModes(const ElasticBody& body, const DirectSolver& solver, int count) {
+Fields DirectSolver::solve(const Fields& loads) const {
+  Fields displacements(loads.rows(), loads.cols());
+  for (Eigen::Index k = 0; k < loads.cols(); ++k) displacements.col(k) = solve(Eigen::VectorXd(loads.col(k)));
+  return displacements;
+}
+
+Eigen::MatrixXd softestModes(const RestBody& body, const DirectSolver& solver, int count) {
   const Eigen::Index size = body.masses.size();
   const Eigen::Index columns = std::min<Eigen::Index>(count + kGuardModes, size);
   const Eigen::Index wanted = std::min<Eigen::Index>(count, columns);

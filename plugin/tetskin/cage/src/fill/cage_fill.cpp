@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/cage/src/fill/cage_fill.h>
+#include <tetskin/core/cage.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/mesh/uniform_refinement.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin::cage_detail {
+namespace {
+
+constexpr int kFull = 255;
+/// Samples of a small tet: near each of its corners, where a quarter of it is.
+constexpr double kNear = 0.55, kFar = 0.15;
+
+class FillSampler {
+ public:
+  FillSampler(const CageTets& cage, const LatticeFrame& frame, const LatticeSet& set, const LatticeMesh& lattice)
+      : cage_(cage), frame_(frame), set_(set), lattice_(lattice) {
+    inLatticeTet_ = packLists(lattice.mesh.tetCount(), [&](auto&& add) {
+      for (std::uint32_t t = 0; t < cage.mesh.tetCount(); ++t) {
+        add(static_cast<std::size_t>(cage.latticeTets[t]), t);
+      }
+    });
+  }
+
+  /// In 255ths.
+  std::uint8_t fillOf(std::size_t tet, const TetCorners& small) const {
+    const Eigen::Vector3d far = kFar * (small[0] + small[1] + small[2] + small[3]);
+    int found = 0;
+    for (const Eigen::Vector3d& corner : small) found += isMaterial(tet, far + (kNear - kFar) * corner);
+    return static_cast<std::uint8_t>((kFull * found + 2) / 4);
+  }
+
+ private:
+  bool isMaterial(std::size_t tet, const Eigen::Vector3d& p) const {
+    const CellPlace place = locateCell(frame_.toLattice(p));
+    const int home = lattice_.indexOf(set_, place.tet);
+    if (home < 0) return false;
+    for (std::uint32_t k = inLatticeTet_.starts[home]; k < inLatticeTet_.starts[home + 1]; ++k) {
+      const std::uint32_t other = inLatticeTet_.values[k];
+      if ((cage_.cells[other] >> place.cell & 1) != 0) return goesWith(tet, other);
+    }
+    return false;
+  }
+
+  /// Fitting moves tets over the material of those around them, which share a node.
+  bool goesWith(std::size_t tet, std::size_t other) const {
+    const Tet &a = cage_.mesh.tets[tet], &b = cage_.mesh.tets[other];
+    return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
+  }
+
+  const CageTets& cage_;
+  const LatticeFrame& frame_;
+  const LatticeSet& set_;
+  const LatticeMesh& lattice_;
+  Lists<> inLatticeTet_;
+};
+
+/// True for tets with nothing but full tets around their nodes: wherever fitting has moved these.
+std::vector<char> deepTets(const CageTets& cage) {
+  std::vector<char> full(cage.mesh.nodeCount(), 1), deep(cage.mesh.tetCount(), 1);
+  for (std::size_t t = 0; t < deep.size(); ++t) {
+    if (cage.cells[t] == kAllCells && cage.openFaces[t] == 0) continue;
+    for (const int n : cage.mesh.tets[t]) full[n] = 0;
+  }
+  for (std::size_t t = 0; t < deep.size(); ++t) {
+    for (const int n : cage.mesh.tets[t]) deep[t] = static_cast<char>(deep[t] & full[n]);
+  }
+  return deep;
+}
+
+}  // namespace
+
+CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSet& set, const LatticeMesh& lattice) {
+  assert(cage.cells.size() == cage.mesh.tetCount() && cage.openFaces.size() == cage.cells.size());
+  const FillSampler sampler(cage, frame, set, lattice);
+  const std::vector<char> deep = deepTets(cage);
+  CageFill result;
+  result.fill.assign(cage.mesh.tetCount(), 1.0);
+  result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
+  for (std::size_t t = 0; t < result.fill.size(); ++t) {
+    if (deep[t]) continue;
+    std::uint8_t* fine = &result.fine[kFineTets * t];
+    int sum = 0;
+    for (const TetCorners& eighth : refinedTet(cornersOf(cage.mesh, cage.mesh.tets[t]))) {
+      for (const TetCorners& small : refinedTet(eighth)) sum += * fine++ = sampler.fillOf(t, small);
+    }
+    result.fill[t] = static_cast<double>(sum) / (kFull * static_cast<double>(kFineTets));
+  }
+  return result;
+}
+
+std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& fill, double volume) {
+  assert(fill.empty() || fill.size() == mesh.tetCount());
+  constexpr double kLeastShare = 0.2;
+  constexpr int kRounds = 3;
+  std::vector<double> masses(mesh.nodeCount(), 0.0);
+  double sum = 0.0;
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    const double filled = (fill.empty() ? 1.0 : fill[t]) * std::abs(signedVolume(cornersOf(mesh, mesh.tets[t])));
+    for (const int n : mesh.tets[t]) masses[n] += 0.25 * filled;
+    sum += filled;
+  }
+  const double scale = sum > 0.0 ? volume / sum : 0.0;
+  for (double& mass : masses) mass *= scale;
+  const double least = kLeastShare * volume / static_cast<double>(masses.size());
+  const auto edges = uniqueEdges(mesh);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> spare(masses.size(), 0.0);  // around each node
+    for (const auto& [a, b] : edges) {
+      spare[a] += std::max(masses[b] - least, 0.0);
+      spare[b] += std::max(masses[a] - least, 0.0);
+    }
+    std::vector<double> change(masses.size(), 0.0);
+    for (const auto& [a, b] : edges) {
+      for (const auto& [light, heavy] : {std::array<int, 2>{a, b}, std::array<int, 2>{b, a}}) {
+        const double missing = least - masses[light], has = masses[heavy] - least;
+        if (!(missing > 0.0 && has > 0.0)) continue;
+        // Several light nodes may draw on one: each takes no more than its share of what there is.
+        const double given = has * std::min(missing / spare[light], 0.1);
+        change[light] += given;
+        change[heavy] -= given;
+      }
+    }
+    for (std::size_t n = 0; n < masses.size(); ++n) masses[n] += change[n];
+  }
+  double total = 0.0;
+  for (double& mass : masses) total += mass = std::max(mass, 0.5 * least);
+  for (double& mass : masses) mass *= volume / total;
+  return masses;
+}
+
+}  // namespace tetskin::cage_detail

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/cage/src/lattice/bcc_lattice.h>
+#include <tetskin/cage/src/material/tet_cells.h>
+#include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/cage/src/surface/winding_number.h>
+#include <tetskin/core/src/base/lists.h>
+
+#include <vector>
+
+namespace tetskin::cage_detail {
+
+/// Where the body is in the tets of a lattice.
+struct TetMaterial {
+  std::vector<CellMask> cells;  ///< by tet: those whose centroid is inside the surface
+  Lists<> triangles;            ///< by tet: the surface's triangles that touch it
+};
+
+/// A cell is inside where the winding number is at least a half, either sign. It is asked for once a tet; from there to
+/// each cell it changes by one with every triangle between, and only those that touch the tet can be. Tets that no
+/// triangle touches are inside as a whole, but for those that only join others. All of it is material if the surface is
+/// not oriented: there is no telling then.
+/// Cost: of triangles x tets that touch, 64 tests each, and a winding number a tet at the surface
+TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, const LatticeFrame& frame,
+                         const LatticeSet& set, const LatticeMesh& lattice);
+
+}  // namespace tetskin::cage_detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/mesh/tets_around_nodes.h>
+#include <tetskin/elastic/src/calibration/block_rows.h>
+#include <tetskin/elastic/src/calibration/linear_elasticity.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// By node: itself and those that it shares a tet with, ascending.
+Lists<> neighboursOf(const TetMesh& mesh) {
+  const Lists<> around = tetsAroundNodes(mesh);
+  Lists<> neighbours;
+  neighbours.starts.push_back(0);
+  std::vector<std::uint32_t> found;
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    found.clear();
+    for (std::uint32_t k = around.starts[n]; k < around.starts[n + 1]; ++k) {
+      for (const int other : mesh.tets[around.values[k]]) found.push_back(static_cast<std::uint32_t>(other));
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    neighbours.values.insert(neighbours.values.end(), found.begin(), found.end());
+    neighbours.starts.push_back(static_cast<std::uint32_t>(neighbours.values.size()));
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+BlockRows::BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale)
+    : columns_(neighboursOf(mesh)), blocks_(columns_.values.size(), Block::Zero()) {
+  assert(scale.size() == mesh.tetCount());
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    const Eigen::Matrix<double, 12, 12> stiffness = scale[t] * tetStiffness(cornersOf(mesh, tet), poissonRatio);
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) block(tet[a], tet[b]) += stiffness.block<3, 3>(3 * a, 3 * b);
+    }
+  }
+}
+
+BlockRows::Block& BlockRows::block(int row, int column) {
+  const auto first = columns_.values.begin() + columns_.starts[row];
+  const auto last = columns_.values.begin() + columns_.starts[row + 1];
+  const auto found = std::lower_bound(first, last, static_cast<std::uint32_t>(column));
+  return blocks_[static_cast<std::size_t>(found - columns_.values.begin())];
+}
+
+void BlockRows::multiply(const Fields& fields, Fields& product) const {
+  assert(fields.rows() == product.rows() && fields.cols() == product.cols());
+  const Eigen::Index count = fields.cols();
+  product.setZero();
+  for (std::size_t row = 0; row + 1 < columns_.starts.size(); ++row) {
+    for (std::uint32_t k = columns_.starts[row]; k < columns_.starts[row + 1]; ++k) {
+      const double* from = fields.data() + 3 * count * static_cast<Eigen::Index>(columns_.values[k]);
+      double* to = product.data() + 3 * count * static_cast<Eigen::Index>(row);
+      for (int i = 0; i < 3; ++i, to += count) {
+        const double x = blocks_[k](i, 0), y = blocks_[k](i, 1), z = blocks_[k](i, 2);
+        for (Eigen::Index c = 0; c < count; ++c) {
+          to[c] += x * from[c] + y * from[count + c] + z * from[2 * count + c];
+        }
+      }
+    }
+  }
+}
+
+Eigen::VectorXd BlockRows::diagonal() const {
+  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(3 * (columns_.starts.size() - 1)));
+  for (std::size_t row = 0; row + 1 < columns_.starts.size(); ++row) {
+    for (std::uint32_t k = columns_.starts[row]; k < columns_.starts[row + 1]; ++k) {
+      if (columns_.values[k] == row) diagonal.segment<3>(static_cast<Eigen::Index>(3 * row)) = blocks_[k].diagonal();
+    }
+  }
+  return diagonal;
+}
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/tet_mesh.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// Several displacements, loads or accelerations at once: 3 nodeCount x count. A matrix is then read once for all of
+/// them, which is what a product takes its time for.
+using Fields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A stiffness matrix as rows of 3x3 blocks, for products alone.
+class BlockRows {
+ public:
+  /// scale  by tet: times the stiffness of a Young's modulus of 1
+  BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale);
+
+  /// product  of the same size, overwritten
+  void multiply(const Fields& fields, Fields& product) const;
+  Eigen::VectorXd diagonal() const;
+
+ private:
+  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+  Block& block(int row, int column);
+
+  Lists<> columns_;  ///< by node, ascending
+  std::vector<Block> blocks_;
+};
+
+}  // namespace tetskin::elastic_detail

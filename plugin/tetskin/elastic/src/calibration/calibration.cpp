@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Lewis Fry Richardson, "The Deferred Approach to the Limit", Phil. Trans. A 226, 1927 (the extrapolation)
+#include <tetskin/elastic/calibration.h>
+#include <tetskin/elastic/src/calibration/refined_bodies.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace tetskin {
+namespace {
+
+using elastic_detail::Fields;
+using elastic_detail::RefinedBodies;
+
+/// Quotient of the changes from one refinement to the next: 4 is order 2, that of linear tets; 2 is order 1. Coarse
+/// cages are not yet near their limit, and change by less than that at first.
+constexpr double kLeastQuotient = 2.0, kMostQuotient = 4.0;
+/// Response of a vibration over its limit below which the refinements do not have it.
+constexpr double kLeastResponse = 0.1;
+
+Status check(const Cage& cage, const CalibrationOptions& options) {
+  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5) || options.modes < 1) {
+    return {StatusCode::InvalidOption,
+            "a calibration needs a Poisson ratio from 0 to below 0.5, and one mode at least"};
+  }
+  const TetMeshReport report = checkForUse(cage);
+  if (Status status = usable(cage, report); !status.ok()) return status;
+  if (report.zeroVolume.count + report.repeatedNode.count > 0) {
+    return {StatusCode::Degenerate, "a cage with flat tets has no stiffness; remove them"};
+  }
+  return cage.check();
+}
+
+int refinementsFor(std::size_t tets) {
+  int refinements = 2;
+  for (std::size_t refined = kFineTets * tets; refinements > 0 && refined > kMostRefinedTets; refined /= 8)
+    --refinements;
+  return refinements;
+}
+
+/// The cage without the nodes that no tet uses, which would have no mass, and without factors.
+Cage used(const Cage& cage) {
+  std::vector<int> number(cage.nodeCount(), -1);
+  Cage result;
+  for (const Tet& tet : cage.tets) {
+    Tet& copy = result.tets.emplace_back();
+    for (int k = 0; k < 4; ++k) {
+      int& n = number[tet[k]];
+      if (n < 0) {
+        n = static_cast<int>(result.nodeCount());
+        result.nodes.push_back(cage.nodes[tet[k]]);
+        if (!cage.masses.empty()) result.masses.push_back(cage.masses[tet[k]]);
+      }
+      copy[k] = n;
+    }
+  }
+  result.fill = cage.fill;
+  result.fineFill = cage.fineFill;
+  return result;
+}
+
+/// By level and vibration of the coarsest: how far its accelerations move the body, along that vibration. Each level
+/// with its own lumped masses: those of coarse bodies lie farther out and slow turning motions, as softness would; what
+/// they do already must not be done again.
+std::vector<Eigen::RowVectorXd> responsesTo(const RefinedBodies& bodies, Fields modes) {
+  std::vector<Eigen::RowVectorXd> responses;
+  Fields displacements;
+  for (std::size_t level = 0; level < bodies.levelCount(); ++level) {
+    if (level > 0) {
+      modes = bodies.refined(level - 1, modes);
+      displacements = bodies.refined(level - 1, displacements);
+    }
+    Fields loads = bodies.masses(level).asDiagonal() * modes;
+    bodies.balance(level, loads);
+    displacements = level == 0 ? bodies.direct().solve(loads) : bodies.solve(level, loads, displacements);
+    responses.push_back(loads.cwiseProduct(displacements).colwise().sum().array() /
+                        loads.cwiseProduct(modes).colwise().sum().array());
+  }
+  return responses;
+}
+
+/// The limit of a vibration's responses under refinement.
+double limitOf(const std::vector<Eigen::RowVectorXd>& responses, Eigen::Index mode) {
+  const std::size_t last = responses.size() - 1;
+  const double change = responses[last][mode] - responses[last - 1][mode];
+  double quotient = kMostQuotient;
+  if (last >= 2 && change > 0.0) {
+    quotient =
+        std::clamp((responses[last - 1][mode] - responses[last - 2][mode]) / change, kLeastQuotient, kMostQuotient);
+  }
+  return responses[last][mode] + std::max(change, 0.0) / (quotient - 1.0);
+}
+
+/// Share of the mass that takes part in a vibration: 1 where all of it moves alike, 1/N where one node of N moves.
+double participation(const Eigen::VectorXd& mode, const Eigen::VectorXd& masses) {
+  double second = 0.0, fourth = 0.0, mass = 0.0;
+  for (Eigen::Index n = 0; n < mode.size(); n += 3) {
+    const double squared = mode.segment<3>(n).squaredNorm();
+    second += masses[n] * squared;
+    fourth += masses[n] * squared * squared;
+    mass += masses[n];
+  }
+  return second * second / (mass * fourth);
+}
+
+/// What the vibrations tell together.
+void summarise(const RefinedBodies& bodies, const Eigen::MatrixXd& modes, CalibrationReport& report) {
+  const std::vector<Eigen::RowVectorXd> responses = responsesTo(bodies, modes);
+  report.responses.assign(responses.size(), 0.0);
+  std::vector<std::array<double, 2>> seen;  // weight, response of the cage over its limit
+  double limits = 0.0;
+  for (Eigen::Index k = 0; k < modes.cols(); ++k) {
+    const double limit = limitOf(responses, k);
+    if (!(responses.front()[k] > kLeastResponse * limit)) {
+      ++report.skippedModes;
+      continue;
+    }
+    const double weight = participation(modes.col(k), bodies.masses(0));
+    for (std::size_t level = 0; level < responses.size(); ++level) {
+      report.responses[level] += weight * responses[level][k];
+    }
+    limits += weight * limit;
+    seen.push_back({weight * limit, responses.front()[k] / limit});
+  }
+  if (seen.empty()) {
+    report.responses.assign(responses.size(), 1.0);
+    return;
+  }
+  for (double& response : report.responses) response /= limits;
+  report.factor = std::min(report.responses.front(), 1.0);
+  double squared = 0.0;
+  for (const auto& [weight, response] : seen) squared += weight / limits * std::pow(response / report.factor - 1.0, 2);
+  report.left = std::hypot(std::sqrt(squared), 0.5 * std::max(0.0, 1.0 - report.responses.back()));
+}
+
+}  // namespace
+
+std::string CalibrationReport::describe() const {
+  std::ostringstream text;
+  if (refinements == 0) {
+    text << "not calibrated: more tets than are ever refined; factor 1\n";
+  } else {
+    text << "stiffness times " << factor << ", by " << refinements << " refinements, the finest of " << refinedTets
+         << " tets; some " << 100.0 * left << " % of a displacement may be left\n";
+  }
+  if (skippedModes > 0) text << skippedModes << " vibrations of loosely hanging parts were left out\n";
+  text << milliseconds << " ms\n";
+  return text.str();
+}
+
+Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (Status status = check(cage, options); !status.ok()) return status;
+  CalibrationReport report;
+  report.refinements = refinementsFor(cage.tetCount());
+  report.refinedTets = cage.tetCount() << 3 * report.refinements;
+  if (report.refinements > 0) {
+    const RefinedBodies bodies(used(cage), options.poissonRatio, report.refinements);
+    if (!bodies.ok()) {
+      return Status{StatusCode::Degenerate, "the cage's stiffness cannot be factorised; are tets nearly flat?"};
+    }
+    summarise(bodies, softestModes(bodies.coarsest(), bodies.direct(), options.modes), report);
+  }
+  cage.factor.assign(cage.tetCount(), report.factor);
+  report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace tetskin

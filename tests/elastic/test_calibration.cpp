@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/uniform_refinement.h>
+#include <tetskin/elastic/src/calibration/refined_bodies.h>
+#include <tetskin/elastic/calibration.h>
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+
+#include "support/odd_meshes.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using elastic_detail::RestBody;
+
+constexpr double kPoisson = 0.3;
+
+/// A beam four times as long as wide, `cubes` across.
+TetMesh beam(int cubes) {
+  return test::latticeCage(4 * cubes, cubes, cubes, 0.5 / cubes);
+}
+
+std::vector<double> ones(const TetMesh& mesh) {
+  return std::vector<double>(mesh.tetCount(), 1.0);
+}
+
+VectorXd displacementBy(const TetMesh& mesh, const Matrix3d& gradient, const Vector3d& shift) {
+  VectorXd result(3 * mesh.nodeCount());
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) result.segment<3>(3 * n) = gradient * mesh.nodes[n] + shift;
+  return result;
+}
+
+TEST(LinearElasticity, EnergyOfAnEvenStrainIsExact) {
+  const TetMesh mesh = test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
+  const auto stiffness = elastic_detail::stiffnessMatrix(mesh, kPoisson, ones(mesh));
+  Matrix3d gradient;
+  gradient << 0.1, 0.3, -0.2, 0.0, -0.4, 0.1, 0.5, 0.2, 0.3;
+  const Matrix3d strain = 0.5 * (gradient + gradient.transpose());
+  const double mu = 1.0 / (2.0 * (1.0 + kPoisson)), lambda = kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
+  const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
+  const VectorXd u = displacementBy(mesh, gradient, Vector3d(1, 2, 3));
+  EXPECT_NEAR(0.5 * u.dot(stiffness.selfadjointView<Eigen::Lower>() * u), density * totalVolume(mesh), 1e-10);
+}
+
+TEST(LinearElasticity, RigidMotionsMeetNoResistanceAndAreTakenOutPartByPart) {
+  TetMesh mesh = test::latticeCage(2, 1, 1);
+  const TetMesh second = test::bodyCentredCage(2, 2, 2);  // apart from the first, and moving otherwise
+  const auto offset = static_cast<int>(mesh.nodeCount());
+  for (const Vector3d& p : second.nodes) mesh.nodes.push_back(p + Vector3d(10, 0, 0));
+  for (const Tet& t : second.tets) mesh.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
+  const RestBody body(mesh, kPoisson, ones(mesh), elastic_detail::lumpedVolumes(mesh, ones(mesh)));
+  Matrix3d turn;
+  turn << 0, -1, 2, 1, 0, -3, -2, 3, 0;
+  VectorXd u = displacementBy(mesh, turn, Vector3d(1, -2, 0.5));
+  u.tail(3 * second.nodeCount()) *= -2.0;
+  EXPECT_LT((body.stiffness.selfadjointView<Eigen::Lower>() * u).norm(), 1e-12 * u.norm());
+  body.rigid.removeFrom(u);
+  EXPECT_LT(u.norm(), 1e-10);
+}
+
+TEST(ElasticModes, AreTheSoftestOfADenseSolver) {
+  const TetMesh mesh = test::jittered(test::latticeCage(4, 2, 1), 0.1, 5);
+  const RestBody body(mesh, kPoisson, ones(mesh), elastic_detail::lumpedVolumes(mesh, ones(mesh)));
+  const auto size = body.masses.size();
+  const Eigen::MatrixXd dense = body.stiffness.selfadjointView<Eigen::Lower>() * Eigen::MatrixXd::Identity(size, size);
+  const Eigen::MatrixXd mass = body.masses.asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> all(dense, mass, Eigen::EigenvaluesOnly);
+  const elastic_detail::DirectSolver solver(body);
+  ASSERT_TRUE(solver.ok());
+  const Eigen::MatrixXd modes = elastic_detail::softestModes(body, solver, 4);
+  ASSERT_EQ(modes.cols(), 4);
+  for (int k = 0; k < 4; ++k) {
+    const VectorXd mode = modes.col(k);
+    EXPECT_NEAR(mode.dot(body.masses.cwiseProduct(mode)), 1.0, 1e-9);
+    EXPECT_NEAR(mode.dot(dense * mode) / all.eigenvalues()[6 + k], 1.0, 1e-3) << k;  // after six rigid motions
+  }
+}
+
+/// The factor of a cage; 0 if it was refused.
+double factorOf(Cage cage) {
+  const Result<CalibrationReport> report = calibrate(cage);
+  return report.ok() ? report.value().factor : 0.0;
+}
+
+TEST(BlockRows, MultiplyAsTheSparseMatrixDoes) {
+  const TetMesh mesh = test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
+  std::vector<double> scale = ones(mesh);
+  for (std::size_t t = 0; t < scale.size(); ++t) scale[t] = 0.1 + static_cast<double>(t % 7);
+  const auto sparse = elastic_detail::stiffnessMatrix(mesh, kPoisson, scale);
+  const elastic_detail::BlockRows rows(mesh, kPoisson, scale);
+  elastic_detail::Fields fields = elastic_detail::Fields::Random(sparse.rows(), 3), product = fields;
+  rows.multiply(fields, product);
+  const Eigen::MatrixXd right = sparse.selfadjointView<Eigen::Lower>() * Eigen::MatrixXd(fields);
+  EXPECT_LT((product - right).norm(), 1e-12 * right.norm());
+  EXPECT_LT((rows.diagonal() - sparse.diagonal()).norm(), 1e-12 * rows.diagonal().norm());
+}
+
+TEST(RefinedBodies, SolveAsADirectSolverDoes) {
+  const Cage cage = beam(1);
+  const elastic_detail::RefinedBodies bodies(cage, kPoisson, 2);
+  ASSERT_EQ(bodies.levelCount(), 3u);
+  const TetMesh mesh = refineUniformly(refineUniformly(cage).mesh).mesh;
+  const RestBody finest(mesh, kPoisson, ones(mesh), bodies.masses(2));
+  elastic_detail::Fields loads(finest.masses.size(), 2);
+  for (Eigen::Index k = 0; k < loads.rows(); ++k) {
+    loads(k, 0) = std::sin(0.7 * static_cast<double>(k)) * finest.masses[k];
+    loads(k, 1) = std::cos(0.01 * static_cast<double>(k * k)) * finest.masses[k];
+  }
+  loads.block<3, 1>(0, 0) += Vector3d(0.1, -0.2, 0.3);
+  bodies.balance(2, loads);
+  const elastic_detail::Fields found = bodies.solve(2, loads, 0.0 * loads);
+  const elastic_detail::Fields right = elastic_detail::DirectSolver(finest).solve(loads);
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(loads.col(k).dot(found.col(k)) / loads.col(k).dot(right.col(k)), 1.0, 1e-3);
+}
+
+/// A beam of which only the lower half is filled, as whole cubes are, bends as a beam of that half does.
+TEST(Calibration, SeesTheFill) {
+  Cage half = test::latticeCage(16, 4, 4, 0.25);
+  half.fill.assign(half.tetCount(), 1.0);
+  for (std::size_t t = 0; t < half.tetCount(); ++t) {
+    if (cornersOf(half, half.tets[t])[0].y() + cornersOf(half, half.tets[t])[1].y() +
+            cornersOf(half, half.tets[t])[2].y() + cornersOf(half, half.tets[t])[3].y() > 2.0 * 4 * 0.25) {
+      half.fill[t] = 0.0;
+    }
+  }
+  const Result<CalibrationReport> report = calibrate(half);
+  ASSERT_TRUE(report.ok());
+  EXPECT_LT(report.value().factor, 0.9 * factorOf(test::latticeCage(16, 4, 4, 0.25)))
+      << "what is empty still has a tenth of its stiffness, which the refinements take away";
+}
+
+TEST(Calibration, GivesACoarseBeamTheSoftnessOfItsLimit) {
+  for (const int cubes : {2, 3, 4}) {
+    Cage cage = beam(cubes);
+    const Result<CalibrationReport> report = calibrate(cage);
+    ASSERT_TRUE(report.ok());
+    ASSERT_EQ(cage.factor, std::vector<double>(cage.tetCount(), report.value().factor));
+    for (std::size_t k = 1; k < report.value().responses.size(); ++k) {
+      EXPECT_GT(report.value().responses[k], report.value().responses[k - 1]) << "a finer body is softer";
+    }
+    // That of its refinement is nearer to 1, and both have the same limit.
+    const double finer = factorOf(refineUniformly(cage).mesh);
+    EXPECT_NEAR(report.value().responses[1] / finer, 1.0, 0.05) << cubes;
+    EXPECT_LT(report.value().left, 0.3);
+  }
+}
+
+TEST(Calibration, FinerCagesNeedLess) {
+  double before = 0.0;
+  for (const int cubes : {2, 3, 5}) {
+    const double factor = factorOf(beam(cubes));
+    EXPECT_GT(factor, before + 0.02);
+    EXPECT_LT(factor, 1.0);
+    before = factor;
+  }
+  EXPECT_GT(before, 0.92);
+}
+
+TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
+  const TetMesh cage = test::jittered(beam(2), 0.02, 7);
+  TetMesh moved = cage;
+  for (Vector3d& p : moved.nodes) p = 1000.0 * p + Vector3d(5e3, -2e4, 1e3);
+  moved.nodes.emplace_back(0, 0, 0);  // used by no tet
+  std::reverse(moved.tets.begin(), moved.tets.end());
+  for (Tet& tet : moved.tets) std::swap(tet[0], tet[1]);  // negative
+  EXPECT_NEAR(factorOf(moved), factorOf(cage), 2e-3);
+}
+
+TEST(Calibration, RefinesNoMoreThanItMay) {
+  for (const auto& [cubes, refinements] : {std::pair{8, 2}, std::pair{12, 1}}) {
+    Cage cage = test::latticeCage(cubes, cubes, cubes);
+    const Result<CalibrationReport> report = calibrate(cage);
+    ASSERT_TRUE(report.ok());
+    EXPECT_EQ(report.value().refinements, refinements);
+    EXPECT_LE(report.value().refinedTets, kMostRefinedTets);
+  }
+  Cage large = test::latticeCage(20, 20, 20);
+  const CalibrationReport none = calibrate(large).value();
+  EXPECT_EQ(none.refinements, 0);
+  EXPECT_EQ(none.factor, 1.0);
+  EXPECT_NE(none.describe().find("not calibrated"), std::string::npos);
+}
+
+TEST(Calibration, TakesASingleTet) {
+  const double factor = factorOf(test::singleTet());
+  EXPECT_GT(factor, 0.0);
+  EXPECT_LE(factor, 1.0);
+}
+
+TEST(Calibration, RefusesBadInput) {
+  const auto refusal = [](Cage cage, const CalibrationOptions& options = {}) {
+    const Result<CalibrationReport> report = calibrate(cage, options);
+    EXPECT_TRUE(cage.factor.empty());
+    return report.status().code;
+  };
+  EXPECT_EQ(refusal(TetMesh()), StatusCode::Empty);
+  TetMesh flat = test::latticeCage(1, 1, 1);
+  flat.nodes.push_back(flat.nodes[0]);
+  flat.tets.push_back({0, 1, 2, static_cast<int>(flat.nodeCount()) - 1});
+  EXPECT_EQ(refusal(flat), StatusCode::Degenerate);
+  TetMesh infinite = test::singleTet();
+  infinite.nodes[1].x() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal(infinite), StatusCode::NonFinite);
+  CalibrationOptions options;
+  options.poissonRatio = 0.5;
+  EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
+  options = {};
+  options.modes = 0;
+  EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
+}
+
+}  // namespace
+}  // namespace tetskin
