@@ -82,7 +82,7 @@ void SolverBodies::release(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
     auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
     if (!elastic) continue;
-    for (const auto& of : elastic->parts().bodies) of->solved = false;
+    for (const auto& of : elastic->bodies()) of->solved = false;
   }
   bodies_.clear();
   systems_.clear();
@@ -110,7 +110,7 @@ void SolverBodies::assign(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
     auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
     if (!elastic) continue;
-    for (const auto& of : elastic->parts().bodies) {
+    for (const auto& of : elastic->bodies()) {
       const std::size_t k = placeOf(of->body);
       // A second elastic force of one body acts by itself.
       of->solved = k < bodies_.size() && !bodies_[k].elastic;
@@ -128,20 +128,20 @@ void SolverBodies::assign(const ForceList& forces) {
     btDeformableLagrangianForce& force = *forces[i];
     if (isGravity(force) || isNoForce(force)) continue;
     std::vector<std::size_t> on;
-    const auto* elastic = dynamic_cast<ElasticForce*>(&force);
-    const auto& listed = force.m_softBodies;
-    for (int b = 0; b < listed.size(); ++b) {
-      const std::size_t k = placeOf(listed[b]);
-      if (k == bodies_.size() || (elastic && const_cast<ElasticForce*>(elastic)->parts().find(listed[b])->solved))
-        continue;
-      on.push_back(k);
-    }
-    if (listed.size() == 0 && !elastic) {
+    const auto addPlace = [&](const btSoftBody* body) {
+      if (const std::size_t k = placeOf(body); k < bodies_.size()) on.push_back(k);
+    };
+    if (const auto* elastic = dynamic_cast<ElasticForce*>(&force)) {
+      for (const auto& of : elastic->bodies()) {
+        if (!of->solved) addPlace(of->body);
+      }
+    } else if (force.m_softBodies.size() > 0) {
+      for (int b = 0; b < force.m_softBodies.size(); ++b) addPlace(force.m_softBodies[b]);
+    } else {
       for (std::size_t k = 0; k < bodies_.size(); ++k) on.push_back(k);
     }
     if (on.empty()) continue;
-    const btDeformableLagrangianForceType type = force.getForceType();
-    const bool deformation = !elastic && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;
+    const bool deformation = needsDeformation(force);
     for (const std::size_t k : on) {
       sets.unite(static_cast<int>(on.front()), static_cast<int>(k));
       bodies_[k].needsDeformation |= deformation;

@@ -34,7 +34,7 @@ struct FittedTrees {
 struct SolvedBody {
   btSoftBody* body = nullptr;
   int first = 0;                   ///< the number of its first node in Bullet's vectors
-  ElasticBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
+  ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
   const SolverLimits* limits = nullptr;
   Dynamics* dynamics = nullptr;
   bool needsDeformation = false;                    ///< Bullet's own gradients
