@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies under the library's own solve, that land, rest and slide, and bear what lands on them.
+#include "deformable_test.h"
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::lowest;
+using test::rmsSpeed;
+using test::step;
+using test::TetskinWorld;
+using test::twoParts;
+
+using Vector = Eigen::Vector3d;
+
+class Landing : public testing::TestWithParam<double> {};
+
+/// Steps of 1/240 s, of a stiffness in density x gravity x size.
+TEST_P(Landing, BouncesAndRests) {
+  TetskinWorld world;
+  SoftBodyOptions options;
+  options.relativeStiffness = GetParam();
+  const auto body = added(world, cageAbove(0.5), options);
+  step(world, 240);
+  EXPECT_LT(rmsSpeed(body->body()), 0.05);
+  EXPECT_GT(lowest(body->body()), -0.005);
+  EXPECT_LT(lowest(body->body()), 0.03);  // the margin is 0.02
+}
+
+/// One step a frame.
+TEST_P(Landing, HoldsInLongSteps) {
+  TetskinWorld world;
+  SoftBodyOptions options;
+  options.relativeStiffness = GetParam();
+  const auto body = added(world, cageAbove(0.5), options);
+  for (int f = 0; f < 240; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 1, btScalar(1) / 60);
+  EXPECT_LT(rmsSpeed(body->body()), 0.05);
+  EXPECT_GT(lowest(body->body()), -0.005);
+}
+
+/// Beside each other, one of them held at a side.
+TEST_P(Landing, HoldsForSeveralBodiesAndWithPins) {
+  for (const int substeps : {4, 1}) {
+    TetskinWorld world;
+    std::vector<std::unique_ptr<DeformableBody>> bodies;
+    for (int b = 0; b < 3; ++b) {
+      TetMesh cage = cageAbove(0.3);
+      for (Vector& p : cage.nodes) p.x() += 2.0 * b;
+      SoftBodyOptions options;
+      options.relativeStiffness = GetParam();
+      if (b == 1) options.pinned = pinnedIn(Box3(Vector(1.9, 0.0, -1.0), Vector(2.01, 2.0, 2.0)));
+      bodies.push_back(added(world, cage, options));
+    }
+    const auto steps = static_cast<btScalar>(substeps);
+    for (int f = 0; f < 240; ++f) {
+      world.deformable().stepSimulation(btScalar(1) / 60, substeps, btScalar(1) / 60 / steps);
+    }
+    for (const auto& body : bodies) {
+      EXPECT_LT(rmsSpeed(body->body()), 0.05) << substeps;
+      EXPECT_GT(lowest(body->body()), -0.005) << substeps;
+    }
+    EXPECT_GT(lowest(bodies[1]->body()) - lowest(bodies[0]->body()), -1e-3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(DeformableSolver, Landing, testing::Values(50.0, 300.0, 1e4));
+
+TEST(DeformableSolver, CarriesPartsThatShareNoNode) {
+  TetskinWorld world;
+  const auto body = added(world, twoParts(cageAbove(0.5)));
+  step(world, 180);
+  EXPECT_LT(rmsSpeed(body->body()), 0.05);
+  EXPECT_GT(lowest(body->body()), -0.005);
+}
+
+TEST(DeformableSolver, LetsBodiesSlideDownASlipperySlopeAndNotAStickyOne) {
+  const auto slid = [](double friction) {
+    TetskinWorld world;
+    btBoxShape shape(btVector3(10, 1, 10));
+    btRigidBody slope(0, nullptr, &shape);
+    btTransform tilted(btQuaternion(btVector3(0, 0, 1), btScalar(-0.3)), btVector3(0, 3, 0));
+    slope.setWorldTransform(tilted);
+    slope.setInterpolationWorldTransform(tilted);
+    slope.setFriction(1);
+    world.deformable().addRigidBody(&slope);
+    SoftBodyOptions options;
+    options.friction = friction;
+    options.relativeStiffness = 300.0;
+    TetMesh cage = test::latticeCage(3, 2, 3, 0.2);
+    for (Vector& p : cage.nodes) {
+      p = toEigen(tilted * toBullet(p + Vector(0, 1.03, 0)));
+    }
+    const auto body = added(world, cage, options);
+    const btVector3 before = body->body().m_nodes[0].m_x;
+    step(world, 60);
+    const double way = static_cast<double>((body->body().m_nodes[0].m_x - before).length());
+    world.deformable().removeRigidBody(&slope);
+    return way;
+  };
+  // a = g (sin - mu cos): 2.9 without friction, 1.0 with 0.2; held above tan(0.3) = 0.31
+  EXPECT_NEAR(slid(0.0), 0.5 * 10.0 * std::sin(0.3), 0.15);
+  EXPECT_NEAR(slid(0.2), 0.5 * 10.0 * (std::sin(0.3) - 0.2 * std::cos(0.3)), 0.25);
+  EXPECT_LT(slid(0.6), 0.1);
+}
+
+TEST(DeformableSolver, LetsAHeavyBoxRestOnALightBody) {
+  TetskinWorld world;
+  SoftBodyOptions options;
+  options.youngsModulus = 2e5;
+  const auto body = added(world, cageAbove(0.02), options);
+  btBoxShape shape(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+  btVector3 inertia;
+  shape.calculateLocalInertia(100, inertia);
+  btRigidBody box(100, nullptr, &shape, inertia);
+  btTransform above(btQuaternion::getIdentity(), btVector3(btScalar(0.5), btScalar(1.4), btScalar(0.5)));
+  box.setWorldTransform(above);
+  box.setInterpolationWorldTransform(above);
+  world.deformable().addRigidBody(&box);
+  step(world, 240);
+  EXPECT_LT(box.getLinearVelocity().length(), 0.1);
+  EXPECT_GT(box.getWorldTransform().getOrigin().y(), 1.1);
+  EXPECT_LT(box.getWorldTransform().getOrigin().y(), 1.4);
+  world.deformable().removeRigidBody(&box);
+}
+
+}  // namespace
+}  // namespace tetskin
