@@ -129,5 +129,28 @@ TEST(DeformableSolver, LetsAHeavyBoxRestOnALightBody) {
   world.deformable().removeRigidBody(&box);
 }
 
+/// As Bullet's own solver has it: what such a contact does is nothing.
+TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
+  for (const ForceModel model : {ForceModel::Corotated, ForceModel::NeoHookean}) {
+    struct : TetskinWorld {
+      btRigidBody& ground() { return *floor; }
+    } world;
+    SoftBodyOptions options;
+    options.forceModel = model;
+    const auto body = added(world, cageAbove(0.1), options);
+    step(world, 10);
+    ASSERT_GT(body->body().m_nodeRigidContacts.size(), 0);
+    world.ground().setLinearVelocity(btScalar(NAN) * btVector3(1, 1, 1));
+    step(world, 1);
+    for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+      ASSERT_TRUE(std::isfinite(body->body().m_nodes[n].m_x.length())) << n;
+    }
+    world.ground().setLinearVelocity(btVector3(0, 0, 0));
+    step(world, 180);
+    EXPECT_LT(rmsSpeed(body->body()), 0.05);
+    EXPECT_NEAR(lowest(body->body()), 0.02, 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

@@ -8,7 +8,14 @@
 #include <LinearMath/btMatrix3x3.h>
 #include <tetskin/elastic/src/kernels/elastic_kernels.h>
 
+#include <cmath>
+
 namespace tetskin {
+
+/// Any of the three.
+inline bool isNoNumber(const btVector3& v) {
+  return std::isnan(v.x()) || std::isnan(v.y()) || std::isnan(v.z());
+}
 
 inline void toPoint(const btVector3& v, btScalar* point) {
   for (int k = 0; k < 3; ++k) point[k] = v[k];

@@ -15,12 +15,14 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
   Dynamics& dynamics = *of.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     const int number = of.first + static_cast<int>(n);
-    const btVector3 &dv = solver.m_dv[number], &before = solver.m_backupVelocity[number];
+    const btVector3& before = solver.m_backupVelocity[number];
+    btVector3& dv = solver.m_dv[number];
+    of.touched |= !dv.isZero();
+    if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
     const btVector3 own = implicit() ? btVector3(0, 0, 0) : fromWide(solution);
     toPoint(before - own, dynamics.velocity(n));
     toWide(own + dv, solution);
-    of.touched |= !dv.isZero();
     if (implicit()) {
       btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
       node.m_v = before + dv;
