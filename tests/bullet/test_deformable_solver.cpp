@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The library's own solve of bodies that are alone in a world: where it is in use, and by which settings.
-#include "deformable_test.h"
+#include "cloth.h"
 
 #include <tetskin/threads/thread_pool.h>
 
@@ -13,6 +13,7 @@ namespace {
 
 using test::added;
 using test::cageAbove;
+using test::Cloth;
 using test::EmptyWorld;
 using test::lowest;
 using test::smallCageAbove;
@@ -175,6 +176,26 @@ TEST(DeformableSolver, FollowsChangesOfTheMaterial) {
   EXPECT_LT(stiff, 0.05 * soft);
   EXPECT_EQ(body->setPoissonRatio(0.5).code, StatusCode::InvalidOption);
   EXPECT_EQ(body->youngsModulus(), 1e5);
+}
+
+TEST(DeformableSolver, CountsTheIterationsOfTheLastStepAlone) {
+  TetskinWorld world;
+  Cloth cloth(world);
+  EXPECT_EQ(world.bodySolver().iterations(), 0);
+  step(world, 1);
+  EXPECT_GT(world.bodySolver().iterations(), 0);
+  // Nothing but gravity is left.
+  world.deformable().removeForce(cloth.body.get(), &cloth.springs);
+  step(world, 1);
+  EXPECT_EQ(world.bodySolver().iterations(), 0);
+
+  const auto body = added(world, smallCageAbove(5));
+  body->body().m_nodes[0].m_v += btVector3(1, 0, 0);
+  step(world, 1);
+  EXPECT_GT(world.bodySolver().iterations(), 0);
+  world.deformable().setLineSearch(true);
+  step(world, 1);
+  EXPECT_EQ(world.bodySolver().iterations(), 0) << "Bullet's own code has solved";
 }
 
 /// Rays find a body wherever it has gone, though its trees are not fitted in each step.

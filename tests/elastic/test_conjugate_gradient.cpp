@@ -364,19 +364,6 @@ TEST(ConjugateGradient, StopsAtWhatIsEnough) {
   EXPECT_EQ(iterationsWith(limits), close);
 }
 
-TEST(ConjugateGradient, CountsWhatAnEarlierSolveTook) {
-  AssembledBody<double> body(smallCage());
-  const VectorXd b = rightSide(body);
-  begin(body, body.dense(), b, VectorXd::Zero(b.size()));
-  SolveLimits limits = closely();
-  limits.iterations = 9;
-  Solver solver;
-  solver.start({&body.matrix}, limits, {}, nullptr);
-  solver.addIterations(5);
-  EXPECT_FALSE(solver.iterate(100, nullptr));
-  EXPECT_EQ(solver.iterations(), 9);
-}
-
 TEST(ConjugateGradient, AnAdditionThatIsNotPositiveLeavesWhatHasBeenReached) {
   onEachInstructionSet([&] {
     for (const double value :

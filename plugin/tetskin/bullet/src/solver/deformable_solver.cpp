@@ -130,6 +130,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   Parts& parts = *parts_;
+  parts.iterations = 0;
   if (!parts.solving) return btDeformableBodySolver::solveDeformableConstraints(dt);
 
   auto& bodies = parts.bodies.bodies();
@@ -140,8 +141,7 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   addDynamicFriction(projection, parts.bodies, m_residual);
   fixContacts(projection, parts.bodies);
   parts.solveSystems();
-  parts.iterations = 0;
-  for (SolvedBody& of : bodies) parts.iterations += of.solve->iterations();
+  for (const SolvedBody& of : bodies) parts.iterations += of.iterations;
   keepNormalImpulses(projection, parts.bodies, m_residual);
   for (SolvedBody& of : bodies) parts.writeVelocities(of);
   parts.hidden.hideLonely(bodies, m_dt);

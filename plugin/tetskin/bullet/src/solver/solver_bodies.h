@@ -28,6 +28,7 @@ struct SolvedBody {
   std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
   FittedTrees* fittedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
+  int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool constrained = false;  ///< by more than held nodes
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
 };

@@ -114,6 +114,7 @@ void DeformableSolver::Parts::predict(SolvedBody& of, ParallelFor* inner) {
   limits.floor = kUnseen * static_cast<double>(dt());
   of.solve->start({&dynamics.matrix()}, limits, {}, inner);
   of.solve->iterate(wasTouched(of) ? kIterationsBeforeContacts : limits.iterations, inner);
+  of.iterations = of.solve->iterations();
 }
 
 void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {

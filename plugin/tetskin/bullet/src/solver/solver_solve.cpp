@@ -64,6 +64,7 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
   if (again) return solveAgain(system, inner);
   if (!first.elastic) return;
   first.solve->iterate(first.limits->iterations, inner);
+  first.iterations = first.solve->iterations();
   first.dynamics->removeMomentum();
 }
 
@@ -75,11 +76,10 @@ void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor
   for (const std::size_t b : system.bodies) matrices.push_back(&bodies.bodies()[b].dynamics->matrix());
   Solve::Extra extra;
   if (!system.forces.empty()) extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
-  Solve& solve = *bodies.bodies()[system.bodies.front()].solve;
-  const int before = solve.iterations();
-  solve.start(std::move(matrices), limits, std::move(extra), inner);
-  solve.iterate(limits.iterations, inner);
-  solve.addIterations(before);
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  first.solve->start(std::move(matrices), limits, std::move(extra), inner);
+  first.solve->iterate(limits.iterations, inner);
+  first.iterations += first.solve->iterations();
 }
 
 void DeformableSolver::Parts::addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added) {
