@@ -9,8 +9,6 @@
 namespace tetskin {
 namespace {
 
-using kernels::kGroup;
-
 std::size_t placeIn(const SolvedBody& of, int node) {
   return static_cast<std::size_t>(node - of.first);
 }
