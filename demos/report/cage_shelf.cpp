@@ -25,12 +25,13 @@ const Cage& CageShelf::cage(std::size_t tets) {
   return cages_[tets] = std::move(cage).value();
 }
 
-const StiffnessCalibration& CageShelf::calibration(std::size_t tets, double poissonRatio) {
+const CalibrationReport& CageShelf::calibration(std::size_t tets, double poissonRatio) {
   const auto found = calibrations_.find(tets);
   if (found != calibrations_.end()) return found->second;
   CalibrationOptions options;
   options.poissonRatio = poissonRatio;
-  Result<StiffnessCalibration> calibration = calibrateStiffness(cage(tets), options);
+  Cage calibrated = cage(tets);
+  Result<CalibrationReport> calibration = calibrate(calibrated, options);
   scenes::require(calibration.status());
   return calibrations_[tets] = std::move(calibration).value();
 }

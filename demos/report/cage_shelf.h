@@ -22,12 +22,12 @@ class CageShelf {
   explicit CageShelf(const TriangleMesh& mesh) : mesh_(mesh) {}
 
   const Cage& cage(std::size_t tets);
-  const StiffnessCalibration& calibration(std::size_t tets, double poissonRatio);
+  const CalibrationReport& calibration(std::size_t tets, double poissonRatio);
 
  private:
   const TriangleMesh& mesh_;
   std::map<std::size_t, Cage> cages_;
-  std::map<std::size_t, StiffnessCalibration> calibrations_;
+  std::map<std::size_t, CalibrationReport> calibrations_;
 };
 
 }  // namespace tetskin::report

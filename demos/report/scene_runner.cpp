@@ -191,7 +191,7 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const Cage& cage, const st
   } else {
     scenes::SceneOptions own = material();
     if (job.calibrated) {
-      const StiffnessCalibration& calibration = cages_.calibration(job.tets, own.body.poissonRatio);
+      const CalibrationReport& calibration = cages_.calibration(job.tets, own.body.poissonRatio);
       motion.row.stiffnessFactor = calibration.factor;
       motion.row.calibrateMs = calibration.milliseconds;
       own.body.youngsModulus *= calibration.factor;

@@ -36,8 +36,7 @@ class TETSKIN_BULLET_API DeformableBody {
   ///         of the default stiffness
   /// cage    where the body shall be, world space; its fill, factor and masses count where the options leave them out
   /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, and
-  /// for the
-  ///         worlds of reduced bodies
+  ///         for the worlds of reduced bodies
   static Result<std::unique_ptr<DeformableBody>> add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
                                                      const SoftBodyOptions& options = {});
   ~DeformableBody();

@@ -36,7 +36,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 
   /// Whether this solver's own solve is in use, by the world's settings of the last step; true before the first.
   bool solves() const;
-  /// Iterations of the conjugate gradient in the last step, over all bodies.
+  /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code has solved it.
   int iterations() const;
 
   // What Bullet calls.

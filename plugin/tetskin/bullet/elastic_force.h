@@ -14,6 +14,8 @@ class btDeformableMultiBodyDynamicsWorld;
 
 namespace tetskin {
 
+struct ForcedBody;
+
 /// What a body resists deformation with.
 struct ElasticMaterial {
   double youngsModulus = 0.0;  ///< in pressure units, above 0
@@ -47,10 +49,11 @@ class TETSKIN_BULLET_API ElasticForce : public btDeformableLagrangianForce {
   ElasticForce& operator=(const ElasticForce&) = delete;
 
   /// Acts on the body from now on, in this world, which it must be in. The tets' rest shapes are Bullet's
-  /// (m_Dm_inverse), as `makeSoftBody` and Bullet's own helpers leave them. stiffnessScale  tetCount, above 0: times
-  /// the material's stiffness; empty: 1 Errors          SizeMismatch, InvalidOption; Degenerate for a body without
-  /// tets, or with flat ones, or with tets that
-  ///                 name no node of it
+  /// (m_Dm_inverse), as `makeSoftBody` and Bullet's own helpers leave them.
+  ///
+  /// stiffnessScale  tetCount, above 0: times the material's stiffness; empty: 1
+  /// Errors          SizeMismatch, InvalidOption; Degenerate for a body without tets, or with flat ones, or with tets
+  ///                 that name no node of it
   Status addTo(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, std::vector<double> stiffnessScale = {});
 
   /// Takes it from the body, and out of the world if it has no other; Bullet's `removeForce` finds the first force of a
@@ -80,10 +83,11 @@ class TETSKIN_BULLET_API ElasticForce : public btDeformableLagrangianForce {
   void buildDampingForceDifferentialDiagonal(btScalar scale, TVStack& diagonal) override;
   double totalElasticEnergy(btScalar dt) override;
 
-  struct Parts;
-  Parts& parts() { return *parts_; }  ///< of use inside of the library alone
-
  private:
+  friend class SolverBodies;  // which solves for the bodies in the force's place
+  struct Parts;
+  const std::vector<std::unique_ptr<ForcedBody>>& bodies() const;
+
   std::unique_ptr<Parts> parts_;
 };
 

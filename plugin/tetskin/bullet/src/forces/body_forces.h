@@ -27,6 +27,9 @@ void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force)
 /// Whether it is what `replaceByNothing` puts there.
 bool isNoForce(const btDeformableLagrangianForce& force);
 
+/// Whether a force needs what Bullet keeps for each tet and updates in every step.
+bool needsDeformation(btDeformableLagrangianForce& force);
+
 /// A force of Bullet's for one body, in a list where nobody's body joins it. It leaves the list when the application
 /// takes the body out of the world; otherwise its owner takes it out.
 template <class Force>

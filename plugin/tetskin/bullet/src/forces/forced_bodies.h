@@ -10,8 +10,6 @@
 #include <memory>
 #include <vector>
 
-class btDeformableBodySolver;
-
 namespace tetskin {
 
 using Dynamics = elastic_detail::BodyDynamics<btScalar>;
@@ -19,8 +17,12 @@ using Dynamics = elastic_detail::BodyDynamics<btScalar>;
 /// The state of a body's nodes; `predicted`: at m_q instead of m_x.
 void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics);
 
+/// Ok, or why nothing can be made of the body's tets.
+Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale);
+Status checkMaterial(const ElasticMaterial& material);
+
 /// One body under an ElasticForce.
-struct ElasticBody {
+struct ForcedBody {
   btSoftBody* body = nullptr;
   std::vector<double> stiffnessScale;  ///< by tet, or empty
   std::unique_ptr<Dynamics> dynamics;
@@ -28,31 +30,18 @@ struct ElasticBody {
   bool solved = false;       ///< by a DeformableSolver: the force keeps out of it
   bool alone = false;        ///< no other force needs Bullet's own deformation gradients
   int hiddenTets = -1;       ///< how many are kept from Bullet; -1: none
-};
 
-/// Ok, or why nothing can be made of the body's tets.
-Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale);
-Status checkMaterial(const ElasticMaterial& material);
+  /// Makes, or makes anew, what is derived from the body's tets.
+  void build(const ElasticMaterial& material);
+  void setMaterial(const ElasticMaterial& material);
+  /// Whether that was derived from as many nodes and tets as there are, and from the same rest shapes.
+  bool hasItsCounts() const;
+  bool hasItsRestShapes() const;
 
-struct ElasticForce::Parts {
-  explicit Parts(const ElasticMaterial& ofMaterial);
-  ~Parts();
-
-  /// Makes, or makes anew, what is derived from a body's tets.
-  void build(ElasticBody& of) const;
-  void applyMaterial(ElasticBody& to) const;
-  /// The dynamics of a body, or null; made anew if the body has been changed.
-  ElasticBody* find(const btSoftBody* body);
-
-  class Preconditioner;
-  void precondition(btDeformableBodySolver& solver, ElasticBody& of);
-
-  ElasticMaterial material;
-  SolverLimits limits;
-  std::vector<std::unique_ptr<ElasticBody>> bodies;
-  std::unique_ptr<Preconditioner> preconditioner;
-  bool bodyRemoved = false;  ///< the next reinitialisation is not the beginning of a step
-  int knownForces = -1;      ///< in the world, when `alone` was found out
+  /// Bullet updates deformation gradients of its own between `reinitialize` and the first force of a step, which takes
+  /// as long as all that we do, and only its own forces read them. It finds no tets then.
+  void hideTets();
+  void showTets();
 };
 
 }  // namespace tetskin

@@ -19,23 +19,6 @@ bool isGravity(const btDeformableLagrangianForce& force) {
 
 }  // namespace
 
-void FittedTrees::keep(Dynamics& dynamics) {
-  points.resize(3 * dynamics.nodeCount());
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points[3 * n]);
-  drift = 0;
-  ready = true;
-}
-
-btScalar FittedTrees::furthest(Dynamics& dynamics) const {
-  btScalar most = 0;
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const btScalar* now = dynamics.point(n);
-    const btScalar x = now[0] - points[3 * n], y = now[1] - points[3 * n + 1], z = now[2] - points[3 * n + 2];
-    most = std::max(most, x * x + y * y + z * z);
-  }
-  return btSqrt(most);
-}
-
 bool SolverBodies::collect(const btAlignedObjectArray<btSoftBody*>& all, bool everyone,
                            btAlignedObjectArray<btSoftBody*>& awake) {
   const auto awakeBefore = awake_, asleepBefore = asleep_;
@@ -80,37 +63,44 @@ void SolverBodies::number(btDeformableBackwardEulerObjective& objective) {
 
 void SolverBodies::release(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
-    auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
+    const auto* elastic = dynamic_cast<const ElasticForce*>(forces[i]);
     if (!elastic) continue;
-    for (const auto& of : elastic->parts().bodies) of->solved = false;
+    for (const auto& of : elastic->bodies()) of->solved = false;
   }
   bodies_.clear();
   systems_.clear();
 }
 
 void SolverBodies::assign(const ForceList& forces) {
-  std::unordered_map<const btSoftBody*, std::size_t> places;
-  bodies_.resize(awake_.size());
+  listAwake();
+  takeElastic(forces);
+  lendKept();
+  makeSystems(forces);
+}
+
+void SolverBodies::listAwake() {
+  bodies_.assign(awake_.size(), {});
+  places_.clear();
   int first = 0;
   for (std::size_t k = 0; k < awake_.size(); ++k) {
     bodies_[k].body = awake_[k];
     bodies_[k].first = first;
-    bodies_[k].elastic = nullptr;
     bodies_[k].limits = &kBulletsBodies;
-    bodies_[k].needsDeformation = false;
-    bodies_[k].constrained = false;
-    bodies_[k].touched = false;
     first += awake_[k]->m_nodes.size();
-    places[awake_[k]] = k;
+    places_[awake_[k]] = k;
   }
-  const auto placeOf = [&](const btSoftBody* body) {
-    const auto found = places.find(body);
-    return found == places.end() ? bodies_.size() : found->second;
-  };
+}
+
+std::size_t SolverBodies::placeOf(const btSoftBody* body) const {
+  const auto found = places_.find(body);
+  return found == places_.end() ? bodies_.size() : found->second;
+}
+
+void SolverBodies::takeElastic(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
-    auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
+    const auto* elastic = dynamic_cast<const ElasticForce*>(forces[i]);
     if (!elastic) continue;
-    for (const auto& of : elastic->parts().bodies) {
+    for (const auto& of : elastic->bodies()) {
       const std::size_t k = placeOf(of->body);
       // A second elastic force of one body acts by itself.
       of->solved = k < bodies_.size() && !bodies_[k].elastic;
@@ -119,50 +109,9 @@ void SolverBodies::assign(const ForceList& forces) {
       bodies_[k].limits = &elastic->limits();
     }
   }
-  makeDynamics();
-
-  // Forces that say of no body that they act on it may act on any.
-  DisjointSets sets(bodies_.size());
-  std::vector<std::pair<std::size_t, btDeformableLagrangianForce*>> acting;
-  for (int i = 0; i < forces.size(); ++i) {
-    btDeformableLagrangianForce& force = *forces[i];
-    if (isGravity(force) || isNoForce(force)) continue;
-    std::vector<std::size_t> on;
-    const auto* elastic = dynamic_cast<ElasticForce*>(&force);
-    const auto& listed = force.m_softBodies;
-    for (int b = 0; b < listed.size(); ++b) {
-      const std::size_t k = placeOf(listed[b]);
-      if (k == bodies_.size() || (elastic && const_cast<ElasticForce*>(elastic)->parts().find(listed[b])->solved))
-        continue;
-      on.push_back(k);
-    }
-    if (listed.size() == 0 && !elastic) {
-      for (std::size_t k = 0; k < bodies_.size(); ++k) on.push_back(k);
-    }
-    if (on.empty()) continue;
-    const btDeformableLagrangianForceType type = force.getForceType();
-    const bool deformation = !elastic && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;
-    for (const std::size_t k : on) {
-      sets.unite(static_cast<int>(on.front()), static_cast<int>(k));
-      bodies_[k].needsDeformation |= deformation;
-    }
-    acting.emplace_back(on.front(), &force);
-  }
-  systems_.clear();
-  std::vector<std::size_t> systemOf(bodies_.size(), bodies_.size());
-  const auto systemAt = [&](std::size_t k) -> SolvedSystem& {
-    std::size_t& system = systemOf[static_cast<std::size_t>(sets.find(static_cast<int>(k)))];
-    if (system == bodies_.size()) {
-      system = systems_.size();
-      systems_.emplace_back();
-    }
-    return systems_[system];
-  };
-  for (std::size_t k = 0; k < bodies_.size(); ++k) systemAt(k).bodies.push_back(k);
-  for (const auto& [k, force] : acting) systemAt(k).forces.push_back(force);
 }
 
-void SolverBodies::makeDynamics() {
+void SolverBodies::lendKept() {
   for (SolvedBody& of : bodies_) {
     Kept& kept = kept_[of.body];
     const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
@@ -180,6 +129,50 @@ void SolverBodies::makeDynamics() {
     }
     of.dynamics = kept.masses.get();
   }
+}
+
+std::vector<std::size_t> SolverBodies::actedOnBy(const btDeformableLagrangianForce& force) const {
+  std::vector<std::size_t> places;
+  if (isGravity(force) || isNoForce(force)) return places;
+  const auto add = [&](const btSoftBody* body) {
+    if (const std::size_t k = placeOf(body); k < bodies_.size()) places.push_back(k);
+  };
+  if (const auto* elastic = dynamic_cast<const ElasticForce*>(&force)) {
+    for (const auto& of : elastic->bodies()) {
+      if (!of->solved) add(of->body);
+    }
+  } else if (force.m_softBodies.size() > 0) {
+    for (int b = 0; b < force.m_softBodies.size(); ++b) add(force.m_softBodies[b]);
+  } else {
+    // Forces that say of no body that they act on it may act on any.
+    for (const SolvedBody& of : bodies_) add(of.body);
+  }
+  return places;
+}
+
+void SolverBodies::makeSystems(const ForceList& forces) {
+  DisjointSets sets(bodies_.size());
+  std::vector<std::pair<std::size_t, btDeformableLagrangianForce*>> acting;  // on the set of this body
+  for (int i = 0; i < forces.size(); ++i) {
+    const std::vector<std::size_t> places = actedOnBy(*forces[i]);
+    for (const std::size_t k : places) {
+      sets.unite(static_cast<int>(places.front()), static_cast<int>(k));
+      bodies_[k].needsDeformation |= needsDeformation(*forces[i]);
+    }
+    if (!places.empty()) acting.emplace_back(places.front(), forces[i]);
+  }
+  systems_.clear();
+  std::vector<std::size_t> systemOf(bodies_.size(), bodies_.size());  // by the set
+  const auto systemAt = [&](std::size_t k) -> SolvedSystem& {
+    std::size_t& system = systemOf[static_cast<std::size_t>(sets.find(static_cast<int>(k)))];
+    if (system == bodies_.size()) {
+      system = systems_.size();
+      systems_.emplace_back();
+    }
+    return systems_[system];
+  };
+  for (std::size_t k = 0; k < bodies_.size(); ++k) systemAt(k).bodies.push_back(k);
+  for (const auto& [k, force] : acting) systemAt(k).forces.push_back(force);
 }
 
 SolvedBody& SolverBodies::bodyOf(int node) {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/src/forces/body_forces.h>
-#include <tetskin/bullet/src/forces/forced_bodies.h>
+#include <tetskin/bullet/src/solver/fitted_trees.h>
 
 #include <memory>
 #include <unordered_map>
@@ -17,30 +17,18 @@ namespace tetskin {
 
 using VectorStack = btAlignedObjectArray<btVector3>;
 
-/// Where the nodes were when a body's trees were fitted.
-struct FittedTrees {
-  std::vector<btScalar> points;  ///< 3 a node
-  btScalar pad = 0;              ///< around them
-  btScalar drift = 0;            ///< how far a node has moved since, at the beginning of this step
-  bool ready = false;
-
-  void keep(Dynamics& dynamics);
-  btScalar furthest(Dynamics& dynamics) const;
-  /// Whether they still hold nodes that move so far in this step.
-  bool holds(btScalar step) const { return ready && drift + step < pad; }
-};
-
 /// A body awake in this step.
 struct SolvedBody {
   btSoftBody* body = nullptr;
-  int first = 0;                   ///< the number of its first node in Bullet's vectors
-  ElasticBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
+  int first = 0;                  ///< the number of its first node in Bullet's vectors
+  ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
   const SolverLimits* limits = nullptr;
   Dynamics* dynamics = nullptr;
   bool needsDeformation = false;                    ///< Bullet's own gradients
   std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
   FittedTrees* fittedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
+  int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool constrained = false;  ///< by more than held nodes
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
 };
@@ -68,12 +56,20 @@ class SolverBodies {
   void release(const ForceList& forces);
 
   std::vector<SolvedBody>& bodies() { return bodies_; }
+  const std::vector<SolvedBody>& bodies() const { return bodies_; }
   const std::vector<SolvedSystem>& systems() const { return systems_; }
   /// The body of a node, by its number.
   SolvedBody& bodyOf(int node);
 
  private:
-  void makeDynamics();
+  void listAwake();
+  void takeElastic(const ForceList& forces);
+  void lendKept();
+  void makeSystems(const ForceList& forces);
+  /// The places of the awake bodies that a force acts on itself, and may couple.
+  std::vector<std::size_t> actedOnBy(const btDeformableLagrangianForce& force) const;
+  /// In `bodies`; as many as there are if it is not awake.
+  std::size_t placeOf(const btSoftBody* body) const;
 
   struct Kept {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
@@ -86,6 +82,7 @@ class SolverBodies {
   std::vector<int> nodeCounts_;  ///< of all, as numbered
   int nodeCount_ = 0, awakeCount_ = 0;
   std::vector<SolvedBody> bodies_;
+  std::unordered_map<const btSoftBody*, std::size_t> places_;  ///< in `bodies_`
   std::vector<SolvedSystem> systems_;
   std::unordered_map<const btSoftBody*, Kept> kept_;
 };

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableContactProjection.h>
+#include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 
 #include <algorithm>
 
 namespace tetskin {
 namespace {
-
-using kernels::kGroup;
 
 std::size_t placeIn(const SolvedBody& of, int node) {
   return static_cast<std::size_t>(node - of.first);
@@ -39,7 +38,7 @@ btScalar normalImpulse(const SolvedBody& of, std::size_t node, const btVector3& 
 void resist(SolvedBody& of, const btDeformableNodeRigidContactConstraint& constraint, VectorStack& residual) {
   const btSoftBody::Node& bullets = *constraint.m_node;
   const btVector3 dv = constraint.getDv(&bullets), normal = constraint.m_contact->m_cti.m_normal;
-  if (bullets.m_im == 0 || dv.isZero() || constraint.m_static) return;
+  if (bullets.m_im == 0 || dv.isZero() || isNoNumber(dv) || constraint.m_static) return;
   const std::size_t node = placeIn(of, bullets.index);
   const btScalar along = dv.dot(normal), mass = 1 / bullets.m_im;
   // Where it binds, the node's normal velocity is fixed.
@@ -71,8 +70,9 @@ void fixContacts(const btDeformableContactProjection& projection, SolverBodies& 
 
 void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual) {
   const auto add = [&](const auto& constraint, const btSoftBody::Node& node) {
-    if (node.m_im == 0) return;
-    residual[node.index] += constraint.getDv(&node) / node.m_im;
+    const btVector3 dv = constraint.getDv(&node);
+    if (node.m_im == 0 || isNoNumber(dv)) return;
+    residual[node.index] += dv / node.m_im;
     bodies.bodyOf(node.index).touched = true;
   };
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {

@@ -37,8 +37,6 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   /// The square of the residual's norm at which it has.
   double enough() const { return target_; }
   int iterations() const { return iterations_; }
-  /// Of an earlier solve of the same step, to be counted along.
-  void addIterations(int earlier) { iterations_ += earlier; }
 
  private:
   bool step(ParallelFor* threads);

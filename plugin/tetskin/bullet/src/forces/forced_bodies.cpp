@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/forces/forced_bodies.h>
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/core/src/base/lame.h>
+#include <tetskin/core/src/base/positive_values.h>
+
+#include <cmath>
+#include <string>
+
+namespace tetskin {
+namespace {
+
+Status badTet(std::size_t tet, const char* fault) {
+  return {StatusCode::Degenerate, "tet " + std::to_string(tet) + fault};
+}
+
+bool hasRestShape(const btSoftBody::Tetra& tet) {
+  btScalar size = 0;
+  for (int i = 0; i < 3; ++i) size += tet.m_Dm_inverse[i].length2();
+  return tet.m_element_measure > 0 && size > 0 && std::isfinite(size);
+}
+
+elastic_detail::RestTets restTetsOf(const btSoftBody& body) {
+  elastic_detail::RestTets rest;
+  rest.tets = tetMeshOf(body).tets;
+  for (int t = 0; t < body.m_tetras.size(); ++t) {
+    const btSoftBody::Tetra& tetra = body.m_tetras[t];
+    std::array<double, 9> gradients{};
+    for (std::size_t k = 0; k < gradients.size(); ++k) {
+      const btVector3& row = tetra.m_Dm_inverse[static_cast<int>(k / 3)];
+      gradients[k] = static_cast<double>(row[static_cast<int>(k % 3)]);
+    }
+    rest.gradients.push_back(gradients);
+    rest.volumes.push_back(static_cast<double>(tetra.m_element_measure));
+  }
+  return rest;
+}
+
+/// Of some of the tets: another one if the body has been scaled, or given another rest shape.
+btScalar restMeasureOf(const btSoftBody& body) {
+  btScalar sum = 0;
+  const int last = body.m_tetras.size() - 1;
+  for (const int t : {0, last / 3, 2 * last / 3, last}) {
+    const btSoftBody::Tetra& tetra = body.m_tetras[t];
+    sum += tetra.m_element_measure;
+    for (int i = 0; i < 3; ++i) sum += tetra.m_Dm_inverse[i].length2();
+  }
+  return sum;
+}
+
+}  // namespace
+
+void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics) {
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    const auto at = static_cast<std::size_t>(n);
+    toPoint(predicted ? node.m_q : node.m_x, dynamics.point(at));
+    toPoint(node.m_v, dynamics.velocity(at));
+    dynamics.setMass(at, node.m_im > 0 ? 1 / node.m_im : btScalar(0));
+  }
+}
+
+Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale) {
+  if (body.m_tetras.size() == 0) {
+    return {StatusCode::Degenerate,
+            "the body has no tets to be elastic; Bullet's mass-spring force serves cloth and ropes"};
+  }
+  const std::vector<Tet> tets = tetMeshOf(body).tets;
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    for (const int n : tets[t]) {
+      if (n >= 0) continue;
+      return badTet(t,
+                    " names no node of the body: Bullet leaves tets dangling when nodes are appended after them; "
+                    "append the nodes first");
+    }
+    if (!hasRestShape(body.m_tetras[static_cast<int>(t)])) {
+      return badTet(t,
+                    " of the body has no volume at rest, or no rest shape; call the body's initializeDmInverse() after "
+                    "its tets have been appended");
+    }
+  }
+  return checkPositive<btScalar>(stiffnessScale, tets.size(), "stiffnessScale", "tet");
+}
+
+Status checkMaterial(const ElasticMaterial& material) {
+  return elastic_detail::checkMaterial<btScalar>(material.youngsModulus, material.poissonRatio, material.damping);
+}
+
+void ForcedBody::build(const ElasticMaterial& material) {
+  if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
+  dynamics = std::make_unique<Dynamics>(restTetsOf(*body), static_cast<std::size_t>(body->m_nodes.size()));
+  restMeasure = restMeasureOf(*body);
+  setMaterial(material);
+}
+
+void ForcedBody::setMaterial(const ElasticMaterial& material) {
+  const Lame lame(material.youngsModulus, material.poissonRatio);
+  dynamics->setMaterial(elastic_detail::lameOfTets(lame, dynamics->tets()->count(), stiffnessScale));
+  dynamics->setDamping(material.damping);
+}
+
+bool ForcedBody::hasItsCounts() const {
+  return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
+         dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());
+}
+
+bool ForcedBody::hasItsRestShapes() const {
+  return hasItsCounts() && restMeasureOf(*body) == restMeasure;
+}
+
+void ForcedBody::hideTets() {
+  if (hiddenTets >= 0 || !alone || solved || body->m_tetras.size() == 0) return;
+  hiddenTets = body->m_tetras.size();
+  body->m_tetras.resizeNoInitialize(0);
+}
+
+void ForcedBody::showTets() {
+  if (hiddenTets >= 0) body->m_tetras.resizeNoInitialize(hiddenTets);
+  hiddenTets = -1;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::bullet: Bullet's vectors as the elastic library has them, a point in 3 scalars one after the
+// other or in 3 wide ones, and back.
+#pragma once
+
+#include <LinearMath/btMatrix3x3.h>
+#include <tetskin/elastic/src/kernels/elastic_kernels.h>
+
+#include <cmath>
+
+namespace tetskin {
+
+/// Any of the three.
+inline bool isNoNumber(const btVector3& v) {
+  return std::isnan(v.x()) || std::isnan(v.y()) || std::isnan(v.z());
+}
+
+inline void toPoint(const btVector3& v, btScalar* point) {
+  for (int k = 0; k < 3; ++k) point[k] = v[k];
+}
+inline btVector3 fromPoint(const btScalar* point) {
+  return {point[0], point[1], point[2]};
+}
+
+inline void toWide(const btVector3& v, btScalar* wide) {
+  for (int k = 0; k < 3; ++k) wide[k * kernels::kGroup] = v[k];
+}
+inline btVector3 fromWide(const btScalar* wide) {
+  return {wide[0], wide[kernels::kGroup], wide[2 * kernels::kGroup]};
+}
+
+/// Of its upper triangle, row by row.
+inline btMatrix3x3 symmetricMatrix(const btScalar d[6]) {
+  return {d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]};
+}
+
+}  // namespace tetskin

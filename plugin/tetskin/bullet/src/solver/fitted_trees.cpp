@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/solver/fitted_trees.h>
+#include <tetskin/bullet/src/solver/solver_bodies.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+/// Of the leaves of a body's trees, in collision margins: more is to be looked at for contacts, less often to be
+/// fitted.
+constexpr btScalar kPadding = 2;
+
+/// Around all of a body.
+struct BodyBox {
+  const SolvedBody* of;
+  btVector3 low, high;
+  bool met;
+};
+
+std::vector<BodyBox> boxesOf(const std::vector<SolvedBody>& bodies) {
+  std::vector<BodyBox> boxes;
+  for (const SolvedBody& of : bodies) {
+    const btDbvtNode* root = of.body->m_ndbvt.m_root;
+    // What is not a number has no place among the others.
+    if (!root || !std::isfinite(root->volume.Mins().x())) continue;
+    boxes.push_back({&of, root->volume.Mins(), root->volume.Maxs(), false});
+  }
+  return boxes;
+}
+
+/// By a sweep along x.
+void findMeetings(std::vector<BodyBox>& boxes) {
+  std::sort(boxes.begin(), boxes.end(), [](const BodyBox& a, const BodyBox& b) { return a.low.x() < b.low.x(); });
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    for (std::size_t b = a + 1; b < boxes.size() && boxes[b].low.x() <= boxes[a].high.x(); ++b) {
+      const bool apart = boxes[b].low.y() > boxes[a].high.y() || boxes[b].high.y() < boxes[a].low.y() ||
+                         boxes[b].low.z() > boxes[a].high.z() || boxes[b].high.z() < boxes[a].low.z();
+      if (!apart) boxes[a].met = boxes[b].met = true;
+    }
+  }
+}
+
+}  // namespace
+
+bool meetsSoftBodies(btSoftBody& body) {
+  return (body.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0 || body.useSelfCollision();
+}
+
+bool meetsByFaces(btSoftBody& body) {
+  constexpr int kFaces = btSoftBody::fCollision::SDF_RDF | btSoftBody::fCollision::SDF_MDF;
+  return (body.m_cfg.collisions & kFaces) != 0 || meetsSoftBodies(body);
+}
+
+void FittedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
+  const btScalar margin = body.getCollisionShape()->getMargin();
+  if (pad != kPadding * margin) ready = false;
+  pad = kPadding * margin;
+  drift = ready ? furthest(dynamics) : pad;
+  if (holds(step)) return;
+  body.m_sst.radmrg = pad;
+  body.updateNodeTree(true, true);
+  if (!body.m_fdbvt.empty()) body.updateFaceTree(true, true);
+  body.m_sst.radmrg = margin;
+  keep(dynamics);
+}
+
+void FittedTrees::keep(Dynamics& dynamics) {
+  points.resize(3 * dynamics.nodeCount());
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points[3 * n]);
+  drift = 0;
+  ready = true;
+}
+
+btScalar FittedTrees::furthest(Dynamics& dynamics) const {
+  btScalar most = 0;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const btScalar* now = dynamics.point(n);
+    const btScalar x = now[0] - points[3 * n], y = now[1] - points[3 * n + 1], z = now[2] - points[3 * n + 2];
+    most = std::max(most, x * x + y * y + z * z);
+  }
+  return btSqrt(most);
+}
+
+void HiddenBodies::hideLonely(const std::vector<SolvedBody>& bodies, btScalar dt) {
+  std::vector<BodyBox> boxes = boxesOf(bodies);
+  findMeetings(boxes);
+  for (const BodyBox& box : boxes) {
+    btSoftBody& body = *box.of->body;
+    FittedTrees& fitted = *box.of->fittedTrees;
+    const bool held = fitted.holds(btSqrt(body.m_maxSpeedSquared) * dt);
+    if (box.met || !held || !body.isActive() || meetsSoftBodies(body)) {
+      fitted.ready = false;  // Bullet fits them tightly
+      continue;
+    }
+    hidden_.emplace_back(&body, body.getActivationState());
+    body.forceActivationState(ISLAND_SLEEPING);
+  }
+}
+
+void HiddenBodies::show(const btAlignedObjectArray<btSoftBody*>& alive) {
+  for (const auto& [body, state] : hidden_) {
+    if (alive.findLinearSearch(body) == alive.size()) continue;
+    if (body->getActivationState() == ISLAND_SLEEPING) body->forceActivationState(state);
+  }
+  hidden_.clear();
+}
+
+}  // namespace tetskin

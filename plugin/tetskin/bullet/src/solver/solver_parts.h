@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: its members, and what a step is made of.
+#pragma once
+
+#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/src/solver/solver_bodies.h>
+
+#include <vector>
+
+namespace tetskin {
+
+/// An error in velocity that nobody sees, over what the earth's gravity gives in a step.
+constexpr double kUnseen = 1e-3 * 9.81;
+
+struct DeformableSolver::Parts {
+  explicit Parts(DeformableSolver& ofSolver) : solver(ofSolver) {}
+
+  ForceList& forces() { return solver.m_objective->m_lf; }
+  bool implicit() const { return solver.m_implicit; }
+  btScalar dt() const { return solver.m_dt; }
+
+  // Which bodies, and which forces on them: deformable_solver.cpp.
+  bool collect(const btAlignedObjectArray<btSoftBody*>& world);
+  void assign();
+  /// Several bodies side by side, or one in pieces.
+  void forEachBody(void (Parts::*task)(SolvedBody&, ParallelFor*));
+
+  // Before contacts: solver_prediction.cpp.
+  /// The impulses of other forces.
+  void applyOthers();
+  void applyOthersExplicitly();
+  void applyOthersImplicitly();
+  /// The elastic solve before contacts.
+  void predict(SolvedBody& of, ParallelFor* inner);
+  void writePrediction(SolvedBody& of) const;
+  void predictPositions(SolvedBody& of) const;
+
+  // After contacts: solver_solve.cpp.
+  void readContacts(SolvedBody& of);
+  void addOthers();
+  void solveSystems();
+  void solve(const SolvedSystem& system, ParallelFor* inner);
+  void solveAgain(const SolvedSystem& system, ParallelFor* inner);
+  void startAgain(const SolvedSystem& system, ParallelFor* inner);
+  elastic_detail::SolveLimits limitsOf(const SolvedSystem& system) const;
+  /// What others add to the matrices times `step`, in `extras`.
+  void multiplyOthers(const SolvedSystem& system);
+  /// The same times the matrices' own steps, for the conjugate gradient.
+  void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
+  void writeVelocities(SolvedBody& of) const;
+
+  DeformableSolver& solver;
+  SolverBodies bodies;
+  HiddenBodies hidden;
+  ParallelFor* threads = nullptr;
+  bool nodeNormals = true;
+  bool solving = true;  ///< in this step
+  int iterations = 0;
+  btAlignedObjectArray<btSoftBody*> all;
+  VectorStack step, image;                    ///< of systems with other forces
+  std::vector<std::vector<btScalar>> extras;  ///< by body, wide
+};
+
+}  // namespace tetskin

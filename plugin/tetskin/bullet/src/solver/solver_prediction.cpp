@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A step up to where contacts are looked for: other forces' impulses, the elastic solve, and where nodes go by them.
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/solver/solver_parts.h>
+
+#include <algorithm>
+
+namespace tetskin {
+namespace {
+
+/// Iterations before contacts are looked for, where there were some in the step before: what they find is refined after
+/// them.
+constexpr int kIterationsBeforeContacts = 3;
+
+bool wasTouched(const SolvedBody& of) {
+  return std::any_of(of.normalImpulses->begin(), of.normalImpulses->end(),
+                     [](btScalar impulse) { return impulse != 0; });
+}
+
+void prepareStep(btSoftBody& body, btScalar dt) {
+  body.m_sst.sdt = dt * body.m_cfg.timescale;
+  body.m_sst.isdt = 1 / body.m_sst.sdt;
+  body.m_sst.velmrg = body.m_sst.sdt * 3;
+  body.m_sst.radmrg = body.getCollisionShape()->getMargin();
+  body.m_sst.updmrg = body.m_sst.radmrg * btScalar(0.25);
+  body.updateBounds();
+}
+
+/// Returns the square of the highest speed, before it is bounded.
+btScalar moveNodes(btSoftBody& body, btScalar dt) {
+  const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
+  const btScalar kept = 1 - body.m_cfg.drag;
+  btScalar most = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body.m_nodes[n];
+    node.m_v *= kept;
+    const btScalar squared = node.m_v.length2();
+    if (squared > fastest * fastest) node.m_v *= fastest / btSqrt(squared);
+    most = std::max(most, squared);
+    node.m_q = node.m_x + dt * node.m_v;
+    node.m_splitv.setZero();
+    node.m_constrained = false;
+  }
+  return most;
+}
+
+}  // namespace
+
+void DeformableSolver::Parts::applyOthers() {
+  for (SolvedBody& of : bodies.bodies()) {
+    for (int n = 0; implicit() && n < of.body->m_nodes.size(); ++n) {
+      btSoftBody::Node& node = of.body->m_nodes[n];
+      node.m_q = node.m_x + dt() * node.m_v;
+    }
+    if (of.needsDeformation) of.body->advanceDeformation();
+  }
+  implicit() ? applyOthersImplicitly() : applyOthersExplicitly();
+}
+
+/// As btDeformableBackwardEulerObjective::applyExplicitForce, where elastic forces are explicit.
+void DeformableSolver::Parts::applyOthersExplicitly() {
+  VectorStack& impulses = solver.m_residual;
+  for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledExplicitForce(dt(), impulses);
+  for (SolvedBody& of : bodies.bodies()) {
+    for (int n = 0; n < of.body->m_nodes.size(); ++n) {
+      btSoftBody::Node& node = of.body->m_nodes[n];
+      node.m_v += node.m_im * impulses[of.first + n];
+      impulses[of.first + n].setZero();
+      if (!of.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
+    }
+  }
+}
+
+/// The same where they are implicit: gravity is the last force's of that type, for all bodies.
+void DeformableSolver::Parts::applyOthersImplicitly() {
+  VectorStack& impulses = solver.m_residual;
+  btVector3 gravity(0, 0, 0);
+  for (int i = 0; i < forces().size(); ++i) {
+    if (forces()[i]->getForceType() == BT_GRAVITY_FORCE) {
+      gravity = static_cast<btDeformableGravityForce*>(forces()[i])->m_gravity;
+    } else {
+      forces()[i]->addScaledForces(dt(), impulses);
+    }
+  }
+  for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledHessian(dt());
+  for (SolvedBody& of : bodies.bodies()) {
+    for (int n = 0; n < of.body->m_nodes.size(); ++n) {
+      btSoftBody::Node& node = of.body->m_nodes[n];
+      node.m_effectiveMass_inv =
+          node.m_im > 0 ? node.m_effectiveMass.inverse() : btMatrix3x3::getIdentity() * btScalar(0);
+      node.m_v += node.m_effectiveMass_inv * impulses[of.first + n] + dt() * of.body->m_gravityFactor * gravity;
+      impulses[of.first + n].setZero();
+    }
+  }
+}
+
+void DeformableSolver::Parts::predict(SolvedBody& of, ParallelFor* inner) {
+  Dynamics& dynamics = *of.dynamics;
+  if (implicit() && of.elastic) {
+    // From where the step began: other forces, gravity too, act again in its one solve.
+    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+      toPoint(of.body->m_nodes[static_cast<int>(n)].m_vn, dynamics.velocity(n));
+    }
+  }
+  dynamics.prepare(static_cast<double>(dt()), inner);
+  dynamics.matrix().free();
+  dynamics.start(static_cast<double>(dt()), inner);
+  if (!of.elastic) return;
+  elastic_detail::SolveLimits limits;
+  limits.tolerance = of.limits->tolerance;
+  limits.iterations = of.limits->iterations;
+  limits.floor = kUnseen * static_cast<double>(dt());
+  of.solve->start({&dynamics.matrix()}, limits, {}, inner);
+  of.solve->iterate(wasTouched(of) ? kIterationsBeforeContacts : limits.iterations, inner);
+  of.iterations = of.solve->iterations();
+}
+
+void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
+  if (!of.elastic) return;
+  const auto& matrix = of.dynamics->matrix();
+  for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+    node.m_v += fromWide(matrix.solution() + matrix.wideOf(n));
+    btScalar inverse[6];
+    matrix.freeInverse(n, inverse);
+    node.m_effectiveMass_inv = symmetricMatrix(inverse);
+  }
+}
+
+/// As btDeformableBodySolver::predictDeformableMotion, but for the trees.
+void DeformableSolver::Parts::predictPositions(SolvedBody& of) const {
+  prepareStep(*of.body, dt());
+  const btScalar squaredSpeed = moveNodes(*of.body, dt());
+  of.fittedTrees->fit(*of.body, *of.dynamics, btSqrt(squaredSpeed) * dt());
+}
+
+}  // namespace tetskin

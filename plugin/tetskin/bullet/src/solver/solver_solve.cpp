@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The solve after contacts: of bodies that forces couple together, of all others by themselves.
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/solver/solver_parts.h>
+
+#include <algorithm>
+
+namespace tetskin {
+
+/// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
+/// velocities the whole step begins with.
+void DeformableSolver::Parts::readContacts(SolvedBody& of) {
+  Dynamics& dynamics = *of.dynamics;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const int number = of.first + static_cast<int>(n);
+    const btVector3& before = solver.m_backupVelocity[number];
+    btVector3& dv = solver.m_dv[number];
+    of.touched |= !dv.isZero();
+    if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
+    btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
+    const btVector3 own = implicit() ? btVector3(0, 0, 0) : fromWide(solution);
+    toPoint(before - own, dynamics.velocity(n));
+    toWide(own + dv, solution);
+    if (implicit()) {
+      btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+      node.m_v = before + dv;
+      node.m_q = node.m_x + dt() * (node.m_v + node.m_splitv);
+    }
+  }
+  if (implicit() && of.needsDeformation) of.body->updateDeformation();
+}
+
+/// As btDeformableBackwardEulerObjective::computeResidual.
+void DeformableSolver::Parts::addOthers() {
+  for (int i = 0; i < forces().size(); ++i) {
+    btDeformableLagrangianForce& force = *forces()[i];
+    if (implicit() || force.getForceType() == BT_MOUSE_PICKING_FORCE) {
+      force.addScaledForces(dt(), solver.m_residual);
+    } else {
+      force.addScaledDampingForce(dt(), solver.m_residual);
+    }
+  }
+}
+
+/// What Bullet's forces have a part in is solved here, one after the other; the rest side by side.
+void DeformableSolver::Parts::solveSystems() {
+  step.resize(solver.m_numNodes, btVector3(0, 0, 0));
+  image.resize(solver.m_numNodes, btVector3(0, 0, 0));
+  extras.resize(bodies.bodies().size());
+  std::vector<const SolvedSystem*> own;
+  for (const SolvedSystem& system : bodies.systems()) {
+    system.forces.empty() ? own.push_back(&system) : solve(system, nullptr);
+  }
+  ParallelFor* inner = own.size() == 1 ? threads : nullptr;
+  runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solve(*own[k], inner); });
+}
+
+void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inner) {
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  bool again = implicit() || !system.forces.empty();
+  for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
+  if (again) return solveAgain(system, inner);
+  if (!first.elastic) return;
+  first.solve->iterate(first.limits->iterations, inner);
+  first.iterations = first.solve->iterations();
+  first.dynamics->removeMomentum();
+}
+
+void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor* inner) {
+  using Solve = elastic_detail::ConjugateGradient<btScalar>;
+  const elastic_detail::SolveLimits limits = limitsOf(system);
+  startAgain(system, inner);
+  Solve::Matrices matrices;
+  for (const std::size_t b : system.bodies) matrices.push_back(&bodies.bodies()[b].dynamics->matrix());
+  Solve::Extra extra;
+  if (!system.forces.empty()) extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  first.solve->start(std::move(matrices), limits, std::move(extra), inner);
+  first.solve->iterate(limits.iterations, inner);
+  first.iterations += first.solve->iterations();
+}
+
+void DeformableSolver::Parts::addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
+    }
+  }
+  multiplyOthers(system);
+  for (std::size_t k = 0; k < system.bodies.size(); ++k) added[k] = extras[system.bodies[k]].data();
+}
+
+/// The strictest of all.
+elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem& system) const {
+  elastic_detail::SolveLimits limits;
+  limits.floor = kUnseen * static_cast<double>(dt());
+  limits.iterations = 0;
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
+    limits.iterations = std::max(limits.iterations, of.limits->iterations);
+    if (of.elastic) limits.enough += of.solve->enough();
+  }
+  return limits;
+}
+
+/// The residuals of what contacts have done, and of what other forces do.
+void DeformableSolver::Parts::startAgain(const SolvedSystem& system, ParallelFor* inner) {
+  const bool explicitly = !system.forces.empty() && !implicit();
+  if (explicitly) {
+    for (const std::size_t b : system.bodies) {
+      const SolvedBody& of = bodies.bodies()[b];
+      const int end = of.first + static_cast<int>(of.dynamics->nodeCount());
+      for (int number = of.first; number < end; ++number) step[number] = solver.m_dv[number];
+    }
+    multiplyOthers(system);
+  }
+  for (const std::size_t b : system.bodies) {
+    SolvedBody& of = bodies.bodies()[b];
+    of.dynamics->startAgain(inner);
+    auto& matrix = of.dynamics->matrix();
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      const std::size_t wide = matrix.wideOf(n);
+      btVector3 residual = fromWide(matrix.residual() + wide);
+      residual += solver.m_residual[of.first + static_cast<int>(n)];
+      if (explicitly) residual -= fromWide(&extras[b][wide]);
+      toWide(residual, matrix.residual() + wide);
+    }
+  }
+}
+
+void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    for (int n = 0; n < of.body->m_nodes.size(); ++n) image[of.first + n].setZero();
+  }
+  for (btDeformableLagrangianForce* force : system.forces) {
+    force->addScaledDampingForceDifferential(-dt(), step, image);
+    if (implicit() || force->getForceType() == BT_MOUSE_PICKING_FORCE) {
+      force->addScaledElasticForceDifferential(-dt() * dt(), step, image);
+    }
+  }
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    extras[b].resize(matrix.wideSize(), btScalar(0));
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
+    }
+  }
+}
+
+void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
+  const auto& matrix = of.dynamics->matrix();
+  of.body->m_maxSpeedSquared = 0;
+  for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+    const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
+    node.m_v = implicit() ? v : v - node.m_splitv;
+    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, node.m_v.length2());
+  }
+}
+
+}  // namespace tetskin

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Forces of the application's, or several, on bodies that the library's solver solves for.
+#include "deformable_test.h"
+
+#include <BulletSoftBody/btDeformableMousePickingForce.h>
+
+#include <tetskin/bullet/elastic_force.h>
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::EmptyWorld;
+using test::lowest;
+using test::rmsSpeed;
+using test::smallCageAbove;
+using test::step;
+using test::TetskinWorld;
+
+TEST(SolverWithOthers, MousePicksBodies) {
+  TetskinWorld world;
+  const auto body = added(world, cageAbove(0.03));
+  step(world, 60);
+  btDeformableMousePickingForce pick(200, 1, body->body().m_faces[0], btVector3(0, 3, 0), 100);
+  world.deformable().addForce(&body->body(), &pick);
+  step(world, 120);
+  const btSoftBody::Face& face = body->body().m_faces[0];
+  const btVector3 held = (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3;
+  EXPECT_LT((held - btVector3(0, 3, 0)).length(), btScalar(0.5));
+  world.deformable().removeForce(&body->body(), &pick);
+  step(world, 120);
+  EXPECT_LT(lowest(body->body()), 0.1);
+}
+
+/// A spring of the application's own, from a node to a place, and how often Bullet's interface is used.
+class OwnSpring : public btDeformableLagrangianForce {
+ public:
+  OwnSpring(const btSoftBody::Node& ofNode, const btVector3& to) : node(ofNode), place(to) {}
+  void addScaledForces(btScalar scale, TVStack& force) override {
+    addScaledExplicitForce(scale, force);
+    addScaledDampingForce(scale, force);
+  }
+  void addScaledExplicitForce(btScalar scale, TVStack& force) override {
+    force[node.index] += scale * stiffness * (place - node.m_q);
+  }
+  void addScaledDampingForce(btScalar scale, TVStack& force) override {
+    force[node.index] -= scale * damping * node.m_v;
+  }
+  void addScaledDampingForceDifferential(btScalar scale, const TVStack& dv, TVStack& df) override {
+    ++products;
+    df[node.index] -= scale * damping * dv[node.index];
+  }
+  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) override {
+    ++elasticProducts;
+    df[node.index] -= scale * stiffness * dx[node.index];
+  }
+  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
+  void reinitialize(bool) override { ++steps; }
+  btDeformableLagrangianForceType getForceType() override { return type; }
+
+  const btSoftBody::Node& node;
+  btVector3 place;
+  btScalar stiffness = 50, damping = 5;
+  btDeformableLagrangianForceType type = BT_MASSSPRING_FORCE;
+  int products = 0, elasticProducts = 0, steps = 0;
+};
+
+TEST(SolverWithOthers, OwnForcesHaveTheirPartInEveryProduct) {
+  for (const bool implicit : {false, true}) {
+    for (const bool mouse : {false, true}) {
+      TetskinWorld world;
+      world.deformable().setImplicit(implicit);
+      const auto body = added(world, cageAbove(1));
+      OwnSpring spring(body->body().m_nodes[0], btVector3(0, 3, 0));
+      if (mouse) spring.type = BT_MOUSE_PICKING_FORCE;
+      world.deformable().addForce(&body->body(), &spring);
+      for (int k = 1; k <= 8; ++k) {
+        const int before = spring.products;
+        world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+        EXPECT_EQ(spring.steps, k);
+        EXPECT_GE(spring.products - before, world.bodySolver().iterations() / 2);
+      }
+      EXPECT_GT(spring.products, 8);
+      EXPECT_EQ(spring.elasticProducts > 0, implicit || mouse);
+      step(world, 240);
+      EXPECT_LT((spring.node.m_x - spring.place).length(), btScalar(0.6));
+      world.deformable().removeForce(&body->body(), &spring);
+    }
+  }
+}
+
+/// Stiff enough to explode if it had no part in the matrix: dt d / m is 100.
+TEST(SolverWithOthers, OwnForcesAreSolvedForImplicitly) {
+  TetskinWorld world;
+  const auto body = added(world, smallCageAbove(1));
+  OwnSpring spring(body->body().m_nodes[0], btVector3(0, 1, 0));
+  spring.damping = 1000;
+  world.deformable().addForce(&body->body(), &spring);
+  step(world, 30);
+  EXPECT_LT((spring.node.m_x - spring.place).length(), btScalar(0.1));
+  EXPECT_LT(rmsSpeed(body->body()), 5.0);
+  world.deformable().removeForce(&body->body(), &spring);
+}
+
+TEST(SolverWithOthers, TwoForcesOfOneBodyBothAct) {
+  for (const bool ours : {false, true}) {
+    std::unique_ptr<EmptyWorld> world = ours ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
+    const auto body = added(*world, smallCageAbove(5));
+    const int tets = body->body().m_tetras.size();
+    ElasticForce first({1e3}), second({1e3});
+    ASSERT_TRUE(first.addTo(world->deformable(), body->body()).ok());
+    ASSERT_TRUE(second.addTo(world->deformable(), body->body()).ok());
+    step(*world, 10);
+    EXPECT_EQ(body->body().m_tetras.size(), tets);
+    first.removeFrom(body->body());
+    second.removeFrom(body->body());
+    step(*world, 10);
+    EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
+  }
+}
+
+/// Bullet's addForce joins objects of one type: not those that a DeformableBody has for itself.
+TEST(SolverWithOthers, ABodyGivenAForceByBulletsMeansHasThatForce) {
+  TetskinWorld world;
+  const auto ours = added(world, smallCageAbove(5));
+  const auto own = makeSoftBody(smallCageAbove(9), world.deformable().getWorldInfo()).value();
+  ElasticForce force({1e3});
+  world.deformable().addSoftBody(own.get());
+  world.deformable().addForce(own.get(), &force);
+  EXPECT_EQ(force.m_softBodies.size(), 1);
+  step(world, 5);
+  // It has no gravity, as it was given none.
+  EXPECT_LT(rmsSpeed(*own), 1e-3);
+  force.removeFrom(*own);
+  EXPECT_EQ(force.m_softBodies.size(), 0);
+  world.deformable().removeSoftBody(own.get());
+  step(world, 5);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies under the library's own solve, that move freely or hang.
+#include "deformable_test.h"
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::lowest;
+using test::rmsSpeed;
+using test::smallCageAbove;
+using test::step;
+using test::TetskinWorld;
+
+using Vector = Eigen::Vector3d;
+
+/// Kilograms, and the moments of motion about the centre of mass.
+struct Motion {
+  double mass = 0.0, kinetic = 0.0, size = 0.0;
+  Vector momentum = Vector::Zero(), spin = Vector::Zero();
+};
+
+Motion motionOf(const btSoftBody& body) {
+  Motion motion;
+  Vector centre = Vector::Zero();
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const double mass = 1.0 / static_cast<double>(body.m_nodes[n].m_im);
+    motion.mass += mass;
+    centre += mass * toEigen(body.m_nodes[n].m_x);
+  }
+  centre /= motion.mass;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const double mass = 1.0 / static_cast<double>(body.m_nodes[n].m_im);
+    const Vector arm = toEigen(body.m_nodes[n].m_x) - centre, v = toEigen(body.m_nodes[n].m_v);
+    motion.momentum += mass * v;
+    motion.spin += mass * arm.cross(v);
+    motion.kinetic += 0.5 * mass * v.squaredNorm();
+    motion.size = std::max(motion.size, arm.norm());
+  }
+  return motion;
+}
+
+/// Radians a second about an axis through the centre, and a push.
+void spin(btSoftBody& body, const Vector& rate, const Vector& push) {
+  Vector centre = Vector::Zero();
+  for (int n = 0; n < body.m_nodes.size(); ++n) centre += toEigen(body.m_nodes[n].m_x) / body.m_nodes.size();
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body.m_nodes[n];
+    node.m_v = node.m_vn = toBullet(push + rate.cross(toEigen(node.m_x) - centre));
+  }
+}
+
+TEST(DeformableSolver, LetsBodiesFallLikeStones) {
+  TetskinWorld world;
+  const auto body = added(world, smallCageAbove(100));
+  step(world, 60);
+  const Motion motion = motionOf(body->body());
+  EXPECT_NEAR(motion.momentum.y() / motion.mass, -10.0, 1e-4);
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    EXPECT_NEAR(static_cast<double>(body->body().m_nodes[n].m_v.y()), -10.0, 1e-3);
+  }
+}
+
+/// A turn a second, stiff and soft.
+TEST(DeformableSolver, KeepsSpinAndGainsNoEnergy) {
+  for (const double stiffness : {50.0, 1e4}) {
+    TetskinWorld world;
+    SoftBodyOptions options;
+    options.relativeStiffness = stiffness;
+    const auto body = added(world, cageAbove(50), options);
+    body->setGravity(btVector3(0, 0, 0));
+    const Vector rate = 2.0 * M_PI * Vector(1, 2, 3).normalized();
+    spin(body->body(), rate, Vector(0.3, -0.2, 0.1));
+    const Motion before = motionOf(body->body());
+    const double tip = rate.norm() * before.size;
+    for (int f = 0; f < 600; ++f) {
+      step(world, 1);
+      ASSERT_LT(motionOf(body->body()).kinetic, 1.0001 * before.kinetic) << "frame " << f;
+    }
+    const Motion after = motionOf(body->body());
+    EXPECT_LT((after.momentum - before.momentum).norm(), 1e-5 * before.mass * tip);
+    EXPECT_LT((after.spin - before.spin).norm(), 1e-5 * before.mass * tip * before.size);
+  }
+}
+
+/// Pinned by its upper layer; stretched by its weight as a bar is: rho g L^2 / 2 E.
+TEST(DeformableSolver, HangsFromItsPinsAsLongAsItShould) {
+  TetskinWorld world;
+  TetMesh cage = test::latticeCage(2, 10, 2, 0.1);
+  for (Vector& p : cage.nodes) p.y() += 5.0;
+  SoftBodyOptions options;
+  options.density = 10.0;
+  options.youngsModulus = 5000.0;
+  options.poissonRatio = 0.0;
+  options.damping = 0.1;
+  options.pinned = pinnedIn(Box3(Vector(-1, 5.999, -1), Vector(1, 7, 1)));
+  const auto body = added(world, cage, options);
+  step(world, 300);
+  const double sag = 5.0 - lowest(body->body());
+  EXPECT_NEAR(sag, 10.0 * 10.0 * 1.0 / (2.0 * 5000.0), 0.05 * sag);
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    if (cage.nodes[static_cast<std::size_t>(n)].y() < 5.999) continue;
+    EXPECT_LT((toEigen(body->body().m_nodes[n].m_x) - cage.nodes[static_cast<std::size_t>(n)]).norm(), 1e-6);
+  }
+}
+
+double volumeOf(const btSoftBody& body) {
+  btScalar sum = 0;
+  for (int t = 0; t < body.m_tetras.size(); ++t) {
+    btSoftBody::Node* const* n = body.m_tetras[t].m_n;
+    const btVector3& origin = n[0]->m_x;
+    sum += (n[1]->m_x - origin).cross(n[2]->m_x - origin).dot(n[3]->m_x - origin) / 6;
+  }
+  return static_cast<double>(sum);
+}
+
+/// Nodes are put on a plane, mirrored, or all to one place.
+TEST(DeformableSolver, BringsBackWhatIsFlatOrInsideOut) {
+  using Place = std::function<btVector3(const btVector3&)>;
+  const Place places[] = {[](const btVector3& x) { return btVector3(x.x(), 5, x.z()); },
+                          [](const btVector3& x) { return btVector3(x.x(), 10 - x.y(), x.z()); },
+                          [](const btVector3&) { return btVector3(0, 5, 0); }};
+  const TetMesh cage = cageAbove(5);
+  for (const Place& place : places) {
+    TetskinWorld world;
+    const auto body = added(world, cage);
+    body->setGravity(btVector3(0, 0, 0));
+    btSoftBody& soft = body->body();
+    for (int n = 0; n < soft.m_nodes.size(); ++n)
+      soft.m_nodes[n].m_x = soft.m_nodes[n].m_q = place(soft.m_nodes[n].m_x);
+    step(world, 240);
+    EXPECT_LT(rmsSpeed(soft), 100.0);
+    EXPECT_NEAR(volumeOf(soft), totalVolume(cage), 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

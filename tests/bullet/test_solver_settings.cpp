@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The library's own solve: where it is in use, by which settings, and what it tells of itself.
+#include "cloth.h"
+
+#include <tetskin/threads/thread_pool.h>
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::cageAbove;
+using test::Cloth;
+using test::EmptyWorld;
+using test::lowest;
+using test::smallCageAbove;
+using test::step;
+using test::TetskinWorld;
+
+using Vector = Eigen::Vector3d;
+
+std::vector<btVector3> positionsOf(const btSoftBody& body) {
+  std::vector<btVector3> all;
+  for (int n = 0; n < body.m_nodes.size(); ++n) all.push_back(body.m_nodes[n].m_x);
+  return all;
+}
+
+bool sameBits(const std::vector<btVector3>& a, const std::vector<btVector3>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const btVector3& p, const btVector3& q) {
+           return p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
+         });
+}
+
+TEST(DeformableSolver, IsWhatBodiesAreSolvedByUnlessTheyAreBullets) {
+  TetskinWorld world;
+  const auto ours = added(world, smallCageAbove(5));
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  const auto bullets = added(world, smallCageAbove(10), options);
+  EXPECT_EQ(ours->forceModel(), ForceModel::Corotated);
+  EXPECT_EQ(ours->solverPath(), SolverPath::Solver);
+  EXPECT_EQ(bullets->forceModel(), ForceModel::NeoHookean);
+  EXPECT_EQ(bullets->solverPath(), SolverPath::Bullet);
+  world.deformable().setLineSearch(true);
+  step(world, 1);
+  EXPECT_EQ(ours->solverPath(), SolverPath::ForceOnly);
+  world.deformable().setLineSearch(false);
+  step(world, 1);
+  EXPECT_EQ(ours->solverPath(), SolverPath::Solver);
+  world.deformable().setUseProjection(false);
+  step(world, 1);
+  EXPECT_EQ(ours->solverPath(), SolverPath::ForceOnly);
+
+  EmptyWorld other;
+  EXPECT_EQ(added(other, smallCageAbove(5))->solverPath(), SolverPath::ForceOnly);
+}
+
+TEST(DeformableSolver, DoesNotBoundTheDefaultStiffnessByTheStep) {
+  TetskinWorld ours;
+  EmptyWorld bullets;
+  SoftBodyOptions options;
+  options.relativeStiffness = 1e4;
+  const TetMesh cage = cageAbove(5);
+  const double wanted = 1e4 * (1.0 / totalVolume(cage)) * 10.0;  // of 1 kg, 1 unit long
+  EXPECT_NEAR(added(ours, cage, options)->youngsModulus(), wanted, 1e-6 * wanted);
+  EXPECT_LT(added(bullets, cage, options)->youngsModulus(), 0.5 * wanted);
+}
+
+TEST(DeformableSolver, GivesTheSameBitsAgainAndWithThreads) {
+  const auto run = [](ParallelFor* threads, int bodies) {
+    TetskinWorld world;
+    world.bodySolver().setThreads(threads);
+    std::vector<std::unique_ptr<DeformableBody>> all;
+    for (int b = 0; b < bodies; ++b) all.push_back(added(world, cageAbove(0.3 + 1.5 * b)));
+    step(world, 40);
+    std::vector<btVector3> positions;
+    for (const auto& body : all) {
+      for (const btVector3& p : positionsOf(body->body())) positions.push_back(p);
+    }
+    return positions;
+  };
+  ThreadPool pool(3);
+  for (const int bodies : {1, 3}) {
+    const std::vector<btVector3> alone = run(nullptr, bodies);
+    EXPECT_TRUE(sameBits(alone, run(nullptr, bodies))) << bodies;
+    EXPECT_TRUE(sameBits(alone, run(&pool, bodies))) << bodies;
+  }
+}
+
+TEST(DeformableSolver, TakesAStiffnessForEachTetAndAMassForEachNode) {
+  TetskinWorld world;
+  const TetMesh cage = cageAbove(5);
+  SoftBodyOptions options;
+  options.stiffnessScale.assign(cage.tetCount(), 1.0);
+  // The lower half is a hundred times softer.
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    double height = 0.0;
+    for (const int n : cage.tets[t]) height += cage.nodes[static_cast<std::size_t>(n)].y() / 4.0;
+    if (height < 5.4) options.stiffnessScale[t] = 0.01;
+  }
+  options.nodeMasses.assign(cage.nodeCount(), 0.02);
+  options.pinned = pinnedIn(Box3(Vector(-1, 5.79, -1), Vector(2, 7, 2)));
+  options.youngsModulus = 1e4;
+  const auto body = added(world, cage, options);
+  step(world, 120);
+  double upper = 0.0, lower = 0.0;
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+    const Vector rest = cage.nodes[static_cast<std::size_t>(n)];
+    const double moved = rest.y() - static_cast<double>(body->body().m_nodes[n].m_x.y());
+    if (rest.y() < 5.01) lower = std::max(lower, moved);
+    if (std::abs(rest.y() - 5.4) < 0.01) upper = std::max(upper, moved);
+    const auto inverse = static_cast<double>(body->body().m_nodes[n].m_im);
+    EXPECT_NEAR(inverse, rest.y() > 5.79 ? 0.0 : 50.0, 1e-3);
+  }
+  EXPECT_GT(lower, 10.0 * upper);
+  EXPECT_GT(upper, 0.0);
+}
+
+TEST(DeformableSolver, RefusesValuesThatMakeNoSense) {
+  TetskinWorld world;
+  const TetMesh cage = smallCageAbove(5);
+  const auto refused = [&](auto&& change) {
+    SoftBodyOptions options;
+    change(options);
+    const auto result = DeformableBody::add(world.deformable(), cage, options);
+    EXPECT_FALSE(result.ok());
+    EXPECT_FALSE(result.status().message.empty());
+    return result.status().code;
+  };
+  const double nan = std::nan("");
+  const auto scale = [&](std::vector<double> values) {
+    return refused([&](SoftBodyOptions& o) { o.stiffnessScale = values; });
+  };
+  const auto masses = [&](std::vector<double> values) {
+    return refused([&](SoftBodyOptions& o) { o.nodeMasses = values; });
+  };
+  EXPECT_EQ(scale({1.0}), StatusCode::SizeMismatch);
+  EXPECT_EQ(masses({1.0}), StatusCode::SizeMismatch);
+  for (const double bad : {nan, 0.0, -1.0, HUGE_VAL}) {
+    EXPECT_EQ(scale(std::vector<double>(cage.tetCount(), bad)), StatusCode::InvalidOption) << bad;
+    EXPECT_EQ(masses(std::vector<double>(cage.nodeCount(), bad)), StatusCode::InvalidOption) << bad;
+  }
+  EXPECT_EQ(refused([](SoftBodyOptions& o) { o.poissonRatio = 0.5; }), StatusCode::InvalidOption);
+  EXPECT_EQ(refused([](SoftBodyOptions& o) { o.solverTolerance = 1.0; }), StatusCode::InvalidOption);
+  EXPECT_EQ(refused([&](SoftBodyOptions& o) { o.solverTolerance = nan; }), StatusCode::InvalidOption);
+  EXPECT_EQ(refused([](SoftBodyOptions& o) { o.maxIterations = 0; }), StatusCode::InvalidOption);
+  EXPECT_EQ(refused([&](SoftBodyOptions& o) {
+              o.forceModel = ForceModel::NeoHookean;
+              o.stiffnessScale.assign(cage.tetCount(), 1.0);
+            }),
+            StatusCode::InvalidOption);
+  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
+}
+
+TEST(DeformableSolver, RefusesAWorldOfReducedBodies) {
+  EmptyWorld world(std::make_unique<btReducedDeformableBodySolver>());
+  const auto result = DeformableBody::add(world.deformable(), smallCageAbove(5));
+  EXPECT_EQ(result.status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
+}
+
+TEST(DeformableSolver, FollowsChangesOfTheMaterial) {
+  TetskinWorld world;
+  SoftBodyOptions options;
+  options.pinned = pinnedIn(Box3(Vector(-1, 5.79, -1), Vector(2, 7, 2)));
+  options.youngsModulus = 1e3;
+  const auto body = added(world, cageAbove(5), options);
+  step(world, 120);
+  const double soft = 5.0 - lowest(body->body());
+  ASSERT_TRUE(body->setYoungsModulus(1e5).ok());
+  step(world, 120);
+  const double stiff = 5.0 - lowest(body->body());
+  EXPECT_LT(stiff, 0.05 * soft);
+  EXPECT_EQ(body->setPoissonRatio(0.5).code, StatusCode::InvalidOption);
+  EXPECT_EQ(body->youngsModulus(), 1e5);
+}
+
+TEST(DeformableSolver, CountsTheIterationsOfTheLastStepAlone) {
+  TetskinWorld world;
+  Cloth cloth(world);
+  EXPECT_EQ(world.bodySolver().iterations(), 0);
+  step(world, 1);
+  EXPECT_GT(world.bodySolver().iterations(), 0);
+  // Nothing but gravity is left.
+  world.deformable().removeForce(cloth.body.get(), &cloth.springs);
+  step(world, 1);
+  EXPECT_EQ(world.bodySolver().iterations(), 0);
+
+  const auto body = added(world, smallCageAbove(5));
+  body->body().m_nodes[0].m_v += btVector3(1, 0, 0);
+  step(world, 1);
+  EXPECT_GT(world.bodySolver().iterations(), 0);
+  world.deformable().setLineSearch(true);
+  step(world, 1);
+  EXPECT_EQ(world.bodySolver().iterations(), 0) << "Bullet's own code has solved";
+}
+
+/// Rays find a body wherever it has gone, though its trees are not fitted in each step.
+TEST(DeformableSolver, LeavesBodiesToBeFoundByRays) {
+  TetskinWorld world;
+  const auto body = added(world, cageAbove(6));
+  for (int f = 0; f < 90; ++f) {
+    step(world, 1);
+    const btSoftBody::Face& face = body->body().m_faces[(37 * f) % body->body().m_faces.size()];
+    const btVector3 centre = (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3;
+    const btVector3 normal =
+        (face.m_n[1]->m_x - face.m_n[0]->m_x).cross(face.m_n[2]->m_x - face.m_n[0]->m_x).normalized();
+    const btVector3 from = centre + btScalar(0.001) * normal, to = centre - btScalar(0.001) * normal;
+    btCollisionWorld::ClosestRayResultCallback hit(from, to);
+    world.deformable().rayTest(from, to, hit);
+    EXPECT_TRUE(hit.hasHit()) << "frame " << f;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The conjugate gradient with nodes that are held, fixed or resisted.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <utility>
+#include <vector>
+
+#include "gradient_fixtures.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using test::apart;
+using test::AssembledBody;
+using test::begin;
+using test::closely;
+using test::kClose;
+using test::onEachInstructionSet;
+using test::rightSide;
+using test::smallCage;
+using test::solutionOf;
+using test::Solver;
+
+/// The solution of a x = b whose `fixed` components (columns of a basis) stay as they are at the start.
+VectorXd solveWithin(const MatrixXd& a, const VectorXd& b, const VectorXd& start, const MatrixXd& basisOfTheFree) {
+  const MatrixXd& z = basisOfTheFree;
+  return start + z * (z.transpose() * a * z).ldlt().solve(z.transpose() * (b - a * start));
+}
+
+/// Columns: what is left free, from directions by node that are not.
+MatrixXd freeBasis(std::size_t nodes, const std::vector<std::pair<std::size_t, Vector3d>>& fixed) {
+  const auto size = static_cast<Eigen::Index>(3 * nodes);
+  MatrixXd projection = MatrixXd::Identity(size, size);
+  for (const auto& [node, n] : fixed) {
+    const auto at = static_cast<Eigen::Index>(3 * node);
+    projection.block<3, 3>(at, at) -= n * n.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> split(projection);
+  return split.eigenvectors().rightCols(size - static_cast<Eigen::Index>(fixed.size()));
+}
+
+TEST(ConjugateGradient, HeldNodesStayAsTheyWereAtTheStart) {
+  onEachInstructionSet([&] {
+    AssembledBody<double> body(smallCage());
+    std::vector<std::pair<std::size_t, Vector3d>> fixed;
+    for (const std::size_t node : {0u, 4u, 7u}) {
+      body.hold(node);
+      for (int k = 0; k < 3; ++k) fixed.emplace_back(node, Vector3d::Unit(k));
+    }
+    body.assemble();
+    const MatrixXd a = body.dense();
+    const VectorXd b = rightSide(body), from = rightSide(body, 42);
+    begin(body, a, b, from);
+    Solver solver;
+    solver.start({&body.matrix}, closely(), {}, nullptr);
+    EXPECT_TRUE(solver.iterate(500, nullptr));
+    const VectorXd x = solutionOf(body);
+    for (const std::size_t node : {0u, 4u, 7u}) {
+      EXPECT_EQ(x.segment<3>(static_cast<Eigen::Index>(3 * node)),
+                from.segment<3>(static_cast<Eigen::Index>(3 * node)));
+    }
+    EXPECT_LT(apart(x, solveWithin(a, b, from, freeBasis(body.nodes.size(), fixed))), kClose);
+  });
+}
+
+TEST(ConjugateGradient, FixedDirectionsStayAsTheyWereAtTheStart) {
+  onEachInstructionSet([&] {
+    AssembledBody<double> body(smallCage());
+    const Vector3d n = Vector3d(1, -2, 2) / 3.0, m = Vector3d(2, 3, -6) / 7.0;
+    const Vector3d across = n.unitOrthogonal(), rest = n.cross(across);
+    body.matrix.fixAlong(2, n.data());
+    body.matrix.fixAlong(3, m.data());  // neighbours, one with the other
+    body.matrix.fixAllBut(9, n.data());
+    body.matrix.fix(12);
+    const std::vector<std::pair<std::size_t, Vector3d>> fixed{{2, n},
+                                                              {3, m},
+                                                              {9, across},
+                                                              {9, rest},
+                                                              {12, Vector3d::UnitX()},
+                                                              {12, Vector3d::UnitY()},
+                                                              {12, Vector3d::UnitZ()}};
+    const MatrixXd a = body.dense();
+    const VectorXd b = rightSide(body), from = rightSide(body, 42);
+    begin(body, a, b, from);
+    Solver solver;
+    solver.start({&body.matrix}, closely(), {}, nullptr);
+    EXPECT_TRUE(solver.iterate(500, nullptr));
+    const VectorXd x = solutionOf(body);
+    for (const auto& [node, direction] : fixed) {
+      const auto at = static_cast<Eigen::Index>(3 * node);
+      EXPECT_NEAR(direction.dot(x.segment<3>(at)), direction.dot(from.segment<3>(at)), 1e-13);
+    }
+    EXPECT_LT(apart(x, solveWithin(a, b, from, freeBasis(body.nodes.size(), fixed))), kClose);
+  });
+}
+
+TEST(ConjugateGradient, ResistanceIsPartOfTheMatrix) {
+  onEachInstructionSet([&] {
+    AssembledBody<double> body(smallCage());
+    const Vector3d n = Vector3d(1, -2, 2) / 3.0;
+    body.matrix.resistAcross(6, n.data(), 20.0);
+    MatrixXd a = body.dense();
+    a.block<3, 3>(18, 18) += 20.0 * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const VectorXd b = rightSide(body);
+    begin(body, a, b, VectorXd::Zero(b.size()));
+    Solver solver;
+    solver.start({&body.matrix}, closely(), {}, nullptr);
+    EXPECT_TRUE(solver.iterate(500, nullptr));
+    EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), kClose);
+  });
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The conjugate gradient with what others add to its matrices, and over several of them.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "gradient_fixtures.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using kernels::kGroup;
+using test::apart;
+using test::AssembledBody;
+using test::begin;
+using test::closely;
+using test::kClose;
+using test::onEachInstructionSet;
+using test::rightSide;
+using test::smallCage;
+using test::solutionOf;
+using test::Solver;
+
+/// A matrix of springs added to that of some bodies, of which the unknowns stand one after the other.
+class Springs {
+ public:
+  Springs(std::vector<AssembledBody<double>*> bodies, MatrixXd springs)
+      : bodies_(std::move(bodies)), springs_(std::move(springs)) {
+    for (const AssembledBody<double>* body : bodies_) added_.emplace_back(body->matrix.wideSize(), 0.0);
+  }
+
+  Solver::Extra extra() {
+    return [this](std::vector<const double*>& out) {
+      ++calls;
+      VectorXd step(springs_.cols());
+      Eigen::Index at = 0;
+      for (const AssembledBody<double>* body : bodies_) {
+        for (std::size_t n = 0; n < body->nodes.size(); ++n, at += 3) {
+          const double* p = body->matrix.stepPoints() + 4 * body->matrix.slotOf(n);
+          step.segment<3>(at) = Vector3d(p[0], p[1], p[2]);
+        }
+      }
+      const VectorXd image = springs_ * step;
+      at = 0;
+      for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const auto size = static_cast<Eigen::Index>(3 * bodies_[k]->nodes.size());
+        bodies_[k]->toWide(image.segment(at, size), added_[k].data());
+        out[k] = added_[k].data();
+        at += size;
+      }
+    };
+  }
+
+  int calls = 0;
+
+ private:
+  std::vector<AssembledBody<double>*> bodies_;
+  MatrixXd springs_;
+  std::vector<std::vector<double>> added_;
+};
+
+TEST(ConjugateGradient, SolvesWithAnotherOperatorAdded) {
+  onEachInstructionSet([&] {
+    AssembledBody<double> body(smallCage());
+    const VectorXd stiffness = (rightSide(body, 43).array() + 1.0) * 10.0;
+    const MatrixXd a = body.dense() + MatrixXd(stiffness.asDiagonal());
+    const VectorXd b = rightSide(body), from = rightSide(body, 42);
+    Springs springs({&body}, stiffness.asDiagonal());
+    begin(body, a, b, from);
+    Solver solver;
+    solver.start({&body.matrix}, closely(), springs.extra(), nullptr);
+    EXPECT_TRUE(solver.iterate(500, nullptr));
+    EXPECT_EQ(springs.calls, solver.iterations());
+    EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), kClose);
+  });
+}
+
+TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
+  onEachInstructionSet([&] {
+    AssembledBody<double> first(smallCage()), second(test::bodyCentredCage(1, 2, 1), 0.05, 2.0);
+    const auto size = static_cast<Eigen::Index>(3 * first.nodes.size());
+    const auto total = size + static_cast<Eigen::Index>(3 * second.nodes.size());
+    MatrixXd springs = MatrixXd::Zero(total, total);
+    for (int k = 0; k < 9; ++k) {  // from the first nodes of one to those of the other
+      const double stiffness = 5.0 + k;
+      springs(k, k) += stiffness;
+      springs(size + k, size + k) += stiffness;
+      springs(k, size + k) -= stiffness;
+      springs(size + k, k) -= stiffness;
+    }
+    MatrixXd a = springs;
+    a.topLeftCorner(size, size) += first.dense();
+    a.bottomRightCorner(total - size, total - size) += second.dense();
+    const VectorXd b = test::Random(44).vector(static_cast<std::size_t>(total));
+    for (AssembledBody<double>* body : {&first, &second}) {
+      const VectorXd part = body == &first ? b.head(size) : b.tail(total - size);
+      body->toWide(VectorXd::Zero(part.size()), body->matrix.solution());
+      body->toWide(part, body->matrix.residual());
+    }
+    Springs between({&first, &second}, springs);
+    Solver solver;
+    solver.start({&first.matrix, &second.matrix}, closely(), between.extra(), nullptr);
+    EXPECT_TRUE(solver.iterate(500, nullptr));
+    VectorXd x(total);
+    x << solutionOf(first), solutionOf(second);
+    EXPECT_LT(apart(x, a.ldlt().solve(b)), kClose);
+  });
+}
+
+TEST(ConjugateGradient, AnAdditionThatIsNotPositiveLeavesWhatHasBeenReached) {
+  onEachInstructionSet([&] {
+    for (const double value :
+         {-1e6, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      AssembledBody<double> body(smallCage());
+      const MatrixXd a = body.dense();
+      const VectorXd b = rightSide(body);
+      begin(body, a, b, VectorXd::Zero(b.size()));
+      std::vector<double> added(body.matrix.wideSize());
+      int calls = 0;
+      const auto extra = [&](std::vector<const double*>& out) {
+        if (++calls <= 4) return;
+        for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            added[body.matrix.wideOf(n) + k * kGroup] = value * body.matrix.stepPoints()[4 * body.matrix.slotOf(n) + k];
+          }
+        }
+        out[0] = added.data();
+      };
+      Solver solver;
+      solver.start({&body.matrix}, closely(), extra, nullptr);
+      solver.iterate(4, nullptr);
+      const VectorXd reached = solutionOf(body);
+      solver.iterate(100, nullptr);
+      EXPECT_EQ(calls, 5) << value;
+      EXPECT_EQ(solutionOf(body), reached) << value;
+      EXPECT_TRUE(reached.allFinite());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace tetskin
