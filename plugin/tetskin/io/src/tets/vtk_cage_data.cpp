@@ -28,6 +28,14 @@ constexpr std::array<Attribute, 10> kAttributes = {{{"vectors", 3, true},
                                                     {"color_scalars", 0, false},
                                                     {"lookup_table", 4, false}}};
 
+/// Null if there is no such kind.
+const Attribute* attributeNamed(const std::string& keyword) {
+  for (const Attribute& attribute : kAttributes) {
+    if (keyword == attribute.keyword) return &attribute;
+  }
+  return nullptr;
+}
+
 /// Drops the values of cells that are no tets.
 template <class Value>
 void keepValues(std::vector<Value>& values, const std::vector<bool>& isTet) {
@@ -104,9 +112,8 @@ Status VtkCageData::readAttribute(const std::string& keyword) {
     file_.skipMetadata();
     return {};
   }
-  const auto* known = std::find_if(kAttributes.begin(), kAttributes.end(),
-                                   [&](const Attribute& attribute) { return keyword == attribute.keyword; });
-  if (known == kAttributes.end()) {
+  const Attribute* known = attributeNamed(keyword);
+  if (!known) {
     return file_.error(StatusCode::Malformed, "has " + excerpt(keyword) +
                                                   " where data of cells or points should begin; do the data before it "
                                                   "have the right number of entries? Correct or remove them");

@@ -133,6 +133,8 @@ Status VtkReader::readSection(const std::string& keyword) {
 Status VtkReader::readIntegers(std::uint64_t count, const std::string& type, std::vector<std::int64_t>& values,
                                std::vector<std::size_t>* lines) {
   values.clear();
+  values.reserve(file_.room(count));
+  if (lines && !file_.binary()) lines->reserve(file_.room(count));
   return file_.readNumbers<std::int64_t>(count, type, [&](std::int64_t value) -> Status {
     values.push_back(value);
     if (lines && !file_.binary()) lines->push_back(file_.line());
@@ -150,6 +152,7 @@ Status VtkReader::readPoints() {
     return error(StatusCode::Malformed, "states " + std::to_string(count) + " points; correct the file");
   }
   std::vector<double> values;
+  values.reserve(file_.room(3 * count));
   status = file_.readNumbers<double>(3 * count, type, [&](double value) -> Status {
     const std::string fault = coordinateFault({value, 0.0, 0.0});
     values.push_back(value);

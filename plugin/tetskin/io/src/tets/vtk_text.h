@@ -6,6 +6,7 @@
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_scanner.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -46,6 +47,9 @@ class VtkText {
   void endHeader() {
     if (binary_) in_.restOfLine();
   }
+
+  /// What memory may be reserved for so many numbers, each of which takes a byte of the file or more.
+  std::size_t room(std::uint64_t count) const { return std::min<std::uint64_t>(count, in_.remaining()); }
 
   Status readCount(const char* what, std::uint64_t& count);
 
