@@ -53,11 +53,11 @@ int run(CageCommand command) {
   command.cage.fit = !command.loose;
   CageReport report;
   const Cage cage = cageFor(surface, command.cage, &report);
-  require(saveTetMesh(cage, command.output));
+  require(saveCage(cage, command.output));
 
   // Counted as an application would see it, not as the builder believes it to be.
   EmbedReport fit;
-  const auto embedded = embed(cage, viewOf(surface.mesh.positions), {}, &fit);
+  const auto embedded = embed(cage, surface.mesh, {}, &fit);
   if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
   if (!command.json.empty()) writeJson(summarise(surface, report, fit), command.json);
   if (!command.quiet) std::printf("%s%s\n", report.describe().c_str(), command.output.c_str());
@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
   CageCommand command;
   CommandLine line("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
   line.addMeshOptions(command.model);
-  line.addFile("-o,--output", command.output, "Tet mesh to write: .vtk, .msh, or .ele with .node",
+  line.addFile("-o,--output", command.output,
+               "Cage to write: .vtk, with all that is known of it; tets alone: .msh, .ele with .node",
                CommandLine::Need::Required);
   line.addSummaryOption(command.json, "File of the summary");
   line.addFlag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");

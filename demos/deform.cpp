@@ -32,6 +32,28 @@ struct DeformCommand {
   bool quiet = false;
 };
 
+/// The nodes of every tet, ascending, and so are the tets: what does not depend on their order and orientation.
+std::vector<Tet> sortedTets(const TetMesh& mesh) {
+  std::vector<Tet> tets = mesh.tets;
+  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
+  std::sort(tets.begin(), tets.end());
+  return tets;
+}
+
+/// Equal counts do not make it the same cage: of one with copies of tets, nodes in another order would carry vertices
+/// with the wrong copy, and nothing would show it.
+void requireSameTets(const DeformCommand& command, const TetMesh& deformed, const TetMesh& rest) {
+  const std::vector<Tet> now = sortedTets(deformed), then = sortedTets(rest);
+  const auto [other, wanted] = std::mismatch(now.begin(), now.end(), then.begin(), then.end());
+  if (other == now.end()) return;
+  const bool extra = *other < *wanted;
+  const Tet& tet = extra ? *other : *wanted;
+  throw InputError(command.deformed + ": has " + (extra ? "a" : "no") + " tet of nodes " + std::to_string(tet[0]) +
+                   ", " + std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + " and " + std::to_string(tet[3]) +
+                   ", but the rest cage " + command.model.cage + " has " + (extra ? "none" : "one") +
+                   "; export both from one simulation, with its nodes in the same order");
+}
+
 /// The nodes of the deformed cage. Its tets only tell whether it is the same cage: their order and orientation may
 /// differ, as simulators change them.
 TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
@@ -45,6 +67,7 @@ TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
   };
   demand(deformed.value().nodeCount(), rest.nodeCount(), "nodes");
   demand(deformed.value().tetCount(), rest.tetCount(), "tets");
+  requireSameTets(command, deformed.value(), rest);
   return std::move(deformed).value();
 }
 
@@ -104,7 +127,7 @@ int run(const DeformCommand& command) {
   static_cast<Surface&>(model) = loadSurface(command.model);
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
   require(layout.status());
-  model.cage = loadCage(command.model.cage);
+  model.cage = loadCage(command.model.cage, model);
   const TetMesh deformed = loadDeformed(command, model.cage);
 
   EmbedReport fit;

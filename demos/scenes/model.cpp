@@ -34,11 +34,14 @@ Surface loadSurface(const ModelOptions& options) {
   return {options.mesh, std::move(mesh).value()};
 }
 
-Cage loadCage(const std::string& path) {
-  Result<TetMesh> cage = loadTetMesh(path);
+Cage loadCage(const std::string& path, const Surface& surface) {
+  Result<Cage> cage = tetskin::loadCage(path);
   require(cage.status());
   if (const Status status = usable(cage.value(), checkTetMesh(cage.value())); !status.ok()) {
     throw InputError(path + ": " + status.message);
+  }
+  if (const Status status = cage.value().checkMesh(surface.mesh); !status.ok()) {
+    throw InputError(path + " is not a cage of " + surface.name + ": " + status.message + " with tetskin_cage");
   }
   return std::move(cage).value();
 }
@@ -61,7 +64,7 @@ Model loadModel(const ModelOptions& options) {
   }
   CageOptions cage;
   cage.targetTets = options.tets;
-  model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage);
+  model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage, model);
   (void)repairTetMesh(model.cage);
   return model;
 }

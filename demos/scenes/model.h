@@ -39,8 +39,8 @@ struct Model : Surface {
 
 /// These load or make; they throw InputError, with the file and the fault.
 Surface loadSurface(const ModelOptions& options);
-/// A usable cage, its tets as the file has them.
-Cage loadCage(const std::string& path);
+/// A usable cage, its tets as the file has them; not one of another mesh, if the file tells.
+Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 /// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);

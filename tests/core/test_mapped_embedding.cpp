@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Embedding by the map of a cage, `Cage::vertexTets`.
+#include "support/odd_meshes.h"
+#include "support/two_plates.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh_skin.h>
+
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+using Eigen::Vector3d;
+using test::TwoPlates;
+using test::twoPlates;
+
+void expectRefused(const Cage& cage, const TriangleMesh& mesh, StatusCode code,
+                   std::initializer_list<std::string> parts) {
+  EmbedReport report;
+  const Result<Embedding> made = embed(cage, mesh, {}, &report);
+  EXPECT_STREQ(toString(made.status().code), toString(code)) << made.status().message;
+  for (const std::string& part : parts) {
+    EXPECT_NE(made.status().message.find(part), std::string::npos) << made.status().message;
+  }
+  EXPECT_EQ(report.unbound, mesh.vertexCount());
+  EXPECT_EQ(report.mapped, 0u);
+}
+
+TEST(MappedEmbedding, BelievesTheMapWhereThePlaceWouldChooseTheOtherCopy) {
+  const TwoPlates plates = twoPlates();
+  EmbedReport report;
+  const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  const auto mapped = made.value().bindings();
+  const auto placed = embed(plates.cage, viewOf(plates.mesh.positions)).value().bindings();
+  for (std::size_t v = 0; v < mapped.size(); ++v) {
+    EXPECT_EQ(mapped[v].tet, plates.cage.vertexTets[v]);
+    EXPECT_TRUE(mapped[v].inside);
+    EXPECT_EQ(mapped[v].weights, placed[v].weights);  // the copies are at one place
+    EXPECT_LT(static_cast<std::size_t>(placed[v].tet), plates.latticeTets);
+  }
+}
+
+TEST(MappedEmbedding, ReportsWhatASearchWould) {
+  const TwoPlates plates = twoPlates();
+  EmbedReport mapped, placed;
+  EmbedOptions options;
+  ASSERT_TRUE(embed(plates.cage, plates.mesh, options, &mapped).ok());
+  ASSERT_TRUE(embed(plates.cage, viewOf(plates.mesh.positions), options, &placed).ok());
+  const std::size_t vertices = plates.mesh.vertexCount();
+  EXPECT_EQ(mapped.vertexCount, vertices);
+  EXPECT_EQ(mapped.inside, vertices);
+  EXPECT_EQ(mapped.outside, 0u);
+  EXPECT_EQ(mapped.unbound, 0u);
+  EXPECT_EQ(mapped.mapped, vertices);
+  EXPECT_EQ(mapped.overlapping, 0u);
+  EXPECT_EQ(mapped.candidates, 0u);
+  EXPECT_EQ(mapped.worstDistance, 0.0);
+  EXPECT_EQ(mapped.restErrorMax, placed.restErrorMax);
+  EXPECT_EQ(mapped.largestWeight, placed.largestWeight);
+  EXPECT_EQ(mapped.meshBox.max(), placed.meshBox.max());
+  EXPECT_EQ(mapped.cageBox.min(), placed.cageBox.min());
+  EXPECT_FALSE(mapped.unitsDiffer());
+  EXPECT_EQ(mapped.describe().find("only a Cage with its map"), std::string::npos) << mapped.describe();
+
+  EXPECT_EQ(placed.mapped, 0u);
+  EXPECT_GT(placed.overlapping, vertices / 2);  // the others are on faces
+  EXPECT_NE(placed.describe().find("only a Cage with its map"), std::string::npos) << placed.describe();
+}
+
+TEST(MappedEmbedding, CountsCoincidentVerticesAndFlatTets) {
+  TwoPlates plates = twoPlates();
+  const TriangleMesh once = plates.mesh;
+  plates.mesh.positions.insert(plates.mesh.positions.end(), once.positions.begin(), once.positions.end());
+  std::vector<int>& map = plates.cage.vertexTets;
+  map.insert(map.end(), map.begin(), map.begin() + static_cast<std::ptrdiff_t>(once.vertexCount()));
+  plates.cage.meshHash = 0;
+  Cage bare = plates.cage;
+  bare.tets.push_back({0, 1, 2, 2});
+  for (auto* array : {&bare.fill, &bare.factor, &bare.masses}) array->clear();
+  for (auto* array : {&bare.parts, &bare.latticeTets}) array->clear();
+  bare.fineFill.clear();
+  EmbedReport report;
+  const Result<Embedding> made = embed(bare, plates.mesh, {}, &report);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  EXPECT_EQ(report.coincident, once.vertexCount());
+  EXPECT_EQ(report.flatTets, 1u);
+  const auto bindings = made.value().bindings();
+  for (std::size_t v = 0; v < once.vertexCount(); ++v) {
+    EXPECT_EQ(bindings[v].tet, bindings[v + once.vertexCount()].tet);
+    EXPECT_EQ(bindings[v].weights, bindings[v + once.vertexCount()].weights);
+  }
+}
+
+TEST(MappedEmbedding, OnlyThePlateWhoseCopyMovesMoves) {
+  const TwoPlates plates = twoPlates();
+  for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
+    SkinOptions options;
+    options.interpolation = interpolation;
+    auto binding = SkinBinding<double>::make(plates.cage, plates.mesh, options);
+    ASSERT_TRUE(binding.ok()) << binding.status().message;
+    std::vector<Vector3d> nodes = plates.cage.nodes;
+    for (std::size_t n = nodes.size() / 2; n < nodes.size(); ++n) nodes[n] += Vector3d(0, 3, 1);
+    MeshSkin<double> skin;
+    ASSERT_TRUE(skin.bind(std::move(binding).value(), viewOf(std::as_const(nodes))).ok());
+    for (std::size_t v = 0; v < plates.mesh.vertexCount(); ++v) {
+      const Vector3d moved = Eigen::Map<const Vector3d>(skin.positions()[v]) - plates.mesh.positions[v];
+      EXPECT_LT((moved - (plates.upper(v) ? Vector3d(0, 3, 1) : Vector3d(0, 0, 0))).norm(), 1e-6) << v;
+    }
+  }
+}
+
+TEST(MappedEmbedding, TakesAMeshRoundedToFloat) {
+  TwoPlates plates = twoPlates();
+  const Vector3d far(1000, -500, 200);
+  for (Vector3d& p : plates.cage.nodes) p += far;
+  for (Vector3d& p : plates.mesh.positions) p = (p + far).cast<float>().cast<double>();
+  EmbedReport report;
+  const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  const auto bindings = made.value().bindings();
+  for (std::size_t v = 0; v < bindings.size(); ++v) EXPECT_EQ(bindings[v].tet, plates.cage.vertexTets[v]);
+  EXPECT_EQ(report.inside + report.outside, plates.mesh.vertexCount());
+  EXPECT_LT(report.worstDistance, 1e-4);
+}
+
+TEST(MappedEmbedding, ReportsTheVertexThatRoundingPutFarthestOut) {
+  TwoPlates plates = twoPlates();
+  const int tet = plates.cage.vertexTets[4];
+  const Tet& corners = plates.cage.tets[static_cast<std::size_t>(tet)];
+  const auto& nodes = plates.cage.nodes;
+  const Vector3d middle = (nodes[corners[0]] + nodes[corners[1]] + nodes[corners[2]]) / 3.0;
+  const Vector3d outwards = (middle - nodes[corners[3]]).normalized();
+  plates.mesh.positions[4] = middle + 1e-4 * outwards;
+  EmbedReport report;
+  const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  EXPECT_EQ(report.outside, 1u);
+  EXPECT_EQ(report.worstVertex, 4u);
+  EXPECT_EQ(report.worstPosition, plates.mesh.positions[4]);
+  EXPECT_GT(report.worstDistance, 1e-5);
+  EXPECT_LE(report.worstDistance, 1e-4);
+  EXPECT_GT(report.worstBarycentric, 0.0);
+  EXPECT_EQ(made.value().bindings()[4].tet, tet);
+  EXPECT_FALSE(made.value().bindings()[4].inside);
+
+  EmbedOptions strict;
+  strict.maxDistance = 1e-6;
+  const Status refused = embed(plates.cage, plates.mesh, strict, &report).status();
+  EXPECT_EQ(refused.code, StatusCode::OutsideCage);
+  EXPECT_NE(refused.message.find("vertex 4"), std::string::npos) << refused.message;
+}
+
+TEST(MappedEmbedding, RefusesAnotherMesh) {
+  const TwoPlates plates = twoPlates();
+  TriangleMesh other = plates.mesh;
+  other.positions[23].y() += 0.8;
+  expectRefused(
+      plates.cage, other, StatusCode::CageMismatch,
+      {"vertex 23 at (", "is not in tet " + std::to_string(plates.cage.vertexTets[23]), "build a cage for this mesh"});
+  other = plates.mesh;
+  for (Vector3d& p : other.positions) p.x() += 0.5;
+  expectRefused(plates.cage, other, StatusCode::CageMismatch, {"one of the two was moved"});
+  other = plates.mesh;
+  other.positions.push_back(other.positions[0]);
+  expectRefused(plates.cage, other, StatusCode::CageMismatch,
+                {"of 364 vertices, and the mesh has 365", "build a cage for this mesh"});
+}
+
+TEST(MappedEmbedding, RefusesAMapThatNamesAFlatTet) {
+  TwoPlates plates = twoPlates();
+  Tet& tet = plates.cage.tets[static_cast<std::size_t>(plates.cage.vertexTets[0])];
+  tet[3] = tet[2];
+  expectRefused(plates.cage, plates.mesh, StatusCode::Degenerate, {"for vertex 0, which is flat", "build"});
+}
+
+TEST(MappedEmbedding, RefusesCagesThatAreNotInOrder) {
+  TwoPlates plates = twoPlates();
+  plates.cage.fill.pop_back();
+  expectRefused(plates.cage, plates.mesh, StatusCode::SizeMismatch, {"fill"});
+  plates = twoPlates();
+  plates.cage.vertexTets[3] = 1000;
+  expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {"names tet 1000 for vertex 3"});
+  plates = twoPlates();
+  plates.cage.tets[0][0] = -1;
+  expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {});
+  plates = twoPlates();
+  plates.mesh.positions[8].x() = std::numeric_limits<double>::quiet_NaN();
+  expectRefused(plates.cage, plates.mesh, StatusCode::NonFinite, {"vertex 8"});
+}
+
+TEST(MappedEmbedding, IsTheSameAfterReversingTets) {
+  TwoPlates plates = twoPlates();
+  const auto before = embed(plates.cage, plates.mesh).value().bindings();
+  for (Tet& tet : plates.cage.tets) std::swap(tet[2], tet[3]);
+  const auto after = embed(plates.cage, plates.mesh).value().bindings();
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    EXPECT_EQ(after[v].tet, before[v].tet);
+    EXPECT_NEAR(after[v].weights[2], before[v].weights[3], 1e-6);
+  }
+}
+
+TEST(MappedEmbedding, IsSavedAndLoaded) {
+  const TwoPlates plates = twoPlates();
+  const Embedding made = embed(plates.cage, plates.mesh).value();
+  const std::vector<unsigned char> bytes = made.save(plates.cage);
+  const Result<Embedding> loaded = Embedding::load(bytes.data(), bytes.size(), plates.cage);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message;
+  const auto before = made.bindings(), after = loaded.value().bindings();
+  for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(after[v].tet, before[v].tet);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "command.h"
+#include "scenes/model.h"
 
 namespace tetskin {
 namespace {
@@ -42,6 +43,37 @@ TEST_F(CageCommand, WritesACageThatHoldsEveryVertex) {
   ASSERT_TRUE(read.ok());
   EXPECT_EQ(read.value().tetCount(), json["tets"].get<std::size_t>());
   EXPECT_EQ(read.value().nodeCount(), json["nodes"].get<std::size_t>());
+}
+
+TEST_F(CageCommand, WritesWhatIsKnownOfTheCage) {
+  const scenes::ModelOptions model{scenes::BuiltIn::Serpent, "", "", 300, 2000};
+  ASSERT_EQ(cage({"--triangles", "2000", "--tets", "300", "-o", "c.vtk", "--quiet"}).status, 0);
+  const Result<Cage> read = loadCage(folder.path("c.vtk"));
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  const scenes::Model built = scenes::loadModel(model);
+  EXPECT_EQ(read.value().nodes, built.cage.nodes);
+  EXPECT_EQ(read.value().vertexTets, built.cage.vertexTets);
+  EXPECT_EQ(read.value().fill, built.cage.fill);
+  EXPECT_EQ(read.value().masses, built.cage.masses);
+  EXPECT_EQ(read.value().meshHash, built.cage.meshHash);
+  EXPECT_TRUE(read.value().checkMesh(built.mesh).ok());
+}
+
+TEST_F(CageCommand, IsOfUseToThatMeshAlone) {
+  folder.write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  folder.write("moved.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  folder.write("more.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  ASSERT_EQ(cage({"--mesh", "box.obj", "--tets", "100", "-o", "c.vtk", "--quiet"}).status, 0);
+  const auto drop = [&](const char* mesh) {
+    return folder.run(TETSKIN_DROP, {"--mesh", mesh, "--cage", "c.vtk", "--frames", "2", "--out", "o", "--quiet"});
+  };
+  const CommandResult fits = drop("box.obj");
+  EXPECT_EQ(fits.status, 0) << fits.err;
+  test::expectRefused(drop("moved.obj"),
+                      "c.vtk is not a cage of moved.obj: the cage was built for a mesh with vertices "
+                      "at other places, or in another order; build a cage for this one with "
+                      "tetskin_cage");
+  test::expectRefused(drop("more.obj"), "c.vtk is not a cage of more.obj: ");
 }
 
 TEST_F(CageCommand, WritesEveryTetFormat) {

@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Files of tet meshes, damaged: whatever the bytes, there is a sound mesh or a message. The first byte chooses the
-// format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed.
+// format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed. VTK files are read as cages,
+// too.
 #include "fuzz_files.h"
 
 #include <tetskin/io/tet_files.h>
@@ -15,12 +16,33 @@ namespace {
 using namespace tetskin;
 using test::write;
 
-Result<TetMesh> load(char format, const std::string& bytes) {
-  if (format == 'v') return loadTetMesh(write("c.vtk", bytes));
-  if (format == 'm') return loadTetMesh(write("c.msh", bytes));
+/// The path to be read.
+std::string writeAll(char format, const std::string& bytes) {
+  if (format == 'v') return write("c.vtk", bytes);
+  if (format == 'm') return write("c.msh", bytes);
   const std::size_t split = bytes.find('\f');
   write("c.node", bytes.substr(0, split));
-  return loadTetMesh(write("c.ele", split == std::string::npos ? "" : bytes.substr(split + 1)));
+  return write("c.ele", split == std::string::npos ? "" : bytes.substr(split + 1));
+}
+
+/// A cage that was read is in order, has the tets that are read without it, and can be saved.
+void checkCage(const std::string& path, const TetMesh& mesh) {
+  const Result<Cage> cage = loadCage(path);
+  if (!cage.ok()) {
+    TETSKIN_FUZZ_EXPECT(!cage.status().message.empty());
+    return;
+  }
+  TETSKIN_FUZZ_EXPECT(cage.value().check().ok());
+  TETSKIN_FUZZ_EXPECT(cage.value().tets == mesh.tets && cage.value().nodes == mesh.nodes);
+  const std::string copy = (test::folder() / "copy.vtk").string();
+  TETSKIN_FUZZ_EXPECT(saveCage(cage.value(), copy).ok());
+  const Result<Cage> again = loadCage(copy);
+  TETSKIN_FUZZ_EXPECT(again.ok() && again.value().vertexTets == cage.value().vertexTets);
+  TETSKIN_FUZZ_EXPECT(again.value().fill == cage.value().fill && again.value().factor == cage.value().factor);
+  TETSKIN_FUZZ_EXPECT(again.value().masses == cage.value().masses && again.value().parts == cage.value().parts);
+  TETSKIN_FUZZ_EXPECT(again.value().latticeTets == cage.value().latticeTets);
+  TETSKIN_FUZZ_EXPECT(again.value().fineFill == cage.value().fineFill);
+  TETSKIN_FUZZ_EXPECT(again.value().meshHash == cage.value().meshHash);
 }
 
 }  // namespace
@@ -29,11 +51,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const auto format = static_cast<char>(data[0]);
   if (format != 'v' && format != 'm' && format != 't') return 0;
-  Result<TetMesh> mesh = load(format, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
+  const std::string path = writeAll(format, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
+  Result<TetMesh> mesh = loadTetMesh(path);
   if (!mesh.ok()) {
     TETSKIN_FUZZ_EXPECT(!mesh.status().message.empty());
+    TETSKIN_FUZZ_EXPECT(!loadCage(path).ok());
     return 0;
   }
+  checkCage(path, mesh.value());
   TETSKIN_FUZZ_EXPECT(!mesh.value().tets.empty());
   const TetMeshReport report = repairTetMesh(mesh.value());
   TETSKIN_FUZZ_EXPECT(report.indexOutOfRange.count == 0 && report.nonFiniteNodes.count == 0);

@@ -32,8 +32,8 @@ struct TETSKIN_CORE_API Cage : TetMesh {
   std::vector<double> fill;            ///< tetCount, 0 to 1: share of the tet's volume within the mesh
   std::vector<double> factor;          ///< tetCount, above 0: of the stiffness, beside that by `fill`: see `calibrate`
   std::vector<double> masses;          ///< nodeCount, above 0, for a density of 1: they add up to the mesh's volume
-  std::vector<int> parts;              ///< tetCount: number of the part, of tets that hang together by nodes
-  std::vector<int> latticeTets;        ///< tetCount: the same for copies of one tet
+  std::vector<int> parts;              ///< tetCount, from 0: number of the part, of tets that hang together by nodes
+  std::vector<int> latticeTets;        ///< tetCount, from 0: the same for copies of one tet
   std::vector<std::uint8_t> fineFill;  ///< tetCount x kFineTets, in 255ths: of the tets of two uniform refinements
   std::uint64_t meshHash = 0;          ///< `positionsHash` of the mesh as it was; 0: not known
 
@@ -49,7 +49,7 @@ struct TETSKIN_CORE_API Cage : TetMesh {
   /// were loaded: one that was moved with its cage has another hash.
   Status checkMesh(const TriangleMesh& mesh) const;
 
-  /// See CageLocator. Cost O(T): for several points, make a CageLocator.
+  /// See CageLocator. Cost O(T log T): for several points, make a CageLocator.
   int locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const;
 };
 
@@ -60,7 +60,7 @@ TETSKIN_CORE_API std::uint64_t positionsHash(const std::vector<Eigen::Vector3d>&
 /// of a second mesh.
 class TETSKIN_CORE_API CageLocator {
  public:
-  /// cage  usable (see `usable`), and must outlive this. Cost O(T)
+  /// cage  usable (see `usable`), and must outlive this. Cost O(T log T)
   explicit CageLocator(const Cage& cage);
   ~CageLocator();
   CageLocator(CageLocator&&) noexcept;
@@ -70,7 +70,7 @@ class TETSKIN_CORE_API CageLocator {
   /// smallest barycentric distance on the way. Of a cage without `vertexTets`, by the point's place alone.
   /// point         rest space
   /// nearVertices  of the triangle that the point lies on or near; in range
-  /// Cost          O(tets between them); without `vertexTets`, O(T)
+  /// Cost          O(k log k) for k tets between them; without `vertexTets`, O(T)
   int locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const;
 
  private:

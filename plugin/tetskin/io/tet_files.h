@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <cstddef>
@@ -42,5 +43,25 @@ TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileRepor
 /// Errors: UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, as no reader would take the file;
 /// FileNotWritable.
 TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
+
+/// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also what `saveCage` writes into it. What is not
+/// there is not known; arrays of other names are skipped; values of cells that are no tets are, too. Which mesh the
+/// cage is for it may know: see `Cage::checkMesh`.
+///
+/// Cost: linear, as above. Errors: those of `loadTetMesh`; an array by one of these names that has the wrong count,
+/// type or values: Malformed, SizeMismatch, InvalidOption, IndexOutOfRange.
+TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* report = nullptr);
+
+/// Writes a cage: the file of `saveTetMesh`, and behind that, in a `.vtk` file, all that is known, so that `loadCage`
+/// gives the same cage, to the bit:
+/// - FIELD:      `mesh_hash` (unsigned_int, upper and lower 32 bits), `vertex_tets` (int, one a vertex of the mesh)
+/// - CELL_DATA:  `fill`, `factor` (double), `part`, `lattice_tet` (int), `fine_fill` (unsigned_char, kFineTets a tet)
+/// - POINT_DATA: `mass` (double)
+/// ParaView shows these, Bullet's reader and simple programs stop before them. A bare cage makes the file of
+/// `saveTetMesh`. The other formats keep the tets alone.
+///
+/// Errors: those of `saveTetMesh` and of `Cage::check`; UnsupportedFormat if the map of a cage with copies of tets
+/// would be lost, for only `.vtk` keeps it.
+TETSKIN_IO_API Status saveCage(const Cage& cage, const std::string& path);
 
 }  // namespace tetskin

@@ -8,12 +8,17 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <queue>
+#include <unordered_set>
 
 namespace tetskin {
 namespace {
 
-/// Tets looked at around the end of a walk that got stuck.
-constexpr std::size_t kMostVisited = 400;
+/// Tets that a search leaves by their faces without coming any nearer to the point, before it gives up.
+constexpr std::size_t kMostFruitless = 400;
+/// Barycentric distance up to which a tet holds a point: one on a face is in both tets, or by rounding in none.
+constexpr double kHolds = 1e-12;
 
 Status wrongCount(const char* name, std::size_t count, std::size_t wanted, const char* of) {
   return {StatusCode::SizeMismatch, "the cage has " + std::to_string(count) + " " + name + " for " +
@@ -38,6 +43,14 @@ Status checkValues(const std::vector<double>& values, std::size_t count, const c
 
 bool positive(double value) {
   return value > 0.0;
+}
+
+Status checkNumbers(const std::vector<int>& numbers, std::size_t count, const char* name) {
+  if (numbers.empty()) return {};
+  if (numbers.size() != count) return wrongCount(name, numbers.size(), count, "tets");
+  const auto negative = std::find_if(numbers.begin(), numbers.end(), [](int number) { return number < 0; });
+  if (negative == numbers.end()) return {};
+  return wrongValue(name, static_cast<std::size_t>(negative - numbers.begin()), "0 or more");
 }
 
 }  // namespace
@@ -65,11 +78,9 @@ Status Cage::check() const {
                               [](double value) { return value >= 0.0 && value <= 1.0; });
   if (status.ok()) status = checkValues(factor, tetCount(), "factor", "tets", "above 0", positive);
   if (status.ok()) status = checkValues(masses, nodeCount(), "masses", "nodes", "above 0", positive);
+  if (status.ok()) status = checkNumbers(parts, tetCount(), "parts");
+  if (status.ok()) status = checkNumbers(latticeTets, tetCount(), "latticeTets");
   if (!status.ok()) return status;
-  if (!parts.empty() && parts.size() != tetCount()) return wrongCount("parts", parts.size(), tetCount(), "tets");
-  if (!latticeTets.empty() && latticeTets.size() != tetCount()) {
-    return wrongCount("latticeTets", latticeTets.size(), tetCount(), "tets");
-  }
   if (!fineFill.empty() && fineFill.size() != kFineTets * tetCount()) {
     return wrongCount("fineFill", fineFill.size(), kFineTets * tetCount(), "small tets");
   }
@@ -113,70 +124,59 @@ struct CageLocator::Parts {
 
   struct Found {
     int tet = -1;
-    double distance = std::numeric_limits<double>::infinity();
-    bool holds() const { return distance <= 0.0; }
+    double barycentric = std::numeric_limits<double>::infinity();
+    bool holds() const { return barycentric <= kHolds; }
+  };
+  /// A tet on the way to a point; the nearest is the first of a queue.
+  struct Reached {
+    double distance;
+    int tet;
+    bool operator<(const Reached& other) const { return distance > other.distance; }
   };
 
-  double distance(int tet, const Eigen::Vector3d& point, Eigen::Vector4d& weights) const {
-    const TetCorners corners = cornersOf(cage, cage.tets[tet]);
-    if (isFlat(corners)) return std::numeric_limits<double>::infinity();
-    weights = BarycentricMap(corners)(point);
-    return barycentricDistance(weights);
-  }
-
   template <class F>
-  void forBeyond(int tet, int corner, F&& f) const {
-    const std::size_t face = 4 * static_cast<std::size_t>(tet) + static_cast<std::size_t>(corner);
-    for (std::uint32_t k = beyond.starts[face]; k < beyond.starts[face + 1]; ++k) f(static_cast<int>(beyond.values[k]));
+  void forNeighbours(int tet, F&& f) const {
+    const std::size_t face = 4 * static_cast<std::size_t>(tet);
+    for (std::uint32_t k = beyond.starts[face]; k < beyond.starts[face + 4]; ++k) f(static_cast<int>(beyond.values[k]));
   }
 
-  /// From tet to tet, each nearer than the one before.
-  Found walk(int tet, const Eigen::Vector3d& point) const {
-    Eigen::Vector4d weights = Eigen::Vector4d::Zero();
-    Found at{tet, distance(tet, point, weights)};
-    while (!at.holds()) {
-      Found best = at;
-      Eigen::Vector4d bestWeights = weights;
-      for (int corner = 0; corner < 4; ++corner) {
-        if (weights[corner] > 0.0) continue;
-        forBeyond(at.tet, corner, [&](int other) {
-          Eigen::Vector4d w = weights;
-          const double d = distance(other, point, w);
-          if (!(d < best.distance)) return;
-          best = {other, d};
-          bestWeights = w;
-        });
-      }
-      if (best.tet == at.tet) break;
-      at = best;
-      weights = bestWeights;
+  /// From the tets of these vertices through faces, from the nearest first. By distance, not by barycentric distance:
+  /// that is large in small tets, wherever they are, so that the way to the point would go up and down.
+  Found search(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
+    Found best;
+    std::unordered_set<int> seen;
+    std::priority_queue<Reached> next;
+    const auto reach = [&](int tet) {
+      if (best.holds() || !seen.insert(tet).second) return;
+      const TetCorners corners = cornersOf(cage, cage.tets[tet]);
+      const bool flat = isFlat(corners);
+      const Eigen::Vector4d weights = flat ? Eigen::Vector4d::Constant(-1.0) : BarycentricMap(corners)(point);
+      const double barycentric = flat ? Found().barycentric : barycentricDistance(weights);
+      if (best.tet < 0 || barycentric < best.barycentric) best = {tet, barycentric};
+      next.push({distanceToTet(point, corners, weights), tet});
+    };
+    for (const int vertex : nearVertices) {
+      assert(vertex >= 0 && static_cast<std::size_t>(vertex) < cage.vertexTets.size());
+      reach(cage.vertexTets[static_cast<std::size_t>(vertex)]);
     }
-    return at;
-  }
-
-  /// Ring by ring through faces.
-  Found searchAround(Found start, const Eigen::Vector3d& point) const {
-    std::vector<int> visited = {start.tet};
-    for (std::size_t k = 0; k < visited.size() && visited.size() < kMostVisited && !start.holds(); ++k) {
-      for (int corner = 0; corner < 4; ++corner) {
-        forBeyond(visited[k], corner, [&](int other) {
-          if (std::find(visited.begin(), visited.end(), other) != visited.end()) return;
-          visited.push_back(other);
-          Eigen::Vector4d weights;
-          const double d = distance(other, point, weights);
-          if (d < start.distance) start = {other, d};
-        });
-      }
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t fruitless = 0; fruitless < kMostFruitless && !next.empty() && !best.holds(); ++fruitless) {
+      const Reached from = next.top();
+      next.pop();
+      if (from.distance < nearest) fruitless = 0;
+      nearest = std::min(nearest, from.distance);
+      forNeighbours(from.tet, reach);
     }
-    return start;
+    return best;
   }
 
   Found nearestOfAll(const Eigen::Vector3d& point) const {
     Found best;
-    Eigen::Vector4d weights;
     for (std::size_t t = 0; t < cage.tetCount() && !best.holds(); ++t) {
-      const double d = distance(static_cast<int>(t), point, weights);
-      if (d < best.distance) best = {static_cast<int>(t), d};
+      const TetCorners corners = cornersOf(cage, cage.tets[t]);
+      if (isFlat(corners)) continue;
+      const double barycentric = barycentricDistance(BarycentricMap(corners)(point));
+      if (barycentric < best.barycentric) best = {static_cast<int>(t), barycentric};
     }
     return best;
   }
@@ -188,16 +188,7 @@ CageLocator::CageLocator(CageLocator&&) noexcept = default;
 CageLocator& CageLocator::operator=(CageLocator&&) noexcept = default;
 
 int CageLocator::locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
-  const Cage& cage = parts_->cage;
-  if (cage.vertexTets.empty()) return parts_->nearestOfAll(point).tet;
-  Parts::Found best;
-  for (const int vertex : nearVertices) {
-    assert(vertex >= 0 && static_cast<std::size_t>(vertex) < cage.vertexTets.size());
-    const Parts::Found found = parts_->walk(cage.vertexTets[static_cast<std::size_t>(vertex)], point);
-    if (found.distance < best.distance || best.tet < 0) best = found;
-    if (best.holds()) return best.tet;
-  }
-  return parts_->searchAround(best, point).tet;
+  return (parts_->cage.vertexTets.empty() ? parts_->nearestOfAll(point) : parts_->search(point, nearVertices)).tet;
 }
 
 }  // namespace tetskin

@@ -56,6 +56,7 @@ Result<std::vector<std::int32_t>> mappedTets(const Cage& cage, const TriangleMes
   }
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
   for (std::size_t v = 0; v < tetOf.size(); ++v) report.coincident += first[v] != v;
+  for (const Tet& tet : cage.tets) report.flatTets += isFlat(cornersOf(cage, tet));
   report.mapped = tetOf.size();
   return tetOf;
 }

@@ -10,16 +10,32 @@ namespace tetskin {
 
 namespace {
 
-Result<TetMesh> readByExtension(const std::string& path, TetFileReport& report) {
+/// What other formats have of a cage: its tets.
+Result<Cage> bare(Result<TetMesh> mesh) {
+  if (!mesh.ok()) return mesh.status();
+  return Cage(std::move(mesh).value());
+}
+
+Result<Cage> readByExtension(const std::string& path, io::VtkData data, TetFileReport& report) {
   const std::string extension = io::lowerExtension(path);
-  if (extension == ".vtk") return io::readVtkFile(path, report);
-  if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path, report);
-  if (extension == ".msh") return io::readGmshFile(path, report);
+  if (extension == ".vtk") return io::readVtkFile(path, data, report);
+  if (extension == ".node" || extension == ".ele") return bare(io::readTetgenFiles(path, report));
+  if (extension == ".msh") return bare(io::readGmshFile(path, report));
   const std::string what = extension == ".vtu" || extension == ".pvtu"
                                ? "is an XML file of VTK, which is not read; save it as legacy VTK (.vtk)"
                                : "is of a format that is not read; convert it to legacy VTK (.vtk), TetGen (.node and "
                                  ".ele) or Gmsh (.msh)";
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
+}
+
+Result<Cage> load(const std::string& path, io::VtkData data, TetFileReport* report) {
+  TetFileReport skipped;
+  Result<Cage> cage = readByExtension(path, data, skipped);
+  if (report) *report = skipped;
+  if (!cage.ok() || !cage.value().tets.empty()) return cage;
+  return io::fileError(StatusCode::Empty, path, 0,
+                       "has no linear tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
+                           "; export a volume mesh of tets with 4 nodes each");
 }
 
 }  // namespace
@@ -31,13 +47,17 @@ std::string TetFileReport::describe() const {
 }
 
 Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
-  TetFileReport skipped;
-  Result<TetMesh> mesh = readByExtension(path, skipped);
-  if (report) *report = skipped;
-  if (!mesh.ok() || !mesh.value().tets.empty()) return mesh;
-  return io::fileError(StatusCode::Empty, path, 0,
-                       "has no linear tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
-                           "; export a volume mesh of tets with 4 nodes each");
+  Result<Cage> cage = load(path, io::VtkData::Skipped, report);
+  if (!cage.ok()) return cage.status();
+  return static_cast<TetMesh&&>(cage.value());
+}
+
+Result<Cage> loadCage(const std::string& path, TetFileReport* report) {
+  Result<Cage> cage = load(path, io::VtkData::OfCage, report);
+  if (!cage.ok()) return cage;
+  const Status status = cage.value().check();
+  if (status.ok()) return cage;
+  return io::fileError(status.code, path, 0, status.message + "; correct the array, or remove it");
 }
 
 }  // namespace tetskin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/io/src/tets/vtk_cage_data.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/number_text.h>
@@ -77,6 +78,15 @@ std::string eleText(const TetMesh& mesh) {
   return text;
 }
 
+Status checkExtension(const std::string& path) {
+  const std::string extension = io::lowerExtension(path);
+  for (const char* known : {".vtk", ".node", ".ele", ".msh"}) {
+    if (extension == known) return {};
+  }
+  return io::fileError(StatusCode::UnsupportedFormat, path, 0,
+                       "is of a format that is not written; use .vtk, .node, .ele or .msh");
+}
+
 /// Ok if a reader would take the mesh.
 Status checkWritable(const TetMesh& mesh, const std::string& path) {
   if (mesh.tets.empty()) {
@@ -108,18 +118,32 @@ std::string withExtension(const std::string& path, const char* extension) {
 
 Status saveTetMesh(const TetMesh& mesh, const std::string& path) {
   const std::string extension = io::lowerExtension(path);
-  const bool tetgen = extension == ".node" || extension == ".ele";
-  if (!tetgen && extension != ".vtk" && extension != ".msh") {
-    return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                         "is of a format that is not written; use .vtk, .node, .ele or .msh");
-  }
-  Status status = checkWritable(mesh, path);
+  Status status = checkExtension(path);
+  if (status.ok()) status = checkWritable(mesh, path);
   if (!status.ok()) return status;
   if (extension == ".vtk") return io::writeFile(path, vtkText(mesh));
   if (extension == ".msh") return io::writeFile(path, gmshText(mesh));
   status = io::writeFile(extension == ".node" ? path : withExtension(path, ".node"), nodeText(mesh));
   if (!status.ok()) return status;
   return io::writeFile(extension == ".ele" ? path : withExtension(path, ".ele"), eleText(mesh));
+}
+
+Status saveCage(const Cage& cage, const std::string& path) {
+  Status status = checkExtension(path);
+  if (status.ok()) status = checkWritable(cage, path);
+  if (!status.ok()) return status;
+  if (status = cage.check(); !status.ok()) {
+    return io::fileError(status.code, path, 0,
+                         "cannot be written, as " + status.message + "; check where the cage comes from");
+  }
+  if (io::lowerExtension(path) == ".vtk") {
+    std::string text = vtkText(cage);
+    io::appendCageData(text, cage);
+    return io::writeFile(path, text);
+  }
+  if (cage.vertexTets.empty() || !cage.split()) return saveTetMesh(cage, path);
+  return io::fileError(StatusCode::UnsupportedFormat, path, 0,
+                       "cannot keep which copy of a tet carries which vertex, and this cage has copies; use .vtk");
 }
 
 }  // namespace tetskin

@@ -8,7 +8,10 @@
 
 namespace tetskin::io {
 
-/// Reads a legacy VTK file as `loadTetMesh` describes. A file without tets gives a mesh without tets.
-Result<TetMesh> readVtkFile(const std::string& path, TetFileReport& report);
+/// Which of a file's data to read: its tets alone, or also what `saveCage` writes with them.
+enum class VtkData { Skipped, OfCage };
+
+/// Reads a legacy VTK file as `loadTetMesh` and `loadCage` describe. A file without tets gives a cage without tets.
+Result<Cage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report);
 
 }  // namespace tetskin::io
