@@ -129,11 +129,11 @@ TEST(CageBuilder, AllVerticesInsideByBruteForce) {
 TEST(CageBuilder, ReportsComponents) {
   const TriangleMesh apart = joined(unitSphere(16), sphere(16, 1.0, {4, 0, 0}));
   EXPECT_EQ(build(apart).report.meshComponents, 2u);
-  EXPECT_EQ(build(apart).report.cageComponents, 2u);
+  EXPECT_EQ(build(apart).report.parts, 2u);
   const TriangleMesh near = joined(unitSphere(16), sphere(16, 1.0, {2.01, 0, 0}));
   const Built fused = build(near);
   EXPECT_EQ(fused.report.meshComponents, 2u);
-  EXPECT_EQ(fused.report.cageComponents, 1u);
+  EXPECT_EQ(fused.report.parts, 1u);
   EXPECT_NE(fused.report.describe().find("fused"), std::string::npos);
 }
 
@@ -160,7 +160,7 @@ TEST(CageBuilder, LooseVerticesGetTetsOfTheirOwn) {
   const Built built = build(mesh, 1000);
   EXPECT_EQ(faultOfCage(mesh, built.cage, built.report), "");
   EXPECT_EQ(built.report.looseVertices, 1u);
-  EXPECT_EQ(built.report.cageComponents, 2u);
+  EXPECT_EQ(built.report.parts, 2u);
 }
 
 TEST(CageBuilder, FarOutliersCostNothing) {

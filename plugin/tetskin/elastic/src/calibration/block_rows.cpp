@@ -10,6 +10,9 @@
 namespace tetskin::elastic_detail {
 namespace {
 
+/// Fields that share registers.
+constexpr int kTogether = 6;
+
 /// By node: itself and those that it shares a tet with, ascending.
 Lists<> neighboursOf(const TetMesh& mesh) {
   const Lists<> around = tetsAroundNodes(mesh);
@@ -52,19 +55,24 @@ BlockRows::Block& BlockRows::block(int row, int column) {
 
 void BlockRows::multiply(const Fields& fields, Fields& product) const {
   assert(fields.rows() == product.rows() && fields.cols() == product.cols());
-  const Eigen::Index count = fields.cols();
-  product.setZero();
+  Eigen::Index first = 0;
+  for (; first + kTogether <= fields.cols(); first += kTogether) multiplyColumns<kTogether>(first, fields, product);
+  for (; first < fields.cols(); ++first) multiplyColumns<1>(first, fields, product);
+}
+
+template <int kColumns>
+void BlockRows::multiplyColumns(Eigen::Index first, const Fields& fields, Fields& product) const {
+  using Some = Eigen::Array<double, 1, kColumns>;
+  const Eigen::Index stride = fields.cols();
   for (std::size_t row = 0; row + 1 < columns_.starts.size(); ++row) {
+    Some sums[3] = {Some::Zero(), Some::Zero(), Some::Zero()};
     for (std::uint32_t k = columns_.starts[row]; k < columns_.starts[row + 1]; ++k) {
-      const double* from = fields.data() + 3 * count * static_cast<Eigen::Index>(columns_.values[k]);
-      double* to = product.data() + 3 * count * static_cast<Eigen::Index>(row);
-      for (int i = 0; i < 3; ++i, to += count) {
-        const double x = blocks_[k](i, 0), y = blocks_[k](i, 1), z = blocks_[k](i, 2);
-        for (Eigen::Index c = 0; c < count; ++c) {
-          to[c] += x * from[c] + y * from[count + c] + z * from[2 * count + c];
-        }
-      }
+      const double* from = fields.data() + 3 * stride * static_cast<Eigen::Index>(columns_.values[k]) + first;
+      const Eigen::Map<const Some> x(from), y(from + stride), z(from + 2 * stride);
+      for (int i = 0; i < 3; ++i) sums[i] += blocks_[k](i, 0) * x + blocks_[k](i, 1) * y + blocks_[k](i, 2) * z;
     }
+    double* to = product.data() + 3 * stride * static_cast<Eigen::Index>(row) + first;
+    for (int i = 0; i < 3; ++i) Eigen::Map<Some>(to + i * stride) = sums[i];
   }
 }
 

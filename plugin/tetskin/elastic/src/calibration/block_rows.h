@@ -28,6 +28,8 @@ class BlockRows {
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
   Block& block(int row, int column);
+  template <int kColumns>
+  void multiplyColumns(Eigen::Index first, const Fields& fields, Fields& product) const;
 
   Lists<> columns_;  ///< by node, ascending
   std::vector<Block> blocks_;

@@ -61,7 +61,9 @@ Eigen::VectorXd massesOf(const TetMesh& mesh, const std::vector<double>& fill) {
 
 /// Of each field by itself.
 Eigen::RowVectorXd products(const Fields& a, const Fields& b) {
-  return a.cwiseProduct(b).colwise().sum();
+  Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(a.cols());
+  for (Eigen::Index row = 0; row < a.rows(); ++row) sums += a.row(row).cwiseProduct(b.row(row));
+  return sums;
 }
 
 /// 0 where there is nothing to divide.
@@ -82,12 +84,12 @@ RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vec
       diagonal(stiffness.diagonal()),
       rigid(refinement.mesh, masses) {}
 
-RefinedBodies::RefinedBodies(const Cage& cage, double poissonRatio, int refinements)
-    : coarsest_(cage, poissonRatio, scaleOf(cage), massesOf(cage)), direct_(coarsest_) {
+RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
+    : cage_(std::move(cage)), coarsest_(cage_, poissonRatio, scaleOf(cage_), massesOf(cage_)), direct_(coarsest_) {
   assert(refinements >= 0 && refinements <= 2);
   for (int k = 1; k <= refinements; ++k) {
-    const TetMesh& before = k == 1 ? cage : at(static_cast<std::size_t>(k - 1)).refinement.mesh;
-    levels_.push_back(std::make_unique<Level>(refineUniformly(before), poissonRatio, fillAt(cage, k)));
+    const TetMesh& before = k == 1 ? cage_ : at(static_cast<std::size_t>(k - 1)).refinement.mesh;
+    levels_.push_back(std::make_unique<Level>(refineUniformly(before), poissonRatio, fillAt(cage_, k)));
   }
 }
 

@@ -20,7 +20,7 @@ class RefinedBodies {
  public:
   /// The cage is as its body will be; the finer levels see the material at their own resolution, as `Cage::fineFill`
   /// has it. Check `ok()`. cage         every node of it in a tet refinements  at most two
-  RefinedBodies(const Cage& cage, double poissonRatio, int refinements);
+  RefinedBodies(Cage cage, double poissonRatio, int refinements);
 
   bool ok() const { return direct_.ok(); }
   std::size_t levelCount() const { return levels_.size() + 1; }
@@ -51,6 +51,7 @@ class RefinedBodies {
   const Level& at(std::size_t level) const { return *levels_[level - 1]; }
   Fields precondition(std::size_t level, const Fields& loads) const;
 
+  Cage cage_;
   RestBody coarsest_;
   DirectSolver direct_;
   std::vector<std::unique_ptr<Level>> levels_;

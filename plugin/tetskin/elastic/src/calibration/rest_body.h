@@ -12,6 +12,7 @@ namespace tetskin::elastic_detail {
 
 /// A body at rest that nothing holds, as small displacements see it.
 struct RestBody {
+  /// mesh      must outlive this
   /// scale     by tet: times the stiffness of a Young's modulus of 1
   /// ofNodes   see `lumpedVolumes`
   RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale, Eigen::VectorXd ofNodes)
