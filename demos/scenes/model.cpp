@@ -8,8 +8,10 @@
 #include <cstdio>
 
 #include "scenes/bar.h"
+#include "scenes/hand.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
+#include "scenes/slotted_beam.h"
 
 namespace tetskin::scenes {
 namespace {
@@ -18,17 +20,44 @@ namespace {
 /// diagonal, the cage is another model's. One that lies within its mesh has many vertices outside, but near.
 constexpr double kManyOutside = 0.5, kFarOutside = 0.1;
 
+struct Maker {
+  const char* name;
+  TriangleMesh (*surface)(std::size_t triangles);
+  TetMesh (*tets)(std::size_t tets) = nullptr;
+  std::size_t leastTets = 0;
+};
+
+TriangleMesh makeSerpentOf(std::size_t triangles) {
+  return makeSerpent({triangles});
+}
+
+const Maker& makerOf(BuiltIn model) {
+  static const Maker makers[] = {{"serpent", makeSerpentOf},
+                                 {"bar", makeBar},
+                                 {"slotted_beam", makeSlottedBeam, makeSlottedBeamTets, kMinSlottedBeamTets},
+                                 {"hand", makeHand, makeHandTets, kMinHandTets}};
+  return makers[static_cast<std::size_t>(model)];
+}
+
 }  // namespace
 
+const std::vector<BuiltIn>& builtInModels() {
+  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar, BuiltIn::SlottedBeam, BuiltIn::Hand};
+  return all;
+}
+
 std::string nameOf(BuiltIn model) {
-  return model == BuiltIn::Bar ? "bar" : "serpent";
+  return makerOf(model).name;
+}
+
+std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets) {
+  const Maker& maker = makerOf(model);
+  if (!maker.tets || tets < maker.leastTets) return {};
+  return maker.tets(tets);
 }
 
 Surface loadSurface(const ModelOptions& options) {
-  if (options.mesh.empty()) {
-    const bool bar = options.builtIn == BuiltIn::Bar;
-    return {nameOf(options.builtIn), bar ? makeBar(options.triangles) : makeSerpent({options.triangles})};
-  }
+  if (options.mesh.empty()) return {nameOf(options.builtIn), makerOf(options.builtIn).surface(options.triangles)};
   Result<TriangleMesh> mesh = loadMesh(options.mesh);
   require(mesh.status());
   return {options.mesh, std::move(mesh).value()};

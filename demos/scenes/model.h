@@ -11,13 +11,21 @@
 #include <tetskin/io/obj_sequence.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace tetskin::scenes {
 
-enum class BuiltIn { Serpent, Bar };
-/// "serpent", "bar".
+enum class BuiltIn { Serpent, Bar, SlottedBeam, Hand };
+/// In the order of the list above.
+const std::vector<BuiltIn>& builtInModels();
+/// "serpent", "bar", "slotted_beam", "hand".
 std::string nameOf(BuiltIn model);
+
+/// Tets that fill a built-in model, about so many, made by formula and not as cages are: parts of the model near to
+/// each other are never fused. Nothing for a model that has none, or none of so few tets.
+std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets);
 
 /// Which mesh, and which cage.
 struct ModelOptions {
