@@ -88,6 +88,7 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["integrator"] = integrator();
   json["stiffness"] = options_.stiffness;
   json["reference_tets"] = isExact() ? 0 : options_.referenceTets;
+  json["reference"] = model_.reference.hash;
   json["tets"] = job.tets;
   json["calibrated"] = job.calibrated;
   json["coloured"] = job.coloured;
