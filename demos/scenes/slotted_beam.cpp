@@ -16,9 +16,10 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double kLength = 4.0, kWidth = 1.0, kProng = 0.48, kSlot = 0.04, kSolid = 1.0;
-constexpr double kPlanePlace = 1.25;          ///< along the beam, from its solid end
-constexpr double kBeamLean = 35.0 * kDegree;  ///< from upright: weight bends the prongs, and the foot holds both
+constexpr double kLength = 4.0, kWidth = 1.0, kProng = 0.48, kSlot = 0.04, kSolid = 1.6;
+constexpr double kPlanePlace = 1.85;  ///< along the beam, from its solid end
+/// From upright. Weight bends both prongs, and alike: what the scenes hold of the lower end is below the slot.
+constexpr double kBeamLean = 35.0 * kDegree;
 
 /// From along the beam, across the slot, along the slot's edge, to the model's space.
 Vector3d inSpace(const Vector3d& p) {

@@ -12,8 +12,8 @@
 
 namespace tetskin::scenes {
 
-/// Of the beam as it is: a slot 3 long and 0.04 wide in 4 x 1 x 1.
-constexpr double kSlottedBeamVolume = 3.88;
+/// Of the beam as it is: a slot 2.4 long and 0.04 wide in 4 x 1 x 1.
+constexpr double kSlottedBeamVolume = 3.904;
 
 /// A beam of 4 x 1 x 1 units, centred at the origin, its section in x and y, that leans over to +x. A slot from its
 /// upper end, across all of its width, leaves two prongs 0.48 thick and 0.04 apart. Closed and welded, flat sides and
