@@ -56,7 +56,7 @@ def table_line(row, reference_error, integrator, against):
     tets, memory = f"{row['tets']:,.0f}", f"{row['memory_bytes'] / 1e6:.1f}"
     if row["interpolation"] == "reference":
         whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's force, {row['integrator']}"
-        about = f"about {reference_error:.1e}" if row["integrator"] == integrator else ""
+        about = f"about {reference_error:.1e}" if row["integrator"] == integrator and reference_error > 0 else ""
         return (f"| {tets} | {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
                 f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)

@@ -57,7 +57,7 @@ ReferenceCage referenceCageFor(const TriangleMesh& mesh, const ReportOptions& op
 
 std::string describe(const ReferenceCage& reference) {
   const std::string tets = std::to_string(reference.tets) + " tets";
-  if (reference.from == kBuilt) return "a built cage of about " + tets;
+  if (isBuilt(reference)) return "a built cage of about " + tets;
   return tets + (reference.from == kFormula ? " by formula" : " of " + reference.from);
 }
 

@@ -24,6 +24,11 @@ struct ReferenceCage {
   std::optional<Cage> cage;   ///< where cages are compared; nothing: to be built
 };
 
+/// True if it is as the other cages are: they approach it as they get finer, which tells how wrong it is itself.
+inline bool isBuilt(const ReferenceCage& reference) {
+  return reference.from == kBuilt;
+}
+
 /// The file's tets, those by formula of the built-in model if it has any of at least so many, or none.
 /// mesh       in its own space, which is that of the file
 /// placement  from there to where cages are compared

@@ -50,7 +50,7 @@ class JobProgress {
   scenes::Progress bar_;
 };
 
-SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
+SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobProgress& progress) {
   SceneResult result{runner.scene(), runner.integrator(), {}, 0.0};
   for (const Job& job : runner.jobs()) {
     const double cost = runner.costOf(job);
@@ -69,7 +69,7 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
     row.speedupAgainstBullet = bulletsMs / row.totalMs;
   }
   markPareto(result.rows);
-  result.referenceError = referenceError(result.rows);
+  if (isBuilt(reference)) result.referenceError = referenceError(result.rows);
   return result;
 }
 
@@ -97,7 +97,7 @@ ReportResult makeReport(const ReportOptions& wished) {
   ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
-    result.scenes.push_back(runScene(*runner, progress));
+    result.scenes.push_back(runScene(*runner, model.reference, progress));
     writeReport(result, options, runner->colouredMesh());
     runner.reset();  // with its reference, which may be large
   }

@@ -26,7 +26,7 @@ namespace tetskin::report {
 struct SceneResult {
   std::string scene, integrator;
   std::vector<Row> rows;
-  double referenceError = 0.0;  ///< estimated; in box diagonals
+  double referenceError = 0.0;  ///< estimated; in box diagonals; 0: not known
 };
 
 struct ReportResult {
