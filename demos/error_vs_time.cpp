@@ -19,7 +19,10 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const report::ReportOptions& options = commandLine.finish();
     const report::ReportResult result = report::makeReport(options);
-    if (!options.quiet) std::printf("%s/error_vs_time.csv, %s\n", options.out.c_str(), options.json.c_str());
+    if (!options.quiet) {
+      std::printf("%s/error_vs_time.csv, %s; reference: %s\n", options.out.c_str(), options.json.c_str(),
+                  describe(result.reference).c_str());
+    }
     report::makeTablesAndPlots(options);
     if (report::allFinite(result)) return scenes::kDone;
     std::fprintf(stderr, "tetskin_error_vs_time: a simulation exploded; see the column finite\n");

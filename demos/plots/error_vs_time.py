@@ -56,7 +56,7 @@ def table_line(row, reference_error, integrator, against):
     tets, memory = f"{row['tets']:,.0f}", f"{row['memory_bytes'] / 1e6:.1f}"
     if row["interpolation"] == "reference":
         whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's force, {row['integrator']}"
-        about = f"about {reference_error:.1e}" if row["integrator"] == integrator else ""
+        about = f"about {reference_error:.1e}" if row["integrator"] == integrator and reference_error > 0 else ""
         return (f"| {tets} | {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
                 f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
@@ -90,11 +90,20 @@ def cheapest_text(scene, target):
             f"a frame, error {best['error_total_rms']:.2e}.\n")
 
 
+def reference_text(reference):
+    count = f"{reference['tets']:,} tets"
+    if reference["from"] == "built":
+        return f"The reference is a built cage of about {count}: it may fuse parts that are near to each other.\n"
+    whose = "made by formula" if reference["from"] == "formula" else f"of {reference['from']}"
+    return f"The reference is a mesh of {count} {whose}, not built as the cages are.\n"
+
+
 def tables(results, target):
     """All that the results say in words, as Markdown."""
     text = (f"# Error against run time: {results['model']}\n\n{results['vertices']:,} vertices, {results['triangles']:,} "
             "triangles. Errors in diagonals of the mesh's box, over all vertices and frames; times of the processor in one "
-            "thread, medians over the frames. Bold: nothing is both faster and more accurate.\n")
+            "thread, medians over the frames. Bold: nothing is both faster and more accurate. "
+            + reference_text(results["reference"]))
     for scene in results["scenes"]:
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
         against = any(row["speedup_against_bullet"] > 0 for row in scene["rows"])

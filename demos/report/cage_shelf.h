@@ -22,6 +22,8 @@ class CageShelf {
   explicit CageShelf(const TriangleMesh& mesh) : mesh_(mesh) {}
 
   const Cage& cage(std::size_t tets);
+  /// Takes a cage for that of so many tets, instead of building it.
+  void put(std::size_t tets, Cage cage) { cages_[tets] = std::move(cage); }
   const CalibrationReport& calibration(std::size_t tets, double poissonRatio);
 
  private:

@@ -20,7 +20,9 @@ ReportModel loadReportModel(const ReportOptions& options) {
   model.name = std::move(surface.name);
   model.modelDiagonal = boundingBox(surface.mesh.positions).diagonal().norm();
   model.mesh = std::move(surface.mesh);
-  scenes::placementOf(boundingBox(model.mesh.positions)).toWorld(model.mesh.positions);
+  const scenes::Placement placement = scenes::placementOf(boundingBox(model.mesh.positions));
+  model.reference = referenceCageFor(model.mesh, options, placement);
+  placement.toWorld(model.mesh.positions);
   model.diagonal = boundingBox(model.mesh.positions).diagonal().norm();
   const auto& positions = model.mesh.positions;
   const auto& triangles = model.mesh.triangles;
@@ -48,7 +50,7 @@ class JobProgress {
   scenes::Progress bar_;
 };
 
-SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
+SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobProgress& progress) {
   SceneResult result{runner.scene(), runner.integrator(), {}, 0.0};
   for (const Job& job : runner.jobs()) {
     const double cost = runner.costOf(job);
@@ -67,17 +69,21 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
     row.speedupAgainstBullet = bulletsMs / row.totalMs;
   }
   markPareto(result.rows);
-  result.referenceError = referenceError(result.rows);
+  if (isBuilt(reference)) result.referenceError = referenceError(result.rows);
   return result;
 }
 
 }  // namespace
 
-ReportResult makeReport(const ReportOptions& options) {
-  const ReportModel model = loadReportModel(options);
+ReportResult makeReport(const ReportOptions& wished) {
+  ReportOptions options = wished;
+  ReportModel model = loadReportModel(options);
+  options.referenceTets = model.reference.tets;
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
   CageShelf cages(model.mesh);
+  if (model.reference.cage) cages.put(model.reference.tets, std::move(*model.reference.cage));
+  model.reference.cage.reset();
   std::vector<std::unique_ptr<SceneRunner>> runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
@@ -88,10 +94,10 @@ ReportResult makeReport(const ReportOptions& options) {
       for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
     }
   }
-  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), {}};
+  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
-    result.scenes.push_back(runScene(*runner, progress));
+    result.scenes.push_back(runScene(*runner, model.reference, progress));
     writeReport(result, options, runner->colouredMesh());
     runner.reset();  // with its reference, which may be large
   }

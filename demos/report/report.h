@@ -6,6 +6,7 @@
 //   material           what cages are made of (scenes/table.h: the scenes)
 //   simulation         a cage's motion in a scene, and what step and surfaces cost
 //   reference          what is compared with
+//   reference_cage     the tets whose motion that is
 //   surface_errors     how far surfaces and nodes are from it
 //   scene_runner       all cages of a scene, or what an earlier run has left of them (result_store)
 //   advice             orders, Pareto front, the reference's own error
@@ -25,12 +26,13 @@ namespace tetskin::report {
 struct SceneResult {
   std::string scene, integrator;
   std::vector<Row> rows;
-  double referenceError = 0.0;  ///< estimated; in box diagonals
+  double referenceError = 0.0;  ///< estimated; in box diagonals; 0: not known
 };
 
 struct ReportResult {
   std::string model;
   std::size_t vertices = 0, triangles = 0;
+  ReferenceCage reference;  ///< without the cage
   std::vector<SceneResult> scenes;
 };
 

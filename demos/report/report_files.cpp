@@ -58,6 +58,7 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   json["model"] = result.model;
   json["vertices"] = result.vertices;
   json["triangles"] = result.triangles;
+  json["reference"] = {{"from", result.reference.from}, {"tets", result.reference.tets}};
   json["units"] =
       "errors and edge: diagonals of the mesh's box; _ms, _us: processor time in one thread, medians; "
       "simulation, skin and total: a frame";

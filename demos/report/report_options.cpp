@@ -24,12 +24,22 @@ std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
 
 }  // namespace
 
+void requireFiner(const ReportOptions& options, std::size_t referenceTets) {
+  if (options.tets.back() < referenceTets) return;
+  throw scenes::InputError("--tets: cages must have fewer tets than the reference, which has " +
+                           std::to_string(referenceTets));
+}
+
 ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   ReportOptions& o = options_;
   line.addSurfaceOptions(o.model);
   line.addWords("--scene", o.scenes, "With commas (default: sag,twist,drop,exact), of: " + scenes::sceneNames());
   line.addCounts("--tets", o.tets, "Tets of the cages, with commas");
   line.addCount("--reference-tets", o.referenceTets, "Tets of the cage that counts as right");
+  line.addFile(
+      "--reference", o.reference,
+      "Tets that count as right, and fuse no parts of the mesh that are near to each other: .vtk, .ele/.node or "
+      ".msh, in the mesh's space (default: by formula for a built-in model that has one, otherwise a built cage)");
   line.addFlag("--full", full_, "A reference of 300,000 tets");
   line.addFlag("--quick", quick_, "A small report, in half a minute");
   line.addWord("--interpolation", interpolation_, {"linear", "quadratic"},
@@ -50,6 +60,9 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
 const ReportOptions& ReportCommandLine::finish() {
   ReportOptions& o = options_;
   if (quick_ && full_) throw scenes::InputError("--quick and --full exclude each other");
+  if (!o.reference.empty() && (full_ || line_.given("--reference-tets"))) {
+    throw scenes::InputError("--reference excludes --reference-tets and --full: the file tells how many");
+  }
   const auto preset = [&](const char* option, auto& value, const auto& instead) {
     if (!line_.given(option)) value = instead;
   };
@@ -68,10 +81,8 @@ const ReportOptions& ReportCommandLine::finish() {
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit is about Bullet's forces: add --force bullet");
   std::sort(o.tets.begin(), o.tets.end());
   o.tets.erase(std::unique(o.tets.begin(), o.tets.end()), o.tets.end());
-  if (o.tets.empty() || o.tets.back() >= o.referenceTets) {
-    throw scenes::InputError("--tets: cages must have fewer tets than the reference, which has " +
-                             std::to_string(o.referenceTets));
-  }
+  if (o.tets.empty()) throw scenes::InputError("--tets: there must be one");
+  if (o.reference.empty()) requireFiner(o, o.referenceTets);
   if (o.json.empty()) o.json = o.out + "/error_vs_time.json";
   return o;
 }

@@ -17,6 +17,7 @@ struct ReportOptions {
   std::vector<std::string> scenes = {"sag", "twist", "drop", "exact"};
   std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
   std::size_t referenceTets = 30000;
+  std::string reference;  ///< file of tets that count as right, in the mesh's space; empty: made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   bool calibrated = true;        ///< with calibrated rows
   bool bullet = false;           ///< bodies by Bullet's forces instead of the library's
@@ -28,6 +29,9 @@ struct ReportOptions {
   std::string out = "out/error_vs_time", json;
   bool quiet = false;
 };
+
+/// Throws InputError unless a reference of so many tets has more than all cages.
+void requireFiner(const ReportOptions& options, std::size_t referenceTets);
 
 /// The command line's options, among them --quick and --full, which preset others. Call `finish` after parsing.
 class ReportCommandLine {

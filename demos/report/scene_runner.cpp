@@ -27,12 +27,13 @@ std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
   return kinds;
 }
 
-std::vector<Job> jobsOf(bool exact, const ReportOptions& options, bool both, std::size_t vertexCount) {
+std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool both) {
   std::vector<Job> jobs;
   const std::size_t level = options.referenceTets / kCoarserLevel;
   std::vector<std::size_t> sizes = options.tets;
   if (exact) sizes.push_back(options.referenceTets);
-  if (!exact && static_cast<double>(sizes.back()) < kNearEnough * static_cast<double>(level)) sizes.push_back(level);
+  const bool levelIsNear = static_cast<double>(sizes.back()) >= kNearEnough * static_cast<double>(level);
+  if (!exact && isBuilt(model.reference) && !levelIsNear) sizes.push_back(level);
   const auto distance = [&](std::size_t tets) {
     return std::abs(std::log(static_cast<double>(tets) / static_cast<double>(options.shownTets)));
   };
@@ -41,7 +42,7 @@ std::vector<Job> jobsOf(bool exact, const ReportOptions& options, bool both, std
   if (!exact) jobs.push_back({options.referenceTets, false, {}, false, false});
   if (!exact && both) jobs.push_back({options.referenceTets, false, {}, false, true});
   for (const std::size_t tets : sizes) {
-    const bool bullet = static_cast<double>(tets) * static_cast<double>(vertexCount) <= kMostBulletPairs;
+    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMostBulletPairs;
     jobs.push_back({tets, false, bullet ? options.surfaces : ours(options.surfaces), tets == shown, false});
     const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
     if (!exact && options.calibrated && asked) jobs.push_back({tets, true, ours(options.surfaces), false, false});
@@ -60,7 +61,7 @@ SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const Resul
       entry_(scenes::sceneNamed(scene)),
       frames_(options.frames > 0 && !isExact() ? options.frames : entry_.frames),
       elasticity_(elasticity),
-      jobs_(jobsOf(isExact(), options, elasticity == Elasticity::Tetskin, model.mesh.vertexCount())) {}
+      jobs_(jobsOf(isExact(), model, options, elasticity == Elasticity::Tetskin)) {}
 
 std::string SceneRunner::integrator() const {
   if (isExact()) return "none";
@@ -88,6 +89,7 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["integrator"] = integrator();
   json["stiffness"] = options_.stiffness;
   json["reference_tets"] = isExact() ? 0 : options_.referenceTets;
+  json["reference"] = model_.reference.hash;
   json["tets"] = job.tets;
   json["calibrated"] = job.calibrated;
   json["coloured"] = job.coloured;

@@ -10,6 +10,7 @@
 #include "report/cage_shelf.h"
 #include "report/material.h"
 #include "report/reference.h"
+#include "report/reference_cage.h"
 #include "report/report_options.h"
 #include "report/report_row.h"
 #include "report/result_store.h"
@@ -34,6 +35,7 @@ struct ReportModel {
   double diagonal = 0.0;       ///< of its box
   double modelDiagonal = 0.0;  ///< the same, in the unit of its file
   std::uint64_t hash = 0;
+  ReferenceCage reference;
 };
 
 /// The control, in which nothing is simulated.

@@ -106,9 +106,12 @@ void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& v
 }
 
 void CommandLine::addSurfaceOptions(ModelOptions& options) {
-  const std::string builtIn = "built-in " + nameOf(options.builtIn);
-  addFile("--mesh", options.mesh, "Render mesh, any format assimp reads (default: a " + builtIn + ")");
-  parser_->app.add_option("--triangles", options.triangles, "Triangles of the " + builtIn)
+  addFile("--mesh", options.mesh, "Render mesh, any format assimp reads (default: the built-in --model)");
+  std::vector<std::pair<std::string, BuiltIn>> words;
+  for (const BuiltIn model : builtInModels()) words.emplace_back(nameOf(model), model);
+  addChoice(parser_->app, "--model", options.builtIn, words, "A built-in model");
+  parser_->app.get_option("--model")->excludes("--mesh");
+  parser_->app.add_option("--triangles", options.triangles, "Triangles of the built-in model")
       ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
       ->capture_default_str()
       ->excludes("--mesh");

@@ -62,7 +62,7 @@ class CommandLine {
 
   // What several programs have.
 
-  /// --mesh, or --triangles.
+  /// --mesh, or --model and --triangles.
   void addSurfaceOptions(ModelOptions& options);
   /// Those and --tets.
   void addMeshOptions(ModelOptions& options);

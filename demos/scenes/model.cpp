@@ -8,8 +8,10 @@
 #include <cstdio>
 
 #include "scenes/bar.h"
+#include "scenes/hand.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
+#include "scenes/slotted_beam.h"
 
 namespace tetskin::scenes {
 namespace {
@@ -18,32 +20,72 @@ namespace {
 /// diagonal, the cage is another model's. One that lies within its mesh has many vertices outside, but near.
 constexpr double kManyOutside = 0.5, kFarOutside = 0.1;
 
+struct Maker {
+  const char* name;
+  TriangleMesh (*surface)(std::size_t triangles);
+  TetMesh (*tets)(std::size_t tets) = nullptr;
+  std::size_t leastTets = 0;
+};
+
+TriangleMesh makeSerpentOf(std::size_t triangles) {
+  return makeSerpent({triangles});
+}
+
+const Maker& makerOf(BuiltIn model) {
+  static const Maker makers[] = {{"serpent", makeSerpentOf},
+                                 {"bar", makeBar},
+                                 {"slotted_beam", makeSlottedBeam, makeSlottedBeamTets, kMinSlottedBeamTets},
+                                 {"hand", makeHand, makeHandTets, kMinHandTets}};
+  return makers[static_cast<std::size_t>(model)];
+}
+
 }  // namespace
 
+const std::vector<BuiltIn>& builtInModels() {
+  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar, BuiltIn::SlottedBeam, BuiltIn::Hand};
+  return all;
+}
+
 std::string nameOf(BuiltIn model) {
-  return model == BuiltIn::Bar ? "bar" : "serpent";
+  return makerOf(model).name;
+}
+
+std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets) {
+  const Maker& maker = makerOf(model);
+  if (!maker.tets || tets < maker.leastTets) return {};
+  return maker.tets(tets);
 }
 
 Surface loadSurface(const ModelOptions& options) {
-  if (options.mesh.empty()) {
-    const bool bar = options.builtIn == BuiltIn::Bar;
-    return {nameOf(options.builtIn), bar ? makeBar(options.triangles) : makeSerpent({options.triangles})};
-  }
+  if (options.mesh.empty()) return {nameOf(options.builtIn), makerOf(options.builtIn).surface(options.triangles)};
   Result<TriangleMesh> mesh = loadMesh(options.mesh);
   require(mesh.status());
   return {options.mesh, std::move(mesh).value()};
 }
 
-Cage loadCage(const std::string& path, const Surface& surface) {
-  Result<Cage> cage = tetskin::loadCage(path);
-  require(cage.status());
-  if (const Status status = usable(cage.value(), checkTetMesh(cage.value())); !status.ok()) {
+Cage loadCage(const std::string& path) {
+  Result<Cage> loaded = tetskin::loadCage(path);
+  require(loaded.status());
+  Cage cage = std::move(loaded).value();
+  if (const Status status = usable(cage, checkTetMesh(cage)); !status.ok()) {
     throw InputError(path + ": " + status.message);
   }
-  if (const Status status = cage.value().checkMesh(surface.mesh); !status.ok()) {
+  // The small tets of one that is turned over come in another order.
+  if (repairTetMesh(cage).negativeVolume.count > 0) cage.fineFill.clear();
+  return cage;
+}
+
+Cage loadCage(const std::string& path, const Surface& surface) {
+  Cage cage = loadCage(path);
+  const Status status = cage.checkMesh(surface.mesh);
+  if (status.ok()) return cage;
+  if (cage.split()) {
     throw InputError(path + " is not a cage of " + surface.name + ": " + status.message + " with tetskin_cage");
   }
-  return std::move(cage).value();
+  // Without copies, the tets of any mesh are found by their place, as of another level of detail.
+  cage.vertexTets.clear();
+  cage.meshHash = 0;
+  return cage;
 }
 
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {

@@ -11,13 +11,21 @@
 #include <tetskin/io/obj_sequence.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace tetskin::scenes {
 
-enum class BuiltIn { Serpent, Bar };
-/// "serpent", "bar".
+enum class BuiltIn { Serpent, Bar, SlottedBeam, Hand };
+/// In the order of the list above.
+const std::vector<BuiltIn>& builtInModels();
+/// "serpent", "bar", "slotted_beam", "hand".
 std::string nameOf(BuiltIn model);
+
+/// Tets that fill a built-in model, about so many, made by formula and not as cages are: parts of the model near to
+/// each other are never fused. Nothing for a model that has none, or none of so few tets.
+std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets);
 
 /// Which mesh, and which cage.
 struct ModelOptions {
@@ -40,6 +48,7 @@ struct Model : Surface {
 /// These load or make; they throw InputError, with the file and the fault.
 Surface loadSurface(const ModelOptions& options);
 /// A usable cage, its tets as the file has them; not one of another mesh, if the file tells.
+Cage loadCage(const std::string& path);
 Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 /// The cage's tets are positive.

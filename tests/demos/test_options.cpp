@@ -65,6 +65,7 @@ TEST_F(Options, AFileAndWhatIsMadeWithoutItExcludeEachOther) {
   }
   for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage}) {
     expectRefusal(program, {"--mesh", "m.obj", "--triangles", "3000"}, "excludes --");
+    expectRefusal(program, {"--mesh", "m.obj", "--model", "hand"}, "excludes --");
   }
 }
 
@@ -139,6 +140,12 @@ TEST_F(Options, ACageOfAnotherModelIsRefusedWithTheNamesOfBoth) {
   }
 }
 
+TEST_F(Options, AnUnknownModelIsRefused) {
+  for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage}) {
+    for (const char* name : {"dragon", "", "Hand"}) expectRefusal(program, {"--model", name}, "--model");
+  }
+}
+
 TEST_F(Options, HelpOfEveryProgramListsTheSharedOnes) {
   for (const Program& program : {kDrop, kTwist, kCrowd, kBench, kErrorVsTime, kCage, kDeform}) {
     const CommandResult result = folder.run(program.path, {"--help"});
@@ -146,7 +153,7 @@ TEST_F(Options, HelpOfEveryProgramListsTheSharedOnes) {
     EXPECT_NE(result.out.find("--mesh"), std::string::npos) << program.path << result.out;
   }
   const CommandResult bench = folder.run(TETSKIN_BENCH, {"--help"});
-  for (const char* option : {"--cage", "--tets", "--triangles", "--benchmark_filter"}) {
+  for (const char* option : {"--cage", "--tets", "--model", "--triangles", "--benchmark_filter"}) {
     EXPECT_NE(bench.out.find(option), std::string::npos) << bench.out;
   }
 }

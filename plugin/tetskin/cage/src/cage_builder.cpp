@@ -103,7 +103,7 @@ cage_detail::CageTets splitTets(const Surface& surface, const WindingTree& windi
   if (split && surface.oriented) {
     const cage_detail::LatticeLinks links(bound.cage.set, bound.lattice);
     const auto copies =
-        cage_detail::copyTets(surface, bound.samples, tetOf, material, frame, bound.cage.set, bound.lattice, links);
+        cage_detail::copyTets(surface, winding, bound.samples, tetOf, material, frame, bound.lattice, links);
     cage_detail::CageTets tets = cage_detail::splitLattice(copies, bound.samples, bound.lattice, links);
     if (tets.copies() > 0) return tets;
   }

@@ -33,6 +33,7 @@ class Splitter {
       if (kept_[a] && kept_[b]) joinNodes(a, b);
     }
     joinTornParts();
+    joinThinParts();
     leaveOutEmptyParts();
     return result();
   }
@@ -100,6 +101,27 @@ class Splitter {
       for (std::uint32_t k = inTet.starts[place]; k < inTet.starts[place + 1]; ++k) {
         const int other = static_cast<int>(inTet.values[k]);
         if (parts_.find(other) == parts_.find(part)) return joinNodes(copy, other);
+      }
+    }
+  }
+
+  /// A part that is nowhere thick enough for material goes with another that shares a tet with it, as what grows out of
+  /// a body does.
+  void joinThinParts() {
+    std::vector<char> thick(kept_.size(), 0);
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      if (kept_[k] && copies_.copies[k].cells != 0) thick[parts_.find(static_cast<int>(k))] = 1;
+    }
+    const Lists<> inTet = copiesInTets();
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      const int copy = static_cast<int>(k);
+      if (!kept_[k] || thick[parts_.find(copy)]) continue;
+      for (std::uint32_t n = inTet.starts[tet(copy)]; n < inTet.starts[tet(copy) + 1]; ++n) {
+        const int other = static_cast<int>(inTet.values[n]);
+        if (copies_.copies[other].cells == 0 || parts_.find(other) == parts_.find(copy)) continue;
+        joinNodes(copy, other);
+        thick[parts_.find(copy)] = 1;
+        break;
       }
     }
   }

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "part_models.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+constexpr double kPi = 3.14159265358979323846;
+
+// --- Parts
+
+/// Of the elements that are kept, connected by the points that they name.
+template <std::size_t Size>
+int countParts(const std::vector<std::array<int, Size>>& elements, const std::vector<Vector3d>& points,
+               const std::optional<Plane>& plane) {
+  std::vector<int> parent(points.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int p) {
+    while (parent[p] != p) p = parent[p] = parent[parent[p]];
+    return p;
+  };
+  std::vector<bool> kept(points.size(), false);
+  for (const std::array<int, Size>& element : elements) {
+    Vector3d sum = Vector3d::Zero();
+    for (const int p : element) sum += points[p];
+    if (plane && plane->signedDistance(Vector3d(sum / static_cast<double>(Size))) <= 0.0) continue;
+    for (const int p : element) {
+      kept[p] = true;
+      parent[root(p)] = root(element[0]);
+    }
+  }
+  int parts = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) parts += kept[p] && parent[p] == static_cast<int>(p);
+  return parts;
+}
+
+// --- Shapes
+
+void addQuad(TriangleMesh& mesh, int a, int b, int c, int d) {
+  mesh.triangles.push_back({a, b, c});
+  mesh.triangles.push_back({a, c, d});
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& other) {
+  const auto offset = static_cast<int>(mesh.vertexCount());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+/// The boundary of some cells of a grid of `size` cells.
+/// place  of the grid's corners; keeps orientation
+TriangleMesh cellSurface(const Vector3i& size, const std::function<bool(const Vector3i&)>& filled,
+                         const std::function<Vector3d(const Vector3i&)>& place) {
+  TriangleMesh mesh;
+  std::map<std::array<int, 3>, int> numbers;
+  const auto corner = [&](const Vector3i& c) {
+    const auto [found, isNew] = numbers.try_emplace({c.x(), c.y(), c.z()}, static_cast<int>(mesh.vertexCount()));
+    if (isNew) mesh.positions.push_back(place(c));
+    return found->second;
+  };
+  const auto isFilled = [&](const Vector3i& c) {
+    return (c.array() >= 0).all() && (c.array() < size.array()).all() && filled(c);
+  };
+  for (int index = 0; index < size.prod(); ++index) {
+    const Vector3i c(index % size.x(), index / size.x() % size.y(), index / (size.x() * size.y()));
+    if (!isFilled(c)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3i n = Vector3i::Unit(axis), u = Vector3i::Unit((axis + 1) % 3), v = Vector3i::Unit((axis + 2) % 3);
+      const Vector3i far = c + n;
+      if (!isFilled(c - n)) addQuad(mesh, corner(c), corner(c + v), corner(c + u + v), corner(c + u));
+      if (!isFilled(far)) addQuad(mesh, corner(far), corner(far + u), corner(far + u + v), corner(far + v));
+    }
+  }
+  return mesh;
+}
+
+/// A box of cells of edge `edge`, centred at the origin.
+TriangleMesh cellBox(const Vector3i& size, double edge) {
+  return cellSurface(
+      size, [](const Vector3i&) { return true; },
+      [&](const Vector3i& c) -> Vector3d { return edge * (c - size / 2).cast<double>(); });
+}
+
+struct Tube {
+  std::function<Vector3d(double)> centre;  ///< of 0 to 1
+  std::function<double(double)> radius;
+  Vector3d up;          ///< nowhere along the tube
+  bool closed = false;  ///< its end is its start; otherwise both ends are flat
+  int rings = 64;
+};
+
+TriangleMesh surfaceOf(const Tube& tube) {
+  constexpr int kColumns = 24;
+  constexpr double kStep = 1e-5;
+  TriangleMesh mesh;
+  const int rings = tube.closed ? tube.rings : tube.rings + 1;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double t = static_cast<double>(ring) / tube.rings;
+    const Vector3d along = (tube.centre(t + kStep) - tube.centre(t - kStep)).normalized();
+    const Vector3d up = (tube.up - tube.up.dot(along) * along).normalized(), side = along.cross(up);
+    for (int column = 0; column < kColumns; ++column) {
+      const double angle = 2.0 * kPi * column / kColumns;
+      mesh.positions.push_back(tube.centre(t) + tube.radius(t) * (std::cos(angle) * up + std::sin(angle) * side));
+    }
+  }
+  const auto at = [&](int ring, int column) { return ring % rings * kColumns + column % kColumns; };
+  for (int ring = 0; ring < tube.rings; ++ring) {
+    for (int k = 0; k < kColumns; ++k)
+      addQuad(mesh, at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k));
+  }
+  if (tube.closed) return mesh;
+  for (const int ring : {0, tube.rings}) {
+    const auto pole = static_cast<int>(mesh.vertexCount());
+    mesh.positions.push_back(tube.centre(ring == 0 ? 0.0 : 1.0));
+    for (int k = 0; k < kColumns; ++k) {
+      if (ring == 0) mesh.triangles.push_back({pole, at(ring, k + 1), at(ring, k)});
+      if (ring != 0) mesh.triangles.push_back({pole, at(ring, k), at(ring, k + 1)});
+    }
+  }
+  return mesh;
+}
+
+std::function<double(double)> constant(double value) {
+  return [value](double) { return value; };
+}
+
+/// -1 to 1, of period 4, rising from 0.
+double zigzag(double x) {
+  const double phase = x - 4.0 * std::floor(0.25 * x);
+  return phase < 1.0 ? phase : phase < 3.0 ? 2.0 - phase : phase - 4.0;
+}
+
+TriangleMesh square(double y) {
+  constexpr int kCells = 20;
+  TriangleMesh mesh;
+  for (int i = 0; i <= kCells; ++i) {
+    for (int j = 0; j <= kCells; ++j) mesh.positions.emplace_back(2.0 * j / kCells - 1.0, y, 2.0 * i / kCells - 1.0);
+  }
+  const auto at = [](int i, int j) { return i * (kCells + 1) + j; };
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) addQuad(mesh, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+int countPartsBeyond(const TetMesh& cage, const std::optional<Plane>& plane) {
+  return countParts(cage.tets, cage.nodes, plane);
+}
+
+int countPartsBeyond(const TriangleMesh& mesh, const std::optional<Plane>& plane) {
+  return countParts(mesh.triangles, mesh.positions, plane);
+}
+
+PartModel twoPlates(double gap) {
+  constexpr double kEdge = 0.1;
+  constexpr int kThick = 3, kWide = 20;
+  const auto filled = [](const Vector3i& c) { return c.y() != kThick; };
+  const auto place = [gap](const Vector3i& c) -> Vector3d {
+    const double y = c.y() <= kThick ? kEdge * c.y() : kEdge * (c.y() - 1) + gap;
+    return {kEdge * c.x() - 1.0, y, kEdge * c.z() - 1.0};
+  };
+  return {"two plates", cellSurface({kWide, 2 * kThick + 1, kWide}, filled, place), {}, 2, gap};
+}
+
+PartModel jaw(double gap) {
+  constexpr double kEdge = 0.1, kHalfHeight = 0.5, kTooth = kEdge;
+  constexpr int kLong = 40, kHinge = 8, kThick = 4, kWide = 10;
+  const auto filled = [](const Vector3i& c) { return c.x() < kHinge || c.y() != kThick; };
+  const auto place = [gap](const Vector3i& c) -> Vector3d {
+    const bool lower = c.y() <= kThick;
+    // The teeth's flanks are at 45 degrees: the gap across them is less than that upwards.
+    const double tooth = c.x() <= kHinge ? 0.0 : kTooth * zigzag(c.x() - kHinge);
+    const double inner = tooth + std::sqrt(0.5) * (lower ? -gap : gap), outer = lower ? -kHalfHeight : kHalfHeight;
+    const double share = (lower ? c.y() : 2 * kThick + 1 - c.y()) / static_cast<double>(kThick);
+    return {kEdge * c.x(), outer + share * (inner - outer), kEdge * c.z()};
+  };
+  constexpr double kPlaneX = 1.2;
+  return {"jaw", cellSurface({kLong, 2 * kThick + 1, kWide}, filled, place),
+          Plane(Vector3d::UnitX(), kPlaneX * Vector3d::UnitX()), 2, gap};
+}
+
+PartModel claw(double gap) {
+  constexpr double kRoot = 0.3, kTip = 0.1, kPlaneX = 0.4;
+  const double turn = 2.0 * kPi - std::asin(gap / (1.0 - kTip));
+  const auto centre = [=](double t) { return Vector3d(std::cos(turn * t), std::sin(turn * t), 0.0); };
+  const auto radius = [=](double t) { return kRoot + t * (kTip - kRoot); };
+  return {"claw", surfaceOf({centre, radius, Vector3d::UnitZ()}), Plane(Vector3d::UnitX(), kPlaneX * Vector3d::UnitX()),
+          2, gap};
+}
+
+PartModel chain(int rings, double gap) {
+  constexpr double kThin = 0.25;
+  const double step = 2.0 - 2.0 * kThin - gap;
+  PartModel model{"chain", {}, {}, rings, gap};
+  for (int ring = 0; ring < rings; ++ring) {
+    const Vector3d across = ring % 2 == 0 ? Vector3d::UnitY() : Vector3d::UnitZ();
+    const auto centre = [=](double t) -> Vector3d {
+      return (step * ring + std::cos(2.0 * kPi * t)) * Vector3d::UnitX() + std::sin(2.0 * kPi * t) * across;
+    };
+    append(model.mesh, surfaceOf({centre, constant(kThin), across.cross(Vector3d::UnitX()), true}));
+  }
+  return model;
+}
+
+PartModel coil(int turns, double gap) {
+  constexpr double kThin = 0.2;
+  constexpr int kRingsOfTurn = 48;
+  const double between = 2.0 * kThin + gap;  // of turns, perpendicular to them
+  const double rise = between / std::sqrt(1.0 - std::pow(between / (2.0 * kPi), 2.0));
+  const auto centre = [=](double t) {
+    const double angle = 2.0 * kPi * turns * t;
+    return Vector3d(std::cos(angle), std::sin(angle), rise * turns * t);
+  };
+  // It starts and ends in the middle of a half turn beyond the plane.
+  return {"coil", surfaceOf({centre, constant(kThin), Vector3d::UnitZ(), false, kRingsOfTurn * turns}),
+          Plane(Vector3d::UnitX(), Vector3d::Zero()), turns + 1, gap};
+}
+
+PartModel sheet() {
+  return {"sheet", square(0.0), {}, 1};
+}
+
+PartModel twoSheets(double gap) {
+  PartModel model{"two sheets", square(0.0), {}, 2, gap};
+  append(model.mesh, square(gap));
+  return model;
+}
+
+PartModel crossedBoxes() {
+  PartModel model{"crossed boxes", cellBox({30, 10, 10}, 0.1), {}, 1};
+  append(model.mesh, cellBox({8, 24, 8}, 0.11));
+  return model;
+}
+
+std::vector<PartModel> partModels() {
+  constexpr double kGap = 0.04;
+  return {twoPlates(kGap), jaw(kGap), claw(kGap),      chain(3, kGap),
+          coil(4, kGap),   sheet(),   twoSheets(kGap), crossedBoxes()};
+}
+
+}  // namespace tetskin::test
