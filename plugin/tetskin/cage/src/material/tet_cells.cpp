@@ -119,23 +119,15 @@ CellPlace locateCell(const Eigen::Vector3d& p) {
   return {tet, cellNumbers().numberOf(cell, tet)};
 }
 
-CellMask componentOf(CellMask cells, int local) {
+CellMask componentOf(CellMask cells, const CellGraph& graph) {
   CellMask component = cells & (~cells + 1);
   for (CellMask fresh = component; fresh != 0;) {
     CellMask around = 0;
-    for (; fresh != 0; fresh &= fresh - 1) around |= cellTables().adjacent[local][lowestCell(fresh)];
+    for (; fresh != 0; fresh &= fresh - 1) around |= graph[lowestCell(fresh)];
     fresh = around & cells & ~component;
     component |= fresh;
   }
   return component;
-}
-
-CellMask cellsBeyond(CellMask cells, int local, int corner) {
-  CellMask beyond = 0;
-  for (const CellTables::Crossing& crossing : cellTables().crossings[local][corner]) {
-    if ((cells >> crossing.own & 1) != 0) beyond |= cellBit(crossing.beyond);
-  }
-  return beyond;
 }
 
 int countCells(CellMask cells) {

@@ -25,6 +25,9 @@ constexpr CellMask cellBit(int cell) {
   return CellMask{1} << cell;
 }
 
+/// By cell of a tet: the cells of the same tet that it shares a face with.
+using CellGraph = std::array<CellMask, kCellsPerTet>;
+
 /// By tet of a cube, `LatticeTet::local`.
 struct CellTables {
   struct Crossing {
@@ -33,7 +36,7 @@ struct CellTables {
   };
 
   std::array<std::array<Eigen::Vector3d, kCellsPerTet>, kTetsPerCube> centroids;  ///< lattice, relative to the cube
-  std::array<std::array<CellMask, kCellsPerTet>, kTetsPerCube> adjacent;          ///< cells of the tet sharing a face
+  std::array<CellGraph, kTetsPerCube> adjacent;
   std::array<std::array<std::array<Crossing, kCellsPerFace>, 4>, kTetsPerCube> crossings;  ///< by corner opposite
 };
 const CellTables& cellTables();
@@ -45,11 +48,8 @@ struct CellPlace {
 /// The cell that holds a point in lattice coordinates. O(1)
 CellPlace locateCell(const Eigen::Vector3d& p);
 
-/// The cells of a mask that hang together with the lowest one, through faces, inside a tet.
-CellMask componentOf(CellMask cells, int local);
-
-/// The cells beyond a tet's face, opposite to `corner`, that lie against these cells of it.
-CellMask cellsBeyond(CellMask cells, int local, int corner);
+/// The cells of a mask that hang together with the lowest one.
+CellMask componentOf(CellMask cells, const CellGraph& graph);
 
 int countCells(CellMask cells);
 

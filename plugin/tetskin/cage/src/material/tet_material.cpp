@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/cage/src/material/tet_material.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -11,6 +12,7 @@ namespace {
 
 /// Half the view: the winding number from which a point is inside.
 constexpr double kInside = 0.5;
+constexpr double kMostWinding = 100.0;
 
 /// A triangle as seen from a point: tells by how much the winding number changes on a way from there.
 class SeenTriangle {
@@ -40,7 +42,8 @@ class MaterialFinder {
       : surface_(surface), winding_(winding), frame_(frame) {}
 
   /// Of a tet that these triangles touch.
-  CellMask cellsOf(const LatticeTet& tet, const std::uint32_t* begin, const std::uint32_t* end) {
+  CellMask cellsOf(const LatticeTet& tet, const std::uint32_t* begin, const std::uint32_t* end,
+                   std::array<std::int8_t, kCellsPerTet>& windings) {
     // Off the centroid, which is where a lattice's planes and a mesh's may meet.
     const Eigen::Vector3d offset = centroid(tet) - cubeOrigin(tet.cube) + Eigen::Vector3d(0.0131, 0.0173, -0.0117);
     const Eigen::Vector3d from = frame_.toRest(cubeOrigin(tet.cube) + offset);
@@ -55,6 +58,7 @@ class MaterialFinder {
       const Eigen::Vector3d way = frame_.half * (cellTables().centroids[tet.local][k] - offset);
       double there = number;
       for (const SeenTriangle& triangle : seen_) there += triangle.change(way);
+      windings[k] = static_cast<std::int8_t>(std::clamp(std::round(there), -kMostWinding, kMostWinding));
       if (std::abs(there) >= kInside) cells |= cellBit(k);
     }
     return cells;
@@ -80,6 +84,8 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
   assert(lattice.openFaces.size() == lattice.mesh.tetCount());
   TetMaterial material;
   material.cells.assign(lattice.mesh.tetCount(), kAllCells);
+  material.windings.resize(lattice.mesh.tetCount());
+  for (auto& windings : material.windings) windings.fill(1);
   material.triangles = trianglesByTet(surface, frame, set, lattice);
   if (!surface.oriented) return material;
   MaterialFinder finder(surface, winding, frame);
@@ -91,7 +97,7 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
       const std::uint32_t first = material.triangles.starts[t], last = material.triangles.starts[t + 1];
       const LatticeTet tet{set.cube(cube), local};
       if (first < last) {
-        material.cells[t] = finder.cellsOf(tet, values + first, values + last);
+        material.cells[t] = finder.cellsOf(tet, values + first, values + last, material.windings[t]);
       } else if (lattice.openFaces[t] != 0 && !finder.inside(tet)) {
         material.cells[t] = 0;  // it joins others
       }

@@ -15,7 +15,9 @@ namespace tetskin::cage_detail {
 /// Where the body is in the tets of a lattice.
 struct TetMaterial {
   std::vector<CellMask> cells;  ///< by tet: those whose centroid is inside the surface
-  Lists<> triangles;            ///< by tet: the surface's triangles that touch it
+  /// By tet: the winding number at the centroid of each cell, rounded; above 1 where parts of the surface overlap.
+  std::vector<std::array<std::int8_t, kCellsPerTet>> windings;
+  Lists<> triangles;  ///< by tet: the surface's triangles that touch it
 };
 
 /// A cell is inside where the winding number is at least a half, either sign. It is asked for once a tet; from there to

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace tetskin::cage_detail {
 namespace {
@@ -33,6 +34,12 @@ struct Crossing {
   bool leaves = false;
 };
 
+/// A cell by the number of its tet.
+struct CellPlaceOf {
+  int tet = -1;
+  int cell = 0;
+};
+
 /// What is in one tet, and hangs together there. Elements are numbered over all tets: first what is in each of the
 /// triangles that touch it, in the order of `TetMaterial::triangles`, then pieces of material.
 class CopyFinder {
@@ -48,16 +55,16 @@ class CopyFinder {
         lattice_(lattice),
         links_(links),
         winding_(winding),
-        pieces_(findPieces()),
-        sets_(pieceElement(pieces_.values.size()) + surface.loosePoints.size()),
-        cells_(pieceElement(pieces_.values.size()) + surface.loosePoints.size(), 0) {
-    for (std::size_t k = 0; k < pieces_.values.size(); ++k) cells_[pieceElement(k)] = pieces_.values[k];
+        layered_(lattice.mesh.tetCount(), 0),
+        sets_(material.triangles.values.size() + kCellsPerTet * lattice.mesh.tetCount()) {
     DisjointSets components(surface.points.size());
     for (const auto& t : surface.triangles) components.unite(t[0], t[1]), components.unite(t[0], t[2]);
     for (const auto& t : surface.triangles) componentOf_.push_back(components.find(t[0]));
   }
 
   TetCopies run() {
+    joinTriangles();
+    findPieces();
     for (std::size_t t = 0; t < lattice_.mesh.tetCount(); ++t) joinWithin(static_cast<int>(t));
     number();
     linkTriangles();
@@ -75,16 +82,38 @@ class CopyFinder {
   const Eigen::Vector3d& at(int point) const { return surface_.points[point]; }
 
   /// By tet: its material in pieces that hang together by faces of cells.
-  Lists<CellMask> findPieces() const {
-    return packLists<CellMask>(material_.cells.size(), [&](auto&& add) {
-      for (std::size_t t = 0; t < material_.cells.size(); ++t) {
-        for (CellMask rest = material_.cells[t]; rest != 0;) {
-          const CellMask piece = componentOf(rest, links_.tets[t].local);
-          add(t, piece);
-          rest &= ~piece;
-        }
+  void findPieces() {
+    pieces_.starts.push_back(0);
+    for (std::size_t t = 0; t < material_.cells.size(); ++t) {
+      const CellGraph open = layered_[t] ? openFaces(static_cast<int>(t)) : cellTables().adjacent[links_.tets[t].local];
+      for (CellMask rest = material_.cells[t]; rest != 0;) {
+        const CellMask piece = componentOf(rest, open);
+        pieces_.values.push_back(piece);
+        rest &= ~piece;
       }
-    });
+      pieces_.starts.push_back(static_cast<std::uint32_t>(pieces_.values.size()));
+    }
+    cells_.assign(pieceElement(pieces_.values.size()), 0);
+    for (std::size_t k = 0; k < pieces_.values.size(); ++k) cells_[pieceElement(k)] = pieces_.values[k];
+  }
+
+  /// The faces of a tet's material cells that no surface lies in: a gap may be narrower than a cell.
+  CellGraph openFaces(int tet) const {
+    CellGraph open{};
+    for (int a = 0; a < kCellsPerTet; ++a) {
+      if ((material_.cells[tet] >> a & 1) == 0) continue;
+      const CellMask beside = cellTables().adjacent[links_.tets[tet].local][a] & material_.cells[tet];
+      for (int b = a + 1; b < kCellsPerTet; ++b) {
+        if ((beside >> b & 1) == 0 || isBlocked({tet, a}, {tet, b})) continue;
+        open[a] |= cellBit(b);
+        open[b] |= cellBit(a);
+      }
+    }
+    return open;
+  }
+  Eigen::Vector3d middleOf(const CellPlaceOf& place) const {
+    const LatticeTet& tet = links_.tets[place.tet];
+    return frame_.toRest(cubeOrigin(tet.cube) + cellTables().centroids[tet.local][place.cell]);
   }
 
   void unite(std::size_t a, std::size_t b) {
@@ -101,11 +130,20 @@ class CopyFinder {
   void joinWithin(int tet) {
     if (firstOf(tet) < lastOf(tet)) {
       const BarycentricMap map(cornersOf(lattice_.mesh, lattice_.mesh.tets[tet]));
-      joinTriangles(tet, map);
       joinSurfaceAndMaterial(tet, map);
       if (hasSeveralComponents(tet)) joinComponents(tet, map);
     }
     joinPiecesInSight(tet);
+  }
+
+  void joinTriangles() {
+    for (std::size_t t = 0; t < lattice_.mesh.tetCount(); ++t) {
+      if (firstOf(t) == lastOf(t)) continue;
+      joinTriangles(static_cast<int>(t), BarycentricMap(cornersOf(lattice_.mesh, lattice_.mesh.tets[t])));
+      for (std::size_t e = firstOf(t); e < lastOf(t); ++e) {
+        if (!united(firstOf(t), e)) layered_[t] = 1;
+      }
+    }
   }
 
   /// Those whose common edge, or corner, is in the tet.
@@ -121,7 +159,8 @@ class CopyFinder {
     }
     std::sort(shared_.begin(), shared_.end());
     for (std::size_t k = 1; k < shared_.size(); ++k) {
-      if (shared_[k].first == shared_[k - 1].first) unite(shared_[k].second, shared_[k - 1].second);
+      if (shared_[k].first != shared_[k - 1].first) continue;
+      sets_.unite(static_cast<int>(shared_[k].second), static_cast<int>(shared_[k - 1].second));
     }
   }
 
@@ -268,12 +307,26 @@ class CopyFinder {
     return first;
   }
 
-  bool isBlocked(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way) const {
-    for (std::size_t e = firstOf(tet); e < lastOf(tet); ++e) {
-      const double share = crossingOf(triangleOf(e), from, way).share;
-      if (share > 0.0 && share < 1.0) return true;
+  /// True if the straight way between the middles of two cells leaves the body. Where parts of it overlap, not every
+  /// triangle on the way is its end.
+  bool isBlocked(const CellPlaceOf& from, const CellPlaceOf& to) const {
+    const Eigen::Vector3d start = middleOf(from), way = middleOf(to) - start;
+    crossings_.clear();
+    for (const int tet : {from.tet, to.tet}) {
+      for (std::size_t e = firstOf(tet); e < lastOf(tet); ++e) {
+        const Crossing crossing = crossingOf(triangleOf(e), start, way);
+        if (crossing.share > 0.0 && crossing.share < 1.0) {
+          crossings_.push_back({crossing.share, triangleOf(e), crossing.leaves ? -1 : 1});
+        }
+      }
+      if (from.tet == to.tet) break;
     }
-    return false;
+    if (crossings_.empty()) return false;
+    std::sort(crossings_.begin(), crossings_.end());
+    crossings_.erase(std::unique(crossings_.begin(), crossings_.end()), crossings_.end());
+    int winding = material_.windings[from.tet][from.cell];
+    return std::any_of(crossings_.begin(), crossings_.end(),
+                       [&](const auto& crossing) { return (winding += std::get<2>(crossing)) == 0; });
   }
 
   /// Where there is little of a body, its cells may touch at edges only.
@@ -298,10 +351,9 @@ class CopyFinder {
     }
     const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), kSights));
     std::partial_sort(pairs.begin(), end, pairs.end());
-    const Eigen::Vector3d base = cubeOrigin(links_.tets[tet].cube);
     return std::any_of(pairs.begin(), end, [&](const auto& pair) {
       const auto& [a, b] = pair.second;
-      return !isBlocked(tet, frame_.toRest(base + centroids[a]), frame_.half * (centroids[b] - centroids[a]));
+      return !isBlocked({tet, a}, {tet, b});
     });
   }
 
@@ -354,7 +406,7 @@ class CopyFinder {
       for (int corner = 0; corner < 4 && copy.cells != 0; ++corner) {
         const int beyond = links_.beyond[copy.tet][corner];
         if (beyond <= copy.tet) continue;
-        const CellMask against = cellsBeyond(copy.cells, links_.tets[copy.tet].local, corner);
+        const CellMask against = cellsAgainst(copy, corner);
         for (int other = firstCopyIn(beyond); other < lastCopyIn(beyond); ++other) {
           if ((copies_[other].cells & against) != 0) link(static_cast<int>(k), other);
         }
@@ -362,6 +414,21 @@ class CopyFinder {
     }
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  }
+
+  /// Cells beyond a face that no surface keeps from those of a copy.
+  CellMask cellsAgainst(const TetCopies::Copy& copy, int corner) const {
+    const LatticeTet& place = links_.tets[copy.tet];
+    const int beyond = links_.beyond[copy.tet][corner];
+    CellMask against = 0;
+    for (const CellTables::Crossing& crossing : cellTables().crossings[place.local][corner]) {
+      if ((copy.cells >> crossing.own & 1) == 0 || (material_.cells[beyond] >> crossing.beyond & 1) == 0) continue;
+      if ((layered_[copy.tet] || layered_[beyond]) && isBlocked({copy.tet, crossing.own}, {beyond, crossing.beyond})) {
+        continue;
+      }
+      against |= cellBit(crossing.beyond);
+    }
+    return against;
   }
 
   int firstCopyIn(int tet) const { return tet == 0 ? 0 : static_cast<int>(copiesIn_[tet - 1]); }
@@ -483,6 +550,7 @@ class CopyFinder {
   const LatticeLinks& links_;
   const WindingTree& winding_;
   std::vector<int> componentOf_;  ///< by triangle
+  std::vector<char> layered_;     ///< by tet: the surface passes through it more than once
   Lists<CellMask> pieces_;        ///< by tet: of material
   DisjointSets sets_;             ///< of elements
   std::vector<CellMask> cells_;   ///< of a set, at its representative
@@ -493,6 +561,8 @@ class CopyFinder {
   std::vector<std::array<int, 2>> found_;  ///< links
   std::vector<std::pair<std::array<int, 2>, std::size_t>> shared_;  ///< scratch memory, as are the next two
   std::vector<Eigen::Vector4d> polygon_, clipped_;
+  mutable std::vector<std::tuple<double, int, int>>
+      crossings_;  ///< share of the way, triangle, change of winding number
 };
 
 }  // namespace
