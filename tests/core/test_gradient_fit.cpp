@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
+#include "support/two_plates.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
@@ -40,6 +41,34 @@ TEST(GradientFit, IsExactForQuadraticMapsOnEveryLattice) {
   }
   // Two cubes across are enough: three nodes in a row.
   expectExact(test::latticeCage(2, 2, 2, 0.5), Kind::Full, 0.5);
+}
+
+/// A trunk of two cubes, from which two branches go on at the same place.
+TEST(GradientFit, StencilsDoNotReachAcrossCopies) {
+  Cage cage = test::latticeCage(6, 2, 2);
+  const std::size_t trunkNodes = cage.nodeCount();
+  const std::vector<int> copyOf = test::appendCopies(cage, 2.0);
+  cage.latticeTets.resize(cage.tetCount());
+  for (std::size_t t = 0; t < copyOf.size(); ++t) {
+    cage.latticeTets[t] = cage.latticeTets[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
+  }
+  // Each branch moves by a map of its own.
+  const auto branchOf = [&](std::uint32_t n) { return n >= trunkNodes ? 2 : cage.nodes[n].x() > 2.0 ? 1 : 0; };
+  std::size_t withoutCopies = 0;
+  CageNeighbours neighbours(cage, cage.latticeTets), blind(cage);
+  for (std::uint32_t n = 0; n < cage.nodeCount(); ++n) {
+    const auto reaches = [&](const GradientStencil& stencil, int branch) {
+      return std::any_of(stencil.nodes.begin(), stencil.nodes.end(),
+                         [&](std::uint32_t other) { return branchOf(other) == branch; });
+    };
+    const GradientStencil stencil = neighbours.stencilOf(n);
+    if (stencil.kind == Kind::Plain) continue;
+    EXPECT_FALSE(reaches(stencil, 1) && reaches(stencil, 2)) << "node " << n;
+    EXPECT_FALSE(branchOf(n) > 0 && reaches(stencil, 3 - branchOf(n))) << "node " << n;
+    const GradientStencil mixed = blind.stencilOf(n);
+    withoutCopies += reaches(mixed, 1) && reaches(mixed, 2);
+  }
+  EXPECT_GT(withoutCopies, 0u) << "some would, if they did not know of copies";
 }
 
 TEST(GradientFit, DoesNotDependOnTheUnit) {

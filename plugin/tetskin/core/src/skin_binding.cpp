@@ -48,7 +48,7 @@ Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedd
 template <class Scalar>
 void addQuadratic(const Cage& cage, SkinParts<Scalar>& parts) {
   const auto start = std::chrono::steady_clock::now();
-  const QuadraticStencils<Scalar>& made = parts.quadratic.emplace(cage, parts.embedding);
+  const QuadraticStencils<Scalar>& made = parts.quadratic.emplace(cage, parts.embedding, cage.latticeTets);
   QuadraticReport& report = parts.quadraticReport;
   report.nodes = made.gradientCount();
   report.thinNodes = made.thinCount();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/src/mesh/tets_around_nodes.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
@@ -95,9 +96,25 @@ struct Fit {
   }
 };
 
+/// By node: the same for nodes that are the same corner of copies of a tet. Empty without copies.
+std::vector<int> placesOf(const TetMesh& cage, const std::vector<int>& latticeTets) {
+  std::map<int, std::size_t> first;  // by lattice tet
+  DisjointSets places(latticeTets.empty() ? 0 : cage.nodeCount());
+  bool copies = false;
+  for (std::size_t t = 0; t < latticeTets.size(); ++t) {
+    const auto [place, isNew] = first.try_emplace(latticeTets[t], t);
+    copies |= !isNew;
+    for (int k = 0; k < 4; ++k) places.unite(cage.tets[place->second][k], cage.tets[t][k]);
+  }
+  std::vector<int> placeOf;
+  for (std::size_t n = 0; copies && n < cage.nodeCount(); ++n) placeOf.push_back(places.find(static_cast<int>(n)));
+  return placeOf;
+}
+
 }  // namespace
 
-CageNeighbours::CageNeighbours(const TetMesh& cage) : cage_(cage), foundFor_(cage.nodeCount(), 0) {
+CageNeighbours::CageNeighbours(const TetMesh& cage, const std::vector<int>& latticeTets)
+    : cage_(cage), placeOf_(placesOf(cage, latticeTets)), foundFor_(cage.nodeCount(), 0) {
   TetMesh solid;  // without flat tets, which may tie together what is far apart
   std::vector<bool> isSolid(cage.tetCount());
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
@@ -122,6 +139,7 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
   for (int ring = 1; ring <= kMostRings; ++ring) {
     const std::size_t before = found_.size();
     addRing(ringStart);
+    leaveOutCopies(before);
     ringStart = before;
     const bool last = ring == kMostRings || found_.size() == before;
     if (!last && found_.size() <= kFewestNeighbours) continue;
@@ -183,6 +201,23 @@ void CageNeighbours::addRing(std::size_t from) {
       found_.push_back(other);
     }
   }
+}
+
+/// Of the nodes found from place `from` on, those at a place where another has been found, before or in this ring.
+void CageNeighbours::leaveOutCopies(std::size_t from) {
+  if (placeOf_.empty()) return;
+  const auto isCopy = [&](std::size_t k) {
+    for (std::size_t j = 0; j < found_.size(); ++j) {
+      if (j != k && placeOf_[found_[j]] == placeOf_[found_[k]]) return true;
+    }
+    return false;
+  };
+  std::vector<std::uint32_t> kept;
+  for (std::size_t k = from; k < found_.size(); ++k) {
+    if (!isCopy(k)) kept.push_back(found_[k]);
+  }
+  found_.resize(from);
+  found_.insert(found_.end(), kept.begin(), kept.end());
 }
 
 GradientStencil CageNeighbours::plainStencil(std::uint32_t node) const {

@@ -24,16 +24,19 @@ struct GradientStencil {
   Kind kind = Kind::Full;
 };
 
-/// Which nodes share an edge, and which tets share a node, over the tets that are not flat.
+/// Which nodes share an edge, and which tets share a node, over the tets that are not flat. Where copies of tets branch
+/// off, neighbours that are at one place in several branches tell nothing of a node's gradient, and are passed by.
 class CageNeighbours {
  public:
-  explicit CageNeighbours(const TetMesh& cage);
+  /// latticeTets  by tet: the same for copies of one, see Cage; empty: there are none
+  explicit CageNeighbours(const TetMesh& cage, const std::vector<int>& latticeTets = {});
 
   /// The stencil of one node, which must belong to a tet that is not flat. Cost: some fits of 9 unknowns.
   GradientStencil stencilOf(std::uint32_t node);
 
  private:
   void addRing(std::size_t from);
+  void leaveOutCopies(std::size_t from);
   std::vector<std::uint32_t> nearNeighbours() const;
   std::vector<Eigen::Vector3d> offsetsOf(const std::vector<std::uint32_t>& neighbours) const;
   GradientStencil plainStencil(std::uint32_t node) const;
@@ -41,6 +44,7 @@ class CageNeighbours {
   const TetMesh& cage_;
   Lists<> edges_;                        ///< by node: the nodes at the other ends of its edges
   Lists<> tets_;                         ///< by node: its tets
+  std::vector<int> placeOf_;             ///< by node: the same for copies of one; empty: there are none
   std::vector<std::uint32_t> found_;     ///< the node, then its rings
   std::vector<std::uint32_t> foundFor_;  ///< by node: for which node it was found last, plus 1
 };

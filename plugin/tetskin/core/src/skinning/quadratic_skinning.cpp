@@ -48,13 +48,14 @@ std::vector<Edge> occupiedEdges(const EmbeddingData& embedding) {
 }  // namespace
 
 template <class Scalar>
-QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embedding& embedding) {
+QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embedding& embedding,
+                                             const std::vector<int>& latticeTets) {
   assert(cage.nodeCount() == embedding.nodeCount() && cage.tetCount() == embedding.tetCount());
   const std::vector<Edge> edges = occupiedEdges(embedding.data());
   std::vector<std::uint32_t> gradientOf(cage.nodeCount(), kNone);
   for (const Edge& edge : edges) gradientOf[edge[0]] = gradientOf[edge[1]] = 0;
 
-  CageNeighbours neighbours(cage);
+  CageNeighbours neighbours(cage, latticeTets);
   for (std::uint32_t node = 0; node < cage.nodeCount(); ++node) {
     if (gradientOf[node] == kNone) continue;
     const GradientStencil stencil = neighbours.stencilOf(node);

@@ -23,9 +23,10 @@ template <class Scalar>
 class QuadraticStencils {
  public:
   QuadraticStencils() = default;
-  /// cage  usable, rest space; that of the embedding
+  /// cage         usable, rest space; that of the embedding
+  /// latticeTets  see CageNeighbours
   /// Cost  some 20 to 50 microseconds a node that carries vertices
-  QuadraticStencils(const TetMesh& cage, const Embedding& embedding);
+  QuadraticStencils(const TetMesh& cage, const Embedding& embedding, const std::vector<int>& latticeTets = {});
 
   std::size_t gradientCount() const { return starts_.size() - 1; }
   std::size_t edgeCount() const { return restLengths_.size(); }
