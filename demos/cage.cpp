@@ -19,14 +19,14 @@ using namespace tetskin::scenes;
 
 struct CageCommand {
   ModelOptions model;
-  CageOptions cage;
   std::string output;
   std::string json;
   bool loose = false;
   bool quiet = false;
 };
 
-nlohmann::ordered_json summarise(const Surface& surface, const CageReport& report, const EmbedReport& fit) {
+nlohmann::ordered_json summarise(const Surface& surface, const CageReport& report, const EmbedReport& fit,
+                                 const CalibrationReport& calibration) {
   nlohmann::ordered_json json;
   json["model"] = surface.name;
   json["vertices"] = surface.mesh.vertexCount();
@@ -39,6 +39,9 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
   json["max_dihedral_deg"] = report.maxDihedralDeg;
   json["components"] = report.parts;
   json["mesh_components"] = report.meshComponents;
+  json["copies"] = report.copies;
+  json["fused_parts"] = report.fusedParts;
+  json["stiffness_factor"] = calibration.factor;
   json["spacing"] = report.spacing;
   json["volume_ratio"] = report.volumeRatio;
   json["volume_ratio_unfitted"] = report.volumeRatioUnfitted;
@@ -49,18 +52,23 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
 int run(CageCommand command) {
   if (!command.json.empty()) requireWritable(command.json);
   const Surface surface = loadSurface(command.model);
-  command.cage.targetTets = command.model.tets;
-  command.cage.fit = !command.loose;
   CageReport report;
-  const Cage cage = cageFor(surface, command.cage, &report);
+  CageOptions options = cageOptionsOf(command.model);
+  options.fit = !command.loose;
+  Cage cage = cageFor(surface, options, &report);
+  CalibrationReport calibration;
+  if (command.model.calibrate) calibration = calibrated(cage, surface.name);
   require(saveCage(cage, command.output));
 
   // Counted as an application would see it, not as the builder believes it to be.
   EmbedReport fit;
   const auto embedded = embed(cage, surface.mesh, {}, &fit);
   if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
-  if (!command.json.empty()) writeJson(summarise(surface, report, fit), command.json);
-  if (!command.quiet) std::printf("%s%s\n", report.describe().c_str(), command.output.c_str());
+  if (!command.json.empty()) writeJson(summarise(surface, report, fit, calibration), command.json);
+  if (!command.quiet) {
+    std::printf("%s%s%s\n", report.describe().c_str(), command.model.calibrate ? calibration.describe().c_str() : "",
+                command.output.c_str());
+  }
   if (fit.outside == 0) return kDone;
   std::fprintf(stderr, "tetskin_cage: %zu vertices lie outside the cage, vertex %zu by %g\n", fit.outside,
                fit.worstVertex, fit.worstDistance);

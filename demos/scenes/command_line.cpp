@@ -120,6 +120,8 @@ void CommandLine::addSurfaceOptions(ModelOptions& options) {
 void CommandLine::addMeshOptions(ModelOptions& options) {
   addSurfaceOptions(options);
   addCount("--tets", options.tets, "Tets of a built cage");
+  addFlag("--whole", options.whole, "Do not split the cage where parts of the mesh lie nearer than a tet: they fuse");
+  addFlag("--calibrate", options.calibrate, "Give the cage the softness of the mesh: coarse tets are too stiff");
 }
 
 void CommandLine::addModelOptions(ModelOptions& options) {

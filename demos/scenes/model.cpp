@@ -94,6 +94,19 @@ Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* rep
   return std::move(cage).value();
 }
 
+CageOptions cageOptionsOf(const ModelOptions& options) {
+  CageOptions cage;
+  cage.targetTets = options.tets;
+  cage.split = !options.whole;
+  return cage;
+}
+
+CalibrationReport calibrated(Cage& cage, const std::string& name) {
+  const Result<CalibrationReport> report = calibrate(cage);
+  if (!report.ok()) throw InputError(name + ": " + report.status().message);
+  return report.value();
+}
+
 Model loadModel(const ModelOptions& options) {
   Model model;
   static_cast<Surface&>(model) = loadSurface(options);
@@ -104,10 +117,8 @@ Model loadModel(const ModelOptions& options) {
     require(layout.status());
     model.layout = std::move(layout).value();
   }
-  CageOptions cage;
-  cage.targetTets = options.tets;
-  model.cage = options.cage.empty() ? cageFor(model, cage) : loadCage(options.cage, model);
-  (void)repairTetMesh(model.cage);
+  model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
+  if (options.calibrate) (void)calibrated(model.cage, options.cage.empty() ? model.name : options.cage);
   return model;
 }
 

@@ -8,6 +8,7 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
+#include <tetskin/elastic/calibration.h>
 #include <tetskin/io/obj_sequence.h>
 
 #include <cstddef>
@@ -34,6 +35,8 @@ struct ModelOptions {
   std::string cage;               ///< file; empty: built from the mesh
   std::size_t tets = 3000;        ///< of a built cage
   std::size_t triangles = 60000;  ///< of the built-in model
+  bool whole = false;             ///< the cage is not split
+  bool calibrate = false;         ///< see tetskin::calibrate
 };
 
 struct Surface {
@@ -51,6 +54,9 @@ Surface loadSurface(const ModelOptions& options);
 Cage loadCage(const std::string& path);
 Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
+CageOptions cageOptionsOf(const ModelOptions& options);
+/// Calibrates a cage from the place that it is named by.
+CalibrationReport calibrated(Cage& cage, const std::string& name);
 /// The cage's tets are positive.
 Model loadModel(const ModelOptions& options);
 

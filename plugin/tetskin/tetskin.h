@@ -5,7 +5,7 @@
 #pragma once
 
 #define TETSKIN_VERSION_MAJOR 0
-#define TETSKIN_VERSION_MINOR 3
+#define TETSKIN_VERSION_MINOR 4
 #define TETSKIN_VERSION_PATCH 0
 #define TETSKIN_TEXT_(x) #x
 #define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)
@@ -13,6 +13,7 @@
 #define TETSKIN_VERSION \
   TETSKIN_TEXT(TETSKIN_VERSION_MAJOR) "." TETSKIN_TEXT(TETSKIN_VERSION_MINOR) "." TETSKIN_TEXT(TETSKIN_VERSION_PATCH)
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/parallel_for.h>

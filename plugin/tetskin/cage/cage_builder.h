@@ -57,10 +57,17 @@ struct TETSKIN_CAGE_API CageReport {
 };
 
 /// Builds a cage of about `options.targetTets` tets that holds every vertex of the mesh: `embed` of it reports 0
-/// outside. Its tets are positive, conforming, without duplicates, with dihedral angles between 10 and 165
-/// degrees; its boundary is a manifold; every node is used. Parts thinner than a tet are never lost. Parts
-/// nearer to each other than a tet may fuse. Between its vertices, a triangle lies wholly inside an unfitted cage; out
-/// of a fitted one it may stick by a few hundredths of the spacing. The same input gives the same cage.
+/// outside. Its tets are positive, conforming, with dihedral angles between 10 and 165 degrees; every node is used.
+/// Parts thinner than a tet are never lost.
+///
+/// Where parts of the mesh lie nearer to each other than a tet, there are copies of tets, one for each part (see Cage):
+/// parts thicker than an eighth of a tet, and farther apart than that, are never fused but where a cleft ends within a
+/// tet; what the mesh joins by edges is never torn. Components of the mesh that lie in each other, or nearer than an
+/// eighth of a tet, stay together. A cage without copies is the same as one that is not split, and then its boundary is
+/// a manifold, and its tets without duplicates; parts nearer to each other than a tet may have fused there.
+///
+/// Between its vertices, a triangle lies wholly inside an unfitted cage without copies; out of another it may stick by
+/// a few hundredths of the spacing. The same input gives the same cage.
 ///
 /// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
 ///          no triangle uses get tets of their own, however far away.

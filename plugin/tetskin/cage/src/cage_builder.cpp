@@ -105,7 +105,7 @@ cage_detail::CageTets splitTets(const Surface& surface, const WindingTree& windi
     const auto copies =
         cage_detail::copyTets(surface, winding, bound.samples, tetOf, material, frame, bound.lattice, links);
     cage_detail::CageTets tets = cage_detail::splitLattice(copies, bound.samples, bound.lattice, links);
-    if (tets.copies() > 0) return tets;
+    if (tets.split) return tets;
   }
   return cage_detail::wholeLattice(bound.lattice, material, tetOf);
 }
@@ -137,7 +137,7 @@ BoundCage bindCageOfSize(const Surface& surface, const WindingTree& winding, con
     BoundCage bound = bindCage(surface, winding, static_cast<std::size_t>(std::max(wanted, 1.0)), firstOrigin, options);
     lattices += bound.cage.lattices;
     const double grown = static_cast<double>(bound.tets.mesh.tetCount()) / target;
-    const bool whole = bound.tets.copies() == 0;
+    const bool whole = !bound.tets.split;
     if (round == 0 || miss(bound) < miss(best)) best = std::move(bound);
     if (whole || miss(best) <= kSizeTolerance) break;
     wanted /= grown;
@@ -165,7 +165,7 @@ void reportSurface(const Surface& surface, CageReport& report) {
 }
 
 void reportLattice(const BoundCage& bound, CageReport& report) {
-  report.joiningTets = bound.cage.joiningTets;
+  report.joiningTets = bound.tets.split ? 0 : bound.cage.joiningTets;
   report.spacing = 2.0 * bound.cage.frame.half;
   report.lattices = bound.cage.lattices;
   report.cageVolumeUnfitted = totalVolume(bound.tets.mesh);

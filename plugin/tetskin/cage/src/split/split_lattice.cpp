@@ -154,7 +154,17 @@ class Splitter {
       cage.cells.push_back(copies_.copies[k].cells);
     }
     for (const int copy : copies_.copyOf) cage.tetOf.push_back(copy < 0 ? -1 : tetOf[copy]);
+    cage.split = cage.mesh.nodeCount() > nodesUsed(cage.latticeTets);
     return cage;
+  }
+
+  /// How many nodes of the lattice these tets of it have.
+  std::size_t nodesUsed(const std::vector<int>& tets) const {
+    std::vector<char> used(lattice_.mesh.nodeCount(), 0);
+    for (const int t : tets) {
+      for (const int n : lattice_.mesh.tets[t]) used[n] = 1;
+    }
+    return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   }
 
   Tet numbered(const Tet& sets, const Tet& places, std::vector<int>& nodeOf,

@@ -17,6 +17,7 @@ struct CageTets {
   std::vector<int> latticeTets;  ///< by tet: of the lattice mesh it was made of; copies share it
   std::vector<CellMask> cells;   ///< by tet: its own material
   std::vector<int> tetOf;        ///< by point: the tet that holds it, or -1
+  bool split = false;            ///< some node is not the only one at its place in the lattice
 
   /// Tets beyond the first of those that share a lattice tet.
   std::size_t copies() const;
