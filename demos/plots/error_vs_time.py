@@ -28,7 +28,10 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
-STYLES = {"same": "-", "same_calibrated": (0, (5, 1.5, 1, 1.5, 1, 1.5)), "split": (0, (1, 1)), "filled": "-.", "calibrated": "--"}
+STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--"}
+# Kinds that are there to tell what makes the difference, with one surface: told apart by colour and marker as well.
+KIND_COLOURS = {"same_calibrated": "#56B4E9", "split": "#009E73", "filled": "#CC79A7"}
+KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v"}
 # What stands behind a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
          "calibrated": ", calibrated"}
@@ -36,8 +39,8 @@ plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.rig
                      "svg.hashsalt": "tetskin"})
 
 
-HEAD = ("| tets | copies | stiffness | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | simulation, ms | "
-        "skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
+HEAD = ("| tets | copies | stiffness | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | "
+        "simulation, ms | skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
 SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
 REFERENCE_ERROR = {True: "Calibrated cages aim at the body itself, not at the reference, which is too stiff as well.\n",
@@ -161,17 +164,23 @@ def reference_of(scene):
     return next((row for row in scene["rows"] if row["interpolation"] == "reference"), None)
 
 
+def look_of(interpolation, material):
+    """Colour and marker of a line."""
+    colour = KIND_COLOURS.get(material, COLOURS[interpolation])
+    quadratic = interpolation == "quadratic"
+    return dict(color=colour, marker=KIND_MARKERS.get(material, MARKERS[interpolation]),
+                markersize=9 if quadratic else 5, markerfacecolor="none" if quadratic else colour)
+
+
 def draw_totals(axes, scene):
-    for interpolation, colour in COLOURS.items():
+    for interpolation in COLOURS:
         for material, style in STYLES.items():
             rows = series(scene, interpolation, material)
             if not rows:
                 continue
             bullet = interpolation == "bullet"
-            axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], color=colour,
-                      linestyle="" if bullet else style, marker=MARKERS[interpolation],
-                      markersize=9 if interpolation == "quadratic" else 5, linewidth=1.4,
-                      markerfacecolor="none" if interpolation == "quadratic" else colour, zorder=5 if bullet else 3)
+            axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], linewidth=1.4,
+                      linestyle="" if bullet else style, zorder=5 if bullet else 3, **look_of(interpolation, material))
 
 
 def draw_embedding(axes, scene):
@@ -216,11 +225,10 @@ def legend_of(axes, scene):
     entries = []
     for interpolation in ("linear", "quadratic"):
         if any_series(scene, (interpolation,)):
-            look = dict(color=COLOURS[interpolation], marker=MARKERS[interpolation],
-                        markerfacecolor="none" if interpolation == "quadratic" else COLOURS[interpolation])
             for material, style in STYLES.items():
                 if series(scene, interpolation, material):
-                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material], **look))
+                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material],
+                                          **look_of(interpolation, material)))
             entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding alone",
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
     if series(scene, "bullet", "same"):
@@ -261,15 +269,16 @@ def error_over_frames(scene, name, tets):
         if row["tets"] != shown[row["material"]] or row["interpolation"] == "bullet":
             continue
         errors = row["error_total_rms_by_frame"]
+        wide = row["interpolation"] == "linear" and row["material"] not in KIND_COLOURS
         axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, linestyle=STYLES[row["material"]], label=setting(row),
-                  color=COLOURS[row["interpolation"]], linewidth=3 if row["interpolation"] == "linear" else 1.4,
-                  alpha=0.5 if row["interpolation"] == "linear" else 1)
+                  color=look_of(row["interpolation"], row["material"])["color"], linewidth=3 if wide else 1.4,
+                  alpha=0.5 if wide else 1)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("seconds")
     axes.set_ylabel("error, RMS, box diagonals")
     axes.set_title(f"{title_of(scene)} ({name}, about {tets:,.0f} tets)", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=9)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
     return figure
 
 
