@@ -28,23 +28,39 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
-STYLES = {"same": "-", "calibrated": "--"}
+STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--"}
+# Kinds that are there to tell what makes the difference, with one surface: told apart by colour and marker as well.
+KIND_COLOURS = {"same_calibrated": "#56B4E9", "split": "#009E73", "filled": "#CC79A7"}
+KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v"}
+# What stands behind a surface's name.
+KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
+         "calibrated": ", calibrated"}
 plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
                      "svg.hashsalt": "tetskin"})
 
 
-HEAD = ("| tets | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | simulation, ms | "
-        "skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 13 * "|---" + "|{lines}\n")
+HEAD = ("| tets | copies | stiffness | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | "
+        "simulation, ms | skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
 SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
+REFERENCE_ERROR = {True: "Calibrated cages aim at the body itself, not at the reference, which is too stiff as well.\n",
+                   False: "That is of one that is not calibrated; this one is better.\n"}
 CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, are those of smooth maps; here the body is clamped "
            "along edges, where its strain is not smooth, the reference is itself linear in each tet, and coarse cages have "
-           "another shape: they are fatter, and parts that lie close together are fused.\n")
+           "another shape: they are fatter, and where they are not split, parts that lie close together are fused.\n")
 
 
 def setting(row):
     """The name of a row's surface."""
-    return row["interpolation"] + (", calibrated" if row["material"] == "calibrated" else "")
+    return row["interpolation"] + KINDS[row["material"]]
+
+
+def tets_of(row):
+    """A row's cage, as cells of a table."""
+    factor = f"times {row['stiffness_factor']:.3f}" if row["stiffness_factor"] != 1 else ""
+    if row["calibration_left"] > 0:
+        factor += f" (left: {row['calibration_left']:.1%})"
+    return f"| {row['tets']:,.0f} | {row['copies']:,.0f} | {factor} |"
 
 
 def is_choice(row):
@@ -53,16 +69,16 @@ def is_choice(row):
 
 
 def table_line(row, reference_error, integrator, against):
-    tets, memory = f"{row['tets']:,.0f}", f"{row['memory_bytes'] / 1e6:.1f}"
+    memory = f"{row['memory_bytes'] / 1e6:.1f}"
     if row["interpolation"] == "reference":
         whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's force, {row['integrator']}"
         about = f"about {reference_error:.1e}" if row["integrator"] == integrator and reference_error > 0 else ""
-        return (f"| {tets} | {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
+        return (f"{tets_of(row)} {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
                 f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
     if not row["finite"]:
         surface += " (exploded)"
-    return (f"| {tets} | {surface} | {row['error_total_rms']:.2e} | {row['error_total_max']:.1e} | "
+    return (f"{tets_of(row)} {surface} | {row['error_total_rms']:.2e} | {row['error_total_max']:.1e} | "
             f"{row['error_embedding_rms']:.1e} | {row['error_simulation_rms']:.1e} | {row['normal_error_mean_deg']:.2f} | "
             f"{row['simulation_ms']:.3g} | {row['skin_us']:.0f} | {row['total_ms']:.3g} | {row['speedup']:.3g} | "
             f"{row['attach_ms']:.3g} | {memory} |"
@@ -82,7 +98,10 @@ def orders_text(scene):
 
 
 def cheapest_text(scene, target):
-    good = [row for row in scene["rows"] if is_choice(row) and row["error_total_rms"] <= target]
+    choices = [row for row in scene["rows"] if is_choice(row)]
+    # What the library does by default, where that was measured.
+    choices = [row for row in choices if row["material"] == "calibrated"] or choices
+    good = [row for row in choices if row["error_total_rms"] <= target]
     if not good:
         return f"\nNo setting stays below an error of {target:g}.\n"
     best = min(good, key=lambda row: row["total_ms"])
@@ -93,9 +112,18 @@ def cheapest_text(scene, target):
 def reference_text(reference):
     count = f"{reference['tets']:,} tets"
     if reference["from"] == "built":
-        return f"The reference is a built cage of about {count}: it may fuse parts that are near to each other.\n"
-    whose = "made by formula" if reference["from"] == "formula" else f"of {reference['from']}"
-    return f"The reference is a mesh of {count} {whose}, not built as the cages are.\n"
+        text = f"The reference is a built cage of about {count}, split where parts are near to each other, filled, not fitted"
+    else:
+        whose = "made by formula" if reference["from"] == "formula" else f"of {reference['from']}"
+        text = f"The reference is a mesh of {count} {whose}, not built as the cages are"
+    if reference["stiffness_factor"] == 1:
+        return text + "; it is not calibrated, and a little too stiff itself.\n"
+    return text + f", and calibrated: its stiffness is times {reference['stiffness_factor']:.3f}.\n"
+
+
+KINDS_TEXT = ("Cages: without a word, bare tets that are all full of material, and fuse parts that are near to each other; "
+              "*split*, a tet for each of these; *filled*, as heavy and stiff as what is in them; *calibrated*, split, filled "
+              "and softened, which is the library's own way; *bare, calibrated*, only softened.\n")
 
 
 def tables(results, target):
@@ -103,7 +131,7 @@ def tables(results, target):
     text = (f"# Error against run time: {results['model']}\n\n{results['vertices']:,} vertices, {results['triangles']:,} "
             "triangles. Errors in diagonals of the mesh's box, over all vertices and frames; times of the processor in one "
             "thread, medians over the frames. Bold: nothing is both faster and more accurate. "
-            + reference_text(results["reference"]))
+            + reference_text(results["reference"]) + KINDS_TEXT)
     for scene in results["scenes"]:
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
         against = any(row["speedup_against_bullet"] > 0 for row in scene["rows"])
@@ -115,8 +143,7 @@ def tables(results, target):
                      "own force, which turns and damps otherwise.\n")
         if scene["reference_error"] > 0:
             text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
-                     "nothing. Calibrated cages aim at the body itself, not at the reference, which is too stiff as well: "
-                     "judge them by a fine one (--full).\n")
+                     "nothing. " + REFERENCE_ERROR[results["reference"]["stiffness_factor"] == 1])
         text += orders_text(scene)
         if target:
             text += cheapest_text(scene, target)
@@ -137,25 +164,31 @@ def reference_of(scene):
     return next((row for row in scene["rows"] if row["interpolation"] == "reference"), None)
 
 
+def look_of(interpolation, material):
+    """Colour and marker of a line."""
+    colour = KIND_COLOURS.get(material, COLOURS[interpolation])
+    quadratic = interpolation == "quadratic"
+    return dict(color=colour, marker=KIND_MARKERS.get(material, MARKERS[interpolation]),
+                markersize=9 if quadratic else 5, markerfacecolor="none" if quadratic else colour)
+
+
 def draw_totals(axes, scene):
-    for interpolation, colour in COLOURS.items():
+    for interpolation in COLOURS:
         for material, style in STYLES.items():
             rows = series(scene, interpolation, material)
             if not rows:
                 continue
             bullet = interpolation == "bullet"
-            axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], color=colour,
-                      linestyle="" if bullet else style, marker=MARKERS[interpolation],
-                      markersize=9 if interpolation == "quadratic" else 5, linewidth=1.4,
-                      markerfacecolor="none" if interpolation == "quadratic" else colour, zorder=5 if bullet else 3)
+            axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], linewidth=1.4,
+                      linestyle="" if bullet else style, zorder=5 if bullet else 3, **look_of(interpolation, material))
 
 
 def draw_embedding(axes, scene):
-    """Of the cages with the reference's material: calibration does not change what the embedding gets wrong."""
+    """Of one kind of cages: the material does not change what the embedding gets wrong."""
     for interpolation in ("linear", "quadratic"):
-        rows = series(scene, interpolation, "same")
+        rows = any_series(scene, (interpolation,))
         axes.plot([r["total_ms"] for r in rows], [r["error_embedding_rms"] for r in rows], color=COLOURS[interpolation],
-                  linestyle=":", marker=MARKERS[interpolation], markersize=4, linewidth=1.4, zorder=3)
+                  linestyle="-", marker=MARKERS[interpolation], markersize=3, linewidth=0.7, alpha=0.4, zorder=2)
 
 
 def draw_front(axes, scene):
@@ -164,8 +197,13 @@ def draw_front(axes, scene):
               alpha=0.75, solid_capstyle="round", zorder=1)
 
 
+def any_series(scene, interpolations, materials=tuple(STYLES)):
+    """The first of these lines that there is."""
+    return next(filter(None, (series(scene, i, m) for i in interpolations for m in materials)), [])
+
+
 def label_sizes(axes, scene):
-    rows = series(scene, "linear", "same") or series(scene, "quadratic", "same")
+    rows = any_series(scene, ("linear", "quadratic"))
     for row in rows:
         axes.annotate(f"{row['tets']:,.0f}", (row["total_ms"], row["error_total_rms"]), textcoords="offset points",
                       xytext=(6, 9), fontsize=8, color="#333333")
@@ -186,20 +224,19 @@ def draw_reference(axes, scene):
 def legend_of(axes, scene):
     entries = []
     for interpolation in ("linear", "quadratic"):
-        if series(scene, interpolation, "same"):
-            look = dict(color=COLOURS[interpolation], marker=MARKERS[interpolation],
-                        markerfacecolor="none" if interpolation == "quadratic" else COLOURS[interpolation])
-            entries.append(Line2D([], [], linestyle="-", label=interpolation, **look))
-            if series(scene, interpolation, "calibrated"):
-                entries.append(Line2D([], [], linestyle="--", label=f"{interpolation}, calibrated", **look))
-            entries.append(Line2D([], [], linestyle=":", label=f"{interpolation}, embedding alone",
-                                  color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=4))
+        if any_series(scene, (interpolation,)):
+            for material, style in STYLES.items():
+                if series(scene, interpolation, material):
+                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material],
+                                          **look_of(interpolation, material)))
+            entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding alone",
+                                  color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
     if series(scene, "bullet", "same"):
         entries.append(Line2D([], [], linestyle="", color=COLOURS["bullet"], marker="x", label="Bullet's render nodes"))
     entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="nothing faster and better"))
     if reference_of(scene) and scene["reference_error"] > 0:
         entries.append(Line2D([], [], color="#000000", alpha=0.12, linewidth=9, label="below the reference's own error"))
-    axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9)
+    axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
 
 
 def error_against_time(scene, name):
@@ -225,21 +262,23 @@ def error_against_time(scene, name):
 
 def error_over_frames(scene, name, tets):
     rows = [r for r in scene["rows"] if r["error_total_rms_by_frame"]]
-    shown = min((r["tets"] for r in rows), key=lambda n: abs(math.log(n / tets)))
+    shown = {material: min((r["tets"] for r in rows if r["material"] == material), key=lambda n: abs(math.log(n / tets)))
+             for material in {r["material"] for r in rows}}
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
     for row in rows:
-        if row["tets"] != shown or row["interpolation"] == "bullet":
+        if row["tets"] != shown[row["material"]] or row["interpolation"] == "bullet":
             continue
         errors = row["error_total_rms_by_frame"]
-        axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, STYLES[row["material"]], label=setting(row),
-                  color=COLOURS[row["interpolation"]], linewidth=3 if row["interpolation"] == "linear" else 1.4,
-                  alpha=0.5 if row["interpolation"] == "linear" else 1)
+        wide = row["interpolation"] == "linear" and row["material"] not in KIND_COLOURS
+        axes.plot([(k + 1) / 60 for k in range(len(errors))], errors, linestyle=STYLES[row["material"]], label=setting(row),
+                  color=look_of(row["interpolation"], row["material"])["color"], linewidth=3 if wide else 1.4,
+                  alpha=0.5 if wide else 1)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("seconds")
     axes.set_ylabel("error, RMS, box diagonals")
-    axes.set_title(f"{title_of(scene)} ({name}, {shown:,.0f} tets)", fontsize=11, loc="left")
+    axes.set_title(f"{title_of(scene)} ({name}, about {tets:,.0f} tets)", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=9)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
     return figure
 
 

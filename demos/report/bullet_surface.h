@@ -3,7 +3,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <memory>

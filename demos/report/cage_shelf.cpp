@@ -2,11 +2,42 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/cage_shelf.h"
 
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/cage/cage_builder.h>
+
+#include <set>
 
 #include "scenes/input_error.h"
 
 namespace tetskin::report {
+namespace {
+
+Cage built(const TriangleMesh& mesh, const CageOptions& options) {
+  Result<Cage> cage = buildCage(mesh, options);
+  scenes::require(cage.status());
+  return std::move(cage).value();
+}
+
+/// With all of its tets full; which of them hold the vertices stays known.
+void makeBare(Cage& cage) {
+  cage.fill.clear();
+  cage.fineFill.clear();
+  cage.masses.clear();
+  cage.factor.clear();
+}
+
+ShelvedCage shelved(Cage cage, bool calibrated) {
+  ShelvedCage result{std::move(cage), {}};
+  if (!calibrated) return result;
+  CalibrationOptions options;
+  options.poissonRatio = SoftBodyOptions().poissonRatio;
+  Result<CalibrationReport> calibration = calibrate(result.cage, options);
+  scenes::require(calibration.status());
+  result.calibration = std::move(calibration).value();
+  return result;
+}
+
+}  // namespace
 
 double meanEdge(const Cage& cage) {
   const std::vector<std::array<int, 2>> edges = uniqueEdges(cage);
@@ -15,25 +46,32 @@ double meanEdge(const Cage& cage) {
   return sum / static_cast<double>(edges.size());
 }
 
-const Cage& CageShelf::cage(std::size_t tets) {
-  const auto found = cages_.find(tets);
+std::size_t copiesIn(const Cage& cage) {
+  return cage.latticeTets.size() - std::set<int>(cage.latticeTets.begin(), cage.latticeTets.end()).size();
+}
+
+const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {
+  const auto found = cages_.find({tets, kind});
   if (found != cages_.end()) return found->second;
   CageOptions options;
   options.targetTets = tets;
-  Result<Cage> cage = buildCage(mesh_, options);
-  scenes::require(cage.status());
-  return cages_[tets] = std::move(cage).value();
+  options.split = isSplit(kind);
+  Cage cage = built(mesh_, options);
+  if (!isFilled(kind)) makeBare(cage);
+  return cages_[{tets, kind}] = shelved(std::move(cage), isCalibrated(kind));
 }
 
-const CalibrationReport& CageShelf::calibration(std::size_t tets, double poissonRatio) {
-  const auto found = calibrations_.find(tets);
-  if (found != calibrations_.end()) return found->second;
-  CalibrationOptions options;
-  options.poissonRatio = poissonRatio;
-  Cage calibrated = cage(tets);
-  Result<CalibrationReport> calibration = calibrate(calibrated, options);
-  scenes::require(calibration.status());
-  return calibrations_[tets] = std::move(calibration).value();
+const ShelvedCage& CageShelf::reference() {
+  if (reference_) return *reference_;
+  CageOptions options;
+  options.targetTets = referenceTets_;
+  options.fit = false;
+  putReference(built(mesh_, options), true);
+  return *reference_;
+}
+
+void CageShelf::putReference(Cage cage, bool calibrated) {
+  reference_ = shelved(std::move(cage), calibrated);
 }
 
 }  // namespace tetskin::report

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/material.h"
 
+#include <numeric>
+
 namespace tetskin::report {
 namespace {
 
@@ -14,10 +16,17 @@ constexpr double kStiffness = 150.0, kLandingStiffness = 50.0;
 constexpr double kDampingSubsteps = 0.6;
 constexpr int kMostSubsteps = 64;
 
+/// kg a volume of the mesh, or of the tets where it is not known.
+double densityOf(const Cage& reference) {
+  const std::vector<double>& masses = reference.masses;
+  return kReferenceMass /
+         (masses.empty() ? totalVolume(reference) : std::accumulate(masses.begin(), masses.end(), 0.0));
+}
+
 /// The stiffness that a landing of this cage can have with so many substeps, at most the one wished for.
-double landingStiffness(const TetMesh& cage, double wish, double substep) {
+double landingStiffness(const Cage& cage, double wish, double substep) {
   SoftBodyOptions options;
-  options.density = kReferenceMass / totalVolume(cage);
+  options.density = densityOf(cage);
   options.relativeStiffness = wish / (options.density * scenes::kEarth * boundingBox(cage.nodes).sizes().maxCoeff());
   options.timeStep = substep;
   return scenes::defaultStiffness(cage, options);
@@ -30,11 +39,11 @@ const char* nameOf(Elasticity elasticity) {
   return kNames[static_cast<std::size_t>(elasticity)];
 }
 
-scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const TetMesh& reference, double relativeStiffness,
+scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
                                 Elasticity elasticity) {
   scenes::SceneOptions options;
   SoftBodyOptions& body = options.body;
-  body.density = kReferenceMass / totalVolume(reference);
+  body.density = densityOf(reference);
   body.margin = kMarginShare * scenes::kSize;
   body.implicit = elasticity == Elasticity::BulletImplicit;
   const double relative = relativeStiffness > 0.0 ? relativeStiffness : scene.lands ? kLandingStiffness : kStiffness;

@@ -15,9 +15,11 @@ const char* nameOf(Elasticity elasticity);
 /// stable: where bodies do not land, linear elasticity, which Bullet turns with each tet, and whose damping then keeps
 /// any stiffness stable; where they do, and that would sink into the ground, neo-Hookean elasticity, with as many
 /// substeps as its stiffness needs in a landing.
+/// Its density is by the volume of the mesh, where the reference knows that: so weigh all cages that know it as well;
+/// bare tets weigh more, as they are larger than the mesh.
 /// elasticity: of the library, the same material is stepped as scenes are by default, which it can bear.
 /// relativeStiffness  Young's modulus over density x gravity x size; 0: the scene's own
-scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const TetMesh& reference, double relativeStiffness,
+scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
                                 Elasticity elasticity);
 
 }  // namespace tetskin::report

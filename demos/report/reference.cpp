@@ -2,19 +2,25 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/reference.h"
 
+#include "report/cage_skin.h"
+#include "report/driven_nodes.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {
 
-/// Points carried by a cage in double.
-MeshSkin<double> skinOf(const Cage& cage, const TriangleMesh& points, Normals normals) {
-  SkinOptions options;
+MeshSkin<double> quadraticSkinOf(const Cage& cage, const TriangleMesh& mesh) {
+  BindingOptions options;
   options.interpolation = Interpolation::Quadratic;
-  options.normals = normals;
-  MeshSkin<double> skin;
-  scenes::require(skin.bind(cage, points, options).status());
-  return skin;
+  options.normals = Normals::Transformed;
+  return skinOf(cage, mesh, options);
+}
+
+/// A cage that others can be told apart in, though it was made without a map.
+Cage mapped(Cage cage, const Embedding& embedding) {
+  cage.vertexTets.clear();
+  for (const VertexBinding& binding : embedding.bindings()) cage.vertexTets.push_back(binding.tet);
+  return cage;
 }
 
 void update(MeshSkin<double>& skin, const std::vector<Eigen::Vector3f>& nodes) {
@@ -32,7 +38,10 @@ Points toDouble(const std::vector<Eigen::Vector3f>& nodes) {
 }
 
 SimulatedReference::SimulatedReference(const TriangleMesh& mesh, const Cage& cage, const Trajectory& trajectory)
-    : cage_(cage), trajectory_(trajectory), skin_(skinOf(cage, mesh, Normals::Transformed)) {}
+    : mesh_(mesh),
+      trajectory_(trajectory),
+      skin_(quadraticSkinOf(cage, mesh)),
+      cage_(mapped(cage, skin_.binding()->embedding())) {}
 
 const ReferenceSurface& SimulatedReference::surfaceAt(int frame) {
   update(skin_, trajectory_[static_cast<std::size_t>(frame)]);
@@ -47,18 +56,9 @@ const ReferenceSurface& SimulatedReference::surfaceAt(int frame) {
 }
 
 Trajectory SimulatedReference::drive(const Cage& cage) const {
-  TriangleMesh points;
-  points.positions = cage.nodes;
-  MeshSkin<double> skin = skinOf(cage_, points, Normals::None);
+  DrivenNodes nodes(mesh_, cage_, cage);
   Trajectory driven;
-  for (const std::vector<Eigen::Vector3f>& nodes : trajectory_) {
-    update(skin, nodes);
-    std::vector<Eigen::Vector3f>& frame = driven.emplace_back();
-    frame.reserve(cage.nodeCount());
-    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-      frame.emplace_back(Eigen::Map<const Eigen::Vector3d>(skin.positions()[n]).cast<float>());
-    }
-  }
+  for (const std::vector<Eigen::Vector3f>& frame : trajectory_) driven.push_back(nodes.positionsAt(toDouble(frame)));
   return driven;
 }
 

@@ -33,7 +33,7 @@ class Reference {
 };
 
 /// A simulated cage. Both the mesh and the nodes of other cages follow it by quadratic skinning, which continues its
-/// motion smoothly to nodes that lie outside of it: coarse cages are larger than fine ones.
+/// motion smoothly to nodes that lie outside of it: coarse cages are larger than fine ones (see DrivenNodes).
 class SimulatedReference : public Reference {
  public:
   /// All outlive this object. Throws InputError.
@@ -44,9 +44,10 @@ class SimulatedReference : public Reference {
   Trajectory drive(const Cage& cage) const override;
 
  private:
-  const Cage& cage_;
+  const TriangleMesh& mesh_;
   const Trajectory& trajectory_;
   MeshSkin<double> skin_;
+  Cage cage_;  ///< with the tets of the mesh's vertices
   ReferenceSurface surface_;
 };
 

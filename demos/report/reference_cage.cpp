@@ -57,8 +57,13 @@ ReferenceCage referenceCageFor(const TriangleMesh& mesh, const ReportOptions& op
 
 std::string describe(const ReferenceCage& reference) {
   const std::string tets = std::to_string(reference.tets) + " tets";
-  if (isBuilt(reference)) return "a built cage of about " + tets;
-  return tets + (reference.from == kFormula ? " by formula" : " of " + reference.from);
+  std::string text = isBuilt(reference)           ? "a built cage of about " + tets
+                     : reference.from == kFormula ? tets + " by formula"
+                                                  : tets + " of " + reference.from;
+  if (reference.factor == 1.0) return text;
+  char factor[64];
+  std::snprintf(factor, sizeof factor, ", calibrated (stiffness times %.3f)", reference.factor);
+  return text + factor;
 }
 
 }  // namespace tetskin::report

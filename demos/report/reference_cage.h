@@ -16,11 +16,12 @@ namespace tetskin::report {
 constexpr const char *kBuilt = "built", *kFormula = "formula";
 
 /// Which tets count as right. They must not fuse parts of the mesh that are near to each other: a reference that does
-/// finds nothing wrong with cages that do. So does a built cage where the mesh has gaps narrower than its tets.
+/// finds nothing wrong with cages that do. Built ones are split for that: see CageShelf.
 struct ReferenceCage {
   std::string from = kBuilt;  ///< as the other cages are, by the formula of a built-in model, or the file
   std::size_t tets = 0;       ///< wished for of a built one, otherwise as many as it has
   std::uint64_t hash = 0;     ///< of all that the cage holds; 0 for a built one
+  double factor = 1.0;        ///< of its stiffness, by calibration; known once it has been simulated
   std::optional<Cage> cage;   ///< where cages are compared; nothing: to be built
 };
 

@@ -81,8 +81,10 @@ ReportResult makeReport(const ReportOptions& wished) {
   options.referenceTets = model.reference.tets;
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
-  CageShelf cages(model.mesh);
-  if (model.reference.cage) cages.put(model.reference.tets, std::move(*model.reference.cage));
+  CageShelf cages(model.mesh, model.reference.tets);
+  // A file's tets are right as they are.
+  const bool calibrated = model.reference.from == kFormula;
+  if (model.reference.cage) cages.putReference(std::move(*model.reference.cage), calibrated);
   model.reference.cage.reset();
   std::vector<std::unique_ptr<SceneRunner>> runners;
   double cost = 0.0;
@@ -98,6 +100,8 @@ ReportResult makeReport(const ReportOptions& wished) {
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
     result.scenes.push_back(runScene(*runner, model.reference, progress));
+    const Row& first = result.scenes.back().rows.front();
+    if (first.isReference()) result.reference.factor = first.stiffnessFactor;
     writeReport(result, options, runner->colouredMesh());
     runner.reset();  // with its reference, which may be large
   }

@@ -4,9 +4,12 @@
 // The report of error against run time.
 //
 //   material           what cages are made of (scenes/table.h: the scenes)
+//   cage_kind          what a cage knows of the mesh in it
+//   cage_shelf         the cages, built and calibrated
 //   simulation         a cage's motion in a scene, and what step and surfaces cost
 //   reference          what is compared with
 //   reference_cage     the tets whose motion that is
+//   driven_nodes       where it would take the nodes of other cages
 //   surface_errors     how far surfaces and nodes are from it
 //   scene_runner       all cages of a scene, or what an earlier run has left of them (result_store)
 //   advice             orders, Pareto front, the reference's own error

@@ -21,7 +21,8 @@ nlohmann::ordered_json toJson(const ObservedOrder& order) {
 nlohmann::ordered_json ordersOf(const SceneResult& scene) {
   auto json = nlohmann::ordered_json::array();
   for (const char* interpolation : {"linear", "quadratic"}) {
-    for (const char* material : {"same", "calibrated"}) {
+    for (const CageKind kind : kCageKinds) {
+      const char* material = nameOf(kind);
       nlohmann::ordered_json one = {{"interpolation", interpolation}, {"material", material}};
       one["overall"] = toJson(overallOrder(scene.rows, interpolation, material));
       one["steps"] = nlohmann::ordered_json::array();
@@ -58,7 +59,8 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   json["model"] = result.model;
   json["vertices"] = result.vertices;
   json["triangles"] = result.triangles;
-  json["reference"] = {{"from", result.reference.from}, {"tets", result.reference.tets}};
+  json["reference"] = {
+      {"from", result.reference.from}, {"tets", result.reference.tets}, {"stiffness_factor", result.reference.factor}};
   json["units"] =
       "errors and edge: diagonals of the mesh's box; _ms, _us: processor time in one thread, medians; "
       "simulation, skin and total: a frame";

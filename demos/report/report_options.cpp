@@ -47,7 +47,11 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addWord("--force", force_, {"bullet", "tetskin"},
                "Whose elastic forces (default: tetskin, with its solver, and compared with both references)");
   line.addFlag("--implicit", o.implicit, "With --force bullet: implicit elasticity as well, beside the explicit one");
-  line.addFlag("--no-calibration", noCalibration_, "No rows with calibrated stiffness");
+  line.addWords("--cages", cages_,
+                "Kinds of cages, with commas (default: same,calibrated), of: same (bare tets), same_calibrated, split "
+                "(bare, with tets of their own for parts of the mesh), filled (by the mesh, not split), calibrated "
+                "(split, filled and calibrated), all");
+  line.addFlag("--no-calibration", noCalibration_, "No cages of calibrated stiffness");
   line.addCount("--frames", o.frames, "Frames of 1/60 s (default: the scene's)", 100000);
   line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
   line.addPositive("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals");
@@ -55,6 +59,13 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addFile("--out", o.out, "Folder of the report, and of what an interrupted run had finished");
   line.addSummaryOption(o.json, "File of the results (default: error_vs_time.json in the folder)");
   line.addQuietOption(o.quiet);
+}
+
+void ReportCommandLine::chooseCages() {
+  std::vector<CageKind>& kinds = options_.cages;
+  if (line_.given("--cages")) kinds = cageKindsOf(cages_);
+  if (noCalibration_) kinds.erase(std::remove_if(kinds.begin(), kinds.end(), isCalibrated), kinds.end());
+  if (kinds.empty()) throw scenes::InputError("--cages: there must be one, and --no-calibration leaves none");
 }
 
 const ReportOptions& ReportCommandLine::finish() {
@@ -76,7 +87,7 @@ const ReportOptions& ReportCommandLine::finish() {
   o.scenes = inOrder(o.scenes);
   if (interpolation_ == "linear") o.surfaces = {SurfaceKind::Linear};
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
-  o.calibrated = !noCalibration_;
+  chooseCages();
   o.bullet = force_ == "bullet";
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit is about Bullet's forces: add --force bullet");
   std::sort(o.tets.begin(), o.tets.end());

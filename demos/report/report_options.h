@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "report/cage_kind.h"
 #include "report/simulation.h"
 #include "scenes/command_line.h"
 
@@ -19,7 +20,7 @@ struct ReportOptions {
   std::size_t referenceTets = 30000;
   std::string reference;  ///< file of tets that count as right, in the mesh's space; empty: made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
-  bool calibrated = true;        ///< with calibrated rows
+  std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
   bool bullet = false;           ///< bodies by Bullet's forces instead of the library's
   bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
   int frames = 0;                ///< 0: the scene's own
@@ -43,6 +44,9 @@ class ReportCommandLine {
  private:
   ReportOptions options_;
   scenes::CommandLine& line_;
+  void chooseCages();
+
+  std::vector<std::string> cages_;
   std::string interpolation_, force_ = "tetskin";
   bool quick_ = false, full_ = false, noCalibration_ = false;
 };

@@ -15,12 +15,14 @@ struct Row {
   std::string scene;
   std::string integrator;  ///< tetskin: by the library's force; by Bullet's: explicit, implicit; none where nothing is
                            ///< simulated
-  std::string material;    ///< same: as the reference's; calibrated: softened by `stiffness_factor`
+  std::string material;    ///< kind of the cage: see CageKind; same for the reference, whatever it is
   std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
 
   double tets = 0, nodes = 0;
-  double edge = 0;  ///< mean length of the cage's edges
+  double edge = 0;    ///< mean length of the cage's edges
+  double copies = 0;  ///< tets beyond the first at their place, where the cage is split
   double stiffnessFactor = 1;
+  double calibrationLeft = 0;     ///< of the displacement: what calibration has left, by its own estimate
   double errorAgainstBullet = 0;  ///< total, RMS, against a reference by Bullet's forces; 0 without
   double errorTotalRms = 0, errorTotalMax = 0, errorEmbeddingRms = 0, errorSimulationRms = 0;
   double normalErrorMeanDeg = 0;

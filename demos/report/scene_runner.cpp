@@ -14,7 +14,7 @@ namespace tetskin::report {
 namespace {
 
 /// Of what is stored: raise it when rows of before are no longer comparable.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 /// The finest cage that is compared, for the estimate of the reference's own error, has the reference's tets over this.
 constexpr std::size_t kCoarserLevel = 3;
 /// A cage this near to that level serves for it.
@@ -25,6 +25,13 @@ constexpr double kMostBulletPairs = 1e9;
 std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
   kinds.erase(std::remove(kinds.begin(), kinds.end(), SurfaceKind::Bullet), kinds.end());
   return kinds;
+}
+
+/// Of the kinds that are there to tell what makes the difference, one surface.
+std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options, bool bullet) {
+  if (kind == CageKind::Same && bullet) return options.surfaces;
+  if (kind == CageKind::Same || kind == CageKind::Calibrated) return ours(options.surfaces);
+  return {options.surfaces.front()};
 }
 
 std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool both) {
@@ -39,13 +46,18 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   };
   const std::size_t shown = *std::min_element(options.tets.begin(), options.tets.end(),
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  if (!exact) jobs.push_back({options.referenceTets, false, {}, false, false});
-  if (!exact && both) jobs.push_back({options.referenceTets, false, {}, false, true});
+  if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, false});
+  if (!exact && both) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, true});
+  // What is not simulated does not depend on the material.
+  const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
   for (const std::size_t tets : sizes) {
-    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMostBulletPairs;
-    jobs.push_back({tets, false, bullet ? options.surfaces : ours(options.surfaces), tets == shown, false});
     const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
-    if (!exact && options.calibrated && asked) jobs.push_back({tets, true, ours(options.surfaces), false, false});
+    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMostBulletPairs;
+    for (const CageKind kind : kinds) {
+      const bool coloured = tets == shown && kind == kinds.front();
+      if (asked || kind == CageKind::Same)
+        jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), coloured, false});
+    }
   }
   return jobs;
 }
@@ -91,7 +103,7 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["reference_tets"] = isExact() ? 0 : options_.referenceTets;
   json["reference"] = model_.reference.hash;
   json["tets"] = job.tets;
-  json["calibrated"] = job.calibrated;
+  json["cage"] = nameOf(job.kind);
   json["coloured"] = job.coloured;
   json["bullets"] = job.bullets;
   json["surfaces"] = nlohmann::ordered_json::array();
@@ -118,7 +130,7 @@ const Job* SceneRunner::referenceJob(bool bullets) const {
 const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   std::optional<scenes::SceneOptions>& made = right_[bullets].material;
   if (!made) {
-    made = materialOf(entry_, cages_.cage(options_.referenceTets), options_.stiffness,
+    made = materialOf(entry_, cages_.reference().cage, options_.stiffness,
                       bullets ? Elasticity::BulletExplicit : elasticity_);
     made->frames = frames_;
     made->box = boundingBox(model_.mesh.positions);
@@ -126,24 +138,29 @@ const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   return *made;
 }
 
-Row SceneRunner::rowOf(const Job& job, const Cage& cage) const {
+Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
+  const auto& [cage, calibration] = shelved;
   Row row;
   row.scene = scene();
   row.integrator = integrator();
-  row.material = job.calibrated ? "calibrated" : "same";
+  row.material = nameOf(job.kind);
   row.tets = static_cast<double>(cage.tetCount());
   row.nodes = static_cast<double>(cage.nodeCount());
   row.edge = meanEdge(cage) / model_.diagonal;
+  row.copies = static_cast<double>(copiesIn(cage));
+  row.stiffnessFactor = calibration.factor;
+  row.calibrationLeft = calibration.left;
+  row.calibrateMs = calibration.milliseconds;
   row.diagonal = model_.modelDiagonal;
   return row;
 }
 
 std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& share) {
-  const Cage& cage = cages_.cage(job.tets);
+  const ShelvedCage& shelved = cages_.reference();
   int frame = 0;
-  Simulation simulation = simulate(entry_, cage, material(job.bullets), model_.mesh, {},
+  Simulation simulation = simulate(entry_, shelved.cage, material(job.bullets), model_.mesh, {},
                                    [&] { share(static_cast<double>(++frame) / frames_); });
-  Row row = rowOf(job, cage);
+  Row row = rowOf(job, shelved);
   row.interpolation = "reference";
   if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
   row.simulationMs = row.totalMs = simulation.milliseconds;
@@ -173,8 +190,7 @@ Reference& SceneRunner::reference(bool bullets) {
       (void)referenceRows(job, [](double) {});
     }
   }
-  right.reference =
-      std::make_unique<SimulatedReference>(model_.mesh, cages_.cage(options_.referenceTets), right.trajectory);
+  right.reference = std::make_unique<SimulatedReference>(model_.mesh, cages_.reference().cage, right.trajectory);
   return *right.reference;
 }
 
@@ -183,23 +199,18 @@ void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame)
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
 }
 
-SceneRunner::Motion SceneRunner::move(const Job& job, const Cage& cage, const std::function<void(double)>& share) {
+SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved,
+                                      const std::function<void(double)>& share) {
+  const Cage& cage = shelved.cage;
   Motion motion;
-  motion.row = rowOf(job, cage);
+  motion.row = rowOf(job, shelved);
   motion.driven = reference().drive(cage);
   if (isExact()) {
     motion.nodes = motion.driven;
     motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
   } else {
-    scenes::SceneOptions own = material();
-    if (job.calibrated) {
-      const CalibrationReport& calibration = cages_.calibration(job.tets, own.body.poissonRatio);
-      motion.row.stiffnessFactor = calibration.factor;
-      motion.row.calibrateMs = calibration.milliseconds;
-      own.body.youngsModulus *= calibration.factor;
-    }
     int frame = 0;
-    Simulation simulation = simulate(entry_, cage, own, model_.mesh, job.surfaces,
+    Simulation simulation = simulate(entry_, cage, material(), model_.mesh, job.surfaces,
                                      [&] { share(0.5 * static_cast<double>(++frame) / frames_); });
     motion.nodes = std::move(simulation.trajectory);
     motion.costs = simulation.surfaces;
@@ -219,8 +230,9 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const Cage& cage, const st
 std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
   if (isReference(job)) return referenceRows(job, share);
   Reference& right = reference();
-  const Cage& cage = cages_.cage(job.tets);
-  const Motion motion = move(job, cage, share);
+  const ShelvedCage& shelved = cages_.at(job.tets, job.kind);
+  const Cage& cage = shelved.cage;
+  const Motion motion = move(job, shelved, share);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
     const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, motion.nodes);

@@ -22,7 +22,7 @@ namespace tetskin::report {
 /// What is done with one cage in one scene.
 struct Job {
   std::size_t tets = 0;
-  bool calibrated = false;
+  CageKind kind = CageKind::Same;
   std::vector<SurfaceKind> surfaces;  ///< none: a reference
   bool coloured = false;              ///< also colour a mesh by the errors
   bool bullets = false;               ///< a reference by Bullet's forces, beside ours
@@ -83,9 +83,9 @@ class SceneRunner {
   const Job* referenceJob(bool bullets) const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
-  Motion move(const Job& job, const Cage& cage, const std::function<void(double)>& share);
+  Motion move(const Job& job, const ShelvedCage& shelved, const std::function<void(double)>& share);
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& share);
-  Row rowOf(const Job& job, const Cage& cage) const;
+  Row rowOf(const Job& job, const ShelvedCage& shelved) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);
 
   const ReportModel& model_;

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <array>
 #include <functional>

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "report/bullet_surface.h"
+#include "report/cage_skin.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::report {
@@ -27,10 +28,10 @@ class CarriedSurface {
       staleNormals_ = restNormals(mesh);
       return;
     }
-    SkinOptions options;
+    BindingOptions options;
     options.interpolation = interpolationOf(kind);
     options.normals = Normals::Transformed;
-    scenes::require(skin_.bind(cage, mesh, options).status());
+    skin_ = skinOf(cage, mesh, options);
   }
 
   void update(const std::vector<Eigen::Vector3f>& nodes) {

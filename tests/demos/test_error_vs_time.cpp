@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "report/advice.h"
+#include "report/cage_kind.h"
 #include "report/coloured_mesh.h"
 #include "report/result_store.h"
 #include "scenes/table.h"
@@ -201,12 +202,79 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
       EXPECT_GT(number(row, "memory_bytes"), 0.0);
     }
   }
-  // In the drop, contacts move single nodes: no smooth motion, and nothing for quadratic skinning to gain.
+  // In the drop, contacts move single nodes: no smooth motion, and nothing for quadratic skinning to gain. Nor is there
+  // in cages that fuse parts which the reference does not.
   for (const char* name : {"sag", "twist"}) {
-    const auto linear = rowsOf(sceneOf(json, name), "linear"), quadratic = rowsOf(sceneOf(json, name), "quadratic");
+    const auto linear = rowsOf(sceneOf(json, name), "linear", "calibrated");
+    const auto quadratic = rowsOf(sceneOf(json, name), "quadratic", "calibrated");
+    ASSERT_EQ(quadratic.size(), linear.size());
     for (std::size_t k = 0; k < linear.size(); ++k) {
       EXPECT_LT(number(quadratic[k], "error_embedding_rms"), number(linear[k], "error_embedding_rms")) << name << k;
     }
+  }
+}
+
+TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
+  const CommandResult result = run({"--quick", "--scene", "sag", "--tets", "1000", "--cages", "all", "--out", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/error_vs_time.json");
+  EXPECT_LT(number(json.at("reference"), "stiffness_factor"), 1.0);
+  EXPECT_NE(result.out.find(", calibrated (stiffness times 0."), std::string::npos) << result.out;
+  const auto& scene = json.at("scenes").at(0);
+  const auto row = [&](const char* kind) {
+    const auto rows = rowsOf(scene, "linear", kind);
+    EXPECT_FALSE(rows.empty()) << kind;
+    return rows.at(0);
+  };
+  for (const report::CageKind kind : report::kCageKinds) {
+    const auto one = row(nameOf(kind));
+    EXPECT_EQ(number(one, "finite"), 1.0) << nameOf(kind);
+    EXPECT_EQ(number(one, "copies") > 0.0, isSplit(kind)) << nameOf(kind);
+    EXPECT_EQ(number(one, "stiffness_factor") < 1.0, isCalibrated(kind)) << nameOf(kind);
+    EXPECT_EQ(number(one, "calibration_left") > 0.0, isCalibrated(kind)) << nameOf(kind);
+    EXPECT_EQ(number(one, "calibrate_ms") > 0.0, isCalibrated(kind)) << nameOf(kind);
+    EXPECT_GT(number(one, "error_total_rms"), number(one, "error_embedding_rms")) << nameOf(kind);
+    const bool both = kind == report::CageKind::Same || kind == report::CageKind::Calibrated;
+    EXPECT_EQ(rowsOf(scene, "quadratic", nameOf(kind)).empty(), !both) << nameOf(kind);
+  }
+  EXPECT_LT(number(row("same_calibrated"), "error_total_rms"), 0.6 * number(row("same"), "error_total_rms"));
+  EXPECT_LT(number(row("calibrated"), "error_total_rms"), 0.6 * number(row("same_calibrated"), "error_total_rms"));
+}
+
+/// Of cages that fuse the prongs, no softening makes prongs.
+TEST_F(ErrorVsTime, SplitCagesHaveTheProngsThatOthersFuse) {
+  const CommandResult result =
+      run({"--quick", "--quiet", "--model", "slotted_beam", "--scene", "sag", "--tets", "3000", "--cages",
+           "calibrated,same_calibrated", "--interpolation", "linear", "--frames", "36", "--out", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(json.at("reference").at("from"), "formula");
+  const auto fused = rowsOf(json.at("scenes").at(0), "linear", "same_calibrated");
+  const auto split = rowsOf(json.at("scenes").at(0), "linear", "calibrated");
+  ASSERT_EQ(fused.size(), 1u);
+  ASSERT_EQ(split.size(), 1u);
+  EXPECT_LT(number(split[0], "error_total_rms"), 0.7 * number(fused[0], "error_total_rms"));
+  EXPECT_LT(number(split[0], "error_embedding_rms"), 0.3 * number(fused[0], "error_embedding_rms"));
+}
+
+TEST_F(ErrorVsTime, KeepsWhatItMeasuredOfEachKindOfCages) {
+  const auto rows = [&](const std::string& cages) {
+    EXPECT_EQ(run(small("sag", {"--cages", cages, "--interpolation", "linear"})).status, 0);
+    const auto json = folder.json("out/error_vs_time.json");
+    std::vector<nlohmann::json> all;
+    for (const auto& row : json.at("scenes").at(0).at("rows")) {
+      if (row.at("interpolation") == "linear") all.push_back(row);
+    }
+    return all;
+  };
+  const auto same = rows("same"), filled = rows("filled"), again = rows("same");
+  ASSERT_EQ(same.size(), 2u);
+  ASSERT_EQ(filled.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(same[k].at("material"), "same");
+    EXPECT_EQ(filled[k].at("material"), "filled");
+    EXPECT_NE(same[k].at("error_total_rms"), filled[k].at("error_total_rms"));
+    EXPECT_EQ(same[k].at("simulation_ms"), again[k].at("simulation_ms"));  // to the bit: not measured again
   }
 }
 
@@ -481,6 +549,10 @@ TEST_F(ErrorVsTime, RefusesBadInput) {
   expectRefused(run({"--tets", "3000", "--reference-tets", "3000"}), "reference");
   expectRefused(run({"--target-error", "-1"}), "--target-error");
   expectRefused(run({"--full", "--quick"}), "--full");
+  for (const report::CageKind kind : report::kCageKinds) {
+    expectRefused(run({"--cages", "same,solid"}), nameOf(kind));
+  }
+  expectRefused(run({"--cages", "calibrated", "--no-calibration"}), "--no-calibration");
   folder.write("file", "");
   expectRefused(run({"--quick", "--out", "file"}), "file");
 }
