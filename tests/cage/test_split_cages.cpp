@@ -89,8 +89,8 @@ TEST(SplitCages, TellPlatesApartThatAreAFifthOfATetApart) {
 }
 
 TEST(SplitCages, HaveAPartForEachRingOfAChain) {
-  for (const int rings : {2, 3, 6}) {
-    EXPECT_EQ(build(chain(rings, 0.1).mesh, 3000).report.parts, static_cast<std::size_t>(rings));
+  for (const int rings : {2, 5}) {
+    EXPECT_EQ(build(chain(rings, 0.1).mesh, 2000).report.parts, static_cast<std::size_t>(rings));
   }
 }
 

@@ -100,7 +100,7 @@ TEST(SplitOutcomes, DamagedMeshesGetSoundCages) {
   }
   damaged.push_back(crossing);
   for (const TriangleMesh& mesh : damaged) {
-    for (const std::size_t target : {300, 1000}) {
+    for (const std::size_t target : {200, 800}) {
       const CageReport report = reportOf(mesh, target);
       EXPECT_LE(report.parts, report.meshComponents + report.looseVertices);
     }
