@@ -121,9 +121,7 @@ std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageRe
   if (report.verticesOutside != 0) return "the report counts vertices outside";
   if (report.tets != cage.tetCount() || report.nodes != cage.nodeCount()) return "the report has other counts";
   std::string fault = faultOfKnowledge(mesh, cage, report);
-  if (fault.empty()) fault = faultOfCopies(cage, report);
-  if (fault.empty() && report.copies == 0) fault = faultOfTopology(cage);
-  return fault;
+  return fault.empty() ? faultOfCopies(cage, report) : fault;
 }
 
 std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fit, CageReport* report) {

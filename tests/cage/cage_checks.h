@@ -10,11 +10,11 @@ namespace tetskin::test {
 
 /// What a cage promises, as the first thing that does not hold; empty if all does: clean (`checkTetMesh`), dihedral
 /// angles, every vertex inside (by `embed`, which believes the map), what it knows of the mesh, parts without hinges,
-/// and a report that agrees. A cage without copies is also sound by `faultOfTopology`.
+/// and a report that agrees.
 std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report);
 
-/// Of a cage without copies: at most two tets at a face, no coincident nodes, tets connected face to face around every
-/// node, a manifold boundary.
+/// Of a cage that is not split: at most two tets at a face, no coincident nodes, tets connected face to face around
+/// every node, a manifold boundary.
 std::string faultOfTopology(const TetMesh& cage);
 
 /// Builds a cage and says what is wrong with it, the number of tets included; empty if nothing is.

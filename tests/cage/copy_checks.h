@@ -12,8 +12,8 @@ namespace tetskin::test {
 /// an edge alone, which is a hinge.
 std::size_t countPartsByFaces(const TetMesh& cage);
 
-/// What tets with copies must be in place of what `faultOfTopology` asks of whole cages: at most two places of the
-/// lattice at a face, parts connected by faces, and numbered so; empty if they are.
+/// What tets with copies must be in place of what `faultOfTopology` asks of cages that are not split: at most two
+/// places of the lattice at a face, parts connected by faces, and numbered so; empty if they are.
 std::string faultOfCopies(const Cage& cage, const CageReport& report);
 
 /// What a cage knows of its mesh, as the first thing that does not hold: every vertex in the tet that the map names,

@@ -88,6 +88,17 @@ TEST(SplitCages, TellPlatesApartThatAreAFifthOfATetApart) {
   EXPECT_EQ(build(twoPlates(0.2 * spacing).mesh, 3000, true, false).report.parts, 1u);
 }
 
+/// No tet holds material of both, but tets of one have nodes in common with those of the other.
+TEST(SplitCages, TellApartWhatOnlyTouchesTheSameNodes) {
+  const TriangleMesh boxes = joined(boxMesh({1, 1, 1}), transformed(boxMesh({1, 1, 1}), 1.0, {1.5, 0, 0}));
+  const Built built = build(boxes, 1000);
+  EXPECT_EQ(built.report.parts, 2u);
+  EXPECT_EQ(build(boxes, 1000, true, false).report.parts, 1u);
+  const PartModel open = claw(0.15);
+  const Built hook = build(open.mesh, 3000);
+  EXPECT_EQ(countPartsBeyond(hook.cage, clearOf(open.plane, hook.report)), 2);
+}
+
 TEST(SplitCages, HaveAPartForEachRingOfAChain) {
   for (const int rings : {2, 5}) {
     EXPECT_EQ(build(chain(rings, 0.1).mesh, 2000).report.parts, static_cast<std::size_t>(rings));
