@@ -10,7 +10,7 @@
 #include <numeric>
 #include <set>
 
-#include "support/embed_into.h"
+#include "copy_checks.h"
 
 namespace tetskin::test {
 namespace {
@@ -108,19 +108,20 @@ std::string faultOfTopology(const TetMesh& cage) {
   return "";
 }
 
-std::string faultOfCage(const TriangleMesh& mesh, const TetMesh& cage, const CageReport& report) {
+std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report) {
   const TetMeshReport check = checkTetMesh(cage);
   if (!check.clean()) return check.describe();
   const DihedralRange range = dihedralRange(cage);
   if (range.minDeg < kMinDihedralDeg || range.maxDeg > kMaxDihedralDeg) {
     return "dihedral angles " + std::to_string(range.minDeg) + " to " + std::to_string(range.maxDeg);
   }
-  Embedding embedding;
-  const Fit embedded = embedInto(cage, viewOf(mesh.positions), {}, embedding);
-  if (!embedded.ok() || embedded.inside != mesh.vertexCount()) return embedded.describe();
+  EmbedReport embedded;
+  if (const Status status = embed(cage, mesh, {}, &embedded).status(); !status.ok()) return status.message;
+  if (embedded.inside != mesh.vertexCount() || embedded.mapped != mesh.vertexCount()) return embedded.describe();
   if (report.verticesOutside != 0) return "the report counts vertices outside";
   if (report.tets != cage.tetCount() || report.nodes != cage.nodeCount()) return "the report has other counts";
-  return faultOfTopology(cage);
+  std::string fault = faultOfKnowledge(mesh, cage, report);
+  return fault.empty() ? faultOfCopies(cage, report) : fault;
 }
 
 std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fit, CageReport* report) {

@@ -9,11 +9,12 @@
 namespace tetskin::test {
 
 /// What a cage promises, as the first thing that does not hold; empty if all does: clean (`checkTetMesh`), dihedral
-/// angles, every vertex inside (by `embed`), at most two tets at a face, no coincident nodes, tets connected face to
-/// face around every node, a manifold boundary, and a report that agrees.
-std::string faultOfCage(const TriangleMesh& mesh, const TetMesh& cage, const CageReport& report);
+/// angles, every vertex inside (by `embed`, which believes the map), what it knows of the mesh, parts without hinges,
+/// and a report that agrees.
+std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report);
 
-/// The part of it that is topology: from "at most two tets at a face" to the boundary.
+/// Of a cage that is not split: at most two tets at a face, no coincident nodes, tets connected face to face around
+/// every node, a manifold boundary.
 std::string faultOfTopology(const TetMesh& cage);
 
 /// Builds a cage and says what is wrong with it, the number of tets included; empty if nothing is.

@@ -44,7 +44,7 @@ int sharedCorners(const LatticeTet& a, const LatticeTet& b) {
 
 LatticeSet randomSet(double density, unsigned seed) {
   std::mt19937 random(seed);
-  std::bernoulli_distribution keep(density);
+  std::bernoulli_distribution keep(std::min(density, 1.0));
   LatticeSet set;
   for (int z = 0; z < 6; ++z) {
     for (int y = 0; y < 6; ++y) {

@@ -4,6 +4,7 @@
 // Every kind of surface, at 300 and 3,000 tets, some at 30,000, fitted and not.
 #include "cage_checks.h"
 #include "cage_models.h"
+#include "copy_checks.h"
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -22,10 +23,37 @@ constexpr std::size_t kMany = 30000;
 constexpr std::size_t kMany = 6000;
 #endif
 
+Cage wholeCage(const TriangleMesh& mesh, std::size_t target, bool fit) {
+  CageOptions options;
+  options.targetTets = target;
+  options.fit = fit;
+  options.split = false;
+  return buildCage(mesh, options).value();
+}
+
 void expectCages(const TriangleMesh& mesh) {
   for (const std::size_t target : {300, 3000}) {
     EXPECT_EQ(buildFault(mesh, target), kNoFault);
     EXPECT_EQ(buildFault(mesh, target, false), kNoFault);
+  }
+  EXPECT_EQ(faultOfTopology(wholeCage(mesh, 1000, false)), kNoFault);
+}
+
+/// The same of a shape that does not come near to itself: nothing splits, and nothing is as if it might.
+void expectWholeCages(const TriangleMesh& mesh) {
+  for (const std::size_t target : {300, 3000}) {
+    for (const bool fit : {true, false}) {
+      CageOptions options;
+      options.targetTets = target;
+      options.fit = fit;
+      CageReport report;
+      const Cage cage = buildCage(mesh, options, &report).value();
+      EXPECT_EQ(faultOfCage(mesh, cage, report), kNoFault);
+      EXPECT_TRUE(report.targetMet()) << report.describe();
+      EXPECT_EQ(report.copies, 0u);
+      EXPECT_TRUE(sameCage(cage, wholeCage(mesh, target, fit)));
+      EXPECT_EQ(faultOfTopology(cage), kNoFault);
+    }
   }
 }
 
@@ -37,35 +65,35 @@ TriangleMesh singleTriangle() {
 }
 
 TEST(CageShapes, Sphere) {
-  expectCages(unitSphere(24));
+  expectWholeCages(unitSphere(24));
 }
 
 TEST(CageShapes, Torus) {
-  expectCages(torusMesh(32));
+  expectWholeCages(torusMesh(32));
 }
 
 TEST(CageShapes, BoxOfTwelveTriangles) {
-  expectCages(boxMesh({1.0, 1.0, 1.0}));
+  expectWholeCages(boxMesh({1.0, 1.0, 1.0}));
 }
 
 TEST(CageShapes, FlatBox) {
-  expectCages(boxMesh({1.0, 1.0, 0.01}));
+  expectWholeCages(boxMesh({1.0, 1.0, 0.01}));
 }
 
 TEST(CageShapes, ThinRod) {
-  expectCages(boxMesh({100.0, 1.0, 1.0}));
+  expectWholeCages(boxMesh({100.0, 1.0, 1.0}));
 }
 
 TEST(CageShapes, FlatSheet) {
-  expectCages(sheetMesh(20));
+  expectWholeCages(sheetMesh(20));
 }
 
 TEST(CageShapes, SheetOfTwoTriangles) {
-  expectCages(sheetMesh(1));
+  expectWholeCages(sheetMesh(1));
 }
 
 TEST(CageShapes, SingleTriangle) {
-  expectCages(singleTriangle());
+  expectWholeCages(singleTriangle());
 }
 
 TEST(CageShapes, Line) {
@@ -96,8 +124,8 @@ TEST(CageShapes, InvertedSphere) {
 }
 
 TEST(CageShapes, DoubledFaces) {
-  expectCages(joined(unitSphere(16), unitSphere(16)));
-  expectCages(joined(unitSphere(16), invertedMesh(unitSphere(16))));
+  expectWholeCages(joined(unitSphere(16), unitSphere(16)));
+  expectWholeCages(joined(unitSphere(16), invertedMesh(unitSphere(16))));
 }
 
 TEST(CageShapes, RandomOrientation) {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/cage/cage_builder.h>
 #include <tetskin/core/src/mesh/uniform_refinement.h>
-#include <tetskin/elastic/src/calibration/refined_bodies.h>
 #include <tetskin/elastic/calibration.h>
+#include <tetskin/elastic/src/calibration/refined_bodies.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <limits>
 
 #include "support/odd_meshes.h"
+#include "support/part_models.h"
 
 namespace tetskin {
 namespace {
@@ -119,24 +121,109 @@ TEST(RefinedBodies, SolveAsADirectSolverDoes) {
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(loads.col(k).dot(found.col(k)) / loads.col(k).dot(right.col(k)), 1.0, 1e-3);
 }
 
-/// A beam of which only the lower half is filled, as whole cubes are, bends as a beam of that half does.
+/// One layer of cubes of which the lower half is filled: a beam half as high bends eight times as far as a full one,
+/// and its share of the stiffness says no more than twice.
 TEST(Calibration, SeesTheFill) {
-  Cage half = test::latticeCage(16, 4, 4, 0.25);
-  half.fill.assign(half.tetCount(), 1.0);
-  for (std::size_t t = 0; t < half.tetCount(); ++t) {
-    if (cornersOf(half, half.tets[t])[0].y() + cornersOf(half, half.tets[t])[1].y() +
-            cornersOf(half, half.tets[t])[2].y() + cornersOf(half, half.tets[t])[3].y() > 2.0 * 4 * 0.25) {
-      half.fill[t] = 0.0;
+  Cage half = test::latticeCage(8, 1, 1);
+  half.fill.assign(half.tetCount(), 0.5);
+  const double blind = factorOf(half);
+  const TetMesh fine = refineUniformly(refineUniformly(half).mesh).mesh;
+  for (const Tet& tet : fine.tets) {
+    double height = 0.0;
+    for (const int n : tet) height += 0.25 * fine.nodes[n].y();
+    half.fineFill.push_back(height < 0.5 ? 255 : 0);
+  }
+  ASSERT_EQ(half.fineFill.size(), kFineTets * half.tetCount());
+  EXPECT_LT(factorOf(half), 0.6 * blind);
+}
+
+/// A jaw of few tets, whose prongs lie nearer to each other than these.
+Cage splitJaw() {
+  CageOptions options;
+  options.targetTets = 300;
+  Cage cage = buildCage(test::jaw(0.12).mesh, options).value();
+  EXPECT_TRUE(cage.split());
+  EXPECT_FALSE(cage.fill.empty());
+  return cage;
+}
+
+TEST(Calibration, OfASplitCageSetsItsFactorAndNothingElse) {
+  const Cage before = splitJaw();
+  Cage cage = before;
+  const Result<CalibrationReport> report = calibrate(cage);
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(cage.factor, std::vector<double>(cage.tetCount(), report.value().factor));
+  EXPECT_GT(report.value().factor, 0.05);
+  EXPECT_LT(report.value().factor, 0.95);
+  EXPECT_EQ(report.value().skippedModes, 0);
+  EXPECT_TRUE(cage.check().ok());
+  EXPECT_EQ(cage.nodes, before.nodes);
+  EXPECT_EQ(cage.tets, before.tets);
+  EXPECT_EQ(cage.vertexTets, before.vertexTets);
+  EXPECT_EQ(cage.fill, before.fill);
+  EXPECT_EQ(cage.fineFill, before.fineFill);
+  EXPECT_EQ(cage.masses, before.masses);
+  EXPECT_EQ(cage.parts, before.parts);
+  EXPECT_EQ(cage.latticeTets, before.latticeTets);
+  EXPECT_EQ(cage.meshHash, before.meshHash);
+}
+
+TEST(Calibration, StartsFromScratchWhateverTheFactorsWere) {
+  Cage fresh = splitJaw(), used = fresh;
+  for (std::size_t t = 0; t < used.tetCount(); ++t) used.factor.push_back(0.01 + static_cast<double>(t % 5));
+  ASSERT_TRUE(calibrate(fresh).ok());
+  ASSERT_TRUE(calibrate(used).ok());
+  EXPECT_EQ(used.factor, fresh.factor);
+  ASSERT_TRUE(calibrate(used).ok());  // and again
+  EXPECT_EQ(used.factor, fresh.factor);
+}
+
+/// A beam with tets that hang on it by so many nodes.
+Cage beamWithScraps(int sharedNodes) {
+  Cage cage = test::latticeCage(4, 2, 2, 0.5);
+  const std::vector<std::array<int, 3>> faces = boundaryFaces(cage);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::array<int, 3>& face = faces[5 * k];
+    const Vector3d a = cage.nodes[face[0]], b = cage.nodes[face[1]], c = cage.nodes[face[2]];
+    const Vector3d up = 0.5 * (b - a).cross(c - a).normalized();
+    Tet scrap = {face[0], face[1], face[2], static_cast<int>(cage.nodeCount())};
+    cage.nodes.push_back((a + b + c) / 3.0 + up);
+    for (int corner = sharedNodes; corner < 3; ++corner) {
+      scrap[corner] = static_cast<int>(cage.nodeCount());
+      cage.nodes.push_back(cage.nodes[face[corner]] + 0.5 * up);
+    }
+    cage.tets.push_back(scrap);
+  }
+  return cage;
+}
+
+TEST(Calibration, SurvivesWhatHangsLoosely) {
+  for (const int sharedNodes : {1, 2, 3}) {
+    for (const double fill : {1.0, 0.01, 0.0}) {
+      Cage cage = beamWithScraps(sharedNodes);
+      cage.fill.assign(cage.tetCount(), 1.0);
+      std::fill(cage.fill.end() - 6, cage.fill.end(), fill);
+      const Result<CalibrationReport> result = calibrate(cage);
+      if (!result.ok()) {  // of a hinge, the stiffness may have no factors
+        EXPECT_LT(sharedNodes, 3);
+        EXPECT_EQ(result.status().code, StatusCode::Degenerate);
+        EXPECT_TRUE(cage.factor.empty());
+        continue;
+      }
+      const CalibrationReport& report = result.value();
+      EXPECT_GT(report.factor, 0.0) << sharedNodes << " " << fill;
+      EXPECT_LE(report.factor, 1.0);
+      EXPECT_GE(report.skippedModes, 0);
+      EXPECT_LE(report.skippedModes, CalibrationOptions().modes);
+      EXPECT_TRUE(std::isfinite(report.left) && report.left >= 0.0) << report.left;
+      for (const double response : report.responses) EXPECT_TRUE(std::isfinite(response));
+      EXPECT_TRUE(cage.check().ok());
     }
   }
-  const Result<CalibrationReport> report = calibrate(half);
-  ASSERT_TRUE(report.ok());
-  EXPECT_LT(report.value().factor, 0.9 * factorOf(test::latticeCage(16, 4, 4, 0.25)))
-      << "what is empty still has a tenth of its stiffness, which the refinements take away";
 }
 
 TEST(Calibration, GivesACoarseBeamTheSoftnessOfItsLimit) {
-  for (const int cubes : {2, 3, 4}) {
+  for (const int cubes : {2, 3}) {
     Cage cage = beam(cubes);
     const Result<CalibrationReport> report = calibrate(cage);
     ASSERT_TRUE(report.ok());
@@ -153,13 +240,13 @@ TEST(Calibration, GivesACoarseBeamTheSoftnessOfItsLimit) {
 
 TEST(Calibration, FinerCagesNeedLess) {
   double before = 0.0;
-  for (const int cubes : {2, 3, 5}) {
+  for (const int cubes : {1, 2, 4}) {
     const double factor = factorOf(beam(cubes));
     EXPECT_GT(factor, before + 0.02);
     EXPECT_LT(factor, 1.0);
     before = factor;
   }
-  EXPECT_GT(before, 0.92);
+  EXPECT_GT(before, 0.88);
 }
 
 TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
@@ -173,8 +260,8 @@ TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
 }
 
 TEST(Calibration, RefinesNoMoreThanItMay) {
-  for (const auto& [cubes, refinements] : {std::pair{8, 2}, std::pair{12, 1}}) {
-    Cage cage = test::latticeCage(cubes, cubes, cubes);
+  for (const auto& [length, refinements] : {std::pair{2, 2}, std::pair{10, 1}}) {
+    Cage cage = test::latticeCage(length, 9, 9);
     const Result<CalibrationReport> report = calibrate(cage);
     ASSERT_TRUE(report.ok());
     EXPECT_EQ(report.value().refinements, refinements);

@@ -19,29 +19,35 @@ constexpr double kPi = 3.14159265358979323846;
 
 // --- Parts
 
-/// Of the elements that are kept, connected by the points that they name.
+/// By element, its part of those that are kept, connected by the points that they name: a point of it, or -1.
 template <std::size_t Size>
-int countParts(const std::vector<std::array<int, Size>>& elements, const std::vector<Vector3d>& points,
-               const std::optional<Plane>& plane) {
+std::vector<int> partsOf(const std::vector<std::array<int, Size>>& elements, const std::vector<Vector3d>& points,
+                         const std::optional<Plane>& plane) {
   std::vector<int> parent(points.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int p) {
     while (parent[p] != p) p = parent[p] = parent[parent[p]];
     return p;
   };
-  std::vector<bool> kept(points.size(), false);
-  for (const std::array<int, Size>& element : elements) {
+  std::vector<int> parts(elements.size(), -1);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
     Vector3d sum = Vector3d::Zero();
-    for (const int p : element) sum += points[p];
+    for (const int p : elements[e]) sum += points[p];
     if (plane && plane->signedDistance(Vector3d(sum / static_cast<double>(Size))) <= 0.0) continue;
-    for (const int p : element) {
-      kept[p] = true;
-      parent[root(p)] = root(element[0]);
-    }
+    parts[e] = elements[e][0];
+    for (const int p : elements[e]) parent[root(p)] = root(elements[e][0]);
   }
-  int parts = 0;
-  for (std::size_t p = 0; p < points.size(); ++p) parts += kept[p] && parent[p] == static_cast<int>(p);
+  for (int& part : parts) part = part < 0 ? part : root(part);
   return parts;
+}
+
+template <std::size_t Size>
+int countParts(const std::vector<std::array<int, Size>>& elements, const std::vector<Vector3d>& points,
+               const std::optional<Plane>& plane) {
+  std::vector<int> parts = partsOf(elements, points, plane);
+  std::sort(parts.begin(), parts.end());
+  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+  return static_cast<int>(std::count_if(parts.begin(), parts.end(), [](int part) { return part >= 0; }));
 }
 
 // --- Shapes
@@ -161,6 +167,10 @@ int countPartsBeyond(const TetMesh& cage, const std::optional<Plane>& plane) {
 
 int countPartsBeyond(const TriangleMesh& mesh, const std::optional<Plane>& plane) {
   return countParts(mesh.triangles, mesh.positions, plane);
+}
+
+std::vector<int> partsBeyond(const TetMesh& cage, const Plane& plane) {
+  return partsOf(cage.tets, cage.nodes, plane);
 }
 
 PartModel twoPlates(double gap) {

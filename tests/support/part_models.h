@@ -20,6 +20,8 @@ using Plane = Eigen::Hyperplane<double, 3>;
 int countPartsBeyond(const TetMesh& cage, const std::optional<Plane>& plane = {});
 /// The same of a surface's triangles, connected by vertices.
 int countPartsBeyond(const TriangleMesh& mesh, const std::optional<Plane>& plane = {});
+/// By tet: its part beyond the plane, an arbitrary number from 0; -1 if it is not beyond.
+std::vector<int> partsBeyond(const TetMesh& cage, const Plane& plane);
 
 /// A mesh, and into how many parts it falls beyond a plane, or as a whole. The plane passes well clear of where they
 /// hang together: a cage that keeps them apart may do so there less exactly.

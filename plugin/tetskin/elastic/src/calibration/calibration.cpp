@@ -116,7 +116,8 @@ void summarise(const RefinedBodies& bodies, const Eigen::MatrixXd& modes, Calibr
   double limits = 0.0;
   for (Eigen::Index k = 0; k < modes.cols(); ++k) {
     const double limit = limitOf(responses, k);
-    if (!(responses.front()[k] > kLeastResponse * limit)) {
+    // Of what turns freely on a node or an edge, rounding alone decides the responses, and their signs.
+    if (!(limit > 0.0 && responses.front()[k] > kLeastResponse * limit)) {
       ++report.skippedModes;
       continue;
     }
