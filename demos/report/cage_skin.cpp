@@ -7,11 +7,10 @@
 namespace tetskin::report {
 
 MeshSkin<double> skinOf(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options) {
-  // A MeshSkin that is given a cage itself takes it for a TetMesh, without the map.
-  auto binding = SkinBinding<double>::make(cage, mesh, options);
-  scenes::require(binding.status());
+  SkinOptions all;
+  static_cast<BindingOptions&>(all) = options;
   MeshSkin<double> skin;
-  scenes::require(skin.bind(std::move(binding).value(), viewOf(cage.nodes)));
+  scenes::require(skin.bind(cage, mesh, all).status());
   return skin;
 }
 

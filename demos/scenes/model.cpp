@@ -70,8 +70,6 @@ Cage loadCage(const std::string& path) {
   if (const Status status = usable(cage, checkTetMesh(cage)); !status.ok()) {
     throw InputError(path + ": " + status.message);
   }
-  // The small tets of one that is turned over come in another order.
-  if (repairTetMesh(cage).negativeVolume.count > 0) cage.fineFill.clear();
   return cage;
 }
 
@@ -118,6 +116,8 @@ Model loadModel(const ModelOptions& options) {
     model.layout = std::move(layout).value();
   }
   model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
+  // The small tets of one that is turned over come in another order.
+  if (repairTetMesh(model.cage).negativeVolume.count > 0) model.cage.fineFill.clear();
   if (options.calibrate) (void)calibrated(model.cage, options.cage.empty() ? model.name : options.cage);
   return model;
 }

@@ -33,8 +33,8 @@
 #include <tetskin/cage/cage_builder.h>
 #endif
 #ifdef TETSKIN_HAS_ELASTIC
-#include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/calibration.h>
+#include <tetskin/elastic/elastic_body.h>
 #endif
 #ifdef TETSKIN_HAS_IO
 #include <tetskin/io/embedding_file.h>

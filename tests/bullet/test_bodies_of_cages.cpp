@@ -19,7 +19,7 @@ constexpr double kDensity = 7.0;
 
 /// High up, with its masses and all.
 Cage plates(double joinedUntil = -1.0) {
-  Cage cage = test::twoPlates(joinedUntil).cage;
+  Cage cage = test::platesOfCopies(joinedUntil).cage;
   for (Eigen::Vector3d& p : cage.nodes) p.y() += 20.0;
   return cage;
 }
@@ -188,7 +188,7 @@ double opening(Cage cage, const test::TwoPlates& of) {
 }
 
 TEST(BodiesOfCages, OpenWhereTheirPartsArePulledApart) {
-  const test::TwoPlates jaw = test::twoPlates(1.0);
+  const test::TwoPlates jaw = test::platesOfCopies(1.0);
   const double open = opening(jaw.cage, jaw), fused = opening(test::latticeCage(4, 1, 2), jaw);
   EXPECT_GT(open, 0.1);
   EXPECT_GT(open, 2.0 * std::abs(fused));

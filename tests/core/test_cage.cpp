@@ -14,8 +14,8 @@ namespace tetskin {
 namespace {
 
 using Eigen::Vector3d;
+using test::platesOfCopies;
 using test::TwoPlates;
-using test::twoPlates;
 
 void expectFault(const Cage& cage, StatusCode code, const std::string& words) {
   const Status status = cage.check();
@@ -33,12 +33,12 @@ TEST(Cage, OfAMeshOfTetsNothingElseIsKnown) {
 }
 
 TEST(Cage, WhatIsKnownOfItIsInOrder) {
-  const Status status = twoPlates().cage.check();
+  const Status status = platesOfCopies().cage.check();
   EXPECT_TRUE(status.ok()) << status.message;
 }
 
 TEST(Cage, CheckFindsArraysOfWrongCounts) {
-  const Cage good = twoPlates().cage;
+  const Cage good = platesOfCopies().cage;
   const StatusCode code = StatusCode::SizeMismatch;
   const std::string tets = std::to_string(good.tetCount()), nodes = std::to_string(good.nodeCount());
   Cage cage = good;
@@ -57,7 +57,7 @@ TEST(Cage, CheckFindsArraysOfWrongCounts) {
 }
 
 TEST(Cage, CheckFindsValuesThatMakeNoSense) {
-  const Cage good = twoPlates().cage;
+  const Cage good = platesOfCopies().cage;
   const StatusCode code = StatusCode::InvalidOption;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
   Cage cage;
@@ -82,7 +82,7 @@ TEST(Cage, CheckFindsValuesThatMakeNoSense) {
 }
 
 TEST(Cage, CheckMeshKnowsTheMeshByItsCountAndPlaces) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   EXPECT_TRUE(plates.cage.checkMesh(plates.mesh).ok());
   TriangleMesh longer = plates.mesh, moved = plates.mesh, turned = plates.mesh;
   longer.positions.push_back(Vector3d::Zero());
@@ -115,7 +115,7 @@ TEST(Cage, StiffnessIsFactorTimesFillButNeverNextToNothing) {
 }
 
 TEST(Cage, ScalesMassesAsVolumes) {
-  Cage cage = twoPlates().cage;
+  Cage cage = platesOfCopies().cage;
   const Cage before = cage;
   cage.scaleBy(2.0);
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
@@ -127,9 +127,9 @@ TEST(Cage, ScalesMassesAsVolumes) {
 }
 
 TEST(Cage, IsSplitWhereALatticeTetHasTwoCopies) {
-  EXPECT_TRUE(twoPlates().cage.split());
-  EXPECT_TRUE(twoPlates(1.0).cage.split());
-  EXPECT_FALSE(twoPlates(4.0).cage.split());
+  EXPECT_TRUE(platesOfCopies().cage.split());
+  EXPECT_TRUE(platesOfCopies(1.0).cage.split());
+  EXPECT_FALSE(platesOfCopies(4.0).cage.split());
 }
 
 TEST(PositionsHash, DependsOnEveryPositionAndTheirOrder) {
@@ -260,15 +260,15 @@ void expectOwnCopies(const TwoPlates& plates) {
 }
 
 TEST(CageLocator, FindsTheCopyThatTheTriangleIsIn) {
-  expectOwnCopies(twoPlates());
+  expectOwnCopies(platesOfCopies());
 }
 
 TEST(CageLocator, FindsTheCopyWhereTheyBranchOff) {
-  expectOwnCopies(twoPlates(1.0));
+  expectOwnCopies(platesOfCopies(1.0));
 }
 
 TEST(CageLocator, PointsBesideAPlateStayWithIt) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   const CageLocator locator(plates.cage);
   for (std::size_t v = 0; v < plates.mesh.vertexCount(); v += 5) {
     const auto vertex = static_cast<int>(v);
@@ -283,7 +283,7 @@ TEST(CageLocator, PointsBesideAPlateStayWithIt) {
 }
 
 TEST(CageLocator, PassesFlatTets) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   Cage& cage = plates.cage;
   const Tet whole = cage.tets[static_cast<std::size_t>(cage.vertexTets[0])];
   cage.vertexTets[0] = static_cast<int>(cage.tetCount());
@@ -294,7 +294,7 @@ TEST(CageLocator, PassesFlatTets) {
 }
 
 TEST(CageLocator, Moves) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   CageLocator first(plates.cage);
   const int tet = first.locate(plates.mesh.positions[7], {7, 7, 7});
   CageLocator second = std::move(first);

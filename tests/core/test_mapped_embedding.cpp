@@ -15,8 +15,8 @@ namespace tetskin {
 namespace {
 
 using Eigen::Vector3d;
+using test::platesOfCopies;
 using test::TwoPlates;
-using test::twoPlates;
 
 void expectRefused(const Cage& cage, const TriangleMesh& mesh, StatusCode code,
                    std::initializer_list<std::string> parts) {
@@ -31,7 +31,7 @@ void expectRefused(const Cage& cage, const TriangleMesh& mesh, StatusCode code,
 }
 
 TEST(MappedEmbedding, BelievesTheMapWhereThePlaceWouldChooseTheOtherCopy) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   EmbedReport report;
   const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
   ASSERT_TRUE(made.ok()) << made.status().message;
@@ -46,7 +46,7 @@ TEST(MappedEmbedding, BelievesTheMapWhereThePlaceWouldChooseTheOtherCopy) {
 }
 
 TEST(MappedEmbedding, ReportsWhatASearchWould) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   EmbedReport mapped, placed;
   EmbedOptions options;
   ASSERT_TRUE(embed(plates.cage, plates.mesh, options, &mapped).ok());
@@ -73,7 +73,7 @@ TEST(MappedEmbedding, ReportsWhatASearchWould) {
 }
 
 TEST(MappedEmbedding, CountsCoincidentVerticesAndFlatTets) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   const TriangleMesh once = plates.mesh;
   plates.mesh.positions.insert(plates.mesh.positions.end(), once.positions.begin(), once.positions.end());
   std::vector<int>& map = plates.cage.vertexTets;
@@ -97,7 +97,7 @@ TEST(MappedEmbedding, CountsCoincidentVerticesAndFlatTets) {
 }
 
 TEST(MappedEmbedding, OnlyThePlateWhoseCopyMovesMoves) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
     SkinOptions options;
     options.interpolation = interpolation;
@@ -115,7 +115,7 @@ TEST(MappedEmbedding, OnlyThePlateWhoseCopyMovesMoves) {
 }
 
 TEST(MappedEmbedding, TakesAMeshRoundedToFloat) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   const Vector3d far(1000, -500, 200);
   for (Vector3d& p : plates.cage.nodes) p += far;
   for (Vector3d& p : plates.mesh.positions) p = (p + far).cast<float>().cast<double>();
@@ -129,7 +129,7 @@ TEST(MappedEmbedding, TakesAMeshRoundedToFloat) {
 }
 
 TEST(MappedEmbedding, ReportsTheVertexThatRoundingPutFarthestOut) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   const int tet = plates.cage.vertexTets[4];
   const Tet& corners = plates.cage.tets[static_cast<std::size_t>(tet)];
   const auto& nodes = plates.cage.nodes;
@@ -156,7 +156,7 @@ TEST(MappedEmbedding, ReportsTheVertexThatRoundingPutFarthestOut) {
 }
 
 TEST(MappedEmbedding, RefusesAnotherMesh) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   TriangleMesh other = plates.mesh;
   other.positions[23].y() += 0.8;
   expectRefused(
@@ -172,29 +172,29 @@ TEST(MappedEmbedding, RefusesAnotherMesh) {
 }
 
 TEST(MappedEmbedding, RefusesAMapThatNamesAFlatTet) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   Tet& tet = plates.cage.tets[static_cast<std::size_t>(plates.cage.vertexTets[0])];
   tet[3] = tet[2];
   expectRefused(plates.cage, plates.mesh, StatusCode::Degenerate, {"for vertex 0, which is flat", "build"});
 }
 
 TEST(MappedEmbedding, RefusesCagesThatAreNotInOrder) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   plates.cage.fill.pop_back();
   expectRefused(plates.cage, plates.mesh, StatusCode::SizeMismatch, {"fill"});
-  plates = twoPlates();
+  plates = platesOfCopies();
   plates.cage.vertexTets[3] = 1000;
   expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {"names tet 1000 for vertex 3"});
-  plates = twoPlates();
+  plates = platesOfCopies();
   plates.cage.tets[0][0] = -1;
   expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {});
-  plates = twoPlates();
+  plates = platesOfCopies();
   plates.mesh.positions[8].x() = std::numeric_limits<double>::quiet_NaN();
   expectRefused(plates.cage, plates.mesh, StatusCode::NonFinite, {"vertex 8"});
 }
 
 TEST(MappedEmbedding, IsTheSameAfterReversingTets) {
-  TwoPlates plates = twoPlates();
+  TwoPlates plates = platesOfCopies();
   const auto before = embed(plates.cage, plates.mesh).value().bindings();
   for (Tet& tet : plates.cage.tets) std::swap(tet[2], tet[3]);
   const auto after = embed(plates.cage, plates.mesh).value().bindings();
@@ -205,7 +205,7 @@ TEST(MappedEmbedding, IsTheSameAfterReversingTets) {
 }
 
 TEST(MappedEmbedding, IsSavedAndLoaded) {
-  const TwoPlates plates = twoPlates();
+  const TwoPlates plates = platesOfCopies();
   const Embedding made = embed(plates.cage, plates.mesh).value();
   const std::vector<unsigned char> bytes = made.save(plates.cage);
   const Result<Embedding> loaded = Embedding::load(bytes.data(), bytes.size(), plates.cage);

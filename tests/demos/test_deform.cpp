@@ -298,7 +298,10 @@ TEST_F(Deform, ReadsEveryTetFormatAndAnyMeshFormat) {
     ASSERT_TRUE(saveTetMesh(cage, folder.path("now" + extension)).ok());
     EXPECT_EQ(deform({"--deformed", "now" + extension}).status, 0);
   }
-  folder.write("m.off", "OFF\n3 1 0\n0 0 0.5\n0.1 0 0.5\n0 0.1 0.5\n3 0 1 2\n");
+  std::ostringstream off;  // one triangle of the mesh, so that it is in the cage
+  off << "OFF\n3 1 0\n";
+  for (const int v : mesh.triangles.front()) off << mesh.positions[static_cast<std::size_t>(v)].transpose() << "\n";
+  folder.write("m.off", off.str() + "3 0 1 2\n");
   writeDeformed(still);
   const CommandResult result = deform({"--mesh", "m.off", "-o", "off.obj"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -360,7 +363,7 @@ TEST_F(Deform, RefusesADeformedCageOfOtherCounts) {
 
 /// m.obj, two plates, and rest.vtk, their cage of copies.
 test::TwoPlates writePlates(const CommandFolder& folder) {
-  test::TwoPlates plates = test::twoPlates();
+  test::TwoPlates plates = test::platesOfCopies();
   const ObjLayout layout = ObjLayout::fromMesh(plates.mesh);
   EXPECT_TRUE(layout.writeTo(folder.path("m.obj"), viewOf(std::as_const(plates.mesh.positions))).ok());
   // As the tools will read it.

@@ -15,8 +15,8 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
+using test::platesOfCopies;
 using test::TempFolder;
-using test::twoPlates;
 
 void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.nodes, b.nodes);
@@ -86,8 +86,8 @@ std::string with(std::string text, const std::string& old, const std::string& re
 }
 
 TEST(CageFiles, AllThatIsKnownReadsBackExactly) {
-  expectRoundTrip(twoPlates().cage);
-  expectRoundTrip(twoPlates(1.0).cage);
+  expectRoundTrip(platesOfCopies().cage);
+  expectRoundTrip(platesOfCopies(1.0).cage);
   expectRoundTrip(smallCage());
 }
 
@@ -165,7 +165,7 @@ TEST(CageFiles, OtherFormatsKeepTheTetsAlone) {
 
 TEST(CageFiles, OnlyVtkKeepsTheMapOfCopies) {
   const TempFolder folder;
-  const Cage cage = twoPlates().cage;
+  const Cage cage = platesOfCopies().cage;
   for (const char* name : {"c.msh", "c.ele", "c.node"}) {
     expectError(saveCage(cage, folder.path(name)), StatusCode::UnsupportedFormat,
                 {folder.path(name), "which copy of a tet carries which vertex", "use .vtk"});
@@ -343,7 +343,7 @@ TEST(CageFiles, SurvivesDamagedBytes) {
 }
 
 TEST(CageFiles, AMeshThatIsNotTheCagesIsKnown) {
-  const auto plates = twoPlates();
+  const auto plates = platesOfCopies();
   const Cage cage = loadText(textOf(plates.cage)).value();
   EXPECT_TRUE(cage.checkMesh(plates.mesh).ok());
   TriangleMesh other = plates.mesh;

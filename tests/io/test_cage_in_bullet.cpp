@@ -16,7 +16,7 @@ namespace {
 TEST(CageInBullet, BulletReadsTheSameNodesAndTets) {
   const test::TempFolder folder;
   for (const double joinedUntil : {-1.0, 1.0}) {
-    Cage cage = test::twoPlates(joinedUntil).cage;
+    Cage cage = test::platesOfCopies(joinedUntil).cage;
     for (Eigen::Vector3d& p : cage.nodes) p = 0.1 * p + Eigen::Vector3d(1.0 / 3.0, 0, -7);
     const Status saved = saveCage(cage, folder.path("c.vtk"));
     ASSERT_TRUE(saved.ok()) << saved.message;

@@ -63,7 +63,7 @@ inline std::vector<int> appendCopies(Cage& cage, double joinedUntil) {
 
 /// All that can be known of them; what has no meaning here has values of many digits.
 /// joinedUntil  below 0: the copies have no node in common; otherwise they branch off at this x, one of the cubes'
-inline TwoPlates twoPlates(double joinedUntil = -1.0) {
+inline TwoPlates platesOfCopies(double joinedUntil = -1.0) {
   TwoPlates made;
   for (const double y : {0.3, 0.35, 0.55, 0.6}) addSheet(made.mesh, y);
   made.plateVertices = made.mesh.vertexCount() / 2;

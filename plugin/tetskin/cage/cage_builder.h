@@ -63,11 +63,11 @@ struct TETSKIN_CAGE_API CageReport {
 /// Where parts of the mesh lie nearer to each other than a tet, there are copies of tets, one for each part (see Cage):
 /// parts thicker than an eighth of a tet, and farther apart than that, are never fused but where a cleft ends within a
 /// tet; what the mesh joins by edges is never torn. Components of the mesh that lie in each other, or nearer than an
-/// eighth of a tet, stay together. A cage without copies is the same as one that is not split, and then its boundary is
-/// a manifold, and its tets without duplicates; parts nearer to each other than a tet may have fused there.
+/// eighth of a tet, stay together. Where nothing splits, and with `split = false`, parts nearer to each other than a
+/// tet have fused; the boundary is a manifold, no two nodes are at one place, and between its vertices, a triangle lies
+/// wholly inside an unfitted cage. Out of a fitted or split one it may stick by a few hundredths of the spacing.
 ///
-/// Between its vertices, a triangle lies wholly inside an unfitted cage without copies; out of another it may stick by
-/// a few hundredths of the spacing. The same input gives the same cage.
+/// The same input gives the same cage.
 ///
 /// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
 ///          no triangle uses get tets of their own, however far away.

@@ -178,7 +178,7 @@ class TETSKIN_CORE_API MeshSkin {
   /// Makes a binding, and updates once with the cage's rest nodes. Returns the fit; on an error this skin is left as it
   /// was, and what was known of the fit by then is told by `SkinBinding::make` alone. Errors: those of
   /// `SkinBinding::make`, and before anything is embedded those of the other `bind`.
-  Result<EmbedReport> bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
+  Result<EmbedReport> bind(const Cage& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// Takes a binding made before; `nodes` are the current ones.
   /// Errors: Empty without a binding; InvalidOption for options that make no sense, or do not go together; SizeMismatch
   /// for a target, or nodes, of another size; NonFinite for a node that is not finite or beyond kLargestCoordinate. On

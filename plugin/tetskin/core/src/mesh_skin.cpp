@@ -157,7 +157,7 @@ template <class Scalar>
 MeshSkin<Scalar>& MeshSkin<Scalar>::operator=(MeshSkin&& other) noexcept = default;
 
 template <class Scalar>
-Result<EmbedReport> MeshSkin<Scalar>::bind(const TetMesh& cage, const TriangleMesh& mesh, const SkinOptions& options) {
+Result<EmbedReport> MeshSkin<Scalar>::bind(const Cage& cage, const TriangleMesh& mesh, const SkinOptions& options) {
   if (Status status = checkInstance(options, mesh.vertexCount()); !status.ok()) return status;
   EmbedReport report;
   Result<Binding> made = SkinBinding<Scalar>::make(cage, mesh, options, &report);

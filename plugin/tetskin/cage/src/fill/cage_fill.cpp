@@ -8,11 +8,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace tetskin::cage_detail {
 namespace {
 
 constexpr int kFull = 255;
+/// Lightest node, over the mean.
+constexpr double kLightestNode = 0.2;
+/// Light nodes draw on those around so often, and each on so much of what one has to spare, as others may, too.
+constexpr int kMassRounds = 3;
+constexpr double kMostDrawn = 0.1;
 /// Samples of a small tet: near each of its corners, where a quarter of it is.
 constexpr double kNear = 0.55, kFar = 0.15;
 
@@ -73,6 +79,43 @@ std::vector<char> deepTets(const CageTets& cage) {
   return deep;
 }
 
+/// Light nodes take what they miss from those around, in proportion to what these have to spare.
+void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double least, std::vector<double>& masses) {
+  std::vector<double> spare(masses.size(), 0.0);  // around each node
+  for (const auto& [a, b] : edges) {
+    spare[a] += std::max(masses[b] - least, 0.0);
+    spare[b] += std::max(masses[a] - least, 0.0);
+  }
+  std::vector<double> change(masses.size(), 0.0);
+  for (const auto& [a, b] : edges) {
+    for (const auto& [light, heavy] : {std::array<int, 2>{a, b}, std::array<int, 2>{b, a}}) {
+      const double missing = least - masses[light], has = masses[heavy] - least;
+      if (!(missing > 0.0 && has > 0.0)) continue;
+      const double given = has * std::min(missing / spare[light], kMostDrawn);
+      change[light] += given;
+      change[heavy] -= given;
+    }
+  }
+  for (std::size_t n = 0; n < masses.size(); ++n) masses[n] += change[n];
+}
+
+/// Raises what is below, at the expense of all that is above.
+void keepAtLeast(double least, std::vector<double>& masses) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    double missing = 0.0, spare = 0.0;
+    for (double& mass : masses) {
+      if (mass < least) missing += least - std::exchange(mass, least);
+      spare += mass - least;
+    }
+    if (!(missing > 0.0 && spare > missing)) return;
+    for (double& mass : masses) {
+      mass -= (mass - least) * (missing / spare);
+      changed |= mass < least;
+    }
+  }
+}
+
 }  // namespace
 
 CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSet& set, const LatticeMesh& lattice) {
@@ -96,8 +139,6 @@ CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSe
 
 std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& fill, double volume) {
   assert(fill.empty() || fill.size() == mesh.tetCount());
-  constexpr double kLeastShare = 0.2;
-  constexpr int kRounds = 3;
   std::vector<double> masses(mesh.nodeCount(), 0.0);
   double sum = 0.0;
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
@@ -105,32 +146,12 @@ std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& f
     for (const int n : mesh.tets[t]) masses[n] += 0.25 * filled;
     sum += filled;
   }
-  const double scale = sum > 0.0 ? volume / sum : 0.0;
-  for (double& mass : masses) mass *= scale;
-  const double least = kLeastShare * volume / static_cast<double>(masses.size());
+  if (!fill.empty() && !(sum > 0.0)) return nodeMasses(mesh, {}, volume);
+  for (double& mass : masses) mass *= volume / sum;
+  const double least = kLightestNode * volume / static_cast<double>(masses.size());
   const auto edges = uniqueEdges(mesh);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> spare(masses.size(), 0.0);  // around each node
-    for (const auto& [a, b] : edges) {
-      spare[a] += std::max(masses[b] - least, 0.0);
-      spare[b] += std::max(masses[a] - least, 0.0);
-    }
-    std::vector<double> change(masses.size(), 0.0);
-    for (const auto& [a, b] : edges) {
-      for (const auto& [light, heavy] : {std::array<int, 2>{a, b}, std::array<int, 2>{b, a}}) {
-        const double missing = least - masses[light], has = masses[heavy] - least;
-        if (!(missing > 0.0 && has > 0.0)) continue;
-        // Several light nodes may draw on one: each takes no more than its share of what there is.
-        const double given = has * std::min(missing / spare[light], 0.1);
-        change[light] += given;
-        change[heavy] -= given;
-      }
-    }
-    for (std::size_t n = 0; n < masses.size(); ++n) masses[n] += change[n];
-  }
-  double total = 0.0;
-  for (double& mass : masses) total += mass = std::max(mass, 0.5 * least);
-  for (double& mass : masses) mass *= volume / total;
+  for (int round = 0; round < kMassRounds; ++round) drawFromNeighbours(edges, least, masses);
+  keepAtLeast(least, masses);
   return masses;
 }
 

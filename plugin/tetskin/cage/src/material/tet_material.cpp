@@ -88,6 +88,10 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
   for (auto& windings : material.windings) windings.fill(1);
   material.triangles = trianglesByTet(surface, frame, set, lattice);
   if (!surface.oriented) return material;
+  if (!(surface.volume > 0.0)) {
+    material.cells.assign(lattice.mesh.tetCount(), 0);
+    return material;
+  }
   MaterialFinder finder(surface, winding, frame);
   const std::uint32_t* values = material.triangles.values.data();
   for (std::size_t cube = 0; cube < set.cubeCount(); ++cube) {

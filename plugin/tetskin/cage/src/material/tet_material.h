@@ -23,7 +23,7 @@ struct TetMaterial {
 /// A cell is inside where the winding number is at least a half, either sign. It is asked for once a tet; from there to
 /// each cell it changes by one with every triangle between, and only those that touch the tet can be. Tets that no
 /// triangle touches are inside as a whole, but for those that only join others. All of it is material if the surface is
-/// not oriented: there is no telling then.
+/// not oriented, as there is no telling then, and nothing of a sheet.
 /// Cost: of triangles x tets that touch, 64 tests each, and a winding number a tet at the surface
 TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, const LatticeFrame& frame,
                          const LatticeSet& set, const LatticeMesh& lattice);
