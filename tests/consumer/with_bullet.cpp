@@ -13,13 +13,13 @@
 #endif
 
 int main() {
-  tetskin::TetMesh cage{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+  tetskin::Cage cage(tetskin::TetMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}});
   tetskin::TriangleMesh mesh;
   mesh.positions = {{0.1, 0.1, 0.1}, {0.2, 0.1, 0.1}, {0.1, 0.2, 0.1}};
   mesh.triangles = {{0, 1, 2}};
 #ifdef WITH_ALL_PARTS
   if (tetskin::loadMesh("no such file.obj").ok()) return 1;
-  tetskin::Result<tetskin::TetMesh> built = tetskin::buildCage(mesh);
+  tetskin::Result<tetskin::Cage> built = tetskin::buildCage(mesh);
   if (!built.ok()) return 2;
   cage = std::move(built).value();
 #endif

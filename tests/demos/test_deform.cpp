@@ -298,9 +298,9 @@ TEST_F(Deform, ReadsEveryTetFormatAndAnyMeshFormat) {
     ASSERT_TRUE(saveTetMesh(cage, folder.path("now" + extension)).ok());
     EXPECT_EQ(deform({"--deformed", "now" + extension}).status, 0);
   }
-  std::ostringstream off;  // one triangle of the mesh, so that it is in the cage
+  std::ostringstream off;  // of vertices of the mesh, which are in the cage
   off << "OFF\n3 1 0\n";
-  for (const int v : mesh.triangles.front()) off << mesh.positions[static_cast<std::size_t>(v)].transpose() << "\n";
+  for (const std::size_t part : {0, 1, 2}) off << mesh.positions[part * mesh.vertexCount() / 3].transpose() << "\n";
   folder.write("m.off", off.str() + "3 0 1 2\n");
   writeDeformed(still);
   const CommandResult result = deform({"--mesh", "m.off", "-o", "off.obj"});

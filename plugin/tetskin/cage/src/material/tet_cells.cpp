@@ -52,11 +52,11 @@ class CellNumbers {
 
  private:
   static std::size_t place(const LatticeTet& cell, const Cube& cube) {
-    int index = 0;
+    std::size_t index = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      index = kReach * index + cell.cube[axis] - kCellDivision * cube[axis] + kBelow;
+      index = kReach * index + static_cast<std::size_t>(cell.cube[axis] - kCellDivision * cube[axis] + kBelow);
     }
-    return static_cast<std::size_t>(kTetsPerCube * index + cell.local);
+    return kTetsPerCube * index + static_cast<std::size_t>(cell.local);
   }
 
   std::array<std::array<std::int8_t, kReach * kReach * kReach * kTetsPerCube>, kTetsPerCube> numbers_;

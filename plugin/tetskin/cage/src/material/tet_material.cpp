@@ -43,7 +43,7 @@ class MaterialFinder {
 
   /// Of a tet that these triangles touch.
   CellMask cellsOf(const LatticeTet& tet, const std::uint32_t* begin, const std::uint32_t* end,
-                   std::array<std::int8_t, kCellsPerTet>& windings) {
+                   std::array<std::int16_t, kCellsPerTet>& windings) {
     // Off the centroid, which is where a lattice's planes and a mesh's may meet.
     const Eigen::Vector3d offset = centroid(tet) - cubeOrigin(tet.cube) + Eigen::Vector3d(0.0131, 0.0173, -0.0117);
     const Eigen::Vector3d from = frame_.toRest(cubeOrigin(tet.cube) + offset);
@@ -58,7 +58,7 @@ class MaterialFinder {
       const Eigen::Vector3d way = frame_.half * (cellTables().centroids[tet.local][k] - offset);
       double there = number;
       for (const SeenTriangle& triangle : seen_) there += triangle.change(way);
-      windings[k] = static_cast<std::int8_t>(std::clamp(std::round(there), -kMostWinding, kMostWinding));
+      windings[k] = static_cast<std::int16_t>(std::clamp(std::round(there), -kMostWinding, kMostWinding));
       if (std::abs(there) >= kInside) cells |= cellBit(k);
     }
     return cells;

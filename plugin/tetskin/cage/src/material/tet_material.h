@@ -16,7 +16,7 @@ namespace tetskin::cage_detail {
 struct TetMaterial {
   std::vector<CellMask> cells;  ///< by tet: those whose centroid is inside the surface
   /// By tet: the winding number at the centroid of each cell, rounded; above 1 where parts of the surface overlap.
-  std::vector<std::array<std::int8_t, kCellsPerTet>> windings;
+  std::vector<std::array<std::int16_t, kCellsPerTet>> windings;
   Lists<> triangles;  ///< by tet: the surface's triangles that touch it
 };
 
