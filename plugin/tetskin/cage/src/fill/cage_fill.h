@@ -19,7 +19,7 @@ struct CageFill {
 /// cage  with its nodes where they are now, fitted or not
 CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSet& set, const LatticeMesh& lattice);
 
-/// Masses of the nodes that add up to `volume`: a quarter of each tet's material, but at least a fifth of the mean,
+/// Masses of the nodes that add up to `volume`: a quarter of each tet's material, but at least a tenth of the mean,
 /// which is taken from the nodes around: one that is next to nothing would be thrown about by the rest. fill  by tet,
 /// or empty: 1
 std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& fill, double volume);
