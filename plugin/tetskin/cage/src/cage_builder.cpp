@@ -13,6 +13,7 @@
 //   bindPoints       which tet of the lattice holds which of them        cage_binding
 //   findMaterial     which part of each tet is inside                    tet_material, tet_cells
 //   copyTets         a copy of a tet for each part of the mesh in it     tet_copies
+//     piecesIn         what hangs together within a tet                  tet_pieces, tet_clip, body_ways
 //   splitLattice     copies joined where they hang together              split_lattice
 //   fitCage          pull the boundary towards the surface               cage_fit
 //   fillOf           how much of each tet is material, and masses        cage_fill
@@ -201,6 +202,8 @@ Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
   cage.latticeTets = std::move(bound.tets.latticeTets);
   cage.parts = cage_detail::partNumbers(cage);
   for (const int point : surface.pointOf) cage.vertexTets.push_back(bound.tets.tetOf[point]);
+  // Rounding may leave a vertex outside all tets: without a map, `embed` finds the nearest one.
+  if (std::count(cage.vertexTets.begin(), cage.vertexTets.end(), -1) > 0) cage.vertexTets.clear();
   cage.meshHash = positionsHash(mesh.positions);
   return cage;
 }

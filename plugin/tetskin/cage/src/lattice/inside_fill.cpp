@@ -11,8 +11,6 @@ namespace {
 
 /// Samples that vote on a region: enough for one that comes too near a fold to be overruled.
 constexpr std::size_t kVotes = 5;
-/// Half the view: the winding number from which a point is inside. Either sign, for surfaces that are inside out.
-constexpr double kInside = 0.5;
 
 /// Cubes whose tets can be numbered in 31 bits.
 constexpr std::size_t kMostCubes = 150'000'000;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/cage/src/material/tet_material.h>
+#include <tetskin/cage/src/surface/triangle_crossing.h>
 
 #include <algorithm>
 #include <cassert>
@@ -10,31 +11,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Half the view: the winding number from which a point is inside.
-constexpr double kInside = 0.5;
 constexpr double kMostWinding = 100.0;
-
-/// A triangle as seen from a point: tells by how much the winding number changes on a way from there.
-class SeenTriangle {
- public:
-  /// corners  relative to the point
-  SeenTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-      : edges_{a.cross(b), b.cross(c), c.cross(a)}, volume_(a.dot(edges_[1])) {}
-
-  /// -1 where the straight way to `end` leaves through the triangle, 1 where it enters, else 0. An edge that two
-  /// triangles share, and run along opposite ways, gives both the same numbers but for the sign: none slips between.
-  int change(const Eigen::Vector3d& end) const {
-    const double x = end.dot(edges_[0]), y = end.dot(edges_[1]), z = end.dot(edges_[2]);
-    const double slope = x + y + z;
-    if (x > 0.0 && y > 0.0 && z > 0.0) return volume_ > 0.0 && volume_ < slope ? -1 : 0;
-    if (x < 0.0 && y < 0.0 && z < 0.0) return volume_ < 0.0 && volume_ > slope ? 1 : 0;
-    return 0;
-  }
-
- private:
-  std::array<Eigen::Vector3d, 3> edges_;
-  double volume_;
-};
 
 class MaterialFinder {
  public:
@@ -57,7 +34,7 @@ class MaterialFinder {
     for (int k = 0; k < kCellsPerTet; ++k) {
       const Eigen::Vector3d way = frame_.half * (cellTables().centroids[tet.local][k] - offset);
       double there = number;
-      for (const SeenTriangle& triangle : seen_) there += triangle.change(way);
+      for (const SeenTriangle& triangle : seen_) there += triangle.crossing(way).change();
       windings[k] = static_cast<std::int16_t>(std::clamp(std::round(there), -kMostWinding, kMostWinding));
       if (std::abs(there) >= kInside) cells |= cellBit(k);
     }
@@ -84,8 +61,7 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
   assert(lattice.openFaces.size() == lattice.mesh.tetCount());
   TetMaterial material;
   material.cells.assign(lattice.mesh.tetCount(), kAllCells);
-  material.windings.resize(lattice.mesh.tetCount());
-  for (auto& windings : material.windings) windings.fill(1);
+  material.windingsAt.assign(lattice.mesh.tetCount(), -1);
   material.triangles = trianglesByTet(surface, frame, set, lattice);
   if (!surface.oriented) return material;
   if (!(surface.volume > 0.0)) {
@@ -101,7 +77,8 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
       const std::uint32_t first = material.triangles.starts[t], last = material.triangles.starts[t + 1];
       const LatticeTet tet{set.cube(cube), local};
       if (first < last) {
-        material.cells[t] = finder.cellsOf(tet, values + first, values + last, material.windings[t]);
+        material.windingsAt[t] = static_cast<int>(material.windings.size());
+        material.cells[t] = finder.cellsOf(tet, values + first, values + last, material.windings.emplace_back());
       } else if (lattice.openFaces[t] != 0 && !finder.inside(tet)) {
         material.cells[t] = 0;  // it joins others
       }

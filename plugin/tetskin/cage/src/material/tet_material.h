@@ -15,9 +15,14 @@ namespace tetskin::cage_detail {
 /// Where the body is in the tets of a lattice.
 struct TetMaterial {
   std::vector<CellMask> cells;  ///< by tet: those whose centroid is inside the surface
-  /// By tet: the winding number at the centroid of each cell, rounded; above 1 where parts of the surface overlap.
+  Lists<> triangles;            ///< by tet: the surface's triangles that touch it
+
+  /// The winding number at the centroid of a cell that is material, rounded: above 1 where parts of the surface
+  /// overlap.
+  int windingOf(int tet, int cell) const { return windingsAt[tet] < 0 ? 1 : windings[windingsAt[tet]][cell]; }
+
+  std::vector<int> windingsAt;  ///< by tet: where in `windings`; -1: 1 in all of it
   std::vector<std::array<std::int16_t, kCellsPerTet>> windings;
-  Lists<> triangles;  ///< by tet: the surface's triangles that touch it
 };
 
 /// A cell is inside where the winding number is at least a half, either sign. It is asked for once a tet; from there to

@@ -9,6 +9,9 @@
 
 namespace tetskin::cage_detail {
 
+/// Half the view: the winding number from which a point is inside. Either sign, for surfaces that are inside out.
+constexpr double kInside = 0.5;
+
 /// Generalised winding number of the surface's solid triangles: 1 inside a closed surface, 0 outside, and in between,
 /// smoothly, near holes. Far groups of triangles count as one dipole, which costs an error of up to 0.03.
 class WindingTree {

@@ -17,6 +17,14 @@ class DisjointSets {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
+  /// Up to `count` members; the new ones each in a set of its own.
+  void grow(std::size_t count) {
+    const std::size_t before = parent_.size();
+    parent_.resize(count);
+    std::iota(parent_.begin() + static_cast<std::ptrdiff_t>(before), parent_.end(), static_cast<int>(before));
+    parity_.resize(count, 0);
+  }
+
   int find(int i) {
     while (parent_[i] != i) {
       const int up = parent_[i];
