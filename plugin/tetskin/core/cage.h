@@ -15,6 +15,8 @@ namespace tetskin {
 
 /// Small tets of a tet in `Cage::fineFill`: those of two uniform refinements.
 constexpr std::size_t kFineTets = 64;
+/// `calibrate` refines no cage into more: of two refinements, each tet into 64, down to one, into 8, to none.
+constexpr std::size_t kMostRefinedTets = 300'000;
 /// The least share of its stiffness that a tet keeps, however little of it is filled: less makes light tets so soft
 /// that the time step or the solver suffers.
 constexpr double kLeastFill = 0.1;
@@ -34,7 +36,7 @@ struct TETSKIN_CORE_API Cage : TetMesh {
   std::vector<double> masses;          ///< nodeCount, above 0, for a density of 1: they add up to the mesh's volume
   std::vector<int> parts;              ///< tetCount, from 0: number of the part, of tets that hang together by nodes
   std::vector<int> latticeTets;        ///< tetCount, from 0: the same for copies of one tet
-  std::vector<std::uint8_t> fineFill;  ///< tetCount x kFineTets, in 255ths: of the tets of two uniform refinements
+  std::vector<std::uint8_t> fineFill;  ///< tetCount x kFineTets, in 255ths: of the tets of two refinements
   std::uint64_t meshHash = 0;          ///< `positionsHash` of the mesh as it was; 0: not known
 
   /// tetCount: share of the material's stiffness that each tet has, by fill and factor. Empty if it is 1 for all.

@@ -18,9 +18,6 @@ struct CalibrationOptions {
   int modes = 6;              ///< softest vibrations to compare, at least 1
 };
 
-/// No cage is refined into more: of two refinements, each tet into 64, down to one, into 8, to none.
-constexpr std::size_t kMostRefinedTets = 300'000;
-
 /// What a calibration found.
 struct TETSKIN_ELASTIC_API CalibrationReport {
   double factor = 1.0;          ///< of the stiffness, above 0 and at most 1
@@ -47,9 +44,9 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
 /// body that takes part in it: the softest ones are often those of a thin tail. What parts have in common where they
 /// have fused no refinement shows, and the factor leaves as it is.
 ///
-/// cage     usable (see `usable`), without flat tets; rest space, any unit and size; what it had for factors is
-/// replaced Cost     some two seconds for 3,000 tets, ten for 30,000; about 2 KB a refined tet, at most 1 GB Errors
-/// InvalidOption; those of `usable` and `Cage::check`; Degenerate if a tet is flat, or the cage's stiffness
+/// cage     usable (see `usable`), without flat tets; rest space, any unit and size; its factors are replaced
+/// Cost     some two seconds for 3,000 tets, ten for 30,000; about 2 KB a refined tet, at most 1 GB
+/// Errors   InvalidOption; those of `usable` and `Cage::check`; Degenerate if a tet is flat, or the cage's stiffness
 ///          cannot be factorised. The cage stays as it was
 TETSKIN_ELASTIC_API Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options = {});
 

@@ -20,6 +20,8 @@ constexpr double kLightestNode = 0.1;
 /// Light nodes draw on those around so often, and each on so much of what one has to spare, as others may, too.
 constexpr int kMassRounds = 20;
 constexpr double kMostDrawn = 0.1;
+/// Parts of a tet in one refinement.
+constexpr std::size_t kEighths = 8;
 /// Samples of a small tet: near each of its corners, where a quarter of it is.
 constexpr double kNear = 0.55, kFar = 0.15;
 
@@ -66,6 +68,24 @@ class FillSampler {
   const LatticeMesh& lattice_;
   Lists<> inLatticeTet_;
 };
+
+double roughFill(const FillSampler& sampler, std::size_t tet, const TetCorners& corners) {
+  int sum = 0;
+  for (const TetCorners& eighth : refinedTet(corners)) sum += sampler.fillOf(tet, eighth);
+  return static_cast<double>(sum) / (kFull * static_cast<double>(kEighths));
+}
+
+/// Keeps the fill of the tet's small tets.
+double fineFill(const FillSampler& sampler, std::size_t tet, const TetCorners& corners, std::uint8_t* fine) {
+  int sum = 0;
+  for (const TetCorners& eighth : refinedTet(corners)) {
+    for (const TetCorners& small : refinedTet(eighth)) {
+      *fine = sampler.fillOf(tet, small);
+      sum += *fine++;
+    }
+  }
+  return static_cast<double>(sum) / (kFull * static_cast<double>(kFineTets));
+}
 
 /// True for tets with nothing but full tets around their nodes: wherever fitting has moved these.
 std::vector<char> deepTets(const CageTets& cage) {
@@ -125,15 +145,15 @@ CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSe
   const std::vector<char> deep = deepTets(cage);
   CageFill result;
   result.fill.assign(cage.mesh.tetCount(), 1.0);
-  result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
+  if (kEighths * cage.mesh.tetCount() <= kMostRefinedTets) result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
   for (std::size_t t = 0; t < result.fill.size(); ++t) {
     if (deep[t]) continue;
-    std::uint8_t* fine = &result.fine[kFineTets * t];
-    int sum = 0;
-    for (const TetCorners& eighth : refinedTet(cornersOf(cage.mesh, cage.mesh.tets[t]))) {
-      for (const TetCorners& small : refinedTet(eighth)) sum += * fine++ = sampler.fillOf(t, small);
+    const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[t]);
+    if (result.fine.empty()) {
+      result.fill[t] = roughFill(sampler, t, corners);
+    } else {
+      result.fill[t] = fineFill(sampler, t, corners, &result.fine[kFineTets * t]);
     }
-    result.fill[t] = static_cast<double>(sum) / (kFull * static_cast<double>(kFineTets));
   }
   return result;
 }
