@@ -323,6 +323,22 @@ void addOurCages(Cases& cases) {
   }
 }
 
+/// Every event with a body of copies of tets, some of them nearly empty, soft and stiff.
+void addSplitEvents(Cases& cases) {
+  for (const char* event : kEvents) {
+    if (isSpoilt(event)) continue;
+    for (const double stiffness : {0.0, 1e6, 1e8}) {
+      StressCase made = eventOf("split", {Force::Elastic, false}, event, {event, "E=" + text(stiffness)});
+      made.cage = Cage::Split;
+      made.stiffness = stiffness;
+      made.simulation = promised(made);
+      made.recovers = comesBack(made);
+      made.quick = true;
+      cases.push_back(made);
+    }
+  }
+}
+
 void addSurfaces(Cases& cases) {
   for (int surface = 0; surface <= static_cast<int>(Surface::NoVertices); ++surface) {
     for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
@@ -356,6 +372,7 @@ std::vector<StressCase> stressCases() {
   addStiffEvents(cases);
   addCages(cases);
   addOurCages(cases);
+  addSplitEvents(cases);
   addSurfaces(cases);
   return cases;
 }

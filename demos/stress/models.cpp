@@ -10,6 +10,7 @@
 
 #include "scenes/bar.h"
 #include "scenes/input_error.h"
+#include "scenes/slotted_beam.h"
 
 namespace tetskin::stress {
 namespace {
@@ -18,30 +19,37 @@ constexpr std::size_t kTriangles = 2000, kTets = 200;
 constexpr std::size_t kLargeTets = 300000;
 constexpr std::size_t kMillionTriangles = 2000000;  ///< of which three make three million vertices
 
-struct BarModel {
+struct Carried {
   TriangleMesh mesh;
-  TetMesh cage;
+  tetskin::Cage cage;
 };
 
-/// The bar in its cage, along x, the cage's box centred at the origin.
-BarModel makeBarModel(std::size_t triangles, std::size_t tets) {
-  BarModel bar;
-  bar.mesh = scenes::makeBar(triangles);
+/// A mesh in its cage, whose box is centred at the origin.
+Carried inItsCage(TriangleMesh mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  Result<tetskin::Cage> cage = buildCage(bar.mesh, options);
+  Result<tetskin::Cage> cage = buildCage(mesh, options);
   scenes::require(cage.status());
-  bar.cage = std::move(cage).value();
-  const scenes::Placement place = scenes::placementOf(boundingBox(bar.cage.nodes));
-  place.toWorld(bar.cage.nodes);
-  place.toWorld(bar.mesh.positions);
-  return bar;
+  const scenes::Placement place = scenes::placementOf(boundingBox(cage.value().nodes));
+  place.toWorld(mesh.positions);
+  return {std::move(mesh), place.toWorld(std::move(cage).value())};
+}
+
+/// The bar along x, in bare tets.
+Carried makeBarModel(std::size_t triangles, std::size_t tets) {
+  Carried bar = inItsCage(scenes::makeBar(triangles), tets);
+  return {std::move(bar.mesh), TetMesh(std::move(bar.cage))};
 }
 
 /// Made once: nearly all cases use it.
-const BarModel& smallBar() {
-  static const BarModel bar = makeBarModel(kTriangles, kTets);
+const Carried& smallBar() {
+  static const Carried bar = makeBarModel(kTriangles, kTets);
   return bar;
+}
+
+const Carried& slottedBeam() {
+  static const Carried beam = inItsCage(scenes::makeSlottedBeam(kTriangles), kTets);
+  return beam;
 }
 
 TetMesh oneTetAround(const Box3& box) {
@@ -89,6 +97,7 @@ void scale(StressModel& model, const Eigen::Vector3d& factors) {
 void applyCage(Cage cage, StressModel& model) {
   switch (cage) {
     case Cage::Bar:
+    case Cage::Split:
     case Cage::Large:
       return;
     case Cage::FlatTets:
@@ -158,13 +167,18 @@ void applySurface(Surface surface, TriangleMesh& mesh) {
   }
 }
 
+Carried carriedBy(Cage cage) {
+  if (cage == Cage::Large) return makeBarModel(kTriangles, kLargeTets);
+  return cage == Cage::Split ? slottedBeam() : smallBar();
+}
+
 }  // namespace
 
 StressModel makeModel(Cage cage, Surface surface) {
-  const BarModel bar = cage == Cage::Large ? makeBarModel(kTriangles, kLargeTets) : smallBar();
   StressModel model;
-  model.cage = bar.cage;
-  model.mesh = bar.mesh;
+  const Carried carried = carriedBy(cage);
+  model.cage = carried.cage;
+  model.mesh = carried.mesh;
   model.mesh.groups.clear();
   applySurface(surface, model.mesh);
   applyCage(cage, model);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include "scenes/placement.h"
@@ -12,8 +12,8 @@ namespace tetskin::stress {
 
 /// What a case needs of geometry, all in rest space, near the origin.
 struct StressModel {
-  TetMesh cage;      ///< that the skin is bound to, whatever is wrong with it
-  TetMesh bodyCage;  ///< the same nodes, without flat tets: that the body is made of
+  tetskin::Cage cage;      ///< that the skin is bound to, whatever is wrong with it
+  tetskin::Cage bodyCage;  ///< the same nodes, without flat tets: that the body is made of
   TriangleMesh mesh;
   double size = scenes::kSize;                       ///< largest side of the cage
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where in the world the body is put

@@ -42,7 +42,7 @@ const char* toString(Simulation simulation) {
 const char* toString(Cage cage) {
   static const char* const kNames[] = {"bar",      "flat_tets",  "needle_tets",  "sliver_tets", "all_flat",
                                        "inverted", "duplicates", "unreferenced", "far_1e5",     "far_1e7",
-                                       "tiny",     "huge",       "one_tet",      "large"};
+                                       "tiny",     "huge",       "one_tet",      "split",       "large"};
   return nameIn(kNames, cage);
 }
 

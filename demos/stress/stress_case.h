@@ -26,6 +26,7 @@ enum class Cage {
   Tiny,          ///< 1e-4 of the size
   Huge,          ///< 1e4 times the size
   OneTet,        ///< around all of the bar
+  Split,         ///< of a beam with a slot, which is narrower than its tets: split, filled
   Large,         ///< 300,000 tets
 };
 

@@ -10,7 +10,7 @@
 
 namespace tetskin {
 
-/// Largest number of tets that may be asked for; takes some 1.5 GB and a minute.
+/// Largest number of tets that may be asked for; takes some 6 GB and four minutes.
 constexpr std::size_t kLargestTargetTets = 20'000'000;
 
 struct CageOptions {
@@ -72,8 +72,8 @@ struct TETSKIN_CAGE_API CageReport {
 /// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
 ///          no triangle uses get tets of their own, however far away.
 /// report   written if not null, on failure too
-/// Cost     about proportional to triangles + tets: a second per million triangles, and three to six seconds per
-///          million tets, most of it for fitting
+/// Cost     about proportional to triangles + tets: a second per million triangles, and some ten seconds and 300 MB per
+///          million tets
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
 ///          kLargestTargetTets), Degenerate (all vertices in one point, or so near each other, or so far apart, that
 ///          double cannot hold a lattice)
