@@ -13,10 +13,8 @@
 #include <functional>
 #include <sstream>
 
-#include "command.h"
-#include "scenes/serpent.h"
+#include "deform_run.h"
 #include "support/odd_meshes.h"
-#include "support/two_plates.h"
 
 namespace tetskin {
 namespace {
@@ -24,103 +22,11 @@ namespace {
 using Eigen::Vector3d;
 using test::CommandFolder;
 using test::CommandResult;
+using test::Error;
+using test::Map;
+using test::still;
 
-using Map = std::function<Vector3d(const Vector3d&)>;
-
-struct Error {
-  double rms = 0.0, max = 0.0;  ///< in box diagonals
-};
-
-/// Distances of two surfaces, over the diagonal of the first one's box.
-Error distances(const std::vector<Vector3d>& exact, const std::vector<std::array<double, 3>>& surface,
-                double diagonal) {
-  Error error;
-  for (std::size_t v = 0; v < exact.size(); ++v) {
-    const double distance = (exact[v] - Vector3d(surface[v].data())).norm() / diagonal;
-    error.rms += distance * distance / static_cast<double>(exact.size());
-    error.max = std::max(error.max, distance);
-  }
-  error.rms = std::sqrt(error.rms);
-  return error;
-}
-
-class Deform : public testing::Test {
- protected:
-  /// m.obj, the serpent, and rest.vtk, its cage.
-  void makeModel(std::size_t triangles = 6000, std::size_t tets = 3000) {
-    mesh = scenes::makeSerpent({triangles});
-    CageOptions options;
-    options.targetTets = tets;
-    cage = buildCage(mesh, options).value();
-    ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
-    ASSERT_TRUE(saveTetMesh(cage, folder.path("rest.vtk")).ok());
-  }
-
-  /// The cage as a map moves it.
-  void writeDeformed(const Map& map, const std::string& name = "now.vtk") const {
-    TetMesh moved = cage;
-    for (Vector3d& p : moved.nodes) p = map(p);
-    ASSERT_TRUE(saveTetMesh(moved, folder.path(name)).ok());
-  }
-
-  /// The usual files, and other options, whose values replace those of the same name.
-  static std::vector<std::string> with(const std::vector<std::string>& others) {
-    std::vector<std::string> arguments{"--mesh", "m.obj", "--cage", "rest.vtk", "--deformed", "now.vtk", "-o", "o.obj"};
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      const auto place = std::find(arguments.begin(), arguments.end(), others[k]);
-      if (place == arguments.end()) {
-        arguments.push_back(others[k]);
-      } else {
-        place[1] = others[++k];
-      }
-    }
-    return arguments;
-  }
-  CommandResult deform(const std::vector<std::string>& others = {}) const {
-    return folder.run(TETSKIN_DEFORM, with(others));
-  }
-
-  /// How far the written surface is from where a map takes the mesh.
-  Error errorOf(const Map& map, const std::string& interpolation) const {
-    writeDeformed(map);
-    const CommandResult result = deform({"--interpolation", interpolation});
-    EXPECT_EQ(result.status, 0) << result.err;
-    std::vector<Vector3d> exact;
-    for (const Vector3d& p : mesh.positions) exact.push_back(map(p));
-    return distances(exact, test::objPositions(folder.read("o.obj")), boundingBox(mesh.positions).diagonal().norm());
-  }
-
-  void expectGain(const Map& map, double gain) const {
-    const Error linear = errorOf(map, "linear"), quadratic = errorOf(map, "quadratic");
-    EXPECT_LT(gain * quadratic.rms, linear.rms) << "gain " << linear.rms / quadratic.rms;
-    EXPECT_LE(quadratic.max, linear.max);
-  }
-
-  /// Where the maps of a bend, a twist, ... have their origin.
-  Vector3d centre() const {
-    Vector3d sum = Vector3d::Zero();
-    for (const Vector3d& p : cage.nodes) sum += p;
-    return sum / static_cast<double>(cage.nodeCount());
-  }
-
-  /// Exit status 2, one line on standard error that mentions the words, nothing written.
-  void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const CommandResult result = folder.run(TETSKIN_DEFORM, arguments);
-    SCOPED_TRACE(testing::PrintToString(arguments));
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& word : words) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_FALSE(folder.exists("o.obj"));
-  }
-
-  CommandFolder folder;
-  TriangleMesh mesh;
-  TetMesh cage;
-};
-
-Vector3d still(const Vector3d& p) {
-  return p;
-}
+class Deform : public test::DeformRun {};
 
 TEST_F(Deform, ReproducesRest) {
   makeModel();
@@ -359,91 +265,6 @@ TEST_F(Deform, RefusesADeformedCageOfOtherCounts) {
   ASSERT_TRUE(saveTetMesh(other, folder.path("fewer.vtk")).ok());
   expectRefused(with({"--deformed", "more.vtk"}), {"more.vtk", "6 nodes", "rest.vtk has 5", "same order"});
   expectRefused(with({"--deformed", "fewer.vtk"}), {"fewer.vtk", "1 tets", "has 2"});
-}
-
-/// m.obj, two plates, and rest.vtk, their cage of copies.
-test::TwoPlates writePlates(const CommandFolder& folder) {
-  test::TwoPlates plates = test::platesOfCopies();
-  const ObjLayout layout = ObjLayout::fromMesh(plates.mesh);
-  EXPECT_TRUE(layout.writeTo(folder.path("m.obj"), viewOf(std::as_const(plates.mesh.positions))).ok());
-  // As the tools will read it.
-  plates.mesh = loadMesh(folder.path("m.obj")).value();
-  plates.cage.meshHash = positionsHash(plates.mesh.positions);
-  EXPECT_TRUE(saveCage(plates.cage, folder.path("rest.vtk")).ok());
-  return plates;
-}
-
-TEST_F(Deform, OnlyThePlateWhoseCopyOfTheTetsMovesMoves) {
-  const test::TwoPlates plates = writePlates(folder);
-  TetMesh moved = plates.cage;
-  for (std::size_t n = moved.nodeCount() / 2; n < moved.nodeCount(); ++n) moved.nodes[n] += Vector3d(0.5, 2, -1);
-  for (const std::string now : {"now.vtk", "now.msh", "now.ele"}) {  // without a map
-    ASSERT_TRUE(saveTetMesh(moved, folder.path(now)).ok());
-    for (const char* interpolation : {"linear", "quadratic"}) {
-      const CommandResult result = deform({"--deformed", now, "--interpolation", interpolation});
-      ASSERT_EQ(result.status, 0) << result.err;
-      const auto written = test::objPositions(folder.read("o.obj"));
-      ASSERT_EQ(written.size(), plates.mesh.vertexCount());
-      for (std::size_t v = 0; v < written.size(); ++v) {
-        const Vector3d way = Vector3d(written[v].data()) - plates.mesh.positions[v];
-        EXPECT_LT((way - (plates.upper(v) ? Vector3d(0.5, 2, -1) : Vector3d(0, 0, 0))).norm(), 1e-5) << v;
-      }
-    }
-  }
-}
-
-TEST_F(Deform, DumpsTheTetsOfTheMap) {
-  const test::TwoPlates plates = writePlates(folder);
-  ASSERT_EQ(deform({"--deformed", "rest.vtk", "--dump-embedding", "e.csv", "--json", "s.json"}).status, 0);
-  std::istringstream lines(folder.read("e.csv"));
-  std::string line;
-  std::getline(lines, line);
-  for (std::size_t v = 0; v < plates.mesh.vertexCount(); ++v) {
-    ASSERT_TRUE(std::getline(lines, line));
-    const std::string start = std::to_string(v) + "," + std::to_string(plates.cage.vertexTets[v]) + ",";
-    EXPECT_EQ(line.substr(0, start.size()), start);
-  }
-  EXPECT_EQ(folder.json("s.json")["inside"], plates.mesh.vertexCount());
-}
-
-TEST_F(Deform, TakesADeformedCageWithItsTetsInAnotherOrder) {
-  test::TwoPlates plates = writePlates(folder);
-  std::reverse(plates.cage.tets.begin(), plates.cage.tets.end());
-  for (Tet& tet : plates.cage.tets) std::swap(tet[0], tet[3]);
-  ASSERT_TRUE(saveTetMesh(plates.cage, folder.path("now.vtk")).ok());
-  const CommandResult result = deform();
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto written = test::objPositions(folder.read("o.obj"));
-  for (std::size_t v = 0; v < written.size(); ++v) {
-    EXPECT_LT((Vector3d(written[v].data()) - plates.mesh.positions[v]).norm(), 1e-5);
-  }
-}
-
-TEST_F(Deform, RefusesADeformedCageWithItsNodesInAnotherOrder) {
-  test::TwoPlates plates = writePlates(folder);
-  TetMesh other = plates.cage;
-  const int upper = static_cast<int>(other.nodeCount() / 2);
-  std::swap(other.nodes[0], other.nodes[static_cast<std::size_t>(upper) + 1]);
-  for (Tet& tet : other.tets) {
-    for (int& node : tet) node = node == 0 ? upper + 1 : node == upper + 1 ? 0 : node;
-  }
-  ASSERT_TRUE(saveTetMesh(other, folder.path("other.vtk")).ok());
-  expectRefused(with({"--deformed", "other.vtk"}),
-                {"other.vtk: has ", " tet of nodes 0, ", "but the rest cage rest.vtk has ", "same order"});
-}
-
-TEST_F(Deform, RefusesTheCageOfAnotherMesh) {
-  const test::TwoPlates plates = writePlates(folder);
-  TriangleMesh other = plates.mesh;
-  other.positions[5].x() += 0.001;
-  const ObjLayout layout = ObjLayout::fromMesh(other);
-  ASSERT_TRUE(layout.writeTo(folder.path("other.obj"), viewOf(std::as_const(other.positions))).ok());
-  expectRefused(with({"--mesh", "other.obj", "--deformed", "rest.vtk"}),
-                {"rest.vtk is not a cage of other.obj", "build a cage for this one with tetskin_cage"});
-  std::string text = folder.read("rest.vtk");
-  text.replace(text.find("vertex_tets 1 364"), 17, "vertex_tets 1 365");
-  folder.write("wrong.vtk", text);
-  expectRefused(with({"--cage", "wrong.vtk", "--deformed", "rest.vtk"}), {"wrong.vtk:"});
 }
 
 TEST_F(Deform, RefusesADeformedCageThatHasExploded) {

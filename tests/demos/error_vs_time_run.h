@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Runs of tetskin_error_vs_time, and what its report says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.h"
+
+namespace tetskin::test {
+
+class ErrorVsTimeRun : public testing::Test {
+ protected:
+  /// Where no Python has matplotlib: plots take seconds.
+  CommandResult run(const std::vector<std::string>& arguments) const { return runWith("raise ImportError", arguments); }
+  /// With a matplotlib of the test's own in place of the real one.
+  CommandResult runWith(const std::string& matplotlib, std::vector<std::string> arguments,
+                        const std::string& program = TETSKIN_ERROR_VS_TIME) const {
+    std::filesystem::create_directories(folder.path("python"));
+    folder.write("python/matplotlib.py", matplotlib);
+    arguments.insert(arguments.begin(), {"PYTHONPATH=" + folder.path("python"), program});
+    return folder.run("env", arguments);
+  }
+  /// The small scene of the tests below, with Bullet's explicit forces.
+  std::vector<std::string> small(const std::string& scene, const std::vector<std::string>& more = {},
+                                 const std::string& out = "out") const {
+    std::vector<std::string> all = {
+        "--quick",     "--quiet", "--scene",  scene, "--tets", "300,900", "--reference-tets", "2700",
+        "--triangles", "2000",    "--frames", "6",   "--out",  out,       "--force",          "bullet"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  CommandFolder folder;
+};
+
+inline const nlohmann::json& sceneOf(const nlohmann::json& json, const std::string& name) {
+  return *std::find_if(json.at("scenes").begin(), json.at("scenes").end(),
+                       [&](const auto& scene) { return scene.at("scene") == name; });
+}
+
+/// The rows of one kind, coarsest first.
+inline std::vector<nlohmann::json> rowsOf(const nlohmann::json& scene, const std::string& interpolation,
+                                          const std::string& material = "same") {
+  std::vector<nlohmann::json> rows;
+  for (const auto& row : scene.at("rows")) {
+    if (row.at("interpolation") == interpolation && row.at("material") == material) rows.push_back(row);
+  }
+  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.at("tets") < b.at("tets"); });
+  return rows;
+}
+
+inline double number(const nlohmann::json& row, const char* key) {
+  return row.at(key).get<double>();
+}
+
+inline double overall(const nlohmann::json& scene, const std::string& interpolation, const char* of) {
+  for (const auto& order : scene.at("orders")) {
+    if (order.at("interpolation") == interpolation && order.at("material") == "same") {
+      return order.at("overall").at(of).get<double>();
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace tetskin::test

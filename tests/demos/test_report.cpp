@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "command.h"
+#include "report/advice.h"
+#include "report/coloured_mesh.h"
+#include "report/result_store.h"
+
+namespace tetskin {
+namespace {
+
+using report::Row;
+using test::CommandFolder;
+
+Row rowWith(const std::string& interpolation, double edge, double ms, double error) {
+  Row row;
+  row.scene = "sag";
+  row.material = "same";
+  row.interpolation = interpolation;
+  row.tets = 1.0 / (edge * edge * edge);
+  row.edge = edge;
+  row.totalMs = ms;
+  row.errorTotalRms = error;
+  row.errorEmbeddingRms = edge * edge;
+  return row;
+}
+
+TEST(Advice, TheFrontHoldsWhatNothingBeatsInTimeAndError) {
+  std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0),  rowWith("linear", 0.1, 1, 0.1),
+                           rowWith("linear", 0.05, 5, 0.02),    rowWith("quadratic", 0.05, 6, 0.03),
+                           rowWith("quadratic", 0.02, 9, 0.01), rowWith("bullet", 0.1, 0.1, 0.001)};
+  rows.push_back(rows[1]);
+  rows.back().totalMs = 0.5;
+  rows.back().finite = 0.0;  // exploded: no choice
+  report::markPareto(rows);
+  std::vector<bool> front;
+  for (const Row& row : rows) front.push_back(row.pareto);
+  EXPECT_EQ(front, std::vector<bool>({false, true, true, false, true, false, false}));
+}
+
+TEST(Advice, FindsOrderAndTheReferencesOwnError) {
+  // Errors against a truth fall as 3 edge^2; the reference is such a cage, too.
+  std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0)};
+  for (const double edge : {0.08, 0.04, 0.02}) {
+    rows.push_back(rowWith("quadratic", edge, 1, 3.0 * (edge * edge - 0.01 * 0.01)));
+  }
+  EXPECT_NEAR(report::referenceError(rows), 3e-4, 1e-9);
+  const auto steps = report::observedOrders(rows, "quadratic", "same");
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_NEAR(steps[0].embedding, 2.0, 1e-9);
+  EXPECT_NEAR(report::overallOrder(rows, "quadratic", "same").embedding, 2.0, 1e-9);
+  EXPECT_TRUE(report::observedOrders(rows, "linear", "same").empty());
+  rows.resize(2);
+  EXPECT_EQ(report::referenceError(rows), 0.0);
+}
+
+TEST(ReportRow, ComesBackFromJson) {
+  Row row = rowWith("linear", 0.1, 2.5, 1.0 / 3.0);
+  row.errorByFrame = {0.1, 1e-7};
+  row.pareto = true;
+  EXPECT_EQ(toJson(report::rowFrom(toJson(row))), toJson(row));
+}
+
+TEST(ResultStore, KeepsWhatWasFinishedAndNothingElse) {
+  const CommandFolder folder;
+  const report::ResultStore store(folder.path("rows"));
+  const nlohmann::ordered_json settings = {{"tets", 300}}, others = {{"tets", 301}};
+  EXPECT_FALSE(store.rows(settings));
+  store.keep(settings, {rowWith("linear", 0.1, 1, 1)});
+  ASSERT_TRUE(store.rows(settings));
+  EXPECT_EQ(store.rows(settings)->size(), 1u);
+  EXPECT_FALSE(store.rows(others));
+
+  const report::Trajectory trajectory = {{Eigen::Vector3f(1, 2, 3)}, {Eigen::Vector3f(4, 5, 6)}};
+  store.keep(settings, trajectory);
+  EXPECT_EQ(store.trajectory(settings), trajectory);
+  for (const auto& file : std::filesystem::directory_iterator(folder.path("rows"))) {
+    std::ofstream(file.path(), std::ios::app) << "x";  // damaged
+  }
+  EXPECT_FALSE(store.rows(settings));
+  EXPECT_FALSE(store.trajectory(settings));
+}
+
+TEST(ColouredMesh, IsPlyWithAColourAVertex) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::string ply = report::colouredPly(mesh, mesh.positions, {0.0f, 1.0f, 9.0f}, 1.0);
+  EXPECT_NE(ply.find("element vertex 3\n"), std::string::npos);
+  EXPECT_NE(ply.find("0 0 0 68 1 84\n1 0 0 253 231 37\n0 1 0 253 231 37\n3 0 1 2\n"), std::string::npos) << ply;
+  EXPECT_EQ(report::mostOf({}), 0.0);
+  EXPECT_EQ(report::mostOf({3.0f}), 3.0);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "error_vs_time_run.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandResult;
+
+class ReportPlots : public test::ErrorVsTimeRun {};
+
+TEST_F(ReportPlots, SaysWhatItNeedsForTablesAndPlots) {
+  std::vector<std::string> arguments = small("exact", {"--target-error", "0.5"});
+  arguments.erase(arguments.begin() + 1);  // --quiet
+  const CommandResult result = run(arguments);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 2) << result.out;
+  for (const char* word :
+       {"python3-matplotlib", "python3 " TETSKIN_PLOTS "/error_vs_time.py out/error_vs_time.json out",
+        "--target-error 0.5"}) {
+    EXPECT_NE(result.out.find(word), std::string::npos) << result.out;
+  }
+  EXPECT_FALSE(folder.exists("out/error_vs_time.md"));
+  const CommandResult quiet = run(small("exact"));
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out, "");
+}
+
+#ifdef TETSKIN_PYTHON
+TEST_F(ReportPlots, APlotProgramThatFailsIsAWarning) {
+  const CommandResult result = runWith("", small("exact"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("tables or plots are missing"), std::string::npos) << result.err;
+}
+
+TEST_F(ReportPlots, HasTablesAndPlotsMade) {
+  std::vector<std::string> arguments = small("sag,exact", {"--target-error", "0.5"});
+  arguments.erase(arguments.begin() + 1);  // --quiet
+  const CommandResult result = folder.run(TETSKIN_ERROR_VS_TIME, arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string tables = folder.read("out/error_vs_time.md");
+  EXPECT_NE(result.out.find(tables), std::string::npos) << result.out;
+  for (const char* words : {"# Error against run time: serpent", "## sag, explicit", "## exact", "| reference |",
+                            "The reference itself is wrong by about", "- quadratic: ", "calibrated**",
+                            "theory's orders are 2 (linear) and 3 (quadratic)", "Cheapest below an error of 0.5: "}) {
+    EXPECT_NE(tables.find(words), std::string::npos) << words << tables;
+  }
+  for (const char* name : {"sag_explicit", "sag_explicit_frames", "exact"}) {
+    for (const char* ending : {".png", ".svg"}) {
+      EXPECT_TRUE(folder.exists("out/" + std::string(name) + ending)) << name << ending;
+    }
+  }
+  // By hand: without the surface, elsewhere, and with an error that nothing reaches.
+  const CommandResult drawn =
+      folder.run(TETSKIN_PYTHON, {TETSKIN_PLOTS "/error_vs_time.py", "out/error_vs_time.json", "plots", "--no-surface",
+                                  "--quiet", "--target-error", "1e-9"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(drawn.out, "");
+  EXPECT_TRUE(folder.exists("plots/exact.png"));
+  EXPECT_NE(folder.read("plots/error_vs_time.md").find("No setting stays below an error of 1e-09."), std::string::npos);
+}
+#endif
+
+}  // namespace
+}  // namespace tetskin

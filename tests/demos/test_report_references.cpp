@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include "error_vs_time_run.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+using test::expectRefused;
+using test::number;
+using test::rowsOf;
+
+class ReportReferences : public test::ErrorVsTimeRun {};
+
+/// A cage for a built-in model, as a user makes one.
+void buildReference(const CommandFolder& folder, const std::string& model, const std::string& tets,
+                    const std::string& file) {
+  const CommandResult result =
+      folder.run(TETSKIN_CAGE, {"--model", model, "--triangles", "4000", "--tets", tets, "--quiet", "-o", file});
+  ASSERT_EQ(result.status, 0) << result.err;
+}
+
+TEST_F(ReportReferences, TakesTheTetsThatABuiltInModelComesWith) {
+  const std::vector<std::string> arguments = {"--model",          "slotted_beam", "--triangles", "2000",
+                                              "--scene",          "sag",          "--tets",      "300",
+                                              "--no-calibration", "--frames",     "3",           "--interpolation",
+                                              "linear",           "--force",      "bullet"};
+  const auto with = [&](const std::string& tets) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {"--reference-tets", tets, "--out", "out"});
+    return run(all);
+  };
+  const CommandResult result = with("2000");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("tets by formula"), std::string::npos) << result.out;
+  const auto json = folder.json("out/error_vs_time.json");
+  EXPECT_EQ(json.at("model"), "slotted_beam");
+  EXPECT_EQ(json.at("reference").at("from"), "formula");
+  EXPECT_GE(json.at("reference").at("tets"), 2000);
+  EXPECT_EQ(number(rowsOf(json.at("scenes").at(0), "reference").at(0), "tets"), number(json.at("reference"), "tets"));
+  // Fused cages do not approach it: none is built to estimate its error.
+  EXPECT_EQ(json.at("scenes").at(0).at("reference_error"), 0.0);
+  EXPECT_EQ(json.at("scenes").at(0).at("rows").size(), 2u);
+
+  const CommandResult few = with("1000");
+  ASSERT_EQ(few.status, 0) << few.err;
+  EXPECT_NE(few.out.find("a built cage of about 1000 tets"), std::string::npos) << few.out;
+  EXPECT_EQ(folder.json("out/error_vs_time.json").at("reference").at("from"), "built");
+}
+
+TEST_F(ReportReferences, TakesAReferenceFromAFile) {
+  const std::vector<std::string> arguments = {"--model",
+                                              "bar",
+                                              "--triangles",
+                                              "4000",
+                                              "--scene",
+                                              "sag",
+                                              "--tets",
+                                              "300",
+                                              "--no-calibration",
+                                              "--force",
+                                              "bullet",
+                                              "--frames",
+                                              "3",
+                                              "--interpolation",
+                                              "linear",
+                                              "--reference",
+                                              "r.vtk",
+                                              "--out",
+                                              "out"};
+  std::vector<double> errors;
+  for (const char* tets : {"1500", "2500"}) {  // the same name, another reference: nothing stored may be taken
+    buildReference(folder, "bar", tets, "r.vtk");
+    const CommandResult result = run(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("tets of r.vtk"), std::string::npos) << result.out;
+    const auto json = folder.json("out/error_vs_time.json");
+    EXPECT_EQ(json.at("reference").at("from"), "r.vtk");
+    EXPECT_NEAR(number(json.at("reference"), "tets"), std::stod(tets), 0.1 * std::stod(tets));
+    const auto& scene = json.at("scenes").at(0);
+    EXPECT_EQ(number(rowsOf(scene, "reference").at(0), "tets"), number(json.at("reference"), "tets"));
+    errors.push_back(number(rowsOf(scene, "linear").at(0), "error_total_rms"));
+  }
+  EXPECT_GT(errors[0], 0.0);
+  EXPECT_NE(errors[0], errors[1]);
+}
+
+TEST_F(ReportReferences, RefusesAReferenceThatItCannotTake) {
+  buildReference(folder, "bar", "1500", "bar.vtk");
+  expectRefused(run({"--reference", "nowhere.vtk"}), "nowhere.vtk");
+  expectRefused(run({"--reference", "bar.vtk", "--reference-tets", "9000"}), "--reference-tets");
+  expectRefused(run({"--reference", "bar.vtk", "--full"}), "--full");
+  expectRefused(run({"--model", "bar", "--reference", "bar.vtk", "--tets", "3000"}), "fewer tets");
+  expectRefused(run({"--triangles", "4000", "--reference", "bar.vtk", "--tets", "300"}), "bar.vtk");
+  folder.write("broken.vtk", "no tets");
+  expectRefused(run({"--reference", "broken.vtk"}), "broken.vtk");
+}
+
+}  // namespace
+}  // namespace tetskin

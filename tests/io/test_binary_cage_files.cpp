@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "cage_texts.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/io/tet_files.h>
+
+#include <cstdint>
+#include <initializer_list>
+
+namespace tetskin {
+namespace {
+
+using test::expectError;
+using test::loadText;
+using test::with;
+
+/// Big-endian bytes of integers.
+std::string big(std::initializer_list<std::uint32_t> values) {
+  std::string bytes;
+  for (const std::uint32_t value : values) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+  }
+  return bytes;
+}
+
+std::string binaryCage() {
+  const std::uint32_t one = 0x3F800000, half = 0x3F000000;  // floats
+  std::string bytes(kFineTets, '\xF0');
+  return "# vtk DataFile Version 4.2\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+         big({0, 0, 0, one, 0, 0, 0, one, 0, 0, 0, one}) + "\nCELLS 2 9\n" + big({3, 0, 1, 2, 4, 0, 1, 2, 3}) +
+         "\nCELL_TYPES 2\n" + big({5, 10}) + "\nFIELD FieldData 2\nmesh_hash 2 1 unsigned_int\n" +
+         big({0xFFFFFFFF, 2}) + "\nvertex_tets 1 3 int\n" + big({0, 0, 0}) +
+         "\nCELL_DATA 2\nSCALARS fill float\nLOOKUP_TABLE default\n" + big({one, half}) +
+         "\nCOLOR_SCALARS c 2\nabcd\nLOOKUP_TABLE l 1\nabcd\nVECTORS v float\n" + big({0, 1, 2, 3, 4, 5}) +
+         "\nSCALARS part int 1\n" + big({9, 1}) + "\nFIELD FieldData 1\nfine_fill 64 2 " + "unsigned_char\n" +
+         std::string(kFineTets, 'x') + bytes +
+         "\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 4\nSCALARS mass float 1\nLOOKUP_TABLE default\n" +
+         big({one, half, one, half}) + "\n";
+}
+
+TEST(BinaryCageFiles, ReadsBinaryData) {
+  const Result<Cage> read = loadText(binaryCage());
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  const Cage& cage = read.value();
+  EXPECT_EQ(cage.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(cage.meshHash, 0xFFFFFFFF00000002u);
+  EXPECT_EQ(cage.vertexTets, (std::vector<int>{0, 0, 0}));
+  EXPECT_EQ(cage.fill, (std::vector<double>{0.5}));
+  EXPECT_EQ(cage.parts, (std::vector<int>{1}));
+  EXPECT_EQ(cage.fineFill, std::vector<std::uint8_t>(kFineTets, 0xF0));
+  EXPECT_EQ(cage.masses, (std::vector<double>{1, 0.5, 1, 0.5}));
+}
+
+TEST(BinaryCageFiles, SurvivesBinaryDataCutShortAnywhere) {
+  const std::string bytes = binaryCage();
+  std::size_t read = 0;
+  for (std::size_t length = 0; length < bytes.size(); ++length) read += loadText(bytes.substr(0, length)).ok();
+  EXPECT_LT(read, 40u);
+  expectError(loadText(with(bytes, "mass float", "mass bit")).status(), StatusCode::Malformed,
+              {"'mass' of type 'bit'"});
+  expectError(loadText(with(bytes, "VECTORS v float", "VECTORS v bit")).status(), StatusCode::UnsupportedFormat,
+              {"'bit'", "save it as ASCII"});
+}
+
+}  // namespace
+}  // namespace tetskin
