@@ -76,7 +76,8 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
 }
 
 double referenceError(const std::vector<Row>& rows) {
-  const std::vector<Row> sorted = series(rows, "quadratic", "same");
+  std::vector<Row> sorted = series(rows, "quadratic", "calibrated");
+  if (sorted.size() < 2) sorted = series(rows, "quadratic", "same");
   const auto reference = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.isReference(); });
   if (sorted.size() < 2 || reference == rows.end()) return 0.0;
   const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();

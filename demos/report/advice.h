@@ -26,9 +26,10 @@ std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const st
 /// are fewer than two.
 ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material);
 
-/// What the reference itself is wrong by, estimated from the two finest cages of the same material: if errors against
-/// the truth fall as C edge^p, then those against the reference are C (edge^p - reference edge^p), and two of them give
-/// C and p (which is kept between 1 and 3). 0 if there are fewer than two.
+/// What the reference itself is wrong by, estimated from the two finest cages made as it is, split, filled and
+/// calibrated, or else from the two finest bare ones: if errors against the truth fall as C edge^p, then those against
+/// the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1 and 3). 0 if
+/// there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

@@ -50,13 +50,17 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   if (!exact && both) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, true});
   // What is not simulated does not depend on the material.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
+  // As the reference is made, if such cages are compared at all.
+  const bool likeReference = std::count(kinds.begin(), kinds.end(), CageKind::Calibrated) > 0;
+  const CageKind levelKind = likeReference ? CageKind::Calibrated : CageKind::Same;
   for (const std::size_t tets : sizes) {
     const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
     const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMostBulletPairs;
     for (const CageKind kind : kinds) {
       const bool coloured = tets == shown && kind == kinds.front();
-      if (asked || kind == CageKind::Same)
+      if (asked || kind == levelKind) {
         jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), coloured, false});
+      }
     }
   }
   return jobs;
