@@ -43,8 +43,6 @@ HEAD = ("| tets | copies | stiffness | surface | error, RMS | largest | embeddin
         "simulation, ms | skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
 SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
-REFERENCE_ERROR = {True: "Calibrated cages aim at the body itself, not at the reference, which is too stiff as well.\n",
-                   False: "That is of one that is not calibrated; this one is better.\n"}
 CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, are those of smooth maps; here the body is clamped "
            "along edges, where its strain is not smooth, the reference is itself linear in each tet, and coarse cages have "
            "another shape: they are fatter, and where they are not split, parts that lie close together are fused.\n")
@@ -143,7 +141,7 @@ def tables(results, target):
                      "own force, which turns and damps otherwise.\n")
         if scene["reference_error"] > 0:
             text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
-                     "nothing. " + REFERENCE_ERROR[results["reference"]["stiffness_factor"] == 1])
+                     "nothing, by the finest cages that are made as it is.\n")
         text += orders_text(scene)
         if target:
             text += cheapest_text(scene, target)
