@@ -30,14 +30,14 @@ void expectSurfaceAtDistance(const btCollisionShape& shape) {
   }
 }
 
-/// Bullet's own, which is exact up to its tolerance.
+/// Bullet's own, which is up to 1.6 % too far from boxes.
 void expectBulletsDistance(const btConvexShape& shape) {
   for (const btVector3& point : pointsWithin(2, 300)) {
     const ShapeDistance at = exactDistance(shape, point);
     if (at.distance < btScalar(0.01)) continue;
     btGjkEpaSolver2::sResults results;
     const btScalar bullets = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
-    EXPECT_NEAR(at.distance, bullets, 2e-3);
+    EXPECT_NEAR(at.distance, bullets, btScalar(0.02) * at.distance);
   }
 }
 
