@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/contact/src/rigid/shape_probe.h>
 
 #include <algorithm>
 #include <cassert>
@@ -49,6 +51,30 @@ ShapeDistance fromCapsule(const btCapsuleShape& capsule, const btVector3& point)
   return fromBall(fromAxis, capsule.getRadius(), axis((along + 1) % 3, 1));
 }
 
+/// In the half-plane of the axis and the point, where the cylinder is a rectangle.
+ShapeDistance fromCylinder(const btCylinderShape& cylinder, const btVector3& point) {
+  const int along = cylinder.getUpAxis();
+  const btScalar radius = cylinder.getRadius(), half = cylinder.getHalfExtentsWithMargin()[along];
+  btVector3 outwards = point;
+  outwards[along] = 0;
+  const btScalar fromAxis = outwards.length();
+  outwards = fromAxis > SIMD_EPSILON * radius ? outwards / fromAxis : axis((along + 1) % 3, 1);
+  const btVector3 upwards = axis(along, point[along] < 0 ? -1 : 1);
+  const btScalar beside = fromAxis - radius, above = btFabs(point[along]) - half;
+  if (beside > 0 && above > 0) {
+    const btScalar distance = btSqrt(beside * beside + above * above);
+    return {distance, (beside * outwards + above * upwards) / distance};
+  }
+  return beside > above ? ShapeDistance{beside, outwards} : ShapeDistance{above, upwards};
+}
+
+bool isRound(const btCylinderShape& cylinder) {
+  const btVector3 half = cylinder.getHalfExtentsWithMargin();
+  const int along = cylinder.getUpAxis();
+  const btScalar a = half[(along + 1) % 3], b = half[(along + 2) % 3];
+  return btFabs(a - b) <= SIMD_EPSILON * (a + b);
+}
+
 }  // namespace
 
 bool hasExactDistance(const btCollisionShape& shape) {
@@ -58,6 +84,8 @@ bool hasExactDistance(const btCollisionShape& shape) {
     case SPHERE_SHAPE_PROXYTYPE:
     case CAPSULE_SHAPE_PROXYTYPE:
       return true;
+    case CYLINDER_SHAPE_PROXYTYPE:
+      return isRound(static_cast<const btCylinderShape&>(shape));
     default:
       return false;
   }
@@ -72,9 +100,15 @@ ShapeDistance exactDistance(const btCollisionShape& shape, const btVector3& poin
       return fromBox(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin(), point);
     case SPHERE_SHAPE_PROXYTYPE:
       return fromBall(point, static_cast<const btSphereShape&>(shape).getRadius(), btVector3(0, 1, 0));
+    case CYLINDER_SHAPE_PROXYTYPE:
+      return fromCylinder(static_cast<const btCylinderShape&>(shape), point);
     default:
       return fromCapsule(static_cast<const btCapsuleShape&>(shape), point);
   }
+}
+
+bool ExactProbe::enter(const Ball& ball, btScalar reach) {
+  return exactDistance(*shape_, ball.centre).distance <= ball.radius + reach;
 }
 
 }  // namespace tetskin

@@ -14,7 +14,8 @@ struct ShapeDistance {
   btVector3 normal{0, 1, 0};           ///< of unit length, the direction in which the distance grows
 };
 
-/// Whether `exactDistance` knows the shape: a plane, a box, a sphere or a capsule.
+/// Whether `exactDistance` knows the shape: a plane, a box, a sphere, a capsule, or a cylinder whose section is a
+/// circle.
 bool hasExactDistance(const btCollisionShape& shape);
 
 /// To the shape as Bullet collides with it, its own margin included. Inside, to the nearest point of its surface; where

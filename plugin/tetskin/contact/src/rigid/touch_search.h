@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SurfaceContact: which nodes of a body one rigid shape touches, and where.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+#include <tetskin/contact/src/rigid/contact_patches.h>
+#include <tetskin/contact/src/rigid/shape_probe.h>
+
+#include <vector>
+
+namespace tetskin {
+
+/// Where a node is when the step begins, and where it would go without contact; world space.
+struct NodePath {
+  btVector3 now, predicted;
+};
+
+/// The same of a rigid shape.
+struct ShapePath {
+  btTransform now, predicted;
+};
+
+/// A node that carries a point in touch: the first of these to go through, if nothing stops it.
+struct NodeTouch {
+  int node = -1;
+  std::uint32_t point = 0;  ///< its number
+  btVector3 position;       ///< the point's now, world space
+  btVector3 normal;         ///< of the shape where the point meets it, world space
+  btScalar distance = 0;    ///< now, along the normal, less the margin
+  btScalar predicted = 0;   ///< the same at the end of the step: below 0
+};
+
+/// A point may pass a thin shape in one step: it touches what it meets first on its way.
+class TouchSearch {
+ public:
+  /// share  of a point, which a node must carry to be held by it
+  TouchSearch(ContactPatches patches, btScalar margin, btScalar share);
+
+  const ContactPatches& patches() const { return patches_; }
+  btScalar margin() const { return margin_; }
+
+  /// Where the nodes are in this step; valid until the next call.
+  void begin(const std::vector<NodePath>& nodes);
+  /// Of the body with these nodes and this shape; ascending by node, each once. Valid until the next call.
+  const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape);
+
+ private:
+  void searchCluster(const PatchCluster& cluster);
+  void searchPatch(const ContactPatch& patch);
+  void readPatch(const ContactPatch& patch);
+  void keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch);
+
+  ContactPatches patches_;
+  btScalar margin_, share_;
+  const std::vector<NodePath>* nodes_ = nullptr;
+  std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
+  // Of one call of `find`.
+  ShapeProbe* probe_ = nullptr;
+  ShapePath shape_, toShape_;
+  btScalar turn_ = 0;         ///< how far a point at distance 1 moves by the shape's turning
+  std::vector<int> placeOf_;  ///< by node: in `touches_`, or -1
+  std::vector<NodeTouch> touches_;
+  std::vector<NodePath> local_;  ///< of the patch's nodes, shape space
+};
+
+}  // namespace tetskin
