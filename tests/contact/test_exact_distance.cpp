@@ -24,16 +24,16 @@ std::vector<btVector3> pointsWithin(btScalar reach, int count) {
 /// The distance is what the point must be moved by, against the normal, to lie on the surface.
 void expectSurfaceAtDistance(const btCollisionShape& shape) {
   for (const btVector3& point : pointsWithin(2, 500)) {
-    const ShapeDistance at = exactDistance(shape, point);
+    const ShapeDistance at = ExactShape::of(shape)->distance(point);
     EXPECT_NEAR(at.normal.length(), 1, 1e-5);
-    EXPECT_NEAR(exactDistance(shape, point - at.distance * at.normal).distance, 0, 1e-5);
+    EXPECT_NEAR(ExactShape::of(shape)->distance(point - at.distance * at.normal).distance, 0, 1e-5);
   }
 }
 
 /// Bullet's own, which is up to 1.6 % too far from boxes.
 void expectBulletsDistance(const btConvexShape& shape) {
   for (const btVector3& point : pointsWithin(2, 300)) {
-    const ShapeDistance at = exactDistance(shape, point);
+    const ShapeDistance at = ExactShape::of(shape)->distance(point);
     if (at.distance < btScalar(0.01)) continue;
     btGjkEpaSolver2::sResults results;
     const btScalar bullets = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
@@ -67,8 +67,8 @@ TEST(ExactDistance, OfACapsuleAlongEachAxisIsBullets) {
 TEST(ExactDistance, OfAPlaneIsAlongItsNormal) {
   const btVector3 normal = btVector3(1, 2, 3).normalized();
   const btStaticPlaneShape plane(normal, btScalar(0.5));
-  EXPECT_NEAR(exactDistance(plane, 3 * normal).distance, 2.5, 1e-6);
-  EXPECT_NEAR(exactDistance(plane, -normal).distance, -1.5, 1e-6);
+  EXPECT_NEAR(ExactShape::of(plane)->distance(3 * normal).distance, 2.5, 1e-6);
+  EXPECT_NEAR(ExactShape::of(plane)->distance(-normal).distance, -1.5, 1e-6);
   expectSurfaceAtDistance(plane);
 }
 
@@ -80,16 +80,16 @@ TEST(ExactDistance, HasANormalAtCentresAndOnFacesEdgesAndCorners) {
        {static_cast<const btCollisionShape*>(&box), static_cast<const btCollisionShape*>(&sphere),
         static_cast<const btCollisionShape*>(&capsule)}) {
     for (const btVector3& point : {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(1, 1, 0), btVector3(-1, 1, -1)}) {
-      EXPECT_NEAR(exactDistance(*shape, point).normal.length(), 1, 1e-5);
+      EXPECT_NEAR(ExactShape::of(*shape)->distance(point).normal.length(), 1, 1e-5);
     }
   }
-  EXPECT_EQ(exactDistance(box, btVector3(1, 1, 1)).distance, 0);
+  EXPECT_EQ(ExactShape::of(box)->distance(btVector3(1, 1, 1)).distance, 0);
 }
 
 TEST(ExactDistance, IsKnownForFourShapes) {
   const btCylinderShape cylinder(btVector3(1, 1, 1));
-  EXPECT_FALSE(hasExactDistance(cylinder));
-  EXPECT_TRUE(hasExactDistance(btSphereShape(1)));
+  EXPECT_FALSE(ExactShape::of(cylinder));
+  EXPECT_TRUE(ExactShape::of(btSphereShape(1)));
 }
 
 }  // namespace

@@ -86,8 +86,8 @@ void BodyContacts::collideChildren(const btCollisionShape& compound, const Shape
 }
 
 ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape) {
-  if (hasExactDistance(shape)) {
-    exact_.take(shape);
+  if (const std::optional<ExactShape> exact = ExactShape::of(shape)) {
+    exact_.take(*exact);
     return &exact_;
   }
   if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE && hull_.take(static_cast<const btConvexHullShape&>(shape))) {

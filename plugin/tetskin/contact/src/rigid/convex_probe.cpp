@@ -25,13 +25,13 @@ ShapeDistance gjkDistance(const btConvexShape& shape, const btVector3& point) {
 bool ConvexProbe::enter(const Ball& ball, btScalar reach) {
   const ShapeDistance centre = gjkDistance(*shape_, ball.centre);
   reach_ = reach;
-  plane_ = {centre.distance - ball.centre.dot(centre.normal), centre.normal};
+  bound_ = ShapeBound::behind(centre, ball.centre);
   return centre.distance <= ball.radius + reach;
 }
 
 ShapeDistance ConvexProbe::at(const btVector3& point) const {
-  const btScalar atLeast = plane_.distance + plane_.normal.dot(point);
-  if (atLeast > reach_) return {atLeast, plane_.normal};
+  const btScalar atLeast = bound_(point);
+  if (atLeast > reach_) return {atLeast, bound_.normal};
   return gjkDistance(*shape_, point);
 }
 

@@ -16,11 +16,12 @@ class ConvexProbe : public ShapeProbe {
   void take(const btConvexShape& shape) { shape_ = &shape; }
   bool enter(const Ball& ball, btScalar reach) override;
   bool narrow(const Ball& ball, btScalar reach) override { return enter(ball, reach); }
+  ShapeBound bound() const override { return bound_; }
   ShapeDistance at(const btVector3& point) const override;
 
  private:
   const btConvexShape* shape_ = nullptr;
-  ShapeDistance plane_;  ///< the shape is behind it: of the origin from it
+  ShapeBound bound_;
   btScalar reach_ = 0;
 };
 

@@ -115,11 +115,11 @@ bool HullProbe::narrow(const Ball& ball, btScalar reach) {
 bool HullProbe::keepNear(const std::vector<std::uint32_t>& from, const Ball& ball, btScalar reach,
                          std::vector<std::uint32_t>& kept) {
   heights_.resize(from.size());
-  btScalar highest = -BT_LARGE_FLOAT;
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    heights_[k] = faces_->height(from[k], ball.centre);
-    highest = std::max(highest, heights_[k]);
-  }
+  for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = faces_->height(from[k], ball.centre);
+  const auto top = std::max_element(heights_.begin(), heights_.end());
+  const btScalar highest = *top;
+  bound_ = ShapeBound::behind({highest, faces_->normal(from[static_cast<std::size_t>(top - heights_.begin())])},
+                              ball.centre);
   if (highest > ball.radius + reach) return false;
   // Points beside an edge are nearest to faces that are lower than the highest, but look to them.
   const btScalar low = highest - 2 * (ball.radius + reach);

@@ -50,6 +50,7 @@ class HullProbe : public ShapeProbe {
   bool narrow(const Ball& ball, btScalar reach) override;
   /// Inside, to the nearest face; outside, to the nearest point of those faces that look to the point.
   ShapeDistance at(const btVector3& point) const override;
+  ShapeBound bound() const override { return bound_; }
 
  private:
   bool keepNear(const std::vector<std::uint32_t>& from, const Ball& ball, btScalar reach,
@@ -59,6 +60,7 @@ class HullProbe : public ShapeProbe {
   const HullFaces* faces_ = nullptr;
   std::vector<std::uint32_t> all_, entered_, narrowed_;
   std::vector<btScalar> heights_;
+  ShapeBound bound_;
 };
 
 }  // namespace tetskin

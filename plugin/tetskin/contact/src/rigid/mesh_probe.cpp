@@ -49,8 +49,8 @@ void MeshProbe::take(const btConcaveShape& shape, btScalar thickness) {
 }
 
 bool MeshProbe::enter(const Ball& ball, btScalar reach) {
-  reach_ = std::max(reach, thickness_);
-  const btScalar side = ball.radius + reach_;
+  reach_ = reach;
+  const btScalar side = ball.radius + std::max(reach, thickness_);
   const btVector3 half(side, side, side);
   entered_.clear();
   TriangleGatherer gatherer(ball.centre - half, ball.centre + half, entered_);
@@ -60,8 +60,8 @@ bool MeshProbe::enter(const Ball& ball, btScalar reach) {
 }
 
 bool MeshProbe::narrow(const Ball& ball, btScalar reach) {
-  reach_ = std::max(reach, thickness_);
-  const btScalar side = ball.radius + reach_;
+  reach_ = reach;
+  const btScalar side = ball.radius + std::max(reach, thickness_);
   const btVector3 half(side, side, side);
   narrowed_.clear();
   for (const ProbeTriangle& triangle : entered_) {
@@ -77,11 +77,11 @@ bool MeshProbe::narrow(const Ball& ball, btScalar reach) {
 /// point tells the side.
 ShapeDistance MeshProbe::at(const btVector3& point) const {
   constexpr btScalar kSame = btScalar(1e-4);  // of the distance
-  ShapeDistance found;
-  btScalar least = reach_, facing = 0;
+  ShapeDistance found{reach_, btVector3(0, 1, 0)};
+  btScalar least = std::max(reach_, thickness_), facing = 0;
   for (const ProbeTriangle& triangle : narrowed_) {
     const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
-    if (btFabs(height) > least) continue;
+    if (height > std::min(least, reach_) || -height > std::min(least, thickness_)) continue;
     const btVector3 away = point - closestOnTriangle(triangle.corners, point);
     const btScalar distance = away.length();
     if (distance > least * (1 + kSame) || (distance > least * (1 - kSame) && btFabs(height) <= facing)) continue;
@@ -91,7 +91,7 @@ ShapeDistance MeshProbe::at(const btVector3& point) const {
     const bool on = !(distance > SIMD_EPSILON);
     found = {height < 0 ? -distance : distance, on ? triangle.normal : (height < 0 ? -away : away) / distance};
   }
-  return found.distance < -thickness_ ? ShapeDistance{} : found;
+  return found.distance < -thickness_ ? ShapeDistance{reach_, btVector3(0, 1, 0)} : found;
 }
 
 }  // namespace tetskin

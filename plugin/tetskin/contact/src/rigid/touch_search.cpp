@@ -64,11 +64,12 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
 }  // namespace
 
 TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share)
-    : patches_(std::move(patches)), margin_(margin), share_(share), local_(kMostCarriers) {}
+    : patches_(std::move(patches)), margin_(margin), share_(share) {}
 
 void TouchSearch::begin(const std::vector<NodePath>& nodes) {
   nodes_ = &nodes;
   placeOf_.resize(nodes.size(), -1);
+  local_.resize(nodes.size());
   clusterBalls_.clear();
   for (const PatchCluster& cluster : patches_.clusters) {
     BoxOfPaths box;
@@ -99,45 +100,79 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
 }
 
 void TouchSearch::searchCluster(const PatchCluster& cluster) {
+  readCluster(cluster);
+  const ShapeBound bound = probe_->bound();
   for (std::uint32_t k = 0; k < cluster.patchCount; ++k) {
     const ContactPatch& patch = patches_.patches[cluster.firstPatch + k];
-    readPatch(patch);
     BoxOfPaths box;
-    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) box.add(local_[n]);
-    if (probe_->narrow(box.ball(patch.spread), margin_)) searchPatch(patch);
+    btScalar longest = 0;
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      carriers_[n] = local_[static_cast<std::size_t>(patches_.nodes[patch.firstNode + n])];
+      box.add(carriers_[n]);
+      longest = std::max(longest, (carriers_[n].predicted - carriers_[n].now).length2());
+    }
+    // So far that a point's whole way is within reach of where it begins.
+    const btScalar reach = margin_ + btSqrt(longest) * patch.spread;
+    if (mayMeet(patch, bound) && probe_->narrow(box.ball(patch.spread), reach) && mayMeet(patch, probe_->bound())) {
+      searchPatch(patch);
+    }
   }
 }
 
-void TouchSearch::readPatch(const ContactPatch& patch) {
-  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-    const NodePath& world = (*nodes_)[static_cast<std::size_t>(patches_.nodes[patch.firstNode + n])];
-    local_[n] = {toShape_.now * world.now, toShape_.predicted * world.predicted};
+void TouchSearch::readCluster(const PatchCluster& cluster) {
+  for (std::uint32_t k = 0; k < cluster.nodeCount; ++k) {
+    const auto node = static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k]);
+    const NodePath& world = (*nodes_)[node];
+    local_[node] = {toShape_.now * world.now, toShape_.predicted * world.predicted};
   }
+}
+
+/// Leaves the heights of the nodes above the bound: a point's is between them, weighted as it is.
+bool TouchSearch::mayMeet(const ContactPatch& patch, const ShapeBound& bound) {
+  btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    heights_[0][n] = bound(carriers_[n].now);
+    heights_[1][n] = bound(carriers_[n].predicted);
+    low = std::min({low, heights_[0][n], heights_[1][n]});
+    high = std::max({high, heights_[0][n], heights_[1][n]});
+  }
+  return (low + high - patch.spread * (high - low)) * btScalar(0.5) <= margin_;
 }
 
 void TouchSearch::searchPatch(const ContactPatch& patch) {
-  btScalar longest = 0;
+  const btScalar* weights = &patches_.weights[patch.firstWeight];
+  for (std::uint32_t p = 0; p < patch.pointCount; ++p, weights += patch.nodeCount) {
+    btScalar now = 0, predicted = 0;
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      now += weights[n] * heights_[0][n];
+      predicted += weights[n] * heights_[1][n];
+    }
+    if (std::min(now, predicted) <= margin_) touch(patch, p);
+  }
+}
+
+NodePath TouchSearch::pathOf(const ContactPatch& patch, std::uint32_t point) const {
+  const btScalar* weights = &patches_.weights[patch.firstWeight + point * patch.nodeCount];
+  NodePath path{btVector3(0, 0, 0), btVector3(0, 0, 0)};
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-    longest = std::max(longest, (local_[n].predicted - local_[n].now).length2());
+    path.now += weights[n] * carriers_[n].now;
+    path.predicted += weights[n] * carriers_[n].predicted;
   }
-  const btScalar farthest = margin_ + btSqrt(longest) * patch.spread;
-  for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
-    const btScalar* weights = &patches_.weights[patch.firstWeight + p * patch.nodeCount];
-    NodePath path{btVector3(0, 0, 0), btVector3(0, 0, 0)};
-    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) path.now += weights[n] * local_[n].now;
-    if (probe_->at(path.now).distance > farthest) continue;
-    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) path.predicted += weights[n] * local_[n].predicted;
-    btVector3 where;
-    const ShapeDistance met = firstMet(*probe_, path, margin_, where);
-    if (!(met.distance < BT_LARGE_FLOAT)) continue;
-    NodeTouch touch;
-    touch.distance = met.distance - margin_ + met.normal.dot(path.now - where);
-    touch.predicted = touch.distance + met.normal.dot(path.predicted - path.now);
-    if (!(touch.predicted < 0)) continue;
-    touch.position = shape_.now * path.now;
-    touch.normal = shape_.now.getBasis() * met.normal;
-    keep(patch, p, touch);
-  }
+  return path;
+}
+
+void TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
+  const NodePath path = pathOf(patch, point);
+  btVector3 where;
+  const ShapeDistance met = firstMet(*probe_, path, margin_, where);
+  if (!(met.distance < BT_LARGE_FLOAT)) return;
+  NodeTouch touch;
+  touch.distance = met.distance - margin_ + met.normal.dot(path.now - where);
+  touch.predicted = touch.distance + met.normal.dot(path.predicted - path.now);
+  if (!(touch.predicted < 0)) return;
+  touch.position = shape_.now * path.now;
+  touch.normal = shape_.now.getBasis() * met.normal;
+  keep(patch, point, touch);
 }
 
 /// The nodes that carry a point hold it; each node the one that would go deepest.

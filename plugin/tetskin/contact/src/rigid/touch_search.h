@@ -8,6 +8,7 @@
 #include <tetskin/contact/src/rigid/contact_patches.h>
 #include <tetskin/contact/src/rigid/shape_probe.h>
 
+#include <array>
 #include <vector>
 
 namespace tetskin {
@@ -48,8 +49,11 @@ class TouchSearch {
 
  private:
   void searchCluster(const PatchCluster& cluster);
+  void readCluster(const PatchCluster& cluster);
   void searchPatch(const ContactPatch& patch);
-  void readPatch(const ContactPatch& patch);
+  bool mayMeet(const ContactPatch& patch, const ShapeBound& bound);
+  NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
+  void touch(const ContactPatch& patch, std::uint32_t point);
   void keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch);
 
   ContactPatches patches_;
@@ -62,7 +66,9 @@ class TouchSearch {
   btScalar turn_ = 0;         ///< how far a point at distance 1 moves by the shape's turning
   std::vector<int> placeOf_;  ///< by node: in `touches_`, or -1
   std::vector<NodeTouch> touches_;
-  std::vector<NodePath> local_;  ///< of the patch's nodes, shape space
+  std::vector<NodePath> local_;                     ///< by node, of the cluster's; shape space
+  std::array<NodePath, kMostCarriers> carriers_;    ///< of the patch
+  std::array<btScalar, kMostCarriers> heights_[2];  ///< of these, above the bound, now and predicted
 };
 
 }  // namespace tetskin
