@@ -6,9 +6,11 @@
 namespace tetskin {
 namespace {
 
-/// What Bullet's shape without its margin lacks of the shape as drawn: spheres are all margin.
-btScalar drawnMargin(const btConvexShape& shape) {
-  return shape.getShapeType() == MULTI_SPHERE_SHAPE_PROXYTYPE ? shape.getMargin() : btScalar(0);
+/// What Bullet adds around a shape as it is drawn: not those in which the margin is made room for.
+btScalar addedMargin(const btConvexShape& shape) {
+  const int type = shape.getShapeType();
+  const bool within = type == MULTI_SPHERE_SHAPE_PROXYTYPE || type == CYLINDER_SHAPE_PROXYTYPE;
+  return within ? btScalar(0) : shape.getMargin();
 }
 
 /// Where Bullet finds none, nothing is near.
@@ -17,7 +19,7 @@ ShapeDistance gjkDistance(const btConvexShape& shape, const btVector3& point) {
   const btScalar distance = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
   const btScalar length = results.normal.length();
   if (!(btFabs(distance) < BT_LARGE_FLOAT) || !(length > btScalar(0.5))) return {};
-  return {distance - drawnMargin(shape), results.normal / length};
+  return {distance + addedMargin(shape), results.normal / length};
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ class ConvexProbe : public ShapeProbe {
  public:
   void take(const btConvexShape& shape) { shape_ = &shape; }
   bool enter(const Ball& ball, btScalar reach) override;
-  bool narrow(const Ball& ball, btScalar reach) override { return enter(ball, reach); }
+  bool narrow(const CarrierPaths&, const Ball& ball, btScalar reach) override { return enter(ball, reach); }
   ShapeBound bound() const override { return bound_; }
   ShapeDistance at(const btVector3& point) const override;
 

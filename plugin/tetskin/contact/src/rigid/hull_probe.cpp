@@ -34,6 +34,19 @@ btVector3 areaOf(const std::vector<btVector3>& corners) {
 
 }  // namespace
 
+void FaceRows::clear() {
+  for (std::vector<btScalar>* values : {&x, &y, &z, &offsets}) values->clear();
+  faces.clear();
+}
+
+void FaceRows::add(const btVector3& normal, btScalar offset, std::uint32_t face) {
+  x.push_back(normal.x());
+  y.push_back(normal.y());
+  z.push_back(normal.z());
+  offsets.push_back(offset);
+  faces.push_back(face);
+}
+
 HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalScalingNV()) {
   const int count = shape.getNumPoints();
   points_.assign(shape.getUnscaledPoints(), shape.getUnscaledPoints() + count);
@@ -46,10 +59,9 @@ HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalSc
   const btVector3 inside = std::accumulate(scaled.begin(), scaled.end(), btVector3(0, 0, 0)) / btScalar(count);
   for (int f = 0; f < hull.faces.size(); ++f) addFace(cornersOfFace(hull, f));
   // Of points in a plane Bullet makes two faces, back to back.
-  const auto outside = [&](std::size_t f) { return !(height(f, inside) < -SIMD_EPSILON); };
-  for (std::size_t f = 0; f < size(); ++f) {
-    if (!outside(f)) continue;
-    offsets_.clear();
+  for (std::size_t f = 0; f < rows_.size(); ++f) {
+    if (rows_.height(f, inside) < -SIMD_EPSILON) continue;
+    rows_.clear();
     return;
   }
 }
@@ -61,8 +73,7 @@ void HullFaces::addFace(const std::vector<btVector3>& corners) {
   normal /= length;
   btScalar offset = -BT_LARGE_FLOAT;
   for (const btVector3& corner : corners) offset = std::max(offset, normal.dot(corner));
-  for (int k = 0; k < 3; ++k) normals_[k].push_back(normal[k]);
-  offsets_.push_back(offset);
+  rows_.add(normal, offset, static_cast<std::uint32_t>(rows_.size()));
   for (std::size_t k = 2; k < corners.size(); ++k) triangles_.push_back({corners[0], corners[k - 1], corners[k]});
   firstTriangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
 }
@@ -74,7 +85,7 @@ bool HullFaces::fits(const btConvexHullShape& shape) const {
                     [](const btVector3& a, const btVector3& b) { return a == b; });
 }
 
-btVector3 HullFaces::closest(std::size_t face, const btVector3& point) const {
+btVector3 HullFaces::closest(std::uint32_t face, const btVector3& point) const {
   btVector3 best(0, 0, 0);
   btScalar least = BT_LARGE_FLOAT;
   for (std::uint32_t t = firstTriangle_[face]; t < firstTriangle_[face + 1]; ++t) {
@@ -95,58 +106,48 @@ bool HullProbe::take(const btConvexHullShape& shape) {
     found = known_.insert_or_assign(&shape, HullFaces(shape)).first;
   }
   faces_ = &found->second;
-  all_.resize(faces_->size());
-  std::iota(all_.begin(), all_.end(), 0U);
   return !faces_->empty();
 }
 
 bool HullProbe::enter(const Ball& ball, btScalar reach) {
-  if (!keepNear(all_, ball, reach, entered_)) return false;
+  if (!keepNear(faces_->rows(), ball, reach, entered_)) return false;
   narrowed_ = entered_;
   return true;
 }
 
-bool HullProbe::narrow(const Ball& ball, btScalar reach) {
+bool HullProbe::narrow(const CarrierPaths&, const Ball& ball, btScalar reach) {
   return keepNear(entered_, ball, reach, narrowed_);
 }
 
 /// A face whose plane is lower under the centre than the highest by more than the ball's diameter is never the highest
-/// within the ball.
-bool HullProbe::keepNear(const std::vector<std::uint32_t>& from, const Ball& ball, btScalar reach,
-                         std::vector<std::uint32_t>& kept) {
+/// within the ball. Points beside an edge are nearest to faces that are lower than the highest, but look to them.
+bool HullProbe::keepNear(const FaceRows& from, const Ball& ball, btScalar reach, FaceRows& kept) {
   heights_.resize(from.size());
-  for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = faces_->height(from[k], ball.centre);
+  for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = from.height(k, ball.centre);
   const auto top = std::max_element(heights_.begin(), heights_.end());
   const btScalar highest = *top;
-  bound_ = ShapeBound::behind({highest, faces_->normal(from[static_cast<std::size_t>(top - heights_.begin())])},
-                              ball.centre);
+  bound_ = ShapeBound::behind({highest, from.normal(static_cast<std::size_t>(top - heights_.begin()))}, ball.centre);
   if (highest > ball.radius + reach) return false;
-  // Points beside an edge are nearest to faces that are lower than the highest, but look to them.
   const btScalar low = highest - 2 * (ball.radius + reach);
   kept.clear();
   for (std::size_t k = 0; k < from.size(); ++k) {
-    if (heights_[k] >= low) kept.push_back(from[k]);
+    if (heights_[k] >= low) kept.add(from.normal(k), from.offsets[k], from.faces[k]);
   }
   return true;
 }
 
 ShapeDistance HullProbe::at(const btVector3& point) const {
   ShapeDistance highest{-BT_LARGE_FLOAT, btVector3(0, 1, 0)};
-  std::uint32_t top = 0;
-  for (const std::uint32_t f : narrowed_) {
-    const btScalar height = faces_->height(f, point);
-    if (height > highest.distance) {
-      highest.distance = height;
-      top = f;
-    }
+  for (std::size_t k = 0; k < narrowed_.size(); ++k) {
+    const btScalar height = narrowed_.height(k, point);
+    if (height > highest.distance) highest = {height, narrowed_.normal(k)};
   }
-  highest.normal = faces_->normal(top);
   if (highest.distance <= 0) return highest;
   btScalar least = BT_LARGE_FLOAT;
   btVector3 away = highest.normal;
-  for (const std::uint32_t f : narrowed_) {
-    if (!(faces_->height(f, point) > 0)) continue;
-    const btVector3 from = point - faces_->closest(f, point);
+  for (std::size_t k = 0; k < narrowed_.size(); ++k) {
+    if (!(narrowed_.height(k, point) > 0)) continue;
+    const btVector3 from = point - faces_->closest(narrowed_.faces[k], point);
     if (from.length2() < least) {
       least = from.length2();
       away = from;

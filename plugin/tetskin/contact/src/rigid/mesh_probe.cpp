@@ -26,6 +26,14 @@ bool boxesMeet(const ProbeTriangle& triangle, const btVector3& low, const btVect
   return true;
 }
 
+/// Whether the point is in the triangle's box, or no farther from it.
+bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar distance) {
+  for (int k = 0; k < 3; ++k) {
+    if (triangle.low[k] - point[k] > distance || point[k] - triangle.high[k] > distance) return false;
+  }
+  return true;
+}
+
 void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
   ProbeTriangle triangle;
   triangle.corners = {corners[0], corners[1], corners[2]};
@@ -59,16 +67,18 @@ bool MeshProbe::enter(const Ball& ball, btScalar reach) {
   return !entered_.empty();
 }
 
-bool MeshProbe::narrow(const Ball& ball, btScalar reach) {
+bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) {
   reach_ = reach;
   const btScalar side = ball.radius + std::max(reach, thickness_);
-  const btVector3 half(side, side, side);
+  const btVector3 low = ball.centre - btVector3(side, side, side), high = ball.centre + btVector3(side, side, side);
   narrowed_.clear();
   for (const ProbeTriangle& triangle : entered_) {
-    if (boxesMeet(triangle, ball.centre - half, ball.centre + half) &&
-        btFabs(triangle.normal.dot(ball.centre - triangle.corners[0])) <= side) {
-      narrowed_.push_back(triangle);
+    if (!boxesMeet(triangle, low, high)) continue;
+    const btScalar plane = triangle.normal.dot(triangle.corners[0]);
+    if (carriers.lowest(triangle.normal) - plane > reach || carriers.highest(triangle.normal) - plane < -thickness_) {
+      continue;
     }
+    narrowed_.push_back(triangle);
   }
   return !narrowed_.empty();
 }
@@ -82,6 +92,7 @@ ShapeDistance MeshProbe::at(const btVector3& point) const {
   for (const ProbeTriangle& triangle : narrowed_) {
     const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
     if (height > std::min(least, reach_) || -height > std::min(least, thickness_)) continue;
+    if (!isBeside(triangle, point, height < 0 ? std::min(least, thickness_) : std::min(least, reach_))) continue;
     const btVector3 away = point - closestOnTriangle(triangle.corners, point);
     const btScalar distance = away.length();
     if (distance > least * (1 + kSame) || (distance > least * (1 - kSame) && btFabs(height) <= facing)) continue;

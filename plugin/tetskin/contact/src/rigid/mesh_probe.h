@@ -25,7 +25,7 @@ class MeshProbe : public ShapeProbe {
  public:
   void take(const btConcaveShape& shape, btScalar thickness);
   bool enter(const Ball& ball, btScalar reach) override;
-  bool narrow(const Ball& ball, btScalar reach) override;
+  bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override;
   ShapeBound bound() const override { return {}; }
   ShapeDistance at(const btVector3& point) const override;
 

@@ -44,6 +44,7 @@ ShapeDistance firstMet(const ShapeProbe& probe, const NodePath& path, btScalar m
     const ShapeDistance here = probe.at(where);
     const btScalar free = here.distance - margin;
     if (free <= kMet * margin && (gone > 0 || free <= 0)) return here;
+    if (free >= length - gone) return {};
     gone += std::max(free, kMet * margin);
     if (gone >= length) break;
     where = path.now + (gone / length) * way;
@@ -113,7 +114,9 @@ void TouchSearch::searchCluster(const PatchCluster& cluster) {
     }
     // So far that a point's whole way is within reach of where it begins.
     const btScalar reach = margin_ + btSqrt(longest) * patch.spread;
-    if (mayMeet(patch, bound) && probe_->narrow(box.ball(patch.spread), reach) && mayMeet(patch, probe_->bound())) {
+    if (mayMeet(patch, bound) &&
+        probe_->narrow({carriers_.data(), patch.nodeCount, patch.spread}, box.ball(patch.spread), reach) &&
+        mayMeet(patch, probe_->bound())) {
       searchPatch(patch);
     }
   }

@@ -13,12 +13,7 @@
 
 namespace tetskin {
 
-/// Where a node is when the step begins, and where it would go without contact; world space.
-struct NodePath {
-  btVector3 now, predicted;
-};
-
-/// The same of a rigid shape.
+/// Where a rigid shape is when the step begins, and where it would go without contact.
 struct ShapePath {
   btTransform now, predicted;
 };
