@@ -22,9 +22,10 @@ inline TriangleMesh ballMesh(int rings, double radius) {
   const int sides = 2 * rings;
   for (int i = 0; i <= rings; ++i) {
     for (int j = 0; j < sides; ++j) {
-      const double theta = EIGEN_PI * i / rings, phi = 2.0 * EIGEN_PI * j / sides;
-      mesh.positions.push_back(
-          radius * Eigen::Vector3d(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
+      const double phi = 2.0 * EIGEN_PI * j / sides;
+      // The poles at one place each, to the bit.
+      const double theta = EIGEN_PI * i / rings, ring = i > 0 && i < rings ? std::sin(theta) : 0.0;
+      mesh.positions.push_back(radius * Eigen::Vector3d(ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)));
     }
   }
   for (int i = 0; i < rings; ++i) {

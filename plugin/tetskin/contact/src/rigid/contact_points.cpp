@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
+#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace tetskin {
 namespace {
@@ -23,8 +25,8 @@ const Constraints* constraintsOf(const btSoftBody& body) {
   return nullptr;
 }
 
-/// By contact of the body.
-std::vector<btVector3> impulsesOn(const btSoftBody& body) {
+/// By Bullet's own solve of contacts.
+std::vector<btVector3> bulletsImpulses(const btSoftBody& body) {
   const int count = body.m_nodeRigidContacts.size();
   std::vector<btVector3> impulses(static_cast<std::size_t>(count), btVector3(0, 0, 0));
   const Constraints* constraints = constraintsOf(body);
@@ -34,6 +36,23 @@ std::vector<btVector3> impulsesOn(const btSoftBody& body) {
     if (at < 0 || at >= count || !solved.m_binding) continue;
     const btVector3 change = solved.m_total_normal_dv + solved.m_total_tangent_dv;
     impulses[static_cast<std::size_t>(at)] = solved.getContact()->m_c5.inverse() * change;
+  }
+  return impulses;
+}
+
+/// By contact of the body. What a DeformableSolver's own solve has found a node to be pushed with, its first contact
+/// has.
+std::vector<btVector3> impulsesOn(const btSoftBody& body) {
+  const auto* own = dynamic_cast<const DeformableSolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+  std::vector<btVector3> impulses = bulletsImpulses(body);
+  if (!own || !own->solves() || !body.isActive()) return impulses;
+  std::unordered_set<const btSoftBody::Node*> told;
+  for (int k = 0; k < body.m_nodeRigidContacts.size(); ++k) {
+    const auto& contact = body.m_nodeRigidContacts[k];
+    btVector3& impulse = impulses[static_cast<std::size_t>(k)];
+    const bool pushes = !impulse.isZero() && told.insert(contact.m_node).second;
+    const int node = static_cast<int>(contact.m_node - &body.m_nodes[0]);
+    impulse = (pushes ? own->normalImpulse(body, node) : btScalar(0)) * contact.m_cti.m_normal;
   }
   return impulses;
 }
