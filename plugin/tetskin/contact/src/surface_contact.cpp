@@ -16,6 +16,9 @@ namespace {
 constexpr double kSurfaceMargin = 0.002;
 /// How deep in a mesh a point still belongs to it, over the body's size: deeper than contact ever lets it come.
 constexpr double kMeshThickness = 0.03;
+/// How far around the surface a search looks, over the body's size, to remember what is clear: nodes move less in some
+/// steps.
+constexpr double kSearchSlack = 0.005;
 /// Of the weights of a vertex outside, their absolute values added up: more is of a cage that does not fit.
 constexpr btScalar kLargestSpread = btScalar(1.2);
 
@@ -139,7 +142,8 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
   auto parts = std::make_unique<Parts>(static_cast<btCollisionDispatcher&>(*world.getDispatcher()), body,
-                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(options.share)),
+                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(options.share),
+                                                   static_cast<btScalar>(kSearchSlack * size)),
                                        static_cast<btScalar>(kMeshThickness * size));
   parts->begin(world, reach);
   return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));

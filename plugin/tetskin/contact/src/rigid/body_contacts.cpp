@@ -4,8 +4,13 @@
 #include <tetskin/contact/src/rigid/body_contacts.h>
 #include <tetskin/contact/src/rigid/node_contacts.h>
 
+#include <algorithm>
+
 namespace tetskin {
 namespace {
+
+/// Shapes that are remembered, each with some 100 bytes a tet.
+constexpr std::size_t kMostKnown = 64;
 
 /// Where an object goes in this step. Of those that do not move by themselves, or sleep, nobody keeps that up to date.
 btTransform predictedOf(const btCollisionObject& object) {
@@ -29,6 +34,7 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
   if (touches_.size() > kept) touches_.resize(kept);
   nodesRead_ = false;
+  shapeNumber_ = 0;
   collideShape(*rigid.getCollisionShape(), pathOf(rigid), object);
 }
 
@@ -66,12 +72,14 @@ bool BodyContacts::isNear(const btCollisionShape& shape, const ShapePath& path) 
 }
 
 void BodyContacts::collideShape(const btCollisionShape& shape, const ShapePath& path, const btCollisionObject& object) {
+  ++shapeNumber_;
   if (!isNear(shape, path)) return;
   if (shape.isCompound()) return collideChildren(shape, path, object);
   ShapeProbe* probe = probeOf(shape);
   if (!probe) return;
   readNodes();
-  for (const NodeTouch& touch : search_.find(*probe, path)) {
+  ShapeMemory& memory = memoryOf(shape, object);
+  for (const NodeTouch& touch : search_.find(*probe, path, memory)) {
     if (addNodeContact(body_, object, touch)) touches_.push_back(touch);
   }
 }
@@ -83,6 +91,29 @@ void BodyContacts::collideChildren(const btCollisionShape& compound, const Shape
     const btTransform& place = children.getChildTransform(c);
     collideShape(*children.getChildShape(c), {path.now * place, path.predicted * place}, object);
   }
+}
+
+void BodyContacts::forget(const btCollisionObject& object) {
+  const auto isOf = [&](const KnownShape& known) { return known.object == &object; };
+  known_.erase(std::remove_if(known_.begin(), known_.end(), isOf), known_.end());
+}
+
+ShapeMemory& BodyContacts::memoryOf(const btCollisionShape& shape, const btCollisionObject& object) {
+  btVector3 low, high;
+  shape.getAabb(btTransform::getIdentity(), low, high);
+  for (KnownShape& known : known_) {
+    if (known.object != &object || known.number != shapeNumber_) continue;
+    if (known.shape != &shape || known.low != low || known.high != high) known = {};
+    known.object = &object;
+    known.number = shapeNumber_;
+    known.shape = &shape;
+    known.low = low;
+    known.high = high;
+    return known.memory;
+  }
+  if (known_.size() >= kMostKnown) known_.clear();
+  known_.push_back({&object, shapeNumber_, &shape, low, high, {}});
+  return known_.back().memory;
 }
 
 ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape) {

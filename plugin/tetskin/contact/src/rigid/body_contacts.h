@@ -15,6 +15,15 @@
 
 namespace tetskin {
 
+/// What is known of one shape of one object.
+struct KnownShape {
+  const btCollisionObject* object = nullptr;
+  int number = 0;  ///< of the shapes of the object: a compound may have one twice
+  const btCollisionShape* shape = nullptr;
+  btVector3 low, high;  ///< its box: another one is of another shape
+  ShapeMemory memory;
+};
+
 class BodyContacts {
  public:
   /// thickness  how deep in a mesh a point still belongs to it
@@ -23,6 +32,9 @@ class BodyContacts {
 
   /// Adds the contacts with an object, shape by shape, to Bullet's.
   void collide(const btCollisionObjectWrapper& rigid);
+
+  /// An object that is met no more, or not for now.
+  void forget(const btCollisionObject& object);
 
   /// Where each of Bullet's contacts of the body touches: `m_nodeRigidContacts`, in order.
   const std::vector<NodeTouch>& touches() const { return touches_; }
@@ -35,6 +47,7 @@ class BodyContacts {
   void collideShape(const btCollisionShape& shape, const ShapePath& path, const btCollisionObject& object);
   void collideChildren(const btCollisionShape& compound, const ShapePath& path, const btCollisionObject& object);
   bool isNear(const btCollisionShape& shape, const ShapePath& path) const;
+  ShapeMemory& memoryOf(const btCollisionShape& shape, const btCollisionObject& object);
   ShapeProbe* probeOf(const btCollisionShape& shape);
 
   btSoftBody& body_;
@@ -46,6 +59,8 @@ class BodyContacts {
   HullProbe hull_;
   ConvexProbe convex_;
   MeshProbe mesh_;
+  std::vector<KnownShape> known_;
+  int shapeNumber_ = 0;  ///< in this call
   std::vector<NodeTouch> touches_;
 };
 

@@ -46,16 +46,18 @@ class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
                    const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second, bool softIsSecond)
       : btSoftRigidCollisionAlgorithm(nullptr, info, first, second, softIsSecond),
         registry_(registry),
+        soft_(static_cast<const btSoftBody*>((softIsSecond ? second : first)->getCollisionObject())),
+        rigid_((softIsSecond ? first : second)->getCollisionObject()),
         softIsSecond_(softIsSecond) {}
   ~SurfaceAlgorithm() override {
+    if (BodyContacts* contacts = registry_.find(*soft_)) contacts->forget(*rigid_);
     if (!bullets_) return;
     bullets_->~btCollisionAlgorithm();
     m_dispatcher->freeCollisionAlgorithm(bullets_);
   }
   void processCollision(const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second,
                         const btDispatcherInfo& info, btManifoldResult* result) override {
-    const auto* soft = static_cast<const btSoftBody*>((softIsSecond_ ? second : first)->getCollisionObject());
-    if (BodyContacts* contacts = registry_.find(*soft)) return contacts->collide(*(softIsSecond_ ? first : second));
+    if (BodyContacts* contacts = registry_.find(*soft_)) return contacts->collide(*(softIsSecond_ ? first : second));
     if (!bullets_) {
       btCollisionAlgorithmConstructionInfo construction(m_dispatcher, 0);
       bullets_ = makeBullets(construction, first, second, false);
@@ -65,6 +67,8 @@ class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
 
  private:
   const ContactRegistry& registry_;
+  const btSoftBody* soft_;
+  const btCollisionObject* rigid_;
   btCollisionAlgorithm* bullets_ = nullptr;
   bool softIsSecond_;
 };

@@ -28,11 +28,39 @@ struct NodeTouch {
   btScalar predicted = 0;   ///< the same at the end of the step: below 0
 };
 
+class BoxOfPaths {
+ public:
+  void add(const NodePath& path) {
+    low_.setMin(path.now);
+    low_.setMin(path.predicted);
+    high_.setMax(path.now);
+    high_.setMax(path.predicted);
+  }
+  Ball ball(btScalar spread) const {
+    return {(low_ + high_) * btScalar(0.5), (high_ - low_).length() * btScalar(0.5) * spread};
+  }
+
+ private:
+  btVector3 low_{BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT};
+  btVector3 high_{-BT_LARGE_FLOAT, -BT_LARGE_FLOAT, -BT_LARGE_FLOAT};
+};
+
+/// What a search has found to be clear of a shape, so that it need not look there again until nodes have moved as far.
+/// Shapes may change in place without a word: everything is looked at again after some steps.
+struct ShapeMemory {
+  std::vector<Ball> clusterBalls;      ///< shape space, as are all
+  std::vector<btScalar> clusterClear;  ///< how far from everything; 0: not known
+  std::vector<btVector3> carriers;     ///< as ContactPatches::nodes
+  std::vector<btScalar> clear;         ///< by patch
+  unsigned steps = 0;
+};
+
 /// A point may pass a thin shape in one step: it touches what it meets first on its way.
 class TouchSearch {
  public:
   /// share  of a point, which a node must carry to be held by it
-  TouchSearch(ContactPatches patches, btScalar margin, btScalar share);
+  /// slack  how far around what may touch it looks, to remember what is clear
+  TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack);
 
   const ContactPatches& patches() const { return patches_; }
   btScalar margin() const { return margin_; }
@@ -40,23 +68,32 @@ class TouchSearch {
   /// Where the nodes are in this step; valid until the next call.
   void begin(const std::vector<NodePath>& nodes);
   /// Of the body with these nodes and this shape; ascending by node, each once. Valid until the next call.
-  const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape);
+  /// memory  of the same shape, or an empty one
+  const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
 
  private:
-  void searchCluster(const PatchCluster& cluster);
+  void prepare(ShapeMemory& memory) const;
+  Ball localBall(std::size_t cluster) const;
+  bool isClear(std::size_t cluster, const Ball& ball) const;
+  void searchCluster(std::size_t cluster, const Ball& ball, bool again);
   void readCluster(const PatchCluster& cluster);
-  void searchPatch(const ContactPatch& patch);
-  bool mayMeet(const ContactPatch& patch, const ShapeBound& bound);
+  void readPatch(const ContactPatch& patch);
+  bool isClear(std::size_t patch) const;
+  void remember(std::size_t patch, btScalar clear);
+  btScalar lowestHeight(const ContactPatch& patch, const ShapeBound& bound);
+  btScalar searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound);
+  btScalar searchPoints(const ContactPatch& patch);
   NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
-  void touch(const ContactPatch& patch, std::uint32_t point);
+  btScalar touch(const ContactPatch& patch, std::uint32_t point);
   void keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch);
 
   ContactPatches patches_;
-  btScalar margin_, share_;
+  btScalar margin_, share_, slack_;
   const std::vector<NodePath>* nodes_ = nullptr;
   std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
   // Of one call of `find`.
   ShapeProbe* probe_ = nullptr;
+  ShapeMemory* memory_ = nullptr;
   ShapePath shape_, toShape_;
   btScalar turn_ = 0;         ///< how far a point at distance 1 moves by the shape's turning
   std::vector<int> placeOf_;  ///< by node: in `touches_`, or -1
