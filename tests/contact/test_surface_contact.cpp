@@ -82,9 +82,11 @@ TEST_P(SurfaceContactIn, PushesADynamicBodyAsMuchAsItIsPushed) {
   btScalar momentum = 0;
   btSoftBody& soft = body.body->body();
   for (int n = 0; n < soft.m_nodes.size(); ++n) momentum += soft.m_nodes[n].m_v.y() / soft.m_nodes[n].m_im;
-  // Our solver takes the rigid body for as fast as Bullet's contacts have left it, and is not asked for what it pushes
-  // back with: nodes of the cage in contact miss by 0.37 here.
-  EXPECT_NEAR(momentum + rigid, -2, GetParam() == Setting::OwnSolver ? 1 : 0.1);
+  // Only explicit steps keep what contacts have given the nodes. Our solver takes the rigid body for as fast as
+  // Bullet's contacts have left it, and is not asked for what it pushes back with: nodes of the cage in contact miss by
+  // 0.37 here.
+  const double tolerances[] = {0.1, 0.3, 1.0};
+  EXPECT_NEAR(momentum + rigid, -2, tolerances[static_cast<int>(GetParam())]);
 }
 
 TEST_P(SurfaceContactIn, FallsAsleepWhereItLies) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
+#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
 #include <tetskin/contact/src/rigid/node_contacts.h>
 
@@ -23,6 +25,14 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   const btTransform place = object.getWorldTransform().inverse() * rigid.getWorldTransform();
   return {rigid.getWorldTransform(), predictedOf(object) * place};
+}
+
+/// Bullet's implicit steps add elastic forces to velocities as if they were explicit, which overshoots, before they
+/// look for contacts, and drop them afterwards.
+bool velocitiesAreUnsolved(const btSoftBody& body) {
+  auto* solver = static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+  const auto* own = dynamic_cast<const DeformableSolver*>(solver);
+  return solver->m_objective->m_implicit && !(own && own->solves());
 }
 
 }  // namespace
@@ -49,9 +59,10 @@ void BodyContacts::readNodes() {
   nodesRead_ = true;
   nodes_.resize(static_cast<std::size_t>(body_.m_nodes.size()));
   // Not m_q: implicit worlds leave that where the step began.
+  const bool unsolved = velocitiesAreUnsolved(body_);
   for (int n = 0; n < body_.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body_.m_nodes[n];
-    nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
+    nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * (unsolved ? node.m_vn : node.m_v)};
   }
   search_.begin(nodes_);
 }

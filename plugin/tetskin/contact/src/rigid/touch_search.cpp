@@ -230,7 +230,8 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   NodeTouch touch;
   touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
-  if (!(touch.predicted < 0)) return 0;
+  // What is too near is pushed out, wherever it goes.
+  if (!(touch.predicted < 0 || touch.distance < 0)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
   keep(patch, point, touch);

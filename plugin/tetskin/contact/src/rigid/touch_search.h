@@ -25,7 +25,7 @@ struct NodeTouch {
   btVector3 position;       ///< the point's now, world space
   btVector3 normal;         ///< of the shape where the point meets it, world space
   btScalar distance = 0;    ///< now, along the normal, less the margin
-  btScalar predicted = 0;   ///< the same at the end of the step: below 0
+  btScalar predicted = 0;   ///< the same at the end of the step: one of the two is below 0
 };
 
 class BoxOfPaths {
