@@ -21,7 +21,7 @@ namespace tetskin::scenes {
 namespace {
 
 /// Of what may touch, over the mesh's size: finer than obstacles here are thick.
-constexpr double kSampleSpacing = 0.02;
+constexpr double kSampleSpacing = 0.04;
 
 ForceModel modelOf(Force force) {
   switch (force) {

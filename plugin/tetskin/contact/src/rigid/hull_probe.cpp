@@ -34,17 +34,15 @@ btVector3 areaOf(const std::vector<btVector3>& corners) {
 
 }  // namespace
 
-void FaceRows::clear() {
+void FacePlanes::clear() {
   for (std::vector<btScalar>* values : {&x, &y, &z, &offsets}) values->clear();
-  faces.clear();
 }
 
-void FaceRows::add(const btVector3& normal, btScalar offset, std::uint32_t face) {
+void FacePlanes::add(const btVector3& normal, btScalar offset) {
   x.push_back(normal.x());
   y.push_back(normal.y());
   z.push_back(normal.z());
   offsets.push_back(offset);
-  faces.push_back(face);
 }
 
 HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalScalingNV()) {
@@ -59,9 +57,9 @@ HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalSc
   const btVector3 inside = std::accumulate(scaled.begin(), scaled.end(), btVector3(0, 0, 0)) / btScalar(count);
   for (int f = 0; f < hull.faces.size(); ++f) addFace(cornersOfFace(hull, f));
   // Of points in a plane Bullet makes two faces, back to back.
-  for (std::size_t f = 0; f < rows_.size(); ++f) {
-    if (rows_.height(f, inside) < -SIMD_EPSILON) continue;
-    rows_.clear();
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (planes_.height(f, inside) < -SIMD_EPSILON) continue;
+    planes_.clear();
     return;
   }
 }
@@ -73,7 +71,7 @@ void HullFaces::addFace(const std::vector<btVector3>& corners) {
   normal /= length;
   btScalar offset = -BT_LARGE_FLOAT;
   for (const btVector3& corner : corners) offset = std::max(offset, normal.dot(corner));
-  rows_.add(normal, offset, static_cast<std::uint32_t>(rows_.size()));
+  planes_.add(normal, offset);
   for (std::size_t k = 2; k < corners.size(); ++k) triangles_.push_back({corners[0], corners[k - 1], corners[k]});
   firstTriangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
 }
@@ -85,7 +83,7 @@ bool HullFaces::fits(const btConvexHullShape& shape) const {
                     [](const btVector3& a, const btVector3& b) { return a == b; });
 }
 
-btVector3 HullFaces::closest(std::uint32_t face, const btVector3& point) const {
+btVector3 HullFaces::closest(std::size_t face, const btVector3& point) const {
   btVector3 best(0, 0, 0);
   btScalar least = BT_LARGE_FLOAT;
   for (std::uint32_t t = firstTriangle_[face]; t < firstTriangle_[face + 1]; ++t) {
@@ -106,11 +104,13 @@ bool HullProbe::take(const btConvexHullShape& shape) {
     found = known_.insert_or_assign(&shape, HullFaces(shape)).first;
   }
   faces_ = &found->second;
+  all_.resize(faces_->planes().size());
+  std::iota(all_.begin(), all_.end(), std::size_t{0});
   return !faces_->empty();
 }
 
 bool HullProbe::enter(const Ball& ball, btScalar reach) {
-  if (!keepNear(faces_->rows(), ball, reach, entered_)) return false;
+  if (!keepNear(all_, ball, reach, entered_)) return false;
   narrowed_ = entered_;
   return true;
 }
@@ -121,33 +121,44 @@ bool HullProbe::narrow(const CarrierPaths&, const Ball& ball, btScalar reach) {
 
 /// A face whose plane is lower under the centre than the highest by more than the ball's diameter is never the highest
 /// within the ball. Points beside an edge are nearest to faces that are lower than the highest, but look to them.
-bool HullProbe::keepNear(const FaceRows& from, const Ball& ball, btScalar reach, FaceRows& kept) {
+bool HullProbe::keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach,
+                         std::vector<std::size_t>& kept) {
+  const FacePlanes& planes = faces_->planes();
   heights_.resize(from.size());
-  for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = from.height(k, ball.centre);
+  for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = planes.height(from[k], ball.centre);
   const auto top = std::max_element(heights_.begin(), heights_.end());
   const btScalar highest = *top;
-  bound_ = ShapeBound::behind({highest, from.normal(static_cast<std::size_t>(top - heights_.begin()))}, ball.centre);
+  bound_ =
+      ShapeBound::behind({highest, planes.normal(from[static_cast<std::size_t>(top - heights_.begin())])}, ball.centre);
   if (highest > ball.radius + reach) return false;
   const btScalar low = highest - 2 * (ball.radius + reach);
   kept.clear();
   for (std::size_t k = 0; k < from.size(); ++k) {
-    if (heights_[k] >= low) kept.add(from.normal(k), from.offsets[k], from.faces[k]);
+    if (heights_[k] >= low) kept.push_back(from[k]);
   }
   return true;
 }
 
 ShapeDistance HullProbe::at(const btVector3& point) const {
-  ShapeDistance highest{-BT_LARGE_FLOAT, btVector3(0, 1, 0)};
-  for (std::size_t k = 0; k < narrowed_.size(); ++k) {
-    const btScalar height = narrowed_.height(k, point);
-    if (height > highest.distance) highest = {height, narrowed_.normal(k)};
+  const FacePlanes& planes = faces_->planes();
+  btScalar height = -BT_LARGE_FLOAT;
+  std::size_t top = 0;
+  for (const std::size_t face : narrowed_) {
+    const btScalar other = planes.height(face, point);
+    if (!(other > height)) continue;
+    height = other;
+    top = face;
   }
-  if (highest.distance <= 0) return highest;
+  const ShapeDistance highest{height, planes.normal(top)};
+  return height > 0 ? outside(point, highest) : highest;
+}
+
+ShapeDistance HullProbe::outside(const btVector3& point, const ShapeDistance& highest) const {
   btScalar least = BT_LARGE_FLOAT;
   btVector3 away = highest.normal;
-  for (std::size_t k = 0; k < narrowed_.size(); ++k) {
-    if (!(narrowed_.height(k, point) > 0)) continue;
-    const btVector3 from = point - faces_->closest(narrowed_.faces[k], point);
+  for (const std::size_t face : narrowed_) {
+    if (!(faces_->planes().height(face, point) > 0)) continue;
+    const btVector3 from = point - faces_->closest(face, point);
     if (from.length2() < least) {
       least = from.length2();
       away = from;

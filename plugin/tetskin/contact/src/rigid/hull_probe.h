@@ -14,18 +14,17 @@
 
 namespace tetskin {
 
-/// Planes of faces, and which faces these are.
-struct FaceRows {
+/// Planes of faces.
+struct FacePlanes {
   std::vector<btScalar> x, y, z, offsets;
-  std::vector<std::uint32_t> faces;
 
-  std::size_t size() const { return faces.size(); }
+  std::size_t size() const { return offsets.size(); }
   void clear();
-  void add(const btVector3& normal, btScalar offset, std::uint32_t face);
-  btVector3 normal(std::size_t row) const { return {x[row], y[row], z[row]}; }
+  void add(const btVector3& normal, btScalar offset);
+  btVector3 normal(std::size_t face) const { return {x[face], y[face], z[face]}; }
   /// Over the plane, above 0 outside.
-  btScalar height(std::size_t row, const btVector3& point) const {
-    return x[row] * point.x() + y[row] * point.y() + z[row] * point.z() - offsets[row];
+  btScalar height(std::size_t face, const btVector3& point) const {
+    return x[face] * point.x() + y[face] * point.y() + z[face] * point.z() - offsets[face];
   }
 };
 
@@ -36,14 +35,14 @@ class HullFaces {
   /// Whether it is that of these points still.
   bool fits(const btConvexHullShape& shape) const;
 
-  bool empty() const { return rows_.faces.empty(); }
-  const FaceRows& rows() const { return rows_; }
-  btVector3 closest(std::uint32_t face, const btVector3& point) const;
+  bool empty() const { return planes_.offsets.empty(); }
+  const FacePlanes& planes() const { return planes_; }
+  btVector3 closest(std::size_t face, const btVector3& point) const;
 
  private:
   void addFace(const std::vector<btVector3>& corners);
 
-  FaceRows rows_;                             ///< by face
+  FacePlanes planes_;                         ///< by face
   std::vector<std::uint32_t> firstTriangle_;  ///< by face, and one more
   std::vector<TriangleCorners> triangles_;
   btVector3 scaling_;
@@ -62,11 +61,12 @@ class HullProbe : public ShapeProbe {
   ShapeBound bound() const override { return bound_; }
 
  private:
-  bool keepNear(const FaceRows& from, const Ball& ball, btScalar reach, FaceRows& kept);
+  ShapeDistance outside(const btVector3& point, const ShapeDistance& highest) const;
+  bool keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach, std::vector<std::size_t>& kept);
 
   std::unordered_map<const btCollisionShape*, HullFaces> known_;
   const HullFaces* faces_ = nullptr;
-  FaceRows entered_, narrowed_;
+  std::vector<std::size_t> all_, entered_, narrowed_;  ///< faces
   std::vector<btScalar> heights_;
   ShapeBound bound_;
 };

@@ -58,37 +58,51 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
 }  // namespace
 
 TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack)
-    : patches_(std::move(patches)), margin_(margin), share_(share), slack_(slack) {}
+    : patches_(std::move(patches)), margin_(margin), share_(share), slack_(slack) {
+  for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
+}
 
 void TouchSearch::begin(const std::vector<NodePath>& nodes) {
   nodes_ = &nodes;
+  clustersRead_ = false;
   placeOf_.resize(nodes.size(), -1);
   local_.resize(nodes.size());
+}
+
+void TouchSearch::readClusters() {
+  if (clustersRead_) return;
+  clustersRead_ = true;
   clusterBalls_.clear();
   for (const PatchCluster& cluster : patches_.clusters) {
     BoxOfPaths box;
     for (std::uint32_t k = 0; k < cluster.nodeCount; ++k) {
-      box.add(nodes[static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k])]);
+      box.add((*nodes_)[static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k])]);
     }
     clusterBalls_.push_back(box.ball(cluster.spread));
   }
 }
 
 const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
-  assert(nodes_ && clusterBalls_.size() == patches_.clusters.size());
+  assert(nodes_);
   probe_ = &probe;
   shape_ = shape;
-  toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
-  turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
   touches_.clear();
-  prepare(memory);
   memory_ = &memory;
   ++memory.steps;
+  if (isAllClear()) return touches_;
+  readClusters();
+  toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
+  turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
+  prepare(memory);
+  bool allClear = true;
   for (std::size_t c = 0; c < clusterBalls_.size(); ++c) {
     const bool again = (memory.steps + c) % kRemembered == 0;
     const Ball ball = localBall(c);
-    if (again || !isClear(c, ball)) searchCluster(c, ball, again);
+    btScalar left = again ? btScalar(0) : clearance(c, ball);
+    if (!(left > 0)) left = searchCluster(c, ball, again);
+    allClear = allClear && left > slack_ / 2;
   }
+  if (allClear) rememberAllClear();
   for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
   std::sort(touches_.begin(), touches_.end(), [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
   return touches_;
@@ -101,6 +115,27 @@ void TouchSearch::prepare(ShapeMemory& memory) const {
   memory.clear.resize(patches_.patches.size(), 0);
 }
 
+/// No point has moved by half the slack since all was clear by as much.
+bool TouchSearch::isAllClear() const {
+  if (memory_->steps >= memory_->clearUntil || !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
+    return false;
+  }
+  const btScalar most = btScalar(0.25) * slack_ * slack_ / (spread_ * spread_);
+  for (std::size_t n = 0; n < nodes_->size(); ++n) {
+    const NodePath& path = (*nodes_)[n];
+    if ((path.now - memory_->nodes[n]).length2() >= most) return false;
+    if ((path.predicted - memory_->nodes[n]).length2() >= most) return false;
+  }
+  return true;
+}
+
+void TouchSearch::rememberAllClear() {
+  memory_->clearUntil = memory_->steps + kRemembered;
+  memory_->place = shape_.now;
+  memory_->nodes.resize(nodes_->size());
+  for (std::size_t n = 0; n < nodes_->size(); ++n) memory_->nodes[n] = (*nodes_)[n].now;
+}
+
 /// Of all the ways in a cluster.
 Ball TouchSearch::localBall(std::size_t cluster) const {
   const Ball& world = clusterBalls_[cluster];
@@ -108,13 +143,15 @@ Ball TouchSearch::localBall(std::size_t cluster) const {
   return {(now + predicted) * btScalar(0.5), world.radius * (1 + turn_) + (predicted - now).length() * btScalar(0.5)};
 }
 
-bool TouchSearch::isClear(std::size_t cluster, const Ball& ball) const {
+/// How far the cluster is from everything at least, as far as that is known.
+btScalar TouchSearch::clearance(std::size_t cluster, const Ball& ball) const {
   const Ball& known = memory_->clusterBalls[cluster];
   const btScalar grown = std::max(ball.radius - known.radius, btScalar(0));
-  return (ball.centre - known.centre).length() + grown < memory_->clusterClear[cluster];
+  return memory_->clusterClear[cluster] - (ball.centre - known.centre).length() - grown;
 }
 
-void TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool again) {
+/// Returns by how much all of the cluster is clear, or 0.
+btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool again) {
   const PatchCluster& patches = patches_.clusters[cluster];
   readCluster(patches);
   memory_->clusterClear[cluster] = 0;
@@ -126,12 +163,13 @@ void TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool agai
     if (!entered && !probe_->enter(ball, margin_ + slack_)) {
       memory_->clusterBalls[cluster] = ball;
       memory_->clusterClear[cluster] = slack_;
-      return;
+      return slack_;
     }
     if (!entered) bound = probe_->bound();
     entered = true;
     remember(p, searchPatch(patches_.patches[p], bound));
   }
+  return 0;
 }
 
 void TouchSearch::readCluster(const PatchCluster& cluster) {

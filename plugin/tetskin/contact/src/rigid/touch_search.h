@@ -52,6 +52,9 @@ struct ShapeMemory {
   std::vector<btScalar> clusterClear;  ///< how far from everything; 0: not known
   std::vector<btVector3> carriers;     ///< as ContactPatches::nodes
   std::vector<btScalar> clear;         ///< by patch
+  std::vector<btVector3> nodes;        ///< world space, from where on the whole body is clear of a shape that rests
+  btTransform place;                   ///< of that shape
+  unsigned clearUntil = 0;             ///< step
   unsigned steps = 0;
 };
 
@@ -72,10 +75,13 @@ class TouchSearch {
   const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
 
  private:
+  void readClusters();
   void prepare(ShapeMemory& memory) const;
+  bool isAllClear() const;
+  void rememberAllClear();
   Ball localBall(std::size_t cluster) const;
-  bool isClear(std::size_t cluster, const Ball& ball) const;
-  void searchCluster(std::size_t cluster, const Ball& ball, bool again);
+  btScalar clearance(std::size_t cluster, const Ball& ball) const;
+  btScalar searchCluster(std::size_t cluster, const Ball& ball, bool again);
   void readCluster(const PatchCluster& cluster);
   void readPatch(const ContactPatch& patch);
   bool isClear(std::size_t patch) const;
@@ -89,7 +95,9 @@ class TouchSearch {
 
   ContactPatches patches_;
   btScalar margin_, share_, slack_;
+  btScalar spread_ = 1;  ///< the largest of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
+  bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
   // Of one call of `find`.
   ShapeProbe* probe_ = nullptr;
