@@ -157,9 +157,15 @@ btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool 
   memory_->clusterClear[cluster] = 0;
   bool entered = false;
   ShapeBound bound;
+  btScalar left = slack_;
   for (std::size_t p = patches.firstPatch; p < patches.firstPatch + patches.patchCount; ++p) {
-    readPatch(patches_.patches[p]);
-    if (!again && isClear(p)) continue;
+    const ContactPatch& patch = patches_.patches[p];
+    readPatch(patch);
+    const btScalar still = again ? btScalar(0) : clearance(patch, memory_->clear[p]);
+    if (still > 0) {
+      left = std::min(left, still);
+      continue;
+    }
     if (!entered && !probe_->enter(ball, margin_ + slack_)) {
       memory_->clusterBalls[cluster] = ball;
       memory_->clusterClear[cluster] = slack_;
@@ -167,9 +173,10 @@ btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool 
     }
     if (!entered) bound = probe_->bound();
     entered = true;
-    remember(p, searchPatch(patches_.patches[p], bound));
+    remember(p, searchPatch(patch, bound));
+    left = std::min(left, memory_->clear[p]);
   }
-  return 0;
+  return left;
 }
 
 void TouchSearch::readCluster(const PatchCluster& cluster) {
@@ -186,16 +193,14 @@ void TouchSearch::readPatch(const ContactPatch& patch) {
   }
 }
 
-/// Nodes have moved less than the patch was clear by.
-bool TouchSearch::isClear(std::size_t patch) const {
-  const ContactPatch& of = patches_.patches[patch];
-  const btScalar clear = memory_->clear[patch] / of.spread;
-  for (std::uint32_t n = 0; n < of.nodeCount; ++n) {
-    const btVector3& known = memory_->carriers[of.firstNode + n];
-    if ((carriers_[n].now - known).length2() >= clear * clear) return false;
-    if ((carriers_[n].predicted - known).length2() >= clear * clear) return false;
+/// What is left of what the patch was clear by, now that its nodes have moved.
+btScalar TouchSearch::clearance(const ContactPatch& patch, btScalar known) const {
+  btScalar moved = 0;
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    const btVector3& from = memory_->carriers[patch.firstNode + n];
+    moved = std::max({moved, (carriers_[n].now - from).length2(), (carriers_[n].predicted - from).length2()});
   }
-  return true;
+  return known - btSqrt(moved) * patch.spread;
 }
 
 void TouchSearch::remember(std::size_t patch, btScalar clear) {

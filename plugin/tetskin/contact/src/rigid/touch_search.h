@@ -84,7 +84,7 @@ class TouchSearch {
   btScalar searchCluster(std::size_t cluster, const Ball& ball, bool again);
   void readCluster(const PatchCluster& cluster);
   void readPatch(const ContactPatch& patch);
-  bool isClear(std::size_t patch) const;
+  btScalar clearance(const ContactPatch& patch, btScalar known) const;
   void remember(std::size_t patch, btScalar clear);
   btScalar lowestHeight(const ContactPatch& patch, const ShapeBound& bound);
   btScalar searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound);
