@@ -66,6 +66,10 @@ class World {
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
   void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
+  /// A box that is moved by `moveTo`, and not drawn as an obstacle.
+  btRigidBody& addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents);
+  /// Along z, half as long as it says beyond its round ends.
+  void addPole(const Eigen::Vector3d& centre, double radius, double halfLength);
   void addSphere(const Eigen::Vector3d& centre, double radius);
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
@@ -83,7 +87,7 @@ class World {
   void makeClassic();
   void makeDeformable();
   void addCorotated(btSoftBody& body, const SoftBodyOptions& options);
-  void addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
+  btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
 
   Force force_;
   std::unique_ptr<btCollisionConfiguration> configuration_;
@@ -106,6 +110,9 @@ class World {
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
+
+/// Sends a box made by `addMovingBox` elsewhere, in the next step.
+void moveTo(btRigidBody& body, const Eigen::Vector3d& centre);
 
 /// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
 /// changes that by no force: so it arrives, and its neighbours feel it move.
