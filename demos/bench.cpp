@@ -19,6 +19,7 @@
 #include <memory>
 
 #include "bench/body_cases.h"
+#include "bench/contact_cases.h"
 #include "bench/step_cases.h"
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
@@ -350,6 +351,7 @@ int main(int argc, char** argv) {
       registerBuildBodySizes();
       bench::registerBodyCases();
       bench::registerStepCases();
+      bench::registerContactCases();
       registerAttachSizes();
       registerBuildCageSizes();
     }

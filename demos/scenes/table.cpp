@@ -29,6 +29,9 @@ namespace tetskin::scenes {
   SCENE(Impact, "impact", 30, true, "hits the floor at 100 lengths a second")                               \
   SCENE(Pull, "pull", 30, false, "held by one node, pulled away three lengths by another")                  \
   SCENE(HeavyBox, "heavy_box", 30, true, "a box of 1,000 times its mass falls on it")                       \
+  SCENE(LightBox, "light_box", 30, true, "a box of a tenth of its mass falls on it")                        \
+  SCENE(Pole, "pole", 60, true, "falls on a pole thinner than a tet")                                       \
+  SCENE(Press, "press", 60, true, "is pressed to half its height by a plate, and let go")                   \
   SCENE(NodeNaN, "node_nan", 30, false, "a node is not a number, for one update")                           \
   SCENE(NodeInfinite, "node_infinite", 30, false, "a node is infinite, for one update")                     \
   SCENE(NodeTooFar, "node_too_far", 30, false, "a node is beyond what a surface can follow, for one update")

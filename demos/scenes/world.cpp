@@ -12,12 +12,16 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/contact/surface_contact.h>
 
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
 
 namespace tetskin::scenes {
 namespace {
+
+/// Of what may touch, over the mesh's size: finer than obstacles here are thick.
+constexpr double kSampleSpacing = 0.04;
 
 ForceModel modelOf(Force force) {
   switch (force) {
@@ -70,9 +74,21 @@ void World::makeDeformable() {
 }
 
 World::~World() {
+  contacts_.clear();
   deformableBodies_.clear();
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
+  world_.reset();
+  SurfaceContact::shutdown(static_cast<btCollisionDispatcher&>(*dispatcher_));
+}
+
+void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {
+  if (!deformable_) throw InputError("contact at the surface needs the deformable world");
+  SurfaceContactOptions options;
+  options.sampleSpacing = kSampleSpacing * boundingBox(mesh.positions).sizes().maxCoeff();
+  auto made = SurfaceContact::add(*deformable_, body, binding, mesh, options);
+  require(made.status());
+  contacts_.push_back(std::move(made).value());
 }
 
 btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {
@@ -128,13 +144,27 @@ void World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExt
   if (mass == 0.0) appendBox(obstacles_, centre, halfExtents, slope);
 }
 
+btRigidBody& World::addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents) {
+  btRigidBody& body = addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)),
+                               btTransform(btQuaternion::getIdentity(), toBullet(centre)), 0.0);
+  body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  return body;
+}
+
+void World::addPole(const Eigen::Vector3d& centre, double radius, double halfLength) {
+  addRigid(std::make_unique<btCapsuleShapeZ>(static_cast<btScalar>(radius), static_cast<btScalar>(2.0 * halfLength)),
+           btTransform(btQuaternion::getIdentity(), toBullet(centre)), 0.0);
+  appendBox(obstacles_, centre, {radius, radius, halfLength}, 0.0);
+}
+
 void World::addSphere(const Eigen::Vector3d& centre, double radius) {
   addRigid(std::make_unique<btSphereShape>(static_cast<btScalar>(radius)),
            btTransform(btQuaternion::getIdentity(), toBullet(centre)), 0.0);
   appendSphere(obstacles_, centre, radius);
 }
 
-void World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass) {
+btRigidBody& World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass) {
   btVector3 inertia(0, 0, 0);
   if (mass > 0.0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
   auto body = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, shape.get(), inertia);
@@ -145,12 +175,17 @@ void World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform&
   world_->addRigidBody(body.get());
   shapes_.push_back(std::move(shape));
   rigid_.push_back(std::move(body));
+  return *rigid_.back();
 }
 
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options) {
   World world(Force::NeoHookean, btVector3(0, static_cast<btScalar>(-kEarth), 0));
   world.add(cage, options);
   return world.youngsModulus();
+}
+
+void moveTo(btRigidBody& body, const Eigen::Vector3d& centre) {
+  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(centre)));
 }
 
 void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {

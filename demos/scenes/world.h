@@ -4,7 +4,7 @@
 // The one place in which the demos make Bullet's worlds and put bodies into them.
 #pragma once
 
-#include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
@@ -25,6 +25,7 @@ class btRigidBody;
 namespace tetskin {
 class DeformableBody;
 class ParallelFor;
+class SurfaceContact;
 }  // namespace tetskin
 
 namespace tetskin::scenes {
@@ -44,6 +45,9 @@ enum class Force {
   ElasticForceOnly,  ///< the library's force with Bullet's solver
 };
 
+/// What of a soft body meets rigid ones.
+enum class Contact { Surface, Cage };
+
 /// A world of the kind that a force needs, with everything it takes to make one, and its bodies, all owned here.
 class World {
  public:
@@ -56,8 +60,16 @@ class World {
   /// options say: another solver would be chosen here. Throws InputError if Bullet cannot make a body of the cage.
   btSoftBody& add(const Cage& cage, SoftBodyOptions options);
 
+  /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; in the deformable world. Throws
+  /// InputError if they do not fit.
+  void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
+
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
   void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
+  /// A box that is moved by `moveTo`, and not drawn as an obstacle.
+  btRigidBody& addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents);
+  /// Along z, half as long as it says beyond its round ends.
+  void addPole(const Eigen::Vector3d& centre, double radius, double halfLength);
   void addSphere(const Eigen::Vector3d& centre, double radius);
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
@@ -75,7 +87,7 @@ class World {
   void makeClassic();
   void makeDeformable();
   void addCorotated(btSoftBody& body, const SoftBodyOptions& options);
-  void addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
+  btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
 
   Force force_;
   std::unique_ptr<btCollisionConfiguration> configuration_;
@@ -93,10 +105,14 @@ class World {
   std::vector<std::unique_ptr<btDeformableLagrangianForce>> forces_;
   std::vector<std::unique_ptr<btSoftBody>> bodies_;
   std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
+  std::vector<std::unique_ptr<SurfaceContact>> contacts_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
+
+/// Sends a box made by `addMovingBox` elsewhere, in the next step.
+void moveTo(btRigidBody& body, const Eigen::Vector3d& centre);
 
 /// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
 /// changes that by no force: so it arrives, and its neighbours feel it move.

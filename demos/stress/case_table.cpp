@@ -358,6 +358,23 @@ void addSurfaces(Cases& cases) {
   }
 }
 
+/// Obstacles that are hard to meet, by the surface and by the cage. Nothing is promised of Bullet's forces here.
+void addContacts(Cases& cases) {
+  for (const Method& method : methodsOf({Force::NeoHookean})) {
+    for (const char* scene : {"land", "impact", "pole", "press", "light_box", "heavy_box"}) {
+      for (const bool surface : {true, false}) {
+        StressCase made = named("contact", method, {scene, surface ? "surface" : "cage"});
+        made.scene = scene;
+        made.frames = 60;
+        made.touchesBySurface = surface;
+        made.simulation = isOurs(method.force) ? Simulation::Bounded : Simulation::Either;
+        made.quick = isOurs(method.force);
+        cases.push_back(made);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<StressCase> stressCases() {
@@ -374,6 +391,7 @@ std::vector<StressCase> stressCases() {
   addOurCages(cases);
   addSplitEvents(cases);
   addSurfaces(cases);
+  addContacts(cases);
   return cases;
 }
 

@@ -80,6 +80,7 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   SoftBodySkin skin;
   const Status fit = skin.bind(scene->body(), model.cage, model.mesh, options).status();
   if (!fit.ok() || stressCase.refusal != StatusCode::Ok) return expectRefusal(stressCase, fit, skin, verdict);
+  if (stressCase.touchesBySurface) scene->world().touchBySurface(scene->body(), *skin.binding(), model.mesh);
   simulate(stressCase, model, *scene, skin, verdict);
   expectOfBody(stressCase, verdict);
 }

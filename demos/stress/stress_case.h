@@ -65,6 +65,7 @@ struct StressCase {
   std::string scene = "land";  ///< of the table of scenes: what happens to the body
   Cage cage = Cage::Bar;
   Surface surface = Surface::Bar;
+  bool touchesBySurface = false;  ///< rigid bodies, instead of by the cage's nodes
   Interpolation interpolation = Interpolation::Linear;
   Normals normals = Normals::None;
 

@@ -149,6 +149,22 @@ TEST_F(Drop, QuadraticSurfaceFollowsTheSameCage) {
   EXPECT_LT(farthest, 0.1);
 }
 
+TEST_F(Drop, TouchesTheFloorAsDrawnOrByItsCage) {
+  double above[2] = {};
+  for (const bool surface : {true, false}) {
+    const std::string out = surface ? "surface" : "cage";
+    const CommandResult result =
+        drop({"--tets", "300", "--triangles", "8000", "--frames", "180", "--every", "180", "--out", folder.path(out),
+              "--contact", out});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto json = folder.json(out + "/summary.json");
+    EXPECT_EQ(json["contact"], out);
+    above[surface] = json["lowest_y"].get<double>() - json["floor_y"].get<double>();
+  }
+  EXPECT_NEAR(above[1], 0.0, 0.01);  // of a model of size 2
+  EXPECT_GT(above[0], 0.02);
+}
+
 TEST_F(Drop, WritesEveryKthFrameAndTheCageBesideIt) {
   folder.write("box.obj", boxObj());
   ASSERT_EQ(

@@ -54,7 +54,8 @@ TEST_F(StressCommand, QuickCasesHold) {
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
   }
   EXPECT_EQ(bounded.size(), 2u) << "it tells what explodes from what does not";
-  EXPECT_EQ(ours, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage"}));
+  EXPECT_EQ(ours, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage",
+                                         "contact"}));
   EXPECT_GT(gained, 5) << "what Bullet's force cannot hold, and ours can";
   EXPECT_NE(markdown.find("| bullet cannot, tetskin can |"), std::string::npos);
 #ifdef TETSKIN_PYTHON

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SurfaceContact: convex hulls by their faces.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <tetskin/contact/src/rigid/shape_probe.h>
+#include <tetskin/contact/src/rigid/triangle_distance.h>
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace tetskin {
+
+/// Planes of faces.
+struct FacePlanes {
+  std::vector<btScalar> x, y, z, offsets;
+
+  std::size_t size() const { return offsets.size(); }
+  void clear();
+  void add(const btVector3& normal, btScalar offset);
+  btVector3 normal(std::size_t face) const { return {x[face], y[face], z[face]}; }
+  /// Over the plane, above 0 outside.
+  btScalar height(std::size_t face, const btVector3& point) const {
+    return x[face] * point.x() + y[face] * point.y() + z[face] * point.z() - offsets[face];
+  }
+};
+
+/// The faces of the hull of some points, none if they are in a plane.
+class HullFaces {
+ public:
+  explicit HullFaces(const btConvexHullShape& shape);
+  /// Whether it is that of these points still.
+  bool fits(const btConvexHullShape& shape) const;
+
+  bool empty() const { return planes_.offsets.empty(); }
+  const FacePlanes& planes() const { return planes_; }
+  btVector3 closest(std::size_t face, const btVector3& point) const;
+
+ private:
+  void addFace(const std::vector<btVector3>& corners);
+
+  FacePlanes planes_;                         ///< by face
+  std::vector<std::uint32_t> firstTriangle_;  ///< by face, and one more
+  std::vector<TriangleCorners> triangles_;
+  btVector3 scaling_;
+  std::vector<btVector3> points_;
+};
+
+/// Asks only for the faces that can be the nearest of a point in the ball.
+class HullProbe : public ShapeProbe {
+ public:
+  /// False where the hull has no faces.
+  bool take(const btConvexHullShape& shape);
+  bool enter(const Ball& ball, btScalar reach) override;
+  bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override;
+  /// Inside, to the nearest face; outside, to the nearest point of those faces that look to the point.
+  ShapeDistance at(const btVector3& point) const override;
+  ShapeBound bound() const override { return bound_; }
+
+ private:
+  ShapeDistance outside(const btVector3& point, const ShapeDistance& highest) const;
+  bool keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach, std::vector<std::size_t>& kept);
+
+  std::unordered_map<const btCollisionShape*, HullFaces> known_;
+  const HullFaces* faces_ = nullptr;
+  std::vector<std::size_t> all_, entered_, narrowed_;  ///< faces
+  std::vector<btScalar> heights_;
+  ShapeBound bound_;
+};
+
+}  // namespace tetskin
