@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/contact_body.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::contact_detail {
+
+void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
+  const btVector3 r = p - origin;
+  for (int k = 0; k < 3; ++k) weights[k] = rows[k].dot(r);
+  weights[3] = 1 - weights[0] - weights[1] - weights[2];
+}
+
+bool ContactBody::fits() const {
+  const auto tets = static_cast<std::size_t>(body->m_tetras.size());
+  // In a step, elastic forces keep them from Bullet for a while.
+  const bool hasTets = tets == data().tets.size() || tets == 0;
+  return static_cast<std::size_t>(body->m_nodes.size()) == data().nodes.size() && hasTets;
+}
+
+void ContactBody::read() {
+  assert(fits());
+  fitted_ = false;
+  awake = body->isActive();
+  box = {};
+  positions.resize(data().nodes.size());
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    positions[n] = body->m_nodes[static_cast<int>(n)].m_x;
+    box.extend(positions[n]);
+  }
+  const btScalar size = box.diagonal();
+  readable = std::isfinite(size) && size < static_cast<btScalar>(kLargestCoordinate);
+}
+
+void ContactBody::writePositions() {
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
+    node.m_x = node.m_q = positions[n];
+  }
+}
+
+ContactBox ContactBody::runBox(const SampleRun& run) const {
+  ContactBox around = boxes_[static_cast<std::size_t>(run.tet)];
+  for (int s = run.first; run.outside && s < run.last; ++s) {
+    around.extend(sampleAt(run.tet, data().samples[static_cast<std::size_t>(s)]));
+  }
+  return around;
+}
+
+void ContactBody::fit() {
+  if (fitted_) return;
+  fitted_ = true;
+  const ShapeData& of = data();
+  boxes_.resize(of.tets.size());
+  for (std::size_t t = 0; t < boxes_.size(); ++t) {
+    boxes_[t] = {};
+    for (const int n : of.tets[t]) boxes_[t].extend(positions[static_cast<std::size_t>(n)]);
+  }
+  runBoxes_.resize(of.runs.size());
+  std::transform(of.runs.begin(), of.runs.end(), runBoxes_.begin(), [&](const SampleRun& run) { return runBox(run); });
+  runTree.fit(of.runTree, runBoxes_);
+  tetTree.fit(of.tetTree, boxes_);
+  deformed_.resize(of.tets.size());
+  isDeformed_.assign(of.tets.size(), 0);
+}
+
+const DeformedTet& ContactBody::deformed(int tet) {
+  assert(fitted_);
+  DeformedTet& of = deformed_[static_cast<std::size_t>(tet)];
+  if (isDeformed_[static_cast<std::size_t>(tet)]) return of;
+  isDeformed_[static_cast<std::size_t>(tet)] = 1;
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  of.origin = positions[static_cast<std::size_t>(n[3])];
+  btVector3 edge[3];
+  for (int k = 0; k < 3; ++k) edge[k] = positions[static_cast<std::size_t>(n[static_cast<std::size_t>(k)])] - of.origin;
+  const btVector3 normal = edge[1].cross(edge[2]);
+  const btScalar volume = edge[0].dot(normal);
+  const btScalar size = std::max({edge[0].length(), edge[1].length(), edge[2].length()});
+  of.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
+  if (of.flat) return of;
+  of.rows[0] = normal / volume;
+  of.rows[1] = edge[2].cross(edge[0]) / volume;
+  of.rows[2] = edge[0].cross(edge[1]) / volume;
+  return of;
+}
+
+btVector3 ContactBody::sampleAt(int tet, const CarriedSample& sample) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  btVector3 p(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) p += sample.weights[k] * positions[static_cast<std::size_t>(n[k])];
+  return p;
+}
+
+btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  btVector3 v(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) v += weights[k] * body->m_nodes[n[k]].m_v;
+  return v;
+}
+
+}  // namespace tetskin::contact_detail

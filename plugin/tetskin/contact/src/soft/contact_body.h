@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SoftContacts: a body, and where it is in this step.
+#pragma once
+
+#include <tetskin/contact/src/soft/shape_data.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin::contact_detail {
+
+/// From a point in the world to its weights in a deformed tet: weight i is rows[i] . (p - origin), i < 3.
+struct DeformedTet {
+  btVector3 origin{0, 0, 0};
+  btVector3 rows[3];
+  bool flat = true;
+
+  void weightsAt(const btVector3& p, btScalar weights[4]) const;
+};
+
+class ContactBody {
+ public:
+  ContactBody(btSoftBody& of, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
+      : body(&of), shape(std::move(ofShape)), self(meetsItself), id(number) {}
+
+  const ShapeData& data() const { return shape->data(); }
+  /// Whether the body has the nodes and tets that the shape was made for.
+  bool fits() const;
+
+  /// Where the nodes are, and the box around them. Cost O(nodes)
+  void read();
+  /// The trees and maps for where it is; at most once after `read`. Cost O(tets)
+  void fit();
+  /// Of `fit`'s; computed when it is first asked for.
+  const DeformedTet& deformed(int tet);
+  const ContactBox& boxOf(int tet) const { return boxes_[static_cast<std::size_t>(tet)]; }
+  /// After some positions have changed a little: the nodes get them.
+  void writePositions();
+
+  btVector3 sampleAt(int tet, const CarriedSample& sample) const;
+  /// Of a point of a tet.
+  btVector3 velocityAt(int tet, const btScalar weights[4]) const;
+  bool movable(int node) const { return awake && body->m_nodes[node].m_im > 0; }
+  btScalar inverseMass(int node) const { return awake ? body->m_nodes[node].m_im : 0; }
+
+  btSoftBody* body;
+  std::shared_ptr<const ContactShape> shape;
+  bool self;
+  int id;
+  // In this step.
+  bool awake = true;
+  bool readable = false;  ///< all positions are finite
+  ContactBox box;
+  std::vector<btVector3> positions, velocities;  ///< by node; velocities are the solver's to fill
+  FittedTree runTree, tetTree;
+
+ private:
+  ContactBox runBox(const SampleRun& run) const;
+
+  bool fitted_ = false;
+  std::vector<ContactBox> boxes_, runBoxes_;
+  std::vector<DeformedTet> deformed_;
+  std::vector<char> isDeformed_;
+};
+
+}  // namespace tetskin::contact_detail

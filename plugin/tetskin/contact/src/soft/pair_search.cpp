@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/pair_search.h>
+
+#include <algorithm>
+
+namespace tetskin::contact_detail {
+namespace {
+
+/// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
+/// the surface is near.
+constexpr btScalar kLeastWeight = btScalar(-0.02);
+
+/// Rest space to world: a covector, by the gradients of a deformed tet's weights.
+btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& deformed, const btVector3& gradient) {
+  const Tet& n = data.tets[static_cast<std::size_t>(tet)];
+  const btVector3& origin = data.nodes[static_cast<std::size_t>(n[3])];
+  btVector3 carried(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    carried += gradient.dot(data.nodes[static_cast<std::size_t>(n[k])] - origin) * deformed.rows[k];
+  }
+  return carried;
+}
+
+btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
+  const Tet& n = data.tets[static_cast<std::size_t>(tet)];
+  btVector3 p(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) p += weights[k] * data.nodes[static_cast<std::size_t>(n[k])];
+  return p;
+}
+
+}  // namespace
+
+void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
+                      std::vector<Touch>& touches) {
+  now_ = {&first, &second, reach, dt, &sides, &first == &second || !second.data().carried.empty()};
+  touches_ = &touches;
+  touchOfNode_.assign(first.data().nodes.size(), -1);
+  sides.beginStep();
+  candidates_.find(first, second);
+  for (const int run : candidates_.runs()) placeRun(run);
+}
+
+void PairSearch::placeRun(int run) {
+  const SampleRun& of = now_.first->data().runs[static_cast<std::size_t>(run)];
+  const int count = of.last - of.first;
+  readRun(of);
+  candidates_.forEachTet(run, [&](int tet) { testTet(tet, count); });
+  for (int k = 0; k < count; ++k) {
+    const Place& place = places_[static_cast<std::size_t>(k)];
+    if (place.tet >= 0) touch(of.first + k, run, place);
+  }
+}
+
+void PairSearch::readRun(const SampleRun& run) {
+  const auto count = static_cast<std::size_t>(run.last - run.first);
+  firstSample_ = run.first;
+  around_ = {};
+  for (auto* values : {&x_, &y_, &z_, &inside_}) values->resize(count);
+  places_.assign(count, {});
+  known_.assign(count, nullptr);
+  for (std::size_t k = 0; k < count; ++k) {
+    const CarriedSample& sample = now_.first->data().samples[static_cast<std::size_t>(run.first) + k];
+    const btVector3 p = now_.first->sampleAt(run.tet, sample);
+    x_[k] = p.x();
+    y_[k] = p.y();
+    z_[k] = p.z();
+    around_.extend(p);
+    known_[k] = now_.sides->find(run.first + static_cast<int>(k));
+  }
+}
+
+void PairSearch::testTet(int tet, int count) {
+  const DeformedTet& of = now_.second->deformed(tet);
+  if (of.flat || !around_.meets(now_.second->boxOf(tet))) return;
+  const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
+  for (int k = 0; k < count; ++k) {
+    const btScalar x = x_[k] - o.x(), y = y_[k] - o.y(), z = z_[k] - o.z();
+    const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
+    const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
+    const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
+    inside_[k] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
+  }
+  for (int k = 0; k < count; ++k) {
+    if (inside_[k] >= kLeastWeight) offer(tet, k);
+  }
+}
+
+/// Of several tets, that in which the sample is where it was; or else in which it is deepest.
+void PairSearch::offer(int tet, int k) {
+  Place& best = places_[static_cast<std::size_t>(k)];
+  if (best.tet >= 0 && !now_.several) return;
+  const ShapeData& data = now_.second->data();
+  Place place;
+  now_.second->deformed(tet).weightsAt(btVector3(x_[k], y_[k], z_[k]), place.weights);
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
+  place.tet = tet;
+  place.rest = restPoint(data, tet, place.weights);
+  if (!data.grid.at(place.rest, place.nearest)) return;
+  const ContactSide* side = known_[static_cast<std::size_t>(k)];
+  place.score = side ? (place.rest - side->point).length2() : place.nearest.distance;
+  if (best.tet < 0 || place.score < best.score) best = place;
+}
+
+/// By which the sample has moved in the body's rest space.
+btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const {
+  const ShapeData &of = now_.first->data(), &in = now_.second->data();
+  const int tet = of.runs[static_cast<std::size_t>(run)].tet;
+  const btVector3 velocity = now_.first->velocityAt(tet, of.samples[static_cast<std::size_t>(sample)].weights) -
+                             now_.second->velocityAt(place.tet, place.weights);
+  const DeformedTet& deformed = now_.second->deformed(place.tet);
+  const Tet& n = in.tets[static_cast<std::size_t>(place.tet)];
+  btVector3 motion(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const btVector3 edge = in.nodes[static_cast<std::size_t>(n[k])] - in.nodes[static_cast<std::size_t>(n[3])];
+    motion += now_.dt * deformed.rows[k].dot(velocity) * edge;
+  }
+  return motion;
+}
+
+void PairSearch::touch(int sample, int run, const Place& place) {
+  const ShapeData& in = now_.second->data();
+  const ContactSide* before = known_[static_cast<std::size_t>(sample - firstSample_)];
+  if (place.nearest.distance > now_.reach && !before) return;
+  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, run, place);
+  SideDistance found;
+  if (!findSide(in.grid, place.rest, place.nearest, motion, before, found)) return;
+  const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
+  const btScalar length = normal.length();
+  if (!(length > SIMD_EPSILON)) return;
+  Touch made;
+  made.distance = found.distance / length;
+  if (made.distance > now_.reach) return;
+  found.side.sample = sample;
+  now_.sides->keep(found.side);
+  made.sample = sample;
+  made.run = run;
+  made.tet = place.tet;
+  std::copy(place.weights, place.weights + 4, made.weights);
+  made.normal = normal / length;
+  keepDeepest(made, now_.first->data().samples[static_cast<std::size_t>(sample)].mainNode);
+}
+
+void PairSearch::keepDeepest(const Touch& touch, int node) {
+  int& place = touchOfNode_[static_cast<std::size_t>(node)];
+  if (place < 0) {
+    place = static_cast<int>(touches_->size());
+    touches_->push_back(touch);
+  } else if (touch.distance < (*touches_)[static_cast<std::size_t>(place)].distance) {
+    (*touches_)[static_cast<std::size_t>(place)] = touch;
+  }
+}
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SoftContacts: where samples of one body touch another.
+#pragma once
+
+#include <tetskin/contact/src/soft/contact_sides.h>
+#include <tetskin/contact/src/soft/pair_candidates.h>
+
+#include <vector>
+
+namespace tetskin::contact_detail {
+
+/// A sample of one body at the surface of another, or beneath it.
+struct Touch {
+  int sample = 0, run = 0;
+  int tet = -1;              ///< of the other body
+  btScalar weights[4] = {};  ///< in it
+  btVector3 normal{0, 1, 0};
+  btScalar distance = 0;  ///< world space; below 0: how deep
+};
+
+/// Finds the touches of pairs, one after the other; keeps its memory.
+class PairSearch {
+ public:
+  /// Both fitted; they may be one body.
+  /// reach    of contacts, world space: those farther apart are left out
+  /// dt       seconds, of the step that has led here
+  /// touches  appended to: for each node of the first body the deepest, of the samples that it carries most
+  void find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
+            std::vector<Touch>& touches);
+
+ private:
+  /// The place of a sample in the second body.
+  struct Place {
+    int tet = -1;
+    btScalar weights[4] = {};
+    btVector3 rest{0, 0, 0};
+    GridDistance nearest;
+    btScalar score = 0;  ///< of several tets, the one of the least is right
+  };
+  struct Search {
+    ContactBody* first;
+    ContactBody* second;
+    btScalar reach, dt;
+    ContactSides* sides;
+    bool several;  ///< a sample may be in several tets
+  };
+
+  void placeRun(int run);
+  void readRun(const SampleRun& run);
+  void testTet(int tet, int count);
+  void offer(int tet, int k);
+  void touch(int sample, int run, const Place& place);
+  btVector3 restMotion(int sample, int run, const Place& place) const;
+  void keepDeepest(const Touch& touch, int node);
+
+  Search now_{};
+  PairCandidates candidates_;
+  ContactBox around_;                         ///< the run's samples
+  std::vector<btScalar> x_, y_, z_, inside_;  ///< of them: where they are; least weight in a tet
+  std::vector<const ContactSide*> known_;
+  std::vector<Place> places_;
+  int firstSample_ = 0;
+  std::vector<Touch>* touches_ = nullptr;
+  std::vector<int> touchOfNode_;
+};
+
+}  // namespace tetskin::contact_detail
