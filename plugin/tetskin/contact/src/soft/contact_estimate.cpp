@@ -15,6 +15,8 @@ constexpr int kVelocityPasses = 10;
 constexpr int kPositionPasses = 4;
 /// Of an impulse, what the next step begins with: it forgets contacts that have ended by halves.
 constexpr btScalar kCarriedOver = btScalar(0.9);
+/// Cosine between a contact's normals in two steps from which it is the same.
+constexpr btScalar kSameWay = btScalar(0.7);
 /// Friction beyond this share of what Coulomb allows makes a contact slide.
 constexpr btScalar kSlips = btScalar(1.05);
 
@@ -22,15 +24,22 @@ auto keyOf(const ContactMemory& m) {
   return std::make_tuple(m.first, m.second, m.node);
 }
 
+/// Of the node's contacts the one that pushed most nearly the same way.
 const ContactMemory* find(const std::vector<ContactMemory>& memory, const ContactRow& row) {
   ContactMemory key;
   key.first = row.sides[0].of->id;
   key.second = row.sides[1].of->id;
   key.node = row.node;
-  const auto found =
-      std::lower_bound(memory.begin(), memory.end(), key,
-                       [](const ContactMemory& a, const ContactMemory& b) { return keyOf(a) < keyOf(b); });
-  return found != memory.end() && keyOf(*found) == keyOf(key) ? &*found : nullptr;
+  const ContactMemory* best = nullptr;
+  btScalar alike = kSameWay;
+  const auto before = [](const ContactMemory& a, const ContactMemory& b) { return keyOf(a) < keyOf(b); };
+  const auto [first, last] = std::equal_range(memory.begin(), memory.end(), key, before);
+  for (auto m = first; m != last; ++m) {
+    const btScalar cosine = m->normal.dot(row.normal);
+    if (cosine > alike) best = &*m;
+    alike = std::max(alike, cosine);
+  }
+  return best;
 }
 
 template <class Value>
@@ -125,6 +134,7 @@ std::vector<ContactMemory> memoryOf(const std::vector<ContactRow>& rows, btScala
     m.first = row.sides[0].of->id;
     m.second = row.sides[1].of->id;
     m.node = row.node;
+    m.normal = row.normal;
     m.impulse = row.impulse + firmness * (row.target - along);
     if (!(m.impulse > 0)) continue;
     m.friction = row.friction;
@@ -135,8 +145,8 @@ std::vector<ContactMemory> memoryOf(const std::vector<ContactRow>& rows, btScala
     clampTo(m.friction, most);
     memory.push_back(m);
   }
-  std::sort(memory.begin(), memory.end(),
-            [](const ContactMemory& a, const ContactMemory& b) { return keyOf(a) < keyOf(b); });
+  std::stable_sort(memory.begin(), memory.end(),
+                   [](const ContactMemory& a, const ContactMemory& b) { return keyOf(a) < keyOf(b); });
   return memory;
 }
 

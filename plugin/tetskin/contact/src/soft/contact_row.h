@@ -35,6 +35,7 @@ enum class Sliding { No, Yes };
 struct ContactMemory {
   int first = 0, second = 0;  ///< ContactBody::id
   int node = 0;
+  btVector3 normal{0, 1, 0};
   btScalar impulse = 0;
   btVector3 friction{0, 0, 0};
   Sliding sliding = Sliding::No;

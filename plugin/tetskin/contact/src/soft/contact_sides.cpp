@@ -67,9 +67,16 @@ void ContactSides::beginStep() {
   next_ = 0;
 }
 
-const ContactSide* ContactSides::find(int sample) {
+const ContactSide* ContactSides::find(int sample, const btVector3& rest, btScalar within) {
   while (next_ < before_.size() && before_[next_].sample < sample) ++next_;
-  return next_ < before_.size() && before_[next_].sample == sample ? &before_[next_] : nullptr;
+  const ContactSide* nearest = nullptr;
+  btScalar least = within * within;
+  for (std::size_t k = next_; k < before_.size() && before_[k].sample == sample; ++k) {
+    const btScalar squared = (before_[k].point - rest).length2();
+    if (squared < least) nearest = &before_[k];
+    least = std::min(least, squared);
+  }
+  return nearest;
 }
 
 void ContactSides::clear() {

@@ -19,12 +19,13 @@ struct ContactSide {
   btVector3 normal{0, 1, 0};  ///< of unit length, outwards
 };
 
-/// Of the samples of one body in another.
+/// Of the samples of one body in another. Where that folds, a sample may be in several parts of it, each with a side.
 class ContactSides {
  public:
   void beginStep();
-  /// Of the step before, or null. Samples are asked for in ascending order.
-  const ContactSide* find(int sample);
+  /// Of the step before: the sample's side nearest to a point, but none as far as `within`; or null. Samples are asked
+  /// for in ascending order.
+  const ContactSide* find(int sample, const btVector3& rest, btScalar within);
   void keep(const ContactSide& side) { now_.push_back(side); }
   void clear();
 

@@ -10,6 +10,12 @@ namespace {
 /// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
 /// the surface is near.
 constexpr btScalar kLeastWeight = btScalar(-0.02);
+/// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
+constexpr btScalar kOnePlace = btScalar(0.3);
+/// Cosine between normals from which two contacts of a node are one.
+constexpr btScalar kOneWay = btScalar(0.7);
+/// A side that is farther away at rest, in mean edges, is of another part.
+constexpr btScalar kOneSide = 1;
 
 /// Rest space to world: a covector, by the gradients of a deformed tet's weights.
 btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& deformed, const btVector3& gradient) {
@@ -33,7 +39,7 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
 
 void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
                       std::vector<Touch>& touches) {
-  now_ = {&first, &second, reach, dt, &sides, &first == &second || !second.data().carried.empty()};
+  now_ = {&first, &second, reach, dt, &sides};
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
   sides.beginStep();
@@ -47,18 +53,18 @@ void PairSearch::placeRun(int run) {
   readRun(of);
   candidates_.forEachTet(run, [&](int tet) { testTet(tet, count); });
   for (int k = 0; k < count; ++k) {
-    const Place& place = places_[static_cast<std::size_t>(k)];
-    if (place.tet >= 0) touch(of.first + k, run, place);
+    for (int p = heads_[static_cast<std::size_t>(k)]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
+      touch(of.first + k, run, places_[static_cast<std::size_t>(p)]);
+    }
   }
 }
 
 void PairSearch::readRun(const SampleRun& run) {
   const auto count = static_cast<std::size_t>(run.last - run.first);
-  firstSample_ = run.first;
   around_ = {};
   for (auto* values : {&x_, &y_, &z_, &inside_}) values->resize(count);
-  places_.assign(count, {});
-  known_.assign(count, nullptr);
+  places_.clear();
+  heads_.assign(count, -1);
   for (std::size_t k = 0; k < count; ++k) {
     const CarriedSample& sample = now_.first->data().samples[static_cast<std::size_t>(run.first) + k];
     const btVector3 p = now_.first->sampleAt(run.tet, sample);
@@ -66,7 +72,6 @@ void PairSearch::readRun(const SampleRun& run) {
     y_[k] = p.y();
     z_[k] = p.z();
     around_.extend(p);
-    known_[k] = now_.sides->find(run.first + static_cast<int>(k));
   }
 }
 
@@ -86,20 +91,23 @@ void PairSearch::testTet(int tet, int count) {
   }
 }
 
-/// Of several tets, that in which the sample is where it was; or else in which it is deepest.
+/// But for places that are known from a tet beside this one.
 void PairSearch::offer(int tet, int k) {
-  Place& best = places_[static_cast<std::size_t>(k)];
-  if (best.tet >= 0 && !now_.several) return;
   const ShapeData& data = now_.second->data();
   Place place;
   now_.second->deformed(tet).weightsAt(btVector3(x_[k], y_[k], z_[k]), place.weights);
   if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
-  place.tet = tet;
   place.rest = restPoint(data, tet, place.weights);
+  int& head = heads_[static_cast<std::size_t>(k)];
+  const btScalar apart = kOnePlace * data.edge;
+  for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
+    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return;
+  }
   if (!data.grid.at(place.rest, place.nearest)) return;
-  const ContactSide* side = known_[static_cast<std::size_t>(k)];
-  place.score = side ? (place.rest - side->point).length2() : place.nearest.distance;
-  if (best.tet < 0 || place.score < best.score) best = place;
+  place.tet = tet;
+  place.next = head;
+  head = static_cast<int>(places_.size());
+  places_.push_back(place);
 }
 
 /// By which the sample has moved in the body's rest space.
@@ -120,7 +128,7 @@ btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const 
 
 void PairSearch::touch(int sample, int run, const Place& place) {
   const ShapeData& in = now_.second->data();
-  const ContactSide* before = known_[static_cast<std::size_t>(sample - firstSample_)];
+  const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
   if (place.nearest.distance > now_.reach && !before) return;
   const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, run, place);
   SideDistance found;
@@ -142,13 +150,18 @@ void PairSearch::touch(int sample, int run, const Place& place) {
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {
-  int& place = touchOfNode_[static_cast<std::size_t>(node)];
-  if (place < 0) {
-    place = static_cast<int>(touches_->size());
-    touches_->push_back(touch);
-  } else if (touch.distance < (*touches_)[static_cast<std::size_t>(place)].distance) {
-    (*touches_)[static_cast<std::size_t>(place)] = touch;
+  int& head = touchOfNode_[static_cast<std::size_t>(node)];
+  for (int t = head; t >= 0; t = (*touches_)[static_cast<std::size_t>(t)].next) {
+    Touch& other = (*touches_)[static_cast<std::size_t>(t)];
+    if (other.normal.dot(touch.normal) < kOneWay) continue;
+    const int next = other.next;
+    if (touch.distance < other.distance) other = touch;
+    other.next = next;
+    return;
   }
+  touches_->push_back(touch);
+  touches_->back().next = head;
+  head = static_cast<int>(touches_->size()) - 1;
 }
 
 }  // namespace tetskin::contact_detail

@@ -18,6 +18,7 @@ struct Touch {
   btScalar weights[4] = {};  ///< in it
   btVector3 normal{0, 1, 0};
   btScalar distance = 0;  ///< world space; below 0: how deep
+  int next = -1;          ///< another of the same node
 };
 
 /// Finds the touches of pairs, one after the other; keeps its memory.
@@ -26,25 +27,24 @@ class PairSearch {
   /// Both fitted; they may be one body.
   /// reach    of contacts, world space: those farther apart are left out
   /// dt       seconds, of the step that has led here
-  /// touches  appended to: for each node of the first body the deepest, of the samples that it carries most
+  /// touches  appended to: for each node of the first body the deepest, of the samples that it carries most, and of
+  ///          those that are pushed another way
   void find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
             std::vector<Touch>& touches);
 
  private:
-  /// The place of a sample in the second body.
+  /// A place of a sample in the second body: where that folds, there are several.
   struct Place {
-    int tet = -1;
+    int tet = -1, next = -1;
     btScalar weights[4] = {};
     btVector3 rest{0, 0, 0};
     GridDistance nearest;
-    btScalar score = 0;  ///< of several tets, the one of the least is right
   };
   struct Search {
     ContactBody* first;
     ContactBody* second;
     btScalar reach, dt;
     ContactSides* sides;
-    bool several;  ///< a sample may be in several tets
   };
 
   void placeRun(int run);
@@ -59,9 +59,8 @@ class PairSearch {
   PairCandidates candidates_;
   ContactBox around_;                         ///< the run's samples
   std::vector<btScalar> x_, y_, z_, inside_;  ///< of them: where they are; least weight in a tet
-  std::vector<const ContactSide*> known_;
   std::vector<Place> places_;
-  int firstSample_ = 0;
+  std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;
   std::vector<int> touchOfNode_;
 };
