@@ -42,11 +42,34 @@ void ContactBody::writePositions() {
   }
 }
 
-ContactBox ContactBody::runBox(const SampleRun& run) const {
-  ContactBox around = boxes_[static_cast<std::size_t>(run.tet)];
-  for (int s = run.first; run.outside && s < run.last; ++s) {
-    around.extend(sampleAt(run.tet, data().samples[static_cast<std::size_t>(s)]));
+/// Where its samples are, and a box around them: tighter than the tet's.
+void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
+  const ShapeData& of = data();
+  const Tet& n = of.tets[static_cast<std::size_t>(run.tet)];
+  around = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    btScalar at[4];
+    for (std::size_t k = 0; k < 4; ++k) at[k] = positions[static_cast<std::size_t>(n[k])][axis];
+    btScalar* out = samples[axis].data();
+    btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
+    for (auto s = static_cast<std::size_t>(run.first); s < static_cast<std::size_t>(run.last); ++s) {
+      out[s] =
+          of.weights[0][s] * at[0] + of.weights[1][s] * at[1] + of.weights[2][s] * at[2] + of.weights[3][s] * at[3];
+      low = std::min(low, out[s]);
+      high = std::max(high, out[s]);
+    }
+    around.low[axis] = low;
+    around.high[axis] = high;
   }
+}
+
+ContactBox ContactBody::filledBox(int tet) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  const FilledPart& part = data().filled[static_cast<std::size_t>(tet)];
+  btVector3 base(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) base += part.least[k] * positions[static_cast<std::size_t>(n[k])];
+  ContactBox around;
+  for (const int node : n) around.extend(base + part.left * positions[static_cast<std::size_t>(node)]);
   return around;
 }
 
@@ -56,11 +79,11 @@ void ContactBody::fit() {
   const ShapeData& of = data();
   boxes_.resize(of.tets.size());
   for (std::size_t t = 0; t < boxes_.size(); ++t) {
-    boxes_[t] = {};
-    for (const int n : of.tets[t]) boxes_[t].extend(positions[static_cast<std::size_t>(n)]);
+    boxes_[t] = filledBox(static_cast<int>(t));
   }
   runBoxes_.resize(of.runs.size());
-  std::transform(of.runs.begin(), of.runs.end(), runBoxes_.begin(), [&](const SampleRun& run) { return runBox(run); });
+  for (auto& coordinates : samples) coordinates.resize(of.samples.size());
+  for (std::size_t r = 0; r < runBoxes_.size(); ++r) carryRun(of.runs[r], runBoxes_[r]);
   runTree.fit(of.runTree, runBoxes_);
   tetTree.fit(of.tetTree, boxes_);
   deformed_.resize(of.tets.size());
@@ -85,13 +108,6 @@ const DeformedTet& ContactBody::deformed(int tet) {
   of.rows[1] = edge[2].cross(edge[0]) / volume;
   of.rows[2] = edge[0].cross(edge[1]) / volume;
   return of;
-}
-
-btVector3 ContactBody::sampleAt(int tet, const CarriedSample& sample) const {
-  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
-  btVector3 p(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) p += sample.weights[k] * positions[static_cast<std::size_t>(n[k])];
-  return p;
 }
 
 btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {

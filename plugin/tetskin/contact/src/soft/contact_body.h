@@ -39,7 +39,10 @@ class ContactBody {
   /// After some positions have changed a little: the nodes get them.
   void writePositions();
 
-  btVector3 sampleAt(int tet, const CarriedSample& sample) const;
+  btVector3 sampleAt(int sample) const {
+    const auto s = static_cast<std::size_t>(sample);
+    return {samples[0][s], samples[1][s], samples[2][s]};
+  }
   /// Of a point of a tet.
   btVector3 velocityAt(int tet, const btScalar weights[4]) const;
   bool movable(int node) const { return awake && body->m_nodes[node].m_im > 0; }
@@ -55,9 +58,11 @@ class ContactBody {
   ContactBox box;
   std::vector<btVector3> positions, velocities;  ///< by node; velocities are the solver's to fill
   FittedTree runTree, tetTree;
+  std::vector<btScalar> samples[3];  ///< coordinates, one after the other; by `fit`
 
  private:
-  ContactBox runBox(const SampleRun& run) const;
+  void carryRun(const SampleRun& run, ContactBox& around);
+  ContactBox filledBox(int tet) const;
 
   bool fitted_ = false;
   std::vector<ContactBox> boxes_, runBoxes_;

@@ -10,8 +10,6 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// How near samples must be to the surface to count, in cubes of the distance's grid.
-constexpr btScalar kReachCubes = 3;
 /// Contacts that the step will not close are left out, but for so many cubes.
 constexpr btScalar kNearCubes = btScalar(0.1);
 /// Penetrations up to this, in cubes, are left: what rests must be in touch.
@@ -130,7 +128,7 @@ void ContactForce::addRow(ContactBody& first, ContactBody& second, const Touch& 
   row.sides[0].take(first, tet, sample.acting, 1);
   row.sides[1].take(second, touch.tet, touch.weights, -1);
   row.node = sample.mainNode;
-  row.point = first.sampleAt(tet, sample);
+  row.point = first.sampleAt(touch.sample);
   row.normal = touch.normal;
   row.distance = touch.distance;
   row.inverseMass = row.sides[0].inverseMass() + row.sides[1].inverseMass();

@@ -107,10 +107,8 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     const int place = static_cast<int>(data.samples.size());
     if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], place, place});
     data.samples.push_back(carriedBy(cage, tets[s], samples[s].point));
-    SampleRun& run = data.runs.back();
-    run.last = place + 1;
-    const auto& weights = data.samples.back().weights;
-    run.outside |= *std::min_element(weights, weights + 4) < 0;
+    data.runs.back().last = place + 1;
+    for (int k = 0; k < 4; ++k) data.weights[k].push_back(data.samples.back().weights[k]);
   }
 }
 
@@ -120,28 +118,44 @@ ContactBox restBox(const ShapeData& data, int tet) {
   return box;
 }
 
-/// Whether something inside, or as near to it as contacts are looked for, may be in the tet.
-bool isNearInside(const ShapeData& data, const ContactBox& box) {
-  const btVector3 middle((box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
-                         (box.low[2] + box.high[2]) / 2);
-  GridDistance known;
-  return !data.grid.at(middle, known) || known.distance < box.diagonal() / 2 + 2 * data.grid.spacing();
+/// From points of the tet, so close that the distance cannot change by much between them.
+FilledPart filledPart(const ShapeData& data, const Tet& nodes, btScalar size) {
+  const int along = 2 + static_cast<int>(size / data.grid.spacing());
+  const btScalar step = 1 / static_cast<btScalar>(along);
+  const btScalar reach = kReachCubes * data.grid.spacing() + size * step;
+  FilledPart part;
+  std::fill(part.least, part.least + 4, btScalar(1));
+  for (int i = 0; i <= along; ++i) {
+    for (int j = 0; i + j <= along; ++j) {
+      for (int k = 0; i + j + k <= along; ++k) {
+        const btScalar w[4] = {i * step, j * step, k * step, (along - i - j - k) * step};
+        btVector3 p(0, 0, 0);
+        for (std::size_t n = 0; n < 4; ++n) p += w[n] * data.nodes[static_cast<std::size_t>(nodes[n])];
+        GridDistance known;
+        if (data.grid.at(p, known) && known.distance > reach) continue;
+        for (int n = 0; n < 4; ++n) part.least[n] = std::min(part.least[n], std::max(w[n] - step, btScalar(0)));
+      }
+    }
+  }
+  part.left = 1 - part.least[0] - part.least[1] - part.least[2] - part.least[3];
+  return part;
 }
 
 void makeTrees(const TetMesh& cage, ShapeData& data) {
   std::vector<ContactBox> tetBoxes, runBoxes;
-  std::vector<int> near, runs(data.runs.size());
+  std::vector<int> filled, runs(data.runs.size());
   for (std::size_t t = 0; t < data.tets.size(); ++t) {
     tetBoxes.push_back(restBox(data, static_cast<int>(t)));
     const Tet& n = data.tets[t];
     data.middles.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
-    const bool usableTet = !isFlat(cornersOf(cage, cage.tets[t]));
-    if (usableTet && isNearInside(data, tetBoxes.back())) near.push_back(static_cast<int>(t));
+    const TetCorners corners = cornersOf(cage, cage.tets[t]);
+    data.filled.push_back(filledPart(data, n, static_cast<btScalar>(tetSize(corners))));
+    if (!isFlat(corners) && data.filled.back().left > 0) filled.push_back(static_cast<int>(t));
   }
   for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
   std::iota(runs.begin(), runs.end(), 0);
   data.runTree = BoxTree(std::move(runs), runBoxes);
-  data.tetTree = BoxTree(std::move(near), tetBoxes);
+  data.tetTree = BoxTree(std::move(filled), tetBoxes);
 }
 
 /// The numbers of tets that are at one place with others.
@@ -155,20 +169,27 @@ std::vector<int> copiedTets(const Cage& cage) {
   return copied;
 }
 
-/// The cells of a tet whose nearest triangle hangs together with the tet.
+/// A point of a cell: `along` from 0 to 1 in each direction.
+Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Vector3d& along) {
+  const Eigen::Vector3d low(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong);
+  Eigen::Vector3d w = (low + along) / kCellsAlong;
+  if (w.sum() > 1.0) w /= w.sum();
+  return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + (1.0 - w.sum()) * corners[3];
+}
+
+/// The cells of a tet in some point of which the nearest triangle hangs together with the tet.
 CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator, const TriangleMesh& mesh,
                           const TriangleTree& surface) {
   CarriedCells cells{0};
   const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
   for (int cell = 0; cell < kCellsAlong * kCellsAlong * kCellsAlong; ++cell) {
-    Eigen::Vector4d w(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong, 0.0);
-    w = (w + Eigen::Vector4d(0.4, 0.4, 0.4, 0.0)) / kCellsAlong;
-    if (w.sum() > 1.0) w /= w.sum();
-    w[3] = 1.0 - w[0] - w[1] - w[2];
-    const Eigen::Vector3d p = w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + w[3] * corners[3];
-    const int triangle = surface.nearest(p).triangle;
-    if (locator.locate(p, mesh.triangles[static_cast<std::size_t>(triangle)]) == tet) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d along(corner & 1 ? 0.9 : 0.1, corner & 2 ? 0.9 : 0.1, corner & 4 ? 0.9 : 0.1);
+      const Eigen::Vector3d p = pointOfCell(corners, cell, along);
+      const int triangle = surface.nearest(p).triangle;
+      if (locator.locate(p, mesh.triangles[static_cast<std::size_t>(triangle)]) != tet) continue;
       cells.bits |= std::uint64_t{1} << cell;
+      break;
     }
   }
   return cells;

@@ -99,6 +99,7 @@ bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistanc
     result.distance = (rest - result.side.point).dot(result.side.normal);
     return true;
   }
+  if (known && normal.dot(before->normal) > kSameSide) return true;
   const ContactSide side = followed(grid, rest, *before);
   if (known && normal.dot(side.normal) > kSameSide) return true;
   const btScalar distance = (rest - side.point).dot(side.normal);

@@ -50,8 +50,10 @@ void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, b
 void PairSearch::placeRun(int run) {
   const SampleRun& of = now_.first->data().runs[static_cast<std::size_t>(run)];
   const int count = of.last - of.first;
-  readRun(of);
-  candidates_.forEachTet(run, [&](int tet) { testTet(tet, count); });
+  inside_.resize(static_cast<std::size_t>(count));
+  heads_.assign(static_cast<std::size_t>(count), -1);
+  places_.clear();
+  candidates_.forEachTet(run, [&](int tet) { testTet(tet, of); });
   for (int k = 0; k < count; ++k) {
     for (int p = heads_[static_cast<std::size_t>(k)]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
       touch(of.first + k, run, places_[static_cast<std::size_t>(p)]);
@@ -59,43 +61,31 @@ void PairSearch::placeRun(int run) {
   }
 }
 
-void PairSearch::readRun(const SampleRun& run) {
-  const auto count = static_cast<std::size_t>(run.last - run.first);
-  around_ = {};
-  for (auto* values : {&x_, &y_, &z_, &inside_}) values->resize(count);
-  places_.clear();
-  heads_.assign(count, -1);
-  for (std::size_t k = 0; k < count; ++k) {
-    const CarriedSample& sample = now_.first->data().samples[static_cast<std::size_t>(run.first) + k];
-    const btVector3 p = now_.first->sampleAt(run.tet, sample);
-    x_[k] = p.x();
-    y_[k] = p.y();
-    z_[k] = p.z();
-    around_.extend(p);
-  }
-}
-
-void PairSearch::testTet(int tet, int count) {
+void PairSearch::testTet(int tet, const SampleRun& run) {
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat || !around_.meets(now_.second->boxOf(tet))) return;
+  if (of.flat) return;
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
+  const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
+                 *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],
+                 *zs = &now_.first->samples[2][static_cast<std::size_t>(run.first)];
+  const int count = run.last - run.first;
   for (int k = 0; k < count; ++k) {
-    const btScalar x = x_[k] - o.x(), y = y_[k] - o.y(), z = z_[k] - o.z();
+    const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
     const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
     const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
     const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
-    inside_[k] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
+    inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
   }
   for (int k = 0; k < count; ++k) {
-    if (inside_[k] >= kLeastWeight) offer(tet, k);
+    if (inside_[static_cast<std::size_t>(k)] >= kLeastWeight) offer(tet, run.first + k, k);
   }
 }
 
 /// But for places that are known from a tet beside this one.
-void PairSearch::offer(int tet, int k) {
+void PairSearch::offer(int tet, int sample, int k) {
   const ShapeData& data = now_.second->data();
   Place place;
-  now_.second->deformed(tet).weightsAt(btVector3(x_[k], y_[k], z_[k]), place.weights);
+  now_.second->deformed(tet).weightsAt(now_.first->sampleAt(sample), place.weights);
   if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
   place.rest = restPoint(data, tet, place.weights);
   int& head = heads_[static_cast<std::size_t>(k)];
@@ -103,7 +93,7 @@ void PairSearch::offer(int tet, int k) {
   for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
     if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return;
   }
-  if (!data.grid.at(place.rest, place.nearest)) return;
+  if (!data.grid.at(place.rest, place.nearest) || place.nearest.distance > now_.reach) return;
   place.tet = tet;
   place.next = head;
   head = static_cast<int>(places_.size());
@@ -129,7 +119,6 @@ btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const 
 void PairSearch::touch(int sample, int run, const Place& place) {
   const ShapeData& in = now_.second->data();
   const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
-  if (place.nearest.distance > now_.reach && !before) return;
   const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, run, place);
   SideDistance found;
   if (!findSide(in.grid, place.rest, place.nearest, motion, before, found)) return;

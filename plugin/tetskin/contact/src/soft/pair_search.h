@@ -48,17 +48,15 @@ class PairSearch {
   };
 
   void placeRun(int run);
-  void readRun(const SampleRun& run);
-  void testTet(int tet, int count);
-  void offer(int tet, int k);
+  void testTet(int tet, const SampleRun& run);
+  void offer(int tet, int sample, int k);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, int run, const Place& place) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};
   PairCandidates candidates_;
-  ContactBox around_;                         ///< the run's samples
-  std::vector<btScalar> x_, y_, z_, inside_;  ///< of them: where they are; least weight in a tet
+  std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;

@@ -18,7 +18,6 @@ namespace tetskin::contact_detail {
 struct SampleRun {
   int tet = 0;
   int first = 0, last = 0;
-  bool outside = false;  ///< some are out of the tet
 };
 
 /// A point of the surface.
@@ -37,6 +36,16 @@ struct CarriedCells {
   static int cellOf(const btScalar weights[4]);
 };
 
+/// How near to the surface a sample must be to count, in cubes of the grid.
+constexpr btScalar kReachCubes = btScalar(1.5);
+
+/// The part of a tet that may hold something inside, or near it: where each weight is at least this. It has the form of
+/// the tet, so that it follows it.
+struct FilledPart {
+  btScalar least[4] = {};
+  btScalar left = 1;  ///< 1 minus their sum
+};
+
 struct ShapeData {
   std::vector<btVector3> nodes;
   std::vector<Tet> tets;
@@ -45,7 +54,9 @@ struct ShapeData {
   DistanceGrid grid;
   std::vector<SampleRun> runs;  ///< ascending by tet
   std::vector<CarriedSample> samples;
+  std::vector<btScalar> weights[4];   ///< of the samples, once more: one after the other
   std::vector<CarriedCells> carried;  ///< by tet; empty unless the cage is split
+  std::vector<FilledPart> filled;     ///< by tet
   BoxTree runTree;                    ///< of numbers of runs
   BoxTree tetTree;                    ///< of numbers of tets that hold, or are near, something inside
 };
