@@ -34,6 +34,15 @@ ContactBox ContactBox::cutBy(const ContactBox& b) const {
   return cut;
 }
 
+ContactBox ContactBox::grownBy(btScalar margin) const {
+  ContactBox grown = *this;
+  for (int k = 0; k < 3; ++k) {
+    grown.low[k] -= margin;
+    grown.high[k] += margin;
+  }
+  return grown;
+}
+
 btScalar ContactBox::diagonal() const {
   return btVector3(high[0] - low[0], high[1] - low[1], high[2] - low[2]).length();
 }

@@ -30,6 +30,7 @@ struct ContactBox {
     return (low[0] <= b.high[0]) & (low[1] <= b.high[1]) & (low[2] <= b.high[2]) & (b.low[0] <= high[0]) &
            (b.low[1] <= high[1]) & (b.low[2] <= high[2]);
   }
+  ContactBox grownBy(btScalar margin) const;
   ContactBox cutBy(const ContactBox& b) const;
   btScalar diagonal() const;
 };

@@ -25,14 +25,30 @@ void ContactBody::read() {
   assert(fits());
   fitted_ = false;
   awake = body->isActive();
+  isDeformed_.assign(data().tets.size(), 0);
+  isCarried_.assign(data().runs.size(), 0);
   box = {};
   positions.resize(data().nodes.size());
+  btVector3 sum(0, 0, 0);
   for (std::size_t n = 0; n < positions.size(); ++n) {
     positions[n] = body->m_nodes[static_cast<int>(n)].m_x;
     box.extend(positions[n]);
+    sum += positions[n];
   }
   const btScalar size = box.diagonal();
   readable = std::isfinite(size) && size < static_cast<btScalar>(kLargestCoordinate);
+  measureTravel(sum / static_cast<btScalar>(positions.size()));
+}
+
+void ContactBody::measureTravel(const btVector3& newMiddle) {
+  btScalar squared = 0;
+  read_.resize(positions.size(), newMiddle);
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    squared = std::max(squared, (positions[n] - read_[n] - (newMiddle - middle)).length2());
+  }
+  travelled += std::sqrt(static_cast<double>(squared));
+  middle = newMiddle;
+  read_ = positions;
 }
 
 void ContactBody::writePositions() {
@@ -40,6 +56,16 @@ void ContactBody::writePositions() {
     btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
     node.m_x = node.m_q = positions[n];
   }
+}
+
+const ContactBox& ContactBody::carry(int run) {
+  const ShapeData& of = data();
+  const auto r = static_cast<std::size_t>(run);
+  runBoxes_.resize(of.runs.size());
+  for (auto& coordinates : samples) coordinates.resize(of.samples.size());
+  if (!isCarried_[r]) carryRun(of.runs[r], runBoxes_[r]);
+  isCarried_[r] = 1;
+  return runBoxes_[r];
 }
 
 /// Where its samples are, and a box around them: tighter than the tet's.
@@ -81,17 +107,13 @@ void ContactBody::fit() {
   for (std::size_t t = 0; t < boxes_.size(); ++t) {
     boxes_[t] = filledBox(static_cast<int>(t));
   }
-  runBoxes_.resize(of.runs.size());
-  for (auto& coordinates : samples) coordinates.resize(of.samples.size());
-  for (std::size_t r = 0; r < runBoxes_.size(); ++r) carryRun(of.runs[r], runBoxes_[r]);
+  for (std::size_t r = 0; r < of.runs.size(); ++r) carry(static_cast<int>(r));
   runTree.fit(of.runTree, runBoxes_);
   tetTree.fit(of.tetTree, boxes_);
-  deformed_.resize(of.tets.size());
-  isDeformed_.assign(of.tets.size(), 0);
 }
 
 const DeformedTet& ContactBody::deformed(int tet) {
-  assert(fitted_);
+  deformed_.resize(data().tets.size());
   DeformedTet& of = deformed_[static_cast<std::size_t>(tet)];
   if (isDeformed_[static_cast<std::size_t>(tet)]) return of;
   isDeformed_[static_cast<std::size_t>(tet)] = 1;
@@ -104,6 +126,7 @@ const DeformedTet& ContactBody::deformed(int tet) {
   const btScalar size = std::max({edge[0].length(), edge[1].length(), edge[2].length()});
   of.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
   if (of.flat) return of;
+  of.box = filledBox(tet);
   of.rows[0] = normal / volume;
   of.rows[1] = edge[2].cross(edge[0]) / volume;
   of.rows[2] = edge[0].cross(edge[1]) / volume;

@@ -16,6 +16,7 @@ struct DeformedTet {
   btVector3 origin{0, 0, 0};
   btVector3 rows[3];
   bool flat = true;
+  ContactBox box;  ///< around its filled part
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
 };
@@ -31,14 +32,15 @@ class ContactBody {
 
   /// Where the nodes are, and the box around them. Cost O(nodes)
   void read();
-  /// The trees and maps for where it is; at most once after `read`. Cost O(tets)
+  /// The trees for where it is; at most once after `read`. Cost O(tets + samples)
   void fit();
-  /// Of `fit`'s; computed when it is first asked for.
+  /// Computed when it is first asked for in a step, as are the samples of a run; returns the box around these.
   const DeformedTet& deformed(int tet);
-  const ContactBox& boxOf(int tet) const { return boxes_[static_cast<std::size_t>(tet)]; }
+  const ContactBox& carry(int run);
   /// After some positions have changed a little: the nodes get them.
   void writePositions();
 
+  /// Of a run that has been carried.
   btVector3 sampleAt(int sample) const {
     const auto s = static_cast<std::size_t>(sample);
     return {samples[0][s], samples[1][s], samples[2][s]};
@@ -56,18 +58,22 @@ class ContactBody {
   bool awake = true;
   bool readable = false;  ///< all positions are finite
   ContactBox box;
+  btVector3 middle{0, 0, 0};  ///< of the nodes
+  double travelled = 0;       ///< in all steps so far, of the nodes against their middle: no less than the furthest has
   std::vector<btVector3> positions, velocities;  ///< by node; velocities are the solver's to fill
   FittedTree runTree, tetTree;
-  std::vector<btScalar> samples[3];  ///< coordinates, one after the other; by `fit`
+  std::vector<btScalar> samples[3];  ///< coordinates, one after the other
 
  private:
+  void measureTravel(const btVector3& newMiddle);
   void carryRun(const SampleRun& run, ContactBox& around);
   ContactBox filledBox(int tet) const;
 
   bool fitted_ = false;
+  std::vector<btVector3> read_;  ///< positions, before anything has corrected them
   std::vector<ContactBox> boxes_, runBoxes_;
   std::vector<DeformedTet> deformed_;
-  std::vector<char> isDeformed_;
+  std::vector<char> isDeformed_, isCarried_;
 };
 
 }  // namespace tetskin::contact_detail

@@ -50,8 +50,8 @@ void ContactForce::exclude(const btSoftBody& body) {
               rows_.end());
   memory_.erase(std::remove_if(memory_.begin(), memory_.end(), [&](const ContactMemory& m) { return isSame(m, id); }),
                 memory_.end());
-  for (auto kept = sides_.begin(); kept != sides_.end();) {
-    kept = kept->first.first == id || kept->first.second == id ? sides_.erase(kept) : std::next(kept);
+  for (auto kept = pairMemory_.begin(); kept != pairMemory_.end();) {
+    kept = kept->first.first == id || kept->first.second == id ? pairMemory_.erase(kept) : std::next(kept);
   }
   pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
                               [&](const auto& pair) { return pair[0] == &body || pair[1] == &body; }),
@@ -96,8 +96,8 @@ void ContactForce::detect() {
       if (!first->readable || !second->readable || !(first->awake || second->awake)) continue;
       if (first->box.meets(second->box)) {
         detectPair(*first, *second);
-      } else if (!sides_.empty()) {
-        sides_.erase({first->id, second->id});
+      } else if (!pairMemory_.empty()) {
+        pairMemory_.erase({first->id, second->id});
       }
     }
   }
@@ -113,11 +113,9 @@ void ContactForce::detect() {
 }
 
 void ContactForce::detectPair(ContactBody& first, ContactBody& second) {
-  first.fit();
-  second.fit();
   touches_.clear();
   const btScalar reach = kReachCubes * second.data().grid.spacing();
-  search_.find(first, second, reach, dt_, sides_[{first.id, second.id}], touches_);
+  search_.find(first, second, reach, dt_, pairMemory_[{first.id, second.id}], touches_);
   for (const Touch& touch : touches_) addRow(first, second, touch);
 }
 

@@ -60,7 +60,7 @@ class ContactForce : public CouplingForce {
   bool predicted_ = false;  ///< in implicit worlds: the impulses have been given
   btScalar dt_ = 0;
   PairSearch search_;
-  std::map<std::pair<int, int>, ContactSides> sides_;  ///< by the bodies' ids
+  std::map<std::pair<int, int>, PairMemory> pairMemory_;  ///< by the bodies' ids
   std::vector<Touch> touches_;
   std::vector<ContactRow> rows_;
   std::vector<ContactMemory> memory_;

@@ -15,19 +15,31 @@ bool nearAtRest(const ShapeData& data, int run, int tet) {
 
 }  // namespace
 
-void PairCandidates::find(const ContactBody& first, const ContactBody& second) {
+bool PairCandidates::hold(const ContactBody& first, const ContactBody& second) const {
+  const btVector3 moved = second.middle - first.middle - apart_;
+  return first.travelled + second.travelled - travelled_ + static_cast<double>(moved.length()) <= slack_;
+}
+
+void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slack) {
+  first.fit();
+  second.fit();
+  apart_ = second.middle - first.middle;
+  travelled_ = first.travelled + second.travelled;
+  slack_ = static_cast<double>(slack);
   for (const int run : runs_) heads_[static_cast<std::size_t>(run)] = -1;
   runs_.clear();
   links_.clear();
-  heads_.resize(std::max(heads_.size(), first.data().runs.size()), -1);
+  heads_.resize(first.data().runs.size(), -1);
   if (first.runTree.empty() || second.tetTree.empty()) return;
-  descend({&first, &second, first.box.cutBy(second.box)}, 0, 0);
+  const ContactBox overlap = first.runTree.box(0).grownBy(slack).cutBy(second.tetTree.box(0));
+  descend({&first, &second, overlap, slack}, 0, 0);
   std::sort(runs_.begin(), runs_.end());
 }
 
 void PairCandidates::descend(const Pair& pair, int firstNode, int secondNode) {
   const FittedTree &firstTree = pair.first->runTree, &secondTree = pair.second->tetTree;
-  const ContactBox &a = firstTree.box(firstNode), &b = secondTree.box(secondNode);
+  const ContactBox a = firstTree.box(firstNode).grownBy(pair.slack);
+  const ContactBox& b = secondTree.box(secondNode);
   if (!a.meets(b) || !a.meets(pair.overlap) || !b.meets(pair.overlap)) return;
   const BoxTree::Node& first = firstTree.tree().nodes()[static_cast<std::size_t>(firstNode)];
   const BoxTree::Node& second = secondTree.tree().nodes()[static_cast<std::size_t>(secondNode)];
@@ -46,10 +58,11 @@ void PairCandidates::meetLeaves(const Pair& pair, const BoxTree::Node& a, const 
   const FittedTree &runs = pair.first->runTree, &tets = pair.second->tetTree;
   const bool same = pair.first == pair.second;
   for (int i = a.first; i < a.last; ++i) {
-    if (!runs.itemBox(i).meets(pair.overlap)) continue;
+    const ContactBox around = runs.itemBox(i).grownBy(pair.slack);
+    if (!around.meets(pair.overlap)) continue;
     const int run = runs.tree().items()[static_cast<std::size_t>(i)];
     for (int j = b.first; j < b.last; ++j) {
-      if (!runs.itemBox(i).meets(tets.itemBox(j))) continue;
+      if (!around.meets(tets.itemBox(j))) continue;
       const int tet = tets.tree().items()[static_cast<std::size_t>(j)];
       if (!same || !nearAtRest(pair.first->data(), run, tet)) add(run, tet);
     }

@@ -17,9 +17,13 @@ constexpr btScalar kEdgesApart = 2;
 /// By run of samples of the first body: tets of the second whose box meets the run's.
 class PairCandidates {
  public:
-  /// Both fitted. `first` and `second` may be one body: then tets near to each other at rest are no candidates.
-  /// Cost about O(number of runs and tets in the boxes' overlap, and of candidates)
-  void find(const ContactBody& first, const ContactBody& second);
+  /// Whether those found before are still all there are.
+  bool hold(const ContactBody& first, const ContactBody& second) const;
+
+  /// Both read. `first` and `second` may be one body: then tets near to each other at rest are no candidates.
+  /// slack  how far nodes may move against each other before it is to be done again, world space
+  /// Cost   about O(number of runs and tets, and of candidates)
+  void find(ContactBody& first, ContactBody& second, btScalar slack);
 
   /// Runs that have any, ascending.
   const std::vector<int>& runs() const { return runs_; }
@@ -38,11 +42,15 @@ class PairCandidates {
     const ContactBody* first;
     const ContactBody* second;
     ContactBox overlap;
+    btScalar slack;
   };
   void descend(const Pair& pair, int firstNode, int secondNode);
   void meetLeaves(const Pair& pair, const BoxTree::Node& a, const BoxTree::Node& b);
   void add(int run, int tet);
 
+  btVector3 apart_{0, 0, 0};  ///< the bodies' middles, when it was done; and what nodes had travelled by then
+  double travelled_ = 0;
+  double slack_ = -1;
   std::vector<int> runs_, heads_;
   std::vector<Link> links_;
 };

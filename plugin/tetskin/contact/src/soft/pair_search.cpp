@@ -12,6 +12,8 @@ namespace {
 constexpr btScalar kLeastWeight = btScalar(-0.02);
 /// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
 constexpr btScalar kOnePlace = btScalar(0.3);
+/// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
+constexpr btScalar kSlackCubes = 1;
 /// Cosine between normals from which two contacts of a node are one.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// A side that is farther away at rest, in mean edges, is of another part.
@@ -37,14 +39,16 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
 
 }  // namespace
 
-void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
+void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, PairMemory& memory,
                       std::vector<Touch>& touches) {
-  now_ = {&first, &second, reach, dt, &sides};
+  now_ = {&first, &second, reach, dt, &memory.sides};
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
-  sides.beginStep();
-  candidates_.find(first, second);
-  for (const int run : candidates_.runs()) placeRun(run);
+  memory.sides.beginStep();
+  candidates_ = &memory.candidates;
+  const btScalar slack = kSlackCubes * second.data().grid.spacing();
+  if (!memory.candidates.hold(first, second)) memory.candidates.find(first, second, slack);
+  for (const int run : candidates_->runs()) placeRun(run);
 }
 
 void PairSearch::placeRun(int run) {
@@ -53,7 +57,8 @@ void PairSearch::placeRun(int run) {
   inside_.resize(static_cast<std::size_t>(count));
   heads_.assign(static_cast<std::size_t>(count), -1);
   places_.clear();
-  candidates_.forEachTet(run, [&](int tet) { testTet(tet, of); });
+  const ContactBox& around = now_.first->carry(run);
+  candidates_->forEachTet(run, [&](int tet) { testTet(tet, of, around); });
   for (int k = 0; k < count; ++k) {
     for (int p = heads_[static_cast<std::size_t>(k)]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
       touch(of.first + k, run, places_[static_cast<std::size_t>(p)]);
@@ -61,9 +66,9 @@ void PairSearch::placeRun(int run) {
   }
 }
 
-void PairSearch::testTet(int tet, const SampleRun& run) {
+void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around) {
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat) return;
+  if (of.flat || !around.meets(of.box)) return;
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],

@@ -21,15 +21,21 @@ struct Touch {
   int next = -1;          ///< another of the same node
 };
 
+/// What a pair of bodies keeps from step to step.
+struct PairMemory {
+  PairCandidates candidates;
+  ContactSides sides;
+};
+
 /// Finds the touches of pairs, one after the other; keeps its memory.
 class PairSearch {
  public:
-  /// Both fitted; they may be one body.
+  /// Both read; they may be one body.
   /// reach    of contacts, world space: those farther apart are left out
   /// dt       seconds, of the step that has led here
   /// touches  appended to: for each node of the first body the deepest, of the samples that it carries most, and of
   ///          those that are pushed another way
-  void find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, ContactSides& sides,
+  void find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, PairMemory& memory,
             std::vector<Touch>& touches);
 
  private:
@@ -48,14 +54,14 @@ class PairSearch {
   };
 
   void placeRun(int run);
-  void testTet(int tet, const SampleRun& run);
+  void testTet(int tet, const SampleRun& run, const ContactBox& around);
   void offer(int tet, int sample, int k);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, int run, const Place& place) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};
-  PairCandidates candidates_;
+  const PairCandidates* candidates_ = nullptr;
   std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
