@@ -26,6 +26,7 @@ void ContactBody::read() {
   fitted_ = false;
   awake = body->isActive();
   isDeformed_.assign(data().tets.size(), 0);
+  isBoxed_.assign(data().tets.size(), 0);
   isCarried_.assign(data().runs.size(), 0);
   box = {};
   positions.resize(data().nodes.size());
@@ -103,13 +104,18 @@ void ContactBody::fit() {
   if (fitted_) return;
   fitted_ = true;
   const ShapeData& of = data();
-  boxes_.resize(of.tets.size());
-  for (std::size_t t = 0; t < boxes_.size(); ++t) {
-    boxes_[t] = filledBox(static_cast<int>(t));
-  }
+  for (std::size_t t = 0; t < of.tets.size(); ++t) around(static_cast<int>(t));
   for (std::size_t r = 0; r < of.runs.size(); ++r) carry(static_cast<int>(r));
   runTree.fit(of.runTree, runBoxes_);
   tetTree.fit(of.tetTree, boxes_);
+}
+
+const ContactBox& ContactBody::around(int tet) {
+  const auto t = static_cast<std::size_t>(tet);
+  boxes_.resize(data().tets.size());
+  if (!isBoxed_[t]) boxes_[t] = filledBox(tet);
+  isBoxed_[t] = 1;
+  return boxes_[t];
 }
 
 const DeformedTet& ContactBody::deformed(int tet) {
@@ -126,7 +132,6 @@ const DeformedTet& ContactBody::deformed(int tet) {
   const btScalar size = std::max({edge[0].length(), edge[1].length(), edge[2].length()});
   of.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
   if (of.flat) return of;
-  of.box = filledBox(tet);
   of.rows[0] = normal / volume;
   of.rows[1] = edge[2].cross(edge[0]) / volume;
   of.rows[2] = edge[0].cross(edge[1]) / volume;

@@ -16,7 +16,6 @@ struct DeformedTet {
   btVector3 origin{0, 0, 0};
   btVector3 rows[3];
   bool flat = true;
-  ContactBox box;  ///< around its filled part
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
 };
@@ -36,6 +35,8 @@ class ContactBody {
   void fit();
   /// Computed when it is first asked for in a step, as are the samples of a run; returns the box around these.
   const DeformedTet& deformed(int tet);
+  /// Around the tet's filled part, likewise.
+  const ContactBox& around(int tet);
   const ContactBox& carry(int run);
   /// After some positions have changed a little: the nodes get them.
   void writePositions();
@@ -73,7 +74,7 @@ class ContactBody {
   std::vector<btVector3> read_;  ///< positions, before anything has corrected them
   std::vector<ContactBox> boxes_, runBoxes_;
   std::vector<DeformedTet> deformed_;
-  std::vector<char> isDeformed_, isCarried_;
+  std::vector<char> isDeformed_, isBoxed_, isCarried_;
 };
 
 }  // namespace tetskin::contact_detail

@@ -13,7 +13,7 @@ constexpr btScalar kLeastWeight = btScalar(-0.02);
 /// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
 constexpr btScalar kOnePlace = btScalar(0.3);
 /// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
-constexpr btScalar kSlackCubes = 1;
+constexpr btScalar kSlackCubes = btScalar(0.5);
 /// Cosine between normals from which two contacts of a node are one.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// A side that is farther away at rest, in mean edges, is of another part.
@@ -67,8 +67,9 @@ void PairSearch::placeRun(int run) {
 }
 
 void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around) {
+  if (!around.meets(now_.second->around(tet))) return;
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat || !around.meets(of.box)) return;
+  if (of.flat) return;
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],
