@@ -95,8 +95,8 @@ struct SoftContact {
 class TETSKIN_CONTACT_API SoftContacts {
  public:
   /// world   with Bullet's solver, explicit or implicit, or a `DeformableSolver`
-  /// Errors  InvalidOption for options out of range, for worlds of reduced bodies, and for worlds with line search,
-  ///         which needs energies that contacts have not
+  /// Errors  InvalidOption for options out of range, for worlds of reduced bodies, and for worlds that had line search
+  ///         in their last step, which needs energies that contacts have not
   static Result<std::unique_ptr<SoftContacts>> add(btDeformableMultiBodyDynamicsWorld& world,
                                                    const SoftContactOptions& options = {});
   ~SoftContacts();

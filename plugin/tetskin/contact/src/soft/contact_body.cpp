@@ -37,7 +37,8 @@ void ContactBody::read() {
     sum += positions[n];
   }
   const btScalar size = box.diagonal();
-  readable = std::isfinite(size) && size < static_cast<btScalar>(kLargestCoordinate);
+  // Comparisons pass over what is not a number; sums do not.
+  readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(kLargestCoordinate);
   measureTravel(sum / static_cast<btScalar>(positions.size()));
 }
 
