@@ -19,6 +19,7 @@ using namespace tetskin::scenes;
 struct DropOptions {
   ModelOptions model;
   Force force = Force::Elastic;
+  Contact contact = Contact::Surface;
   SkinOptions skin;
   OutputOptions output{"out/drop", "", 240, 1, false};
   bool writeCage = false;
@@ -58,7 +59,9 @@ class Drop {
       : options_(options),
         player_(options.model, "obstacles", howOf(options)),
         surface_(player_.carry(options.skin)),
-        restExtent_(bounds().sizes().maxCoeff()) {}
+        restExtent_(bounds().sizes().maxCoeff()) {
+    if (options.contact == Contact::Surface) player_.touchBySurface();
+  }
 
   const ObjLayout& layout() const { return player_.model().layout; }
   TriangleMesh obstacles() {
@@ -104,6 +107,7 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   const double scale = player_.place().scale, margin = player_.scene().margin() / scale;
   nlohmann::ordered_json json = summaryOf(player_.model(), player_.fit());
   json["force"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
+  json["contact"] = options_.contact == Contact::Surface ? "surface" : "cage";
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
@@ -141,6 +145,7 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   row("attach", number("attach_ms", "%.2f ms"));
   row("rest error", number("rest_error_max", "%.1e box diagonals"));
   row("force", json.at("force").get<std::string>());
+  row("contact", json.at("contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
   row("skin", number("skin_us_per_frame", "%.1f us a frame"));
   row("write", number("write_ms_per_frame", "%.2f ms a frame"));
@@ -184,6 +189,7 @@ int main(int argc, char** argv) {
   CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
   line.addModelOptions(options.model);
   line.addForceOption(options.force);
+  line.addContactOption(options.contact);
   line.addInterpolationOption(options.skin);
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);

@@ -135,6 +135,11 @@ void CommandLine::addForceOption(Force& force) {
             "Whose elastic forces and solver: the library's, or Bullet's neo-Hookean ones");
 }
 
+void CommandLine::addContactOption(Contact& contact) {
+  addChoice(parser_->app, "--contact", contact, {{"surface", Contact::Surface}, {"cage", Contact::Cage}},
+            "What meets the obstacles: the surface as drawn, or the cage's nodes, as Bullet has it");
+}
+
 void CommandLine::addInterpolationOption(SkinOptions& options) {
   addChoice(parser_->app, "--interpolation", options.interpolation,
             {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},

@@ -70,6 +70,7 @@ class CommandLine {
   void addModelOptions(ModelOptions& options);
   /// --force: bullet (neo-Hookean) or tetskin.
   void addForceOption(Force& force);
+  void addContactOption(Contact& contact);
   /// --interpolation.
   void addInterpolationOption(SkinOptions& options);
   /// --normals, --outside, --max-distance.

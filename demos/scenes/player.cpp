@@ -37,6 +37,11 @@ Carried& Player::carry(const SkinOptions& options) {
   return added;
 }
 
+void Player::touchBySurface() {
+  assert(!carried_.empty());
+  scene_->world().touchBySurface(scene_->body(), *carried_.front().skin.binding(), model_.mesh);
+}
+
 /// Returns false if node positions are not finite.
 bool Player::step(int frame, Playback& run) {
   const WallTimer simulation;

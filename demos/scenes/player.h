@@ -42,6 +42,9 @@ class Player {
   /// InputError if mesh and cage do not fit.
   Carried& carry(const SkinOptions& options);
 
+  /// Rigid bodies meet the model's mesh from now on, which must be carried already.
+  void touchBySurface();
+
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
   const Placement& place() const { return place_; }

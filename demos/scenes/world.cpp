@@ -12,12 +12,16 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/contact/surface_contact.h>
 
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
 
 namespace tetskin::scenes {
 namespace {
+
+/// Of what may touch, over the mesh's size: finer than obstacles here are thick.
+constexpr double kSampleSpacing = 0.02;
 
 ForceModel modelOf(Force force) {
   switch (force) {
@@ -70,9 +74,21 @@ void World::makeDeformable() {
 }
 
 World::~World() {
+  contacts_.clear();
   deformableBodies_.clear();
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
+  world_.reset();
+  SurfaceContact::shutdown(static_cast<btCollisionDispatcher&>(*dispatcher_));
+}
+
+void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {
+  if (!deformable_) throw InputError("contact at the surface needs the deformable world");
+  SurfaceContactOptions options;
+  options.sampleSpacing = kSampleSpacing * boundingBox(mesh.positions).sizes().maxCoeff();
+  auto made = SurfaceContact::add(*deformable_, body, binding, mesh, options);
+  require(made.status());
+  contacts_.push_back(std::move(made).value());
 }
 
 btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {

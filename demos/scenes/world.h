@@ -4,7 +4,7 @@
 // The one place in which the demos make Bullet's worlds and put bodies into them.
 #pragma once
 
-#include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
@@ -25,6 +25,7 @@ class btRigidBody;
 namespace tetskin {
 class DeformableBody;
 class ParallelFor;
+class SurfaceContact;
 }  // namespace tetskin
 
 namespace tetskin::scenes {
@@ -44,6 +45,9 @@ enum class Force {
   ElasticForceOnly,  ///< the library's force with Bullet's solver
 };
 
+/// What of a soft body meets rigid ones.
+enum class Contact { Surface, Cage };
+
 /// A world of the kind that a force needs, with everything it takes to make one, and its bodies, all owned here.
 class World {
  public:
@@ -55,6 +59,10 @@ class World {
   /// Makes a soft body of a cage, where it is; it stays as long as the world. The force is the world's, whatever the
   /// options say: another solver would be chosen here. Throws InputError if Bullet cannot make a body of the cage.
   btSoftBody& add(const Cage& cage, SoftBodyOptions options);
+
+  /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; in the deformable world. Throws
+  /// InputError if they do not fit.
+  void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
   void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
@@ -93,6 +101,7 @@ class World {
   std::vector<std::unique_ptr<btDeformableLagrangianForce>> forces_;
   std::vector<std::unique_ptr<btSoftBody>> bodies_;
   std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
+  std::vector<std::unique_ptr<SurfaceContact>> contacts_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.

@@ -32,6 +32,9 @@
 #ifdef TETSKIN_HAS_CAGE
 #include <tetskin/cage/cage_builder.h>
 #endif
+#ifdef TETSKIN_HAS_CONTACT
+#include <tetskin/contact/surface_contact.h>
+#endif
 #ifdef TETSKIN_HAS_ELASTIC
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/elastic_body.h>

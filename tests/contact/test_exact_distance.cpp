@@ -24,25 +24,26 @@ std::vector<btVector3> pointsWithin(btScalar reach, int count) {
 /// The distance is what the point must be moved by, against the normal, to lie on the surface.
 void expectSurfaceAtDistance(const btCollisionShape& shape) {
   for (const btVector3& point : pointsWithin(2, 500)) {
-    const ShapeDistance at = exactDistance(shape, point);
+    const ShapeDistance at = ExactShape::of(shape)->distance(point);
     EXPECT_NEAR(at.normal.length(), 1, 1e-5);
-    EXPECT_NEAR(exactDistance(shape, point - at.distance * at.normal).distance, 0, 1e-5);
+    EXPECT_NEAR(ExactShape::of(shape)->distance(point - at.distance * at.normal).distance, 0, 1e-5);
   }
 }
 
-/// Bullet's own, which is up to 1.6 % too far from boxes.
+/// Bullet's own, which rounds edges and corners by the margin.
 void expectBulletsDistance(const btConvexShape& shape) {
   for (const btVector3& point : pointsWithin(2, 300)) {
-    const ShapeDistance at = exactDistance(shape, point);
+    const ShapeDistance at = ExactShape::of(shape)->distance(point);
     if (at.distance < btScalar(0.01)) continue;
     btGjkEpaSolver2::sResults results;
     const btScalar bullets = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
-    EXPECT_NEAR(at.distance, bullets, btScalar(0.02) * at.distance);
+    EXPECT_NEAR(at.distance, bullets, 2e-3);
   }
 }
 
 TEST(ExactDistance, OfABoxIsBullets) {
-  const btBoxShape box(btVector3(1, btScalar(0.5), btScalar(0.75)));
+  btBoxShape box(btVector3(1, btScalar(0.5), btScalar(0.75)));
+  box.setMargin(btScalar(1e-3));
   expectSurfaceAtDistance(box);
   expectBulletsDistance(box);
 }
@@ -64,11 +65,22 @@ TEST(ExactDistance, OfACapsuleAlongEachAxisIsBullets) {
   }
 }
 
+TEST(ExactDistance, OfACylinderAlongEachAxisIsBullets) {
+  btCylinderShapeX x(btVector3(1, btScalar(0.4), btScalar(0.4)));
+  btCylinderShape y(btVector3(btScalar(0.6), btScalar(0.3), btScalar(0.6)));
+  btCylinderShapeZ z(btVector3(btScalar(0.5), btScalar(0.5), 1));
+  for (btCylinderShape* cylinder : {static_cast<btCylinderShape*>(&x), &y, static_cast<btCylinderShape*>(&z)}) {
+    cylinder->setMargin(btScalar(1e-3));
+    expectSurfaceAtDistance(*cylinder);
+    expectBulletsDistance(*cylinder);
+  }
+}
+
 TEST(ExactDistance, OfAPlaneIsAlongItsNormal) {
   const btVector3 normal = btVector3(1, 2, 3).normalized();
   const btStaticPlaneShape plane(normal, btScalar(0.5));
-  EXPECT_NEAR(exactDistance(plane, 3 * normal).distance, 2.5, 1e-6);
-  EXPECT_NEAR(exactDistance(plane, -normal).distance, -1.5, 1e-6);
+  EXPECT_NEAR(ExactShape::of(plane)->distance(3 * normal).distance, 2.5, 1e-6);
+  EXPECT_NEAR(ExactShape::of(plane)->distance(-normal).distance, -1.5, 1e-6);
   expectSurfaceAtDistance(plane);
 }
 
@@ -80,16 +92,17 @@ TEST(ExactDistance, HasANormalAtCentresAndOnFacesEdgesAndCorners) {
        {static_cast<const btCollisionShape*>(&box), static_cast<const btCollisionShape*>(&sphere),
         static_cast<const btCollisionShape*>(&capsule)}) {
     for (const btVector3& point : {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(1, 1, 0), btVector3(-1, 1, -1)}) {
-      EXPECT_NEAR(exactDistance(*shape, point).normal.length(), 1, 1e-5);
+      EXPECT_NEAR(ExactShape::of(*shape)->distance(point).normal.length(), 1, 1e-5);
     }
   }
-  EXPECT_EQ(exactDistance(box, btVector3(1, 1, 1)).distance, 0);
+  EXPECT_EQ(ExactShape::of(box)->distance(btVector3(1, 1, 1)).distance, 0);
 }
 
-TEST(ExactDistance, IsKnownForFourShapes) {
-  const btCylinderShape cylinder(btVector3(1, 1, 1));
-  EXPECT_FALSE(hasExactDistance(cylinder));
-  EXPECT_TRUE(hasExactDistance(btSphereShape(1)));
+TEST(ExactDistance, IsKnownForShapesWithFormulas) {
+  const btCylinderShape oval(btVector3(1, 1, 2));
+  EXPECT_FALSE(ExactShape::of(oval));
+  EXPECT_FALSE(ExactShape::of(btConeShape(1, 1)));
+  EXPECT_TRUE(ExactShape::of(btSphereShape(1)));
 }
 
 }  // namespace

@@ -152,6 +152,17 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
     body_.keepFaceTree();
     return btSoftBodyCollisionShape::getMargin();
   }
+  void getAabb(const btTransform& transform, btVector3& low, btVector3& high) const override {
+    btSoftBodyCollisionShape::getAabb(transform, low, high);
+    if (!(body_.reach() >= 0)) return;
+    const btVector3 around(body_.reach(), body_.reach(), body_.reach());
+    for (int n = 0; n < body_.m_nodes.size(); ++n) {
+      const btSoftBody::Node& node = body_.m_nodes[n];
+      const btVector3 predicted = transform * (node.m_x + body_.m_sst.sdt * node.m_v);
+      low.setMin(predicted - around);
+      high.setMax(predicted + around);
+    }
+  }
 
  private:
   BodyWithTrees& body_;
@@ -159,8 +170,13 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
 
 BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes)
     : btSoftBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr) {
+  m_sst.sdt = 0;            // Bullet leaves it unset until the first step
   delete m_collisionShape;  // as its destructor does
   m_collisionShape = new Shape(*this);
+}
+
+BodyWithTrees* bodyWithTrees(btSoftBody& body) {
+  return dynamic_cast<BodyWithTrees*>(&body);
 }
 
 void BodyWithTrees::makeTrees(bool faces) {

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/export.h>
 
+#include <memory>
 #include <vector>
 
 namespace tetskin {
@@ -45,6 +47,14 @@ class BodyWithTrees : public btSoftBody {
   /// Builds that of the faces, or what stands for it, anew.
   void renewFaceTree();
 
+  /// Expires with the body.
+  std::weak_ptr<const void> lifetime() const { return lifetime_; }
+
+  /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
+  /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
+  void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
+  btScalar reach() const { return reach_; }
+
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;
   void scale(const btVector3& factors) override;
@@ -55,6 +65,11 @@ class BodyWithTrees : public btSoftBody {
   void keepFaceTree();
 
   Kind kind_ = Kind::None;
+  btScalar reach_ = -1;
+  std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
 };
+
+/// Of a body that `makeSoftBody` has made; null for others.
+TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
 
 }  // namespace tetskin

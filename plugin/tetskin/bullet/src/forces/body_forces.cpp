@@ -103,6 +103,27 @@ void BodyGravity::addScaledHessian(btScalar scale) {
   }
 }
 
+void BodyGravity::addScaledForces(btScalar scale, TVStack& force) {
+  OwnForce::addScaledForces(scale, force);
+  stopSleepers();
+}
+
+void BodyGravity::addScaledDampingForce(btScalar scale, TVStack& force) {
+  OwnForce::addScaledDampingForce(scale, force);
+  stopSleepers();
+}
+
+void BodyGravity::stopSleepers() {
+  for (int i = 0; i < m_softBodies.size(); ++i) {
+    btSoftBody& body = *m_softBodies[i];
+    if (body.isActive()) continue;
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      body.m_nodes[n].m_v.setZero();
+      body.m_nodes[n].m_splitv.setZero();
+    }
+  }
+}
+
 /// What Bullet has found. Forces that stand behind this one and are ours are still being asked, so there is always one.
 btVector3 BodyGravity::askedGravity() const {
   for (int i = list_.size() - 1; i >= 0; --i) {

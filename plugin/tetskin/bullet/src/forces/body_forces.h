@@ -68,9 +68,15 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   void reinitialize(bool nodeUpdated) override;
   void addScaledExplicitForce(btScalar scale, TVStack& force) override;
   void addScaledHessian(btScalar scale) override;
+  /// Called between the solve of contacts and the integration, by one of these two.
+  void addScaledForces(btScalar scale, TVStack& force) override;
+  void addScaledDampingForce(btScalar scale, TVStack& force) override;
 
  private:
   btVector3 askedGravity() const;
+  /// A body falls asleep where the step has just begun: Bullet does not solve for it then, but moves its nodes by the
+  /// velocities that it has.
+  void stopSleepers();
 
   btDeformableMultiBodyDynamicsWorld& world_;
   std::optional<btVector3> own_;

@@ -76,6 +76,9 @@ bool DeformableSolver::solves() const {
 int DeformableSolver::iterations() const {
   return parts_->iterations;
 }
+btScalar DeformableSolver::normalImpulse(const btSoftBody& body, int node) const {
+  return parts_->solving ? parts_->bodies.normalImpulse(body, node) : btScalar(0);
+}
 
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
   Parts& parts = *parts_;

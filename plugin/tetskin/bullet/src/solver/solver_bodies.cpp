@@ -194,6 +194,13 @@ void SolverBodies::makeSystems(const ForceList& forces) {
   }
 }
 
+btScalar SolverBodies::normalImpulse(const btSoftBody& body, int node) const {
+  const std::size_t place = placeOf(&body);
+  if (place == bodies_.size() || !bodies_[place].elastic || !bodies_[place].normalImpulses) return 0;
+  const std::vector<btScalar>& impulses = *bodies_[place].normalImpulses;
+  return static_cast<std::size_t>(node) < impulses.size() ? impulses[static_cast<std::size_t>(node)] : btScalar(0);
+}
+
 SolvedBody& SolverBodies::bodyOf(int node) {
   const auto after =
       std::upper_bound(bodies_.begin(), bodies_.end(), node, [](int n, const SolvedBody& of) { return n < of.first; });

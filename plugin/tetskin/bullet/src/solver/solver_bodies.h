@@ -58,6 +58,8 @@ class SolverBodies {
   std::vector<SolvedBody>& bodies() { return bodies_; }
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
   const std::vector<SolvedSystem>& systems() const { return systems_; }
+  /// 0 where the body is not awake, or not elastic here.
+  btScalar normalImpulse(const btSoftBody& body, int node) const;
   /// The body of a node, by its number.
   SolvedBody& bodyOf(int node);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::contact: how far a point is from a rigid body's shape.
+// Internal to SurfaceContact: how far a point is from the shapes that have formulas.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <optional>
 
 namespace tetskin {
 
@@ -14,12 +16,29 @@ struct ShapeDistance {
   btVector3 normal{0, 1, 0};           ///< of unit length, the direction in which the distance grows
 };
 
-/// Whether `exactDistance` knows the shape: a plane, a box, a sphere or a capsule.
-bool hasExactDistance(const btCollisionShape& shape);
+/// A plane, a box, a sphere, a capsule or a cylinder whose section is a circle, as Bullet collides with it, its own
+/// margin included.
+class ExactShape {
+ public:
+  /// Nothing for another shape.
+  static std::optional<ExactShape> of(const btCollisionShape& shape);
 
-/// To the shape as Bullet collides with it, its own margin included. Inside, to the nearest point of its surface; where
-/// there are several, to one of them. Cost O(1)
-/// shape  one that `hasExactDistance`
-ShapeDistance exactDistance(const btCollisionShape& shape, const btVector3& point);
+  /// Inside, to the nearest point of the surface; where there are several, to one of them. Cost O(1)
+  ShapeDistance distance(const btVector3& point) const;
+
+ private:
+  enum class Kind { Plane, Box, Ball, Capsule, Cylinder };
+
+  ShapeDistance fromBox(const btVector3& point) const;
+  ShapeDistance fromBall(const btVector3& point) const;
+  ShapeDistance fromCapsule(const btVector3& point) const;
+  ShapeDistance fromCylinder(const btVector3& point) const;
+
+  Kind kind_ = Kind::Ball;
+  int axis_ = 1;         ///< that of a capsule or cylinder
+  btScalar radius_ = 0;  ///< of all that are round
+  btScalar half_ = 0;    ///< of their length along the axis, without a capsule's caps; a plane's constant
+  btVector3 extents_{};  ///< half the sides of a box; a plane's normal
+};
 
 }  // namespace tetskin

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/rigid/mesh_probe.h>
+
+#include <algorithm>
+
+namespace tetskin {
+namespace {
+
+/// Keeps the triangles that meet a box; Bullet's own test is of coarse boxes.
+class TriangleGatherer : public btTriangleCallback {
+ public:
+  TriangleGatherer(const btVector3& low, const btVector3& high, std::vector<ProbeTriangle>& out)
+      : low_(low), high_(high), out_(out) {}
+  void processTriangle(btVector3* corners, int, int) override;
+
+ private:
+  btVector3 low_, high_;
+  std::vector<ProbeTriangle>& out_;
+};
+
+bool boxesMeet(const ProbeTriangle& triangle, const btVector3& low, const btVector3& high) {
+  for (int k = 0; k < 3; ++k) {
+    if (triangle.low[k] > high[k] || triangle.high[k] < low[k]) return false;
+  }
+  return true;
+}
+
+/// Whether the point is in the triangle's box, or no farther from it.
+bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar distance) {
+  for (int k = 0; k < 3; ++k) {
+    if (triangle.low[k] - point[k] > distance || point[k] - triangle.high[k] > distance) return false;
+  }
+  return true;
+}
+
+void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
+  ProbeTriangle triangle;
+  triangle.corners = {corners[0], corners[1], corners[2]};
+  triangle.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const btScalar area = triangle.normal.length();
+  if (!(area > 0)) return;
+  triangle.normal /= area;
+  triangle.low = triangle.high = corners[0];
+  for (int k = 1; k < 3; ++k) {
+    triangle.low.setMin(corners[k]);
+    triangle.high.setMax(corners[k]);
+  }
+  if (boxesMeet(triangle, low_, high_)) out_.push_back(triangle);
+}
+
+}  // namespace
+
+void MeshProbe::take(const btConcaveShape& shape, btScalar thickness) {
+  shape_ = &shape;
+  thickness_ = thickness;
+}
+
+bool MeshProbe::enter(const Ball& ball, btScalar reach) {
+  reach_ = reach;
+  const btScalar side = ball.radius + std::max(reach, thickness_);
+  const btVector3 half(side, side, side);
+  entered_.clear();
+  TriangleGatherer gatherer(ball.centre - half, ball.centre + half, entered_);
+  shape_->processAllTriangles(&gatherer, ball.centre - half, ball.centre + half);
+  narrowed_ = entered_;
+  return !entered_.empty();
+}
+
+bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) {
+  reach_ = reach;
+  const btScalar side = ball.radius + std::max(reach, thickness_);
+  const btVector3 low = ball.centre - btVector3(side, side, side), high = ball.centre + btVector3(side, side, side);
+  narrowed_.clear();
+  for (const ProbeTriangle& triangle : entered_) {
+    if (!boxesMeet(triangle, low, high)) continue;
+    const btScalar plane = triangle.normal.dot(triangle.corners[0]);
+    if (carriers.lowest(triangle.normal) - plane > reach || carriers.highest(triangle.normal) - plane < -thickness_) {
+      continue;
+    }
+    narrowed_.push_back(triangle);
+  }
+  return !narrowed_.empty();
+}
+
+/// Where several triangles are equally near, at an edge or a corner, the one that looks most directly to or from the
+/// point tells the side.
+ShapeDistance MeshProbe::at(const btVector3& point) const {
+  constexpr btScalar kSame = btScalar(1e-4);  // of the distance
+  ShapeDistance found{reach_, btVector3(0, 1, 0)};
+  btScalar least = std::max(reach_, thickness_), facing = 0;
+  for (const ProbeTriangle& triangle : narrowed_) {
+    const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
+    if (height > std::min(least, reach_) || -height > std::min(least, thickness_)) continue;
+    if (!isBeside(triangle, point, height < 0 ? std::min(least, thickness_) : std::min(least, reach_))) continue;
+    const btVector3 away = point - closestOnTriangle(triangle.corners, point);
+    const btScalar distance = away.length();
+    if (distance > least * (1 + kSame) || (distance > least * (1 - kSame) && btFabs(height) <= facing)) continue;
+    least = std::min(least, distance);
+    facing = btFabs(height);
+    // On the triangle itself the way off it has no direction but the normal's.
+    const bool on = !(distance > SIMD_EPSILON);
+    found = {height < 0 ? -distance : distance, on ? triangle.normal : (height < 0 ? -away : away) / distance};
+  }
+  return found.distance < -thickness_ ? ShapeDistance{reach_, btVector3(0, 1, 0)} : found;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   John C. Hart, "Sphere Tracing", The Visual Computer 12, 1996 (steps of the distance on a straight way)
+#include <tetskin/contact/src/rigid/touch_search.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin {
+namespace {
+
+/// Steps on the way of a point. After these it counts as meeting what it has come near to.
+constexpr int kMostSteps = 24;
+/// How near counts as met, over the margin.
+constexpr btScalar kMet = btScalar(0.05);
+/// Steps after which what was clear is looked at again.
+constexpr unsigned kRemembered = 16;
+
+/// What a point meets first on its straight way, no farther from it than the margin.
+struct Meeting {
+  ShapeDistance distance;  ///< there; BT_LARGE_FLOAT if it meets nothing
+  btVector3 where;
+  btScalar clear = 0;  ///< how far it is from meeting anything where it begins, if it meets nothing
+};
+
+Meeting firstMet(const ShapeProbe& probe, const NodePath& path, btScalar margin) {
+  const btVector3 way = path.predicted - path.now;
+  const btScalar length = way.length();
+  btScalar gone = 0;
+  Meeting met;
+  met.where = path.now;
+  for (int k = 0; k < kMostSteps; ++k) {
+    const ShapeDistance here = probe.at(met.where);
+    const btScalar free = here.distance - margin;
+    if (k == 0) met.clear = btMax(free, btScalar(0));
+    if (free <= kMet * margin && (gone > 0 || free <= 0)) return {here, met.where, 0};
+    if (free >= length - gone) return met;
+    gone += std::max(free, kMet * margin);
+    if (gone >= length) break;
+    met.where = path.now + (gone / length) * way;
+  }
+  // The last bit of the way.
+  met.where = path.predicted;
+  const ShapeDistance there = probe.at(met.where);
+  if (there.distance < margin) met.distance = there;
+  return met;
+}
+
+/// Largest change of a unit vector between two rotations, or more.
+btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
+  btScalar squared = 0;
+  for (int k = 0; k < 3; ++k) squared += (a[k] - b[k]).length2();
+  return btSqrt(squared);
+}
+
+}  // namespace
+
+TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack)
+    : patches_(std::move(patches)), margin_(margin), share_(share), slack_(slack) {}
+
+void TouchSearch::begin(const std::vector<NodePath>& nodes) {
+  nodes_ = &nodes;
+  placeOf_.resize(nodes.size(), -1);
+  local_.resize(nodes.size());
+  clusterBalls_.clear();
+  for (const PatchCluster& cluster : patches_.clusters) {
+    BoxOfPaths box;
+    for (std::uint32_t k = 0; k < cluster.nodeCount; ++k) {
+      box.add(nodes[static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k])]);
+    }
+    clusterBalls_.push_back(box.ball(cluster.spread));
+  }
+}
+
+const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
+  assert(nodes_ && clusterBalls_.size() == patches_.clusters.size());
+  probe_ = &probe;
+  shape_ = shape;
+  toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
+  turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
+  touches_.clear();
+  prepare(memory);
+  memory_ = &memory;
+  ++memory.steps;
+  for (std::size_t c = 0; c < clusterBalls_.size(); ++c) {
+    const bool again = (memory.steps + c) % kRemembered == 0;
+    const Ball ball = localBall(c);
+    if (again || !isClear(c, ball)) searchCluster(c, ball, again);
+  }
+  for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
+  std::sort(touches_.begin(), touches_.end(), [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
+  return touches_;
+}
+
+void TouchSearch::prepare(ShapeMemory& memory) const {
+  memory.clusterBalls.resize(patches_.clusters.size());
+  memory.clusterClear.resize(patches_.clusters.size(), 0);
+  memory.carriers.resize(patches_.nodes.size());
+  memory.clear.resize(patches_.patches.size(), 0);
+}
+
+/// Of all the ways in a cluster.
+Ball TouchSearch::localBall(std::size_t cluster) const {
+  const Ball& world = clusterBalls_[cluster];
+  const btVector3 now = toShape_.now * world.centre, predicted = toShape_.predicted * world.centre;
+  return {(now + predicted) * btScalar(0.5), world.radius * (1 + turn_) + (predicted - now).length() * btScalar(0.5)};
+}
+
+bool TouchSearch::isClear(std::size_t cluster, const Ball& ball) const {
+  const Ball& known = memory_->clusterBalls[cluster];
+  const btScalar grown = std::max(ball.radius - known.radius, btScalar(0));
+  return (ball.centre - known.centre).length() + grown < memory_->clusterClear[cluster];
+}
+
+void TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool again) {
+  const PatchCluster& patches = patches_.clusters[cluster];
+  readCluster(patches);
+  memory_->clusterClear[cluster] = 0;
+  bool entered = false;
+  ShapeBound bound;
+  for (std::size_t p = patches.firstPatch; p < patches.firstPatch + patches.patchCount; ++p) {
+    readPatch(patches_.patches[p]);
+    if (!again && isClear(p)) continue;
+    if (!entered && !probe_->enter(ball, margin_ + slack_)) {
+      memory_->clusterBalls[cluster] = ball;
+      memory_->clusterClear[cluster] = slack_;
+      return;
+    }
+    if (!entered) bound = probe_->bound();
+    entered = true;
+    remember(p, searchPatch(patches_.patches[p], bound));
+  }
+}
+
+void TouchSearch::readCluster(const PatchCluster& cluster) {
+  for (std::uint32_t k = 0; k < cluster.nodeCount; ++k) {
+    const auto node = static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k]);
+    const NodePath& world = (*nodes_)[node];
+    local_[node] = {toShape_.now * world.now, toShape_.predicted * world.predicted};
+  }
+}
+
+void TouchSearch::readPatch(const ContactPatch& patch) {
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    carriers_[n] = local_[static_cast<std::size_t>(patches_.nodes[patch.firstNode + n])];
+  }
+}
+
+/// Nodes have moved less than the patch was clear by.
+bool TouchSearch::isClear(std::size_t patch) const {
+  const ContactPatch& of = patches_.patches[patch];
+  const btScalar clear = memory_->clear[patch] / of.spread;
+  for (std::uint32_t n = 0; n < of.nodeCount; ++n) {
+    const btVector3& known = memory_->carriers[of.firstNode + n];
+    if ((carriers_[n].now - known).length2() >= clear * clear) return false;
+    if ((carriers_[n].predicted - known).length2() >= clear * clear) return false;
+  }
+  return true;
+}
+
+void TouchSearch::remember(std::size_t patch, btScalar clear) {
+  const ContactPatch& of = patches_.patches[patch];
+  memory_->clear[patch] = clear;
+  for (std::uint32_t n = 0; n < of.nodeCount; ++n) memory_->carriers[of.firstNode + n] = carriers_[n].now;
+}
+
+/// Returns how far all its points are, where they begin, from meeting anything.
+btScalar TouchSearch::searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound) {
+  const btScalar far = lowestHeight(patch, clusterBound) - margin_;
+  if (far > slack_) return far;
+  BoxOfPaths box;
+  btScalar longest = 0;
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    box.add(carriers_[n]);
+    longest = std::max(longest, (carriers_[n].predicted - carriers_[n].now).length2());
+  }
+  // So far that a point's whole way is within reach of where it begins.
+  const btScalar reach = margin_ + slack_ + btSqrt(longest) * patch.spread;
+  const CarrierPaths carriers{carriers_.data(), patch.nodeCount, patch.spread};
+  if (!probe_->narrow(carriers, box.ball(patch.spread), reach)) return slack_;
+  const btScalar nearer = lowestHeight(patch, probe_->bound()) - margin_;
+  return nearer > 0 ? nearer : searchPoints(patch);
+}
+
+/// The lowest that a point on its way may be above the bound: between the heights of its nodes, which it leaves.
+btScalar TouchSearch::lowestHeight(const ContactPatch& patch, const ShapeBound& bound) {
+  btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    heights_[0][n] = bound(carriers_[n].now);
+    heights_[1][n] = bound(carriers_[n].predicted);
+    low = std::min({low, heights_[0][n], heights_[1][n]});
+    high = std::max({high, heights_[0][n], heights_[1][n]});
+  }
+  return (low + high - patch.spread * (high - low)) * btScalar(0.5);
+}
+
+btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
+  const btScalar* weights = &patches_.weights[patch.firstWeight];
+  btScalar clear = slack_;
+  for (std::uint32_t p = 0; p < patch.pointCount; ++p, weights += patch.nodeCount) {
+    btScalar now = 0, predicted = 0;
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      now += weights[n] * heights_[0][n];
+      predicted += weights[n] * heights_[1][n];
+    }
+    const btScalar height = std::min(now, predicted) - margin_;
+    clear = std::min(clear, height > 0 ? height : touch(patch, p));
+  }
+  return clear;
+}
+
+NodePath TouchSearch::pathOf(const ContactPatch& patch, std::uint32_t point) const {
+  const btScalar* weights = &patches_.weights[patch.firstWeight + point * patch.nodeCount];
+  NodePath path{btVector3(0, 0, 0), btVector3(0, 0, 0)};
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    path.now += weights[n] * carriers_[n].now;
+    path.predicted += weights[n] * carriers_[n].predicted;
+  }
+  return path;
+}
+
+/// Returns how far the point is from meeting anything.
+btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
+  const NodePath path = pathOf(patch, point);
+  const Meeting met = firstMet(*probe_, path, margin_);
+  if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
+  const btVector3& normal = met.distance.normal;
+  NodeTouch touch;
+  touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
+  touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
+  if (!(touch.predicted < 0)) return 0;
+  touch.position = shape_.now * path.now;
+  touch.normal = shape_.now.getBasis() * normal;
+  keep(patch, point, touch);
+  return 0;
+}
+
+/// The nodes that carry a point hold it; each node the one that would go deepest.
+void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch) {
+  const btScalar* acting = &patches_.acting[patch.firstWeight + point * patch.nodeCount];
+  const btScalar least = std::min(share_, *std::max_element(acting, acting + patch.nodeCount));
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    if (acting[n] < least) continue;
+    const int node = patches_.nodes[patch.firstNode + n];
+    int& place = placeOf_[static_cast<std::size_t>(node)];
+    if (place < 0) {
+      place = static_cast<int>(touches_.size());
+      touches_.push_back(touch);
+    } else if (touch.predicted < touches_[static_cast<std::size_t>(place)].predicted) {
+      touches_[static_cast<std::size_t>(place)] = touch;
+    } else {
+      continue;
+    }
+    touches_[static_cast<std::size_t>(place)].node = node;
+    touches_[static_cast<std::size_t>(place)].point = patch.firstPoint + point;
+  }
+}
+
+}  // namespace tetskin

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SurfaceContact: which nodes of a body one rigid shape touches, and where.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+#include <tetskin/contact/src/rigid/contact_patches.h>
+#include <tetskin/contact/src/rigid/shape_probe.h>
+
+#include <array>
+#include <vector>
+
+namespace tetskin {
+
+/// Where a rigid shape is when the step begins, and where it would go without contact.
+struct ShapePath {
+  btTransform now, predicted;
+};
+
+/// A node that carries a point in touch: the first of these to go through, if nothing stops it.
+struct NodeTouch {
+  int node = -1;
+  std::uint32_t point = 0;  ///< its number
+  btVector3 position;       ///< the point's now, world space
+  btVector3 normal;         ///< of the shape where the point meets it, world space
+  btScalar distance = 0;    ///< now, along the normal, less the margin
+  btScalar predicted = 0;   ///< the same at the end of the step: below 0
+};
+
+class BoxOfPaths {
+ public:
+  void add(const NodePath& path) {
+    low_.setMin(path.now);
+    low_.setMin(path.predicted);
+    high_.setMax(path.now);
+    high_.setMax(path.predicted);
+  }
+  Ball ball(btScalar spread) const {
+    return {(low_ + high_) * btScalar(0.5), (high_ - low_).length() * btScalar(0.5) * spread};
+  }
+
+ private:
+  btVector3 low_{BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT};
+  btVector3 high_{-BT_LARGE_FLOAT, -BT_LARGE_FLOAT, -BT_LARGE_FLOAT};
+};
+
+/// What a search has found to be clear of a shape, so that it need not look there again until nodes have moved as far.
+/// Shapes may change in place without a word: everything is looked at again after some steps.
+struct ShapeMemory {
+  std::vector<Ball> clusterBalls;      ///< shape space, as are all
+  std::vector<btScalar> clusterClear;  ///< how far from everything; 0: not known
+  std::vector<btVector3> carriers;     ///< as ContactPatches::nodes
+  std::vector<btScalar> clear;         ///< by patch
+  unsigned steps = 0;
+};
+
+/// A point may pass a thin shape in one step: it touches what it meets first on its way.
+class TouchSearch {
+ public:
+  /// share  of a point, which a node must carry to be held by it
+  /// slack  how far around what may touch it looks, to remember what is clear
+  TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack);
+
+  const ContactPatches& patches() const { return patches_; }
+  btScalar margin() const { return margin_; }
+
+  /// Where the nodes are in this step; valid until the next call.
+  void begin(const std::vector<NodePath>& nodes);
+  /// Of the body with these nodes and this shape; ascending by node, each once. Valid until the next call.
+  /// memory  of the same shape, or an empty one
+  const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
+
+ private:
+  void prepare(ShapeMemory& memory) const;
+  Ball localBall(std::size_t cluster) const;
+  bool isClear(std::size_t cluster, const Ball& ball) const;
+  void searchCluster(std::size_t cluster, const Ball& ball, bool again);
+  void readCluster(const PatchCluster& cluster);
+  void readPatch(const ContactPatch& patch);
+  bool isClear(std::size_t patch) const;
+  void remember(std::size_t patch, btScalar clear);
+  btScalar lowestHeight(const ContactPatch& patch, const ShapeBound& bound);
+  btScalar searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound);
+  btScalar searchPoints(const ContactPatch& patch);
+  NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
+  btScalar touch(const ContactPatch& patch, std::uint32_t point);
+  void keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch);
+
+  ContactPatches patches_;
+  btScalar margin_, share_, slack_;
+  const std::vector<NodePath>* nodes_ = nullptr;
+  std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
+  // Of one call of `find`.
+  ShapeProbe* probe_ = nullptr;
+  ShapeMemory* memory_ = nullptr;
+  ShapePath shape_, toShape_;
+  btScalar turn_ = 0;         ///< how far a point at distance 1 moves by the shape's turning
+  std::vector<int> placeOf_;  ///< by node: in `touches_`, or -1
+  std::vector<NodeTouch> touches_;
+  std::vector<NodePath> local_;                     ///< by node, of the cluster's; shape space
+  std::array<NodePath, kMostCarriers> carriers_;    ///< of the patch
+  std::array<btScalar, kMostCarriers> heights_[2];  ///< of these, above the bound, now and predicted
+};
+
+}  // namespace tetskin

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What rests, rests on the ground as drawn.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/soft_body_skin.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin {
+
+struct SurfaceContactOptions {
+  /// Distance that is kept between the surface and rigid bodies, world units; below 0: 0.2 % of the body's size, the
+  /// largest side of its box.
+  double margin = -1.0;
+  /// Above 0 to 0.25: a vertex in touch is held by those nodes of its tet that carry at least this share of it, and by
+  /// the one that carries most. More nodes hold it more firmly, and stiffen the body where it touches.
+  double share = 0.1;
+  /// Rest units: triangles with longer edges get samples of this spacing, which touch as vertices do. 0: none. Vertices
+  /// must not be farther apart than what the body touches is thick.
+  double sampleSpacing = 0.0;
+};
+
+/// A point of the surface in touch with a rigid body.
+struct SurfaceContactPoint {
+  btVector3 point;                            ///< of the surface, world space, when contacts were last looked for
+  btVector3 normal;                           ///< away from the rigid body, of unit length
+  btScalar distance = 0;                      ///< less the margin; below 0: too near
+  const btCollisionObject* object = nullptr;  ///< the rigid body, or the link of a multibody
+  btVector3 impulse;  ///< on the soft body in the last substep, as contacts are solved for; 0 while it sleeps
+};
+
+/// A soft body meets rigid ones by its visual surface, instead of by the nodes of its cage, which lie outside of it.
+///
+/// In any deformable world with any of its solvers. Nothing else need be done: static, kinematic and dynamic bodies and
+/// the links of multibodies are met in whatever order they were added, as their groups, their masks and their flags
+/// (CF_NO_CONTACT_RESPONSE) allow. Planes, boxes, spheres, capsules and cylinders are met exactly; convex hulls by
+/// their faces, as they are drawn, that is without their margin; other convex shapes by Bullet's GJK; meshes, height
+/// fields and other concave shapes by their triangles, on the side from which these look counter-clockwise; compounds
+/// by their children. Friction is Bullet's. Surfaces are met as linear skins draw them: a quadratic one differs from
+/// that by what the README tells.
+///
+/// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again. This object, the body,
+///           the world, rigid bodies and their shapes may go in any order, each as Bullet allows it. What the world's
+///           dispatcher was told stays until `shutdown`.
+/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it)
+class TETSKIN_CONTACT_API SurfaceContact {
+ public:
+  /// From the next substep on. Sets the margin of the body's shape, until this object goes.
+  ///
+  /// world    deformable, and the body in it
+  /// body     by `makeSoftBody` or of a `DeformableBody`, in which no other SurfaceContact is
+  /// binding  of the mesh in the body's cage, as a skin's; read here only
+  /// mesh     that of the binding
+  /// Errors   InvalidOption: options out of range, a world of reduced bodies, a body that is not in the world, or has a
+  ///          contact already, or was not made as said, or a dispatcher that is no btCollisionDispatcher; Empty: no
+  ///          vertices; SizeMismatch: binding, mesh and body do not belong together
+  static Result<std::unique_ptr<SurfaceContact>> add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
+                                                     const SoftBodyBinding& binding, const TriangleMesh& mesh,
+                                                     const SurfaceContactOptions& options = {});
+  ~SurfaceContact();
+  SurfaceContact(const SurfaceContact&) = delete;
+  SurfaceContact& operator=(const SurfaceContact&) = delete;
+
+  /// The dispatcher forgets us: to be called once for each, after its world is deleted, and before it is itself.
+  static void shutdown(btCollisionDispatcher& dispatcher);
+
+  /// Those of the last substep in which the body was awake, each once, by obstacle. Allocates the result.
+  std::vector<SurfaceContactPoint> contacts() const;
+
+  /// Vertices and samples that may touch.
+  std::size_t sampleCount() const;
+
+ private:
+  struct Parts;
+  explicit SurfaceContact(std::unique_ptr<Parts> parts);
+
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace tetskin

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A body whose surface lies well within its cage, and what it may fall on.
+#pragma once
+
+#include "bullet/deformable_test.h"
+
+#include <tetskin/contact/surface_contact.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin::test {
+
+/// The largest side of the cage's box.
+constexpr double kBodySize = 1.0;
+
+/// A ball of this radius around the origin.
+inline TriangleMesh ballMesh(int rings, double radius) {
+  TriangleMesh mesh;
+  const int sides = 2 * rings;
+  for (int i = 0; i <= rings; ++i) {
+    for (int j = 0; j < sides; ++j) {
+      const double phi = 2.0 * EIGEN_PI * j / sides;
+      // The poles at one place each, to the bit.
+      const double theta = EIGEN_PI * i / rings, ring = i > 0 && i < rings ? std::sin(theta) : 0.0;
+      mesh.positions.push_back(radius * Eigen::Vector3d(ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)));
+    }
+  }
+  for (int i = 0; i < rings; ++i) {
+    for (int j = 0; j < sides; ++j) {
+      const int a = i * sides + j, b = i * sides + (j + 1) % sides;
+      if (i > 0) mesh.triangles.push_back({a, b, a + sides});
+      if (i < rings - 1) mesh.triangles.push_back({b, b + sides, a + sides});
+    }
+  }
+  return mesh;
+}
+
+/// The six sides of a box, two triangles each.
+inline TriangleMesh boxMesh(const Eigen::Vector3d& half) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    mesh.positions.emplace_back(k & 1 ? half.x() : -half.x(), k & 2 ? half.y() : -half.y(),
+                                k & 4 ? half.z() : -half.z());
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+/// The unit cube around the origin, of 6 x 4^3 tets: a fifth of its size is between it and the surface in it.
+inline TetMesh looseCage() {
+  TetMesh cage = latticeCage(4, 4, 4, kBodySize / 4);
+  for (Eigen::Vector3d& p : cage.nodes) p -= Eigen::Vector3d::Constant(kBodySize / 2);
+  return cage;
+}
+
+/// A body with surface contact in a world.
+struct TouchingBody {
+  TouchingBody(EmptyWorld& world, TriangleMesh surface, const btVector3& at, const SurfaceContactOptions& options = {},
+               const SoftBodyOptions& material = {})
+      : mesh(std::move(surface)) {
+    TetMesh cage = looseCage();
+    binding = SoftBodyBinding::make(cage, mesh).value();
+    for (Eigen::Vector3d& p : cage.nodes) p += toEigen(at);
+    body = added(world, cage, material);
+    Result<std::unique_ptr<SurfaceContact>> made =
+        SurfaceContact::add(world.deformable(), body->body(), *binding, mesh, options);
+    EXPECT_TRUE(made.ok()) << made.status().message;
+    contact = std::move(made).value();
+    EXPECT_TRUE(skin.bind(body->body(), binding).ok());
+  }
+
+  /// World space.
+  std::vector<Eigen::Vector3d> surface() {
+    skin.markMoved();
+    EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+      const btScalar* p = skin.positions()[v];
+      points.emplace_back(p[0], p[1], p[2]);
+    }
+    return points;
+  }
+  /// Least distance of the surface's vertices by a function of a point.
+  template <class Distance>
+  double gap(const Distance& distance) {
+    double least = HUGE_VAL;
+    for (const Eigen::Vector3d& p : surface()) least = std::min(least, static_cast<double>(distance(p)));
+    return least;
+  }
+  double height() {
+    return gap([](const Eigen::Vector3d& p) { return p.y(); });
+  }
+
+  TriangleMesh mesh;
+  std::shared_ptr<const SoftBodyBinding> binding;
+  std::unique_ptr<DeformableBody> body;
+  std::unique_ptr<SurfaceContact> contact;
+  SoftBodySkin skin;
+};
+
+/// A rigid body in a world, as long as it lives.
+class Obstacle {
+ public:
+  Obstacle(EmptyWorld& world, std::unique_ptr<btCollisionShape> shape, const btTransform& at, btScalar mass = 0)
+      : world_(world), shape_(std::move(shape)) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape_->calculateLocalInertia(mass, inertia);
+    body_ = std::make_unique<btRigidBody>(mass, nullptr, shape_.get(), inertia);
+    body_->setWorldTransform(at);
+    body_->setInterpolationWorldTransform(at);
+    body_->setFriction(1);
+    world.deformable().addRigidBody(body_.get());
+  }
+  ~Obstacle() { world_.deformable().removeRigidBody(body_.get()); }
+  Obstacle(const Obstacle&) = delete;
+  Obstacle& operator=(const Obstacle&) = delete;
+
+  btRigidBody& body() { return *body_; }
+  const btCollisionShape& shape() const { return *shape_; }
+
+ private:
+  EmptyWorld& world_;
+  std::unique_ptr<btCollisionShape> shape_;
+  std::unique_ptr<btRigidBody> body_;
+};
+
+inline btTransform placeAt(const btVector3& at, const btQuaternion& turned = btQuaternion::getIdentity()) {
+  return btTransform(turned, at);
+}
+
+/// Bullet's solver explicit and implicit, and ours.
+enum class Setting { Explicit, Implicit, OwnSolver };
+inline std::unique_ptr<EmptyWorld> worldOf(Setting setting) {
+  std::unique_ptr<EmptyWorld> world;
+  if (setting == Setting::OwnSolver) {
+    world = std::make_unique<TetskinWorld>();
+  } else {
+    world = std::make_unique<EmptyWorld>();
+  }
+  world->deformable().setImplicit(setting == Setting::Implicit);
+  return world;
+}
+
+}  // namespace tetskin::test

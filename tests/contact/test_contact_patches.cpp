@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "contact_test.h"
+
+#include <tetskin/contact/src/rigid/contact_patches.h>
+
+namespace tetskin::test {
+namespace {
+
+/// Where the points are at rest, or where they act.
+std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const std::vector<btScalar>& weights,
+                                      const TetMesh& cage) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ContactPatch& patch : patches.patches) {
+    for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
+      Eigen::Vector3d at = Eigen::Vector3d::Zero();
+      for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+        at += static_cast<double>(weights[patch.firstWeight + p * patch.nodeCount + n]) *
+              cage.nodes[static_cast<std::size_t>(patches.nodes[patch.firstNode + n])];
+      }
+      points.push_back(at);
+    }
+  }
+  return points;
+}
+
+double farthestFromAny(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
+  double farthest = 0.0;
+  for (const Eigen::Vector3d& p : from) {
+    double least = HUGE_VAL;
+    for (const Eigen::Vector3d& q : to) least = std::min(least, (p - q).norm());
+    farthest = std::max(farthest, least);
+  }
+  return farthest;
+}
+
+TEST(ContactPatches, HaveEachPlaceOfTheMeshOnce) {
+  const TetMesh cage = looseCage();
+  TriangleMesh mesh = ballMesh(10, 0.4);
+  const std::size_t places = mesh.vertexCount() - 2 * (20 - 1);  // the poles are 20 vertices each
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.0);
+  EXPECT_EQ(patches.pointCount, places);
+  const auto points = pointsOf(patches, patches.weights, cage);
+  EXPECT_LT(farthestFromAny(mesh.positions, points), 1e-6);
+  EXPECT_LT(farthestFromAny(points, mesh.positions), 1e-6);
+}
+
+TEST(ContactPatches, SampleTrianglesNoFartherApartThanTheSpacing) {
+  const TetMesh cage = looseCage();
+  const TriangleMesh mesh = boxMesh(Eigen::Vector3d(0.4, 0.3, 0.35));
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.05);
+  const auto points = pointsOf(patches, patches.weights, cage);
+  std::vector<Eigen::Vector3d> onSides;
+  for (double u = -0.4; u <= 0.4; u += 0.04) {
+    for (double v = -0.35; v <= 0.35; v += 0.035) onSides.emplace_back(u, 0.3, v);
+  }
+  EXPECT_LT(farthestFromAny(onSides, points), 0.05);
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Vector3d beyond = p.cwiseAbs() - Eigen::Vector3d(0.4, 0.3, 0.35);
+    EXPECT_NEAR(beyond.maxCoeff(), 0.0, 1e-6);  // on the surface
+  }
+}
+
+TEST(ContactPatches, ActOutsideOfTheCageAtTheClosestPoint) {
+  const TetMesh cage = looseCage();
+  const TriangleMesh mesh = ballMesh(10, 0.6);  // its caps stand out of the cube
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.0);
+  for (const btScalar w : patches.acting) EXPECT_GE(w, 0);
+  const auto points = pointsOf(patches, patches.weights, cage), acting = pointsOf(patches, patches.acting, cage);
+  int outside = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const Eigen::Vector3d clamped = points[p].cwiseMax(-0.5).cwiseMin(0.5);
+    EXPECT_LT((acting[p] - clamped).norm(), 1e-5);
+    outside += (points[p] - clamped).norm() > 1e-3;
+  }
+  EXPECT_GT(outside, 50);
+}
+
+TEST(ContactPatches, KeepWithinTheirSpread) {
+  const TetMesh cage = looseCage();
+  const TriangleMesh mesh = ballMesh(10, 0.6);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.1);
+  const auto points = pointsOf(patches, patches.weights, cage);
+  std::size_t at = 0, inClusters = 0;
+  for (const ContactPatch& patch : patches.patches) {
+    Box3 box;
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      box.extend(cage.nodes[static_cast<std::size_t>(patches.nodes[patch.firstNode + n])]);
+    }
+    for (std::uint32_t p = 0; p < patch.pointCount; ++p, ++at) {
+      const Eigen::Vector3d from = (points[at] - box.center()).cwiseAbs();
+      EXPECT_LE((from - static_cast<double>(patch.spread) * box.sizes() / 2).maxCoeff(), 1e-6);
+    }
+  }
+  for (const PatchCluster& cluster : patches.clusters) inClusters += cluster.patchCount;
+  EXPECT_EQ(inClusters, patches.patches.size());
+}
+
+}  // namespace
+}  // namespace tetskin::test
