@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/cage/cage_builder.h>
+#include <tetskin/contact/soft_contacts.h>
 
 #include <algorithm>
 #include <string>
@@ -108,9 +109,51 @@ void crowd(State& state, Force force) {
   state.counters["asleep"] = static_cast<double>(asleep);
 }
 
+/// Two bodies of 4,000 samples each that lie on each other, or far apart: a frame, with their contact or without.
+void softPair(State& state, std::size_t tets, double apart, bool touch) {
+  CageOptions cageOptions;
+  cageOptions.targetTets = tets;
+  TriangleMesh mesh = scenes::makeSerpent();
+  Cage cage = buildCage(mesh, cageOptions).value();
+  const scenes::Placement place = scenes::placementOf(boundingBox(cage.nodes));
+  cage = place.toWorld(cage);
+  place.toWorld(mesh.positions);
+  const auto shape = makeContactShape(cage, mesh).value();
+  scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
+  world.addBox({0, -2.0, 0}, {10, 1, 10});
+  for (int k = 0; k < 2; ++k) {
+    Cage placed = cage;
+    const Eigen::AngleAxisd turn(1.1 * k, Eigen::Vector3d(0.3, 1.0, 0.2).normalized());
+    for (Eigen::Vector3d& p : placed.nodes) p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
+    btSoftBody& body = world.add(placed, {});
+    body.setActivationState(DISABLE_DEACTIVATION);
+    if (touch) world.touchEachOther(body, shape);
+  }
+  constexpr int kSettled = 480;
+  for (int s = 0; s < kSettled; ++s) world.step(1.0 / 240.0);
+  for (auto _ : state) world.step(1.0 / 240.0);
+  state.counters["contacts"] = static_cast<double>(world.softContacts().size());
+  state.counters["tets"] = static_cast<double>(cage.tetCount());
+}
+
+void registerSoftPairs() {
+  for (const std::size_t tets : {503, 1004}) {
+    for (const bool apart : {false, true}) {
+      for (const bool touch : {false, true}) {
+        const std::string name = "Step/soft_pair/" + std::string(apart ? "apart" : "touching") +
+                                 (touch ? "/contact" : "/none") + "/tets:" + std::to_string(tets);
+        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
+          softPair(state, tets, apart ? 4.0 : 0.0, touch);
+        })->Unit(benchmark::kMicrosecond);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void registerStepCases() {
+  registerSoftPairs();
   const std::pair<const char*, Force> forces[] = {{"bullet_neo_hookean", Force::NeoHookean},
                                                   {"bullet_linear", Force::LinearElasticity},
                                                   {"tetskin_force", Force::ElasticForceOnly},

@@ -27,6 +27,9 @@ namespace tetskin::scenes {
   SCENE(Spin, "spin", 30, false, "100 turns a second")                                                      \
   SCENE(Teleport, "teleport", 30, false, "1,000 lengths away, and back")                                    \
   SCENE(Impact, "impact", 30, true, "hits the floor at 100 lengths a second")                               \
+  SCENE(SoftStack, "soft_stack", 60, true, "four bodies on top of each other, which touch")                 \
+  SCENE(SoftRemoved, "soft_removed", 60, true, "the same, and all but the lowest leave one by one")         \
+  SCENE(SoftSqueezed, "soft_squeezed", 60, false, "squeezed to half its height between two others")         \
   SCENE(Pull, "pull", 30, false, "held by one node, pulled away three lengths by another")                  \
   SCENE(HeavyBox, "heavy_box", 30, true, "a box of 1,000 times its mass falls on it")                       \
   SCENE(LightBox, "light_box", 30, true, "a box of a tenth of its mass falls on it")                        \

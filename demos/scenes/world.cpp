@@ -12,6 +12,7 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 
 #include "scenes/input_error.h"
@@ -74,6 +75,7 @@ void World::makeDeformable() {
 }
 
 World::~World() {
+  softContacts_.reset();
   contacts_.clear();
   deformableBodies_.clear();
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
@@ -89,6 +91,20 @@ void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, con
   auto made = SurfaceContact::add(*deformable_, body, binding, mesh, options);
   require(made.status());
   contacts_.push_back(std::move(made).value());
+}
+
+void World::touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape) {
+  if (!deformable_) throw InputError("contact of soft bodies at their surfaces needs the deformable world");
+  if (!softContacts_) {
+    auto made = SoftContacts::add(*deformable_);
+    require(made.status());
+    softContacts_ = std::move(made).value();
+  }
+  require(softContacts_->include(body, std::move(shape)));
+}
+
+std::vector<SoftContact> World::softContacts() const {
+  return softContacts_ ? softContacts_->contacts() : std::vector<SoftContact>{};
 }
 
 btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {

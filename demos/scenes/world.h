@@ -25,7 +25,10 @@ class btRigidBody;
 namespace tetskin {
 class DeformableBody;
 class ParallelFor;
+class ContactShape;
+class SoftContacts;
 class SurfaceContact;
+struct SoftContact;
 }  // namespace tetskin
 
 namespace tetskin::scenes {
@@ -63,6 +66,12 @@ class World {
   /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; in the deformable world. Throws
   /// InputError if they do not fit.
   void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
+
+  /// Soft bodies for which this was called meet each other at their visual surfaces, in the deformable world. Throws
+  /// InputError if body and shape do not fit.
+  void touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape);
+  /// Of the last substep; none where nothing was to touch.
+  std::vector<SoftContact> softContacts() const;
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
   void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
@@ -106,6 +115,7 @@ class World {
   std::vector<std::unique_ptr<btSoftBody>> bodies_;
   std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
   std::vector<std::unique_ptr<SurfaceContact>> contacts_;
+  std::unique_ptr<SoftContacts> softContacts_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.

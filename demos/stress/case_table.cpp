@@ -375,6 +375,21 @@ void addContacts(Cases& cases) {
   }
 }
 
+/// Bodies that meet each other, with each solver.
+void addSoftContacts(Cases& cases) {
+  const Method methods[] = {{Force::Elastic, false}, {Force::ElasticForceOnly, false}, {Force::ElasticForceOnly, true}};
+  for (const Method& method : methods) {
+    for (const char* scene : {"soft_stack", "soft_removed", "soft_squeezed"}) {
+      StressCase made = named("soft_contact", method, {scene});
+      if (method.force == Force::ElasticForceOnly) made.name += method.implicit ? "/implicit" : "/explicit";
+      made.scene = scene;
+      made.frames = 120;
+      made.quick = !method.implicit;
+      cases.push_back(made);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<StressCase> stressCases() {
@@ -392,6 +407,7 @@ std::vector<StressCase> stressCases() {
   addSplitEvents(cases);
   addSurfaces(cases);
   addContacts(cases);
+  addSoftContacts(cases);
   return cases;
 }
 

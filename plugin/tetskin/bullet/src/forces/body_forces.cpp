@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/elastic_force.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
@@ -33,7 +34,7 @@ bool isNoForce(const btDeformableLagrangianForce& force) {
 
 bool needsDeformation(btDeformableLagrangianForce& force) {
   if (isNoForce(force) || dynamic_cast<ElasticForce*>(&force)) return false;
-  if (dynamic_cast<btDeformableGravityForce*>(&force)) return false;
+  if (dynamic_cast<btDeformableGravityForce*>(&force) || dynamic_cast<CouplingForce*>(&force)) return false;
   const btDeformableLagrangianForceType type = force.getForceType();
   return type != BT_GRAVITY_FORCE && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;
 }

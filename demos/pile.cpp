@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Soft bodies of three models fall into a bowl, some of them across thin poles, and lie on each other as drawn.
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/contact/soft_contacts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "scenes/command_line.h"
+#include "scenes/frame_writer.h"
+#include "scenes/input_error.h"
+#include "scenes/placement.h"
+#include "scenes/progress.h"
+#include "scenes/summary.h"
+#include "scenes/timer.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+using Eigen::Vector3d;
+
+struct PileOptions {
+  int bodies = 10;
+  std::size_t tets = 500, triangles = 20000;  ///< of each model
+  Contact contact = Contact::Surface;
+  OutputOptions output{"out/pile", "", 600, 1, false};
+};
+
+constexpr double kFrame = 1.0 / 60.0;
+constexpr std::array<BuiltIn, 3> kModels = {BuiltIn::Serpent, BuiltIn::Hand, BuiltIn::Bar};
+/// World lengths; the largest side of each body is kSize.
+constexpr double kApart = 1.1 * kSize, kFloorY = 0.0, kSide = 1.1 * kSize, kPole = 0.02 * kSize;
+/// Farther from the bowl than any body can be thrown: it has exploded.
+constexpr double kFarthest = 100.0 * kSize;
+
+/// A model in the world's size about the origin, and what all bodies of it share.
+struct PileModel {
+  explicit PileModel(const ModelOptions& options) : model(loadModel(options)) {
+    const Placement place = placementOf(boundingBox(model.cage.nodes));
+    model.cage = place.toWorld(model.cage);
+    place.toWorld(model.mesh.positions);
+    auto made = makeContactShape(model.cage, model.mesh);
+    require(made.status());
+    shape = made.value();
+    auto bound = SoftBodyBinding::make(model.cage, model.mesh);
+    require(bound.status());
+    binding = bound.value();
+  }
+
+  Model model;
+  std::shared_ptr<const ContactShape> shape;
+  std::shared_ptr<const SoftBodyBinding> binding;
+};
+
+/// A floor within four walls, two of which lean outwards, and two poles across it.
+void addBowl(World& world) {
+  const double height = kSize, thick = 0.25 * kSize;
+  world.addBox({0, kFloorY - thick, 0}, {4 * kSide, thick, 4 * kSide});
+  for (const double side : {-1.0, 1.0}) {
+    world.addBox({side * (kSide + thick + 0.35 * height), 0.5 * height, 0}, {thick, height, kSide}, -side * 0.45);
+    world.addBox({0, 0.5 * height, side * (kSide + thick)}, {2 * kSide, height, thick});
+    world.addBox({side * 0.45 * kSize, 1.6 * kSize, 0}, {kPole, kPole, kSide});
+  }
+}
+
+Cage placedAt(Cage cage, int k) {
+  const Eigen::AngleAxisd turn(1.1 * k, Vector3d(0.3, 1.0, 0.2).normalized());
+  const Vector3d at(0.12 * kSize * (k % 2 ? 1 : -1), kFloorY + 2.4 * kSize + kApart * k, 0.1 * kSize * (k / 2 % 2));
+  for (Vector3d& p : cage.nodes) p = turn * p + at;
+  return cage;
+}
+
+class Pile {
+ public:
+  explicit Pile(const PileOptions& options) : world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)) {
+    for (const BuiltIn builtIn : kModels) {
+      ModelOptions of;
+      of.builtIn = builtIn;
+      of.tets = options.tets;
+      of.triangles = options.triangles;
+      models_.emplace_back(of);
+    }
+    addBowl(world_);
+    for (int k = 0; k < options.bodies; ++k)
+      add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options.contact);
+  }
+
+  const TriangleMesh& mesh() const { return mesh_; }
+  const TriangleMesh& obstacles() const { return world_.obstacles(); }
+  /// False if a body has exploded.
+  bool step();
+  /// Of all bodies, one after the other.
+  std::vector<Vector3d> surface() const;
+  /// Of the deepest contact between bodies, in sizes; 0 or below.
+  double deepest() const;
+  std::size_t contactCount() const { return world_.softContacts().size(); }
+  /// Root of the mean square over all nodes, in sizes a second.
+  double nodeSpeed() const;
+
+ private:
+  void add(const PileModel& of, int k, Contact contact);
+
+  World world_;
+  std::deque<PileModel> models_;
+  std::vector<btSoftBody*> bodies_;
+  std::deque<SoftBodySkin> skins_;
+  TriangleMesh mesh_;
+};
+
+void Pile::add(const PileModel& of, int k, Contact contact) {
+  btSoftBody& body = world_.add(placedAt(of.model.cage, k), {});
+  if (contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
+  world_.touchEachOther(body, of.shape);
+  bodies_.push_back(&body);
+  require(skins_.emplace_back().bind(body, of.binding));
+  const int first = static_cast<int>(mesh_.vertexCount());
+  mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
+  for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
+}
+
+bool Pile::step() {
+  constexpr int kSubsteps = 4;
+  for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
+  return std::all_of(skins_.begin(), skins_.end(), [](SoftBodySkin& skin) {
+    const UpdateStatus status = skin.update();
+    const bool followed = status == UpdateStatus::Updated || status == UpdateStatus::Asleep;
+    return followed && largestCoordinate(skin.bounds()) < kFarthest;
+  });
+}
+
+std::vector<Vector3d> Pile::surface() const {
+  std::vector<Vector3d> points;
+  for (const SoftBodySkin& skin : skins_) {
+    for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+      const btScalar* p = skin.positions()[v];
+      points.emplace_back(p[0], p[1], p[2]);
+    }
+  }
+  return points;
+}
+
+double Pile::deepest() const {
+  double deepest = 0.0;
+  for (const SoftContact& c : world_.softContacts()) deepest = std::min(deepest, static_cast<double>(c.distance));
+  return deepest / kSize;
+}
+
+double Pile::nodeSpeed() const {
+  double squared = 0.0, count = 0.0;
+  for (const btSoftBody* body : bodies_) {
+    for (int n = 0; n < body->m_nodes.size(); ++n) squared += static_cast<double>(body->m_nodes[n].m_v.length2());
+    count += body->m_nodes.size();
+  }
+  return std::sqrt(squared / count) / kSize;
+}
+
+int run(const PileOptions& options) {
+  Pile pile(options);
+  const OutputOptions& output = options.output;
+  FrameWriter writer({output.out, output.frames, output.every, false}, ObjLayout::fromMesh(pile.mesh()));
+  const std::string obstacles = (std::filesystem::path(output.out) / "obstacles.obj").string();
+  require(ObjLayout::fromMesh(pile.obstacles()).writeTo(obstacles, viewOf(pile.obstacles().positions)));
+  Progress progress("simulating", output.frames, output.quiet);
+  double milliseconds = 0.0, deepest = 0.0;
+  bool finite = true;
+  for (int frame = 0; frame < output.frames && finite; ++frame) {
+    const WallTimer timer;
+    finite = frame == 0 || pile.step();
+    milliseconds += timer.milliseconds();
+    deepest = std::min(deepest, pile.deepest());
+    const std::vector<Vector3d> surface = pile.surface();
+    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
+    progress.show(frame + 1);
+  }
+  nlohmann::ordered_json json;
+  json["bodies"] = options.bodies;
+  json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
+  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
+  json["deepest_contact"] = deepest;
+  json["deepest_contact_at_end"] = pile.deepest();
+  json["contacts_at_end"] = pile.contactCount();
+  json["node_speed_at_end"] = pile.nodeSpeed();
+  json["finite"] = finite;
+  writeJson(json, summaryPath(output));
+  if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (finite) return kDone;
+  std::fprintf(stderr, "tetskin_pile: the simulation exploded\n");
+  return kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  PileOptions options;
+  CommandLine line("Soft bodies of three models fall into a bowl, some across thin poles, and lie on each other.");
+  line.addCount("--bodies", options.bodies, "How many bodies", 100);
+  line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
+  line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);
+  line.addContactOption(options.contact);
+  line.addOutputOptions(options.output);
+  return line.run(argc, argv, [&] { return run(options); });
+}

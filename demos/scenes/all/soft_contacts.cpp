@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Soft bodies that meet each other at the surfaces of their cages. In the classic world they pass through each other.
+#include <btBulletDynamicsCommon.h>
+#include <tetskin/contact/soft_contacts.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/input_error.h"
+#include "scenes/table.h"
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr int kPiled = 4;
+constexpr double kGap = 0.05;      ///< between bodies at the start, in sizes
+constexpr double kSqueezed = 0.5;  ///< of its height is left to the body between two others
+constexpr int kSamples = 1500, kCells = 40;
+
+TriangleMesh surfaceOf(const Cage& cage) {
+  TriangleMesh mesh;
+  mesh.positions = cage.nodes;
+  mesh.triangles = boundaryFaces(cage);
+  return mesh;
+}
+
+void meetEachOther(Scene& scene, const Cage& cage) {
+  if (scene.options().force == Force::MassSpring) return;
+  ContactShapeOptions options;
+  options.samples = kSamples;
+  options.cells = kCells;
+  const auto shape = makeContactShape(static_cast<const TetMesh&>(cage), surfaceOf(cage), options);
+  require(shape.status());
+  for (std::size_t b = 0; b < scene.bodyCount(); ++b) scene.world().touchEachOther(scene.body(b), shape.value());
+}
+
+double pitchOf(const Cage& cage, const SceneOptions& options) {
+  return boundingBox(cage.nodes).sizes().y() + kGap * options.size;
+}
+
+/// On top of each other, each a little aside.
+std::unique_ptr<Scene> makeStack(const Cage& cage, const SceneOptions& options) {
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  for (int k = 0; k < kPiled; ++k) {
+    scene->add(cage, {}, {0.1 * options.size * (k % 2), k * pitchOf(cage, options), 0.05 * options.size * (k / 2)});
+  }
+  scene->addFloor(kGap);
+  meetEachOther(*scene, cage);
+  return scene;
+}
+
+}  // namespace
+
+std::unique_ptr<Scene> makeSoftStack(const Cage& cage, const SceneOptions& options) {
+  return makeStack(cage, options);
+}
+
+std::unique_ptr<Scene> makeSoftRemoved(const Cage& cage, const SceneOptions& options) {
+  auto scene = makeStack(cage, options);
+  Scene* const made = scene.get();
+  const int frames = std::max(options.frames, kPiled);
+  scene->beforeFrame = [made, frames](int frame, const Moved&) {
+    for (int k = 1; k < kPiled; ++k) {
+      btSoftBody& body = made->body(static_cast<std::size_t>(k));
+      if (frame == frames * (k + 1) / (kPiled + 1)) made->world().bullet().removeCollisionObject(&body);
+    }
+  };
+  return scene;
+}
+
+std::unique_ptr<Scene> makeSoftSqueezed(const Cage& cage, const SceneOptions& options) {
+  auto scene = std::make_unique<Scene>(options, 0.0);
+  const double pitch = pitchOf(cage, options), way = kSqueezed * boundingBox(cage.nodes).sizes().y();
+  scene->add(cage);
+  const auto everywhere = [](const Eigen::Vector3d&) { return true; };
+  for (const double side : {-1.0, 1.0}) scene->add(cage, everywhere, {0, side * pitch, 0});
+  meetEachOther(*scene, cage);
+  Scene* const made = scene.get();
+  const int frames = std::max(options.frames, 1);
+  // There and back, each of the two by half of what the body gives way.
+  scene->beforeSubstep = [made, way, frames](double frame, double seconds) {
+    constexpr double kPi = 3.14159265358979323846;
+    const double speed = 0.5 * way * kPi * std::sin(2.0 * kPi * frame / frames) * kFrameRate / frames;
+    for (std::size_t b = 1; b < made->bodyCount(); ++b) {
+      for (int n = 0; n < made->body(b).m_nodes.size(); ++n) {
+        btSoftBody::Node& node = made->body(b).m_nodes[n];
+        const Eigen::Vector3d step(0, (b == 1 ? 1.0 : -1.0) * speed * seconds, 0);
+        moveHeldNode(node, toEigen(node.m_x) + step, seconds);
+      }
+    }
+  };
+  return scene;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/contact_body.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::contact_detail {
+
+void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
+  const btVector3 r = p - origin;
+  for (int k = 0; k < 3; ++k) weights[k] = rows[k].dot(r);
+  weights[3] = 1 - weights[0] - weights[1] - weights[2];
+}
+
+bool ContactBody::fits() const {
+  const auto tets = static_cast<std::size_t>(body->m_tetras.size());
+  // In a step, elastic forces keep them from Bullet for a while.
+  const bool hasTets = tets == data().tets.size() || tets == 0;
+  return static_cast<std::size_t>(body->m_nodes.size()) == data().nodes.size() && hasTets;
+}
+
+void ContactBody::read() {
+  assert(fits());
+  fitted_ = false;
+  awake = body->isActive();
+  isDeformed_.assign(data().tets.size(), 0);
+  isBoxed_.assign(data().tets.size(), 0);
+  isCarried_.assign(data().runs.size(), 0);
+  box = {};
+  positions.resize(data().nodes.size());
+  btVector3 sum(0, 0, 0);
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    positions[n] = body->m_nodes[static_cast<int>(n)].m_x;
+    box.extend(positions[n]);
+    sum += positions[n];
+  }
+  const btScalar size = box.diagonal();
+  // Comparisons pass over what is not a number; sums do not.
+  readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(kLargestCoordinate);
+  measureTravel(sum / static_cast<btScalar>(positions.size()));
+}
+
+void ContactBody::measureTravel(const btVector3& newMiddle) {
+  btScalar squared = 0;
+  read_.resize(positions.size(), newMiddle);
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    squared = std::max(squared, (positions[n] - read_[n] - (newMiddle - middle)).length2());
+  }
+  travelled += std::sqrt(static_cast<double>(squared));
+  middle = newMiddle;
+  read_ = positions;
+}
+
+void ContactBody::writePositions() {
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
+    node.m_x = node.m_q = positions[n];
+  }
+}
+
+const ContactBox& ContactBody::carry(int run) {
+  const ShapeData& of = data();
+  const auto r = static_cast<std::size_t>(run);
+  runBoxes_.resize(of.runs.size());
+  for (auto& coordinates : samples) coordinates.resize(of.samples.size());
+  if (!isCarried_[r]) carryRun(of.runs[r], runBoxes_[r]);
+  isCarried_[r] = 1;
+  return runBoxes_[r];
+}
+
+/// Where its samples are, and a box around them: tighter than the tet's.
+void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
+  const ShapeData& of = data();
+  const Tet& n = of.tets[static_cast<std::size_t>(run.tet)];
+  around = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    btScalar at[4];
+    for (std::size_t k = 0; k < 4; ++k) at[k] = positions[static_cast<std::size_t>(n[k])][axis];
+    btScalar* out = samples[axis].data();
+    btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
+    for (auto s = static_cast<std::size_t>(run.first); s < static_cast<std::size_t>(run.last); ++s) {
+      out[s] =
+          of.weights[0][s] * at[0] + of.weights[1][s] * at[1] + of.weights[2][s] * at[2] + of.weights[3][s] * at[3];
+      low = std::min(low, out[s]);
+      high = std::max(high, out[s]);
+    }
+    around.low[axis] = low;
+    around.high[axis] = high;
+  }
+}
+
+ContactBox ContactBody::filledBox(int tet) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  const FilledPart& part = data().filled[static_cast<std::size_t>(tet)];
+  btVector3 base(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) base += part.least[k] * positions[static_cast<std::size_t>(n[k])];
+  ContactBox around;
+  for (const int node : n) around.extend(base + part.left * positions[static_cast<std::size_t>(node)]);
+  return around;
+}
+
+void ContactBody::fit() {
+  if (fitted_) return;
+  fitted_ = true;
+  const ShapeData& of = data();
+  for (std::size_t t = 0; t < of.tets.size(); ++t) around(static_cast<int>(t));
+  for (std::size_t r = 0; r < of.runs.size(); ++r) carry(static_cast<int>(r));
+  runTree.fit(of.runTree, runBoxes_);
+  tetTree.fit(of.tetTree, boxes_);
+}
+
+const ContactBox& ContactBody::around(int tet) {
+  const auto t = static_cast<std::size_t>(tet);
+  boxes_.resize(data().tets.size());
+  if (!isBoxed_[t]) boxes_[t] = filledBox(tet);
+  isBoxed_[t] = 1;
+  return boxes_[t];
+}
+
+const DeformedTet& ContactBody::deformed(int tet) {
+  deformed_.resize(data().tets.size());
+  DeformedTet& of = deformed_[static_cast<std::size_t>(tet)];
+  if (isDeformed_[static_cast<std::size_t>(tet)]) return of;
+  isDeformed_[static_cast<std::size_t>(tet)] = 1;
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  of.origin = positions[static_cast<std::size_t>(n[3])];
+  btVector3 edge[3];
+  for (int k = 0; k < 3; ++k) edge[k] = positions[static_cast<std::size_t>(n[static_cast<std::size_t>(k)])] - of.origin;
+  const btVector3 normal = edge[1].cross(edge[2]);
+  const btScalar volume = edge[0].dot(normal);
+  const btScalar size = std::max({edge[0].length(), edge[1].length(), edge[2].length()});
+  of.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
+  if (of.flat) return of;
+  of.rows[0] = normal / volume;
+  of.rows[1] = edge[2].cross(edge[0]) / volume;
+  of.rows[2] = edge[0].cross(edge[1]) / volume;
+  return of;
+}
+
+btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
+  btVector3 v(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) v += weights[k] * body->m_nodes[n[k]].m_v;
+  return v;
+}
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/shape_data.h>
+#include <tetskin/contact/src/soft/surface_samples.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace tetskin {
+namespace contact_detail {
+namespace {
+
+/// How far over a triangle it is looked whether that is inside another part, in sides of the mesh's box.
+constexpr double kOverTriangle = 1e-4;
+/// Parts of a tet along each weight: 64 cells.
+constexpr int kCellsAlong = 4;
+
+Status checkOptions(const ContactShapeOptions& options) {
+  if (options.samples < 1 || options.samples > 10'000'000) {
+    return {StatusCode::InvalidOption, "a contact shape takes 1 to 10,000,000 samples"};
+  }
+  if (options.cells < 4 || options.cells > 1024) {
+    return {StatusCode::InvalidOption, "a contact shape's grid takes 4 to 1,024 cells"};
+  }
+  return {};
+}
+
+Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options) {
+  if (Status status = checkOptions(options); !status.ok()) return status;
+  if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
+  if (mesh.triangles.empty()) return {StatusCode::Empty, "the mesh has no triangles, and so no surface to touch"};
+  if (Status status = usable(cage, checkForUse(cage)); !status.ok()) return status;
+  if (Status status = cage.check(); !status.ok()) return status;
+  if (!cage.vertexTets.empty() && cage.vertexTets.size() != mesh.vertexCount()) {
+    return {StatusCode::SizeMismatch, "the cage was built for a mesh of " + std::to_string(cage.vertexTets.size()) +
+                                          " vertices, not for one of " + std::to_string(mesh.vertexCount())};
+  }
+  return {};
+}
+
+/// Triangles of which at least one corner, or the middle, is not within the solid that all of them bound.
+std::vector<int> visibleTriangles(const TriangleMesh& mesh, const TriangleTree& solid) {
+  const double over = kOverTriangle * boundingBox(mesh.positions).sizes().maxCoeff();
+  std::vector<int> visible;
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const Eigen::Vector3d &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+    const Eigen::Vector3d normal = (q - p).cross(r - p);
+    if (!(normal.norm() > 0.0)) continue;
+    const Eigen::Vector3d step = over * normal.normalized();
+    const Eigen::Vector3d middle = (p + q + r) / 3.0;
+    const auto isOut = [&](const Eigen::Vector3d& at) { return solid.windingNumber(at + step) < 0.5; };
+    if (isOut(middle) || isOut(p) || isOut(q) || isOut(r)) visible.push_back(static_cast<int>(t));
+  }
+  return visible;
+}
+
+/// By sample.
+std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samples, Status& status) {
+  std::vector<int> tets(samples.size());
+  if (!cage.vertexTets.empty()) {
+    const CageLocator locator(cage);
+    std::transform(samples.begin(), samples.end(), tets.begin(), [&](const SurfaceSample& s) {
+      return s.vertex >= 0 ? cage.vertexTets[static_cast<std::size_t>(s.vertex)] : locator.locate(s.point, s.corners);
+    });
+    return tets;
+  }
+  std::vector<Eigen::Vector3d> points;
+  for (const SurfaceSample& s : samples) points.push_back(s.point);
+  const Result<Embedding> embedded = embed(static_cast<const TetMesh&>(cage), viewOf(points));
+  status = embedded.status();
+  if (!status.ok()) return tets;
+  const std::vector<VertexBinding> bindings = embedded.value().bindings();
+  std::transform(bindings.begin(), bindings.end(), tets.begin(), [](const VertexBinding& b) { return b.tet; });
+  return tets;
+}
+
+CarriedSample carriedBy(const TetMesh& cage, int tet, const Eigen::Vector3d& point) {
+  CarriedSample sample;
+  sample.rest = toBullet(point);
+  const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
+  const BarycentricMap map(corners);
+  const Eigen::Vector4d weights = map(point);
+  const Eigen::Vector4d acting = map(closestPointInTet(point, corners, weights)).cwiseMax(0.0);
+  int main = 0;
+  acting.maxCoeff(&main);
+  for (int k = 0; k < 4; ++k) {
+    sample.weights[k] = static_cast<btScalar>(weights[k]);
+    sample.acting[k] = static_cast<btScalar>(acting[k] / acting.sum());
+  }
+  sample.mainNode = cage.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(main)];
+  return sample;
+}
+
+/// Samples tet by tet; those of flat tets, which nothing is known of, are left out.
+void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, const std::vector<int>& tets,
+              ShapeData& data) {
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tets[a] < tets[b]; });
+  for (const std::size_t s : order) {
+    if (isFlat(cornersOf(cage, cage.tets[static_cast<std::size_t>(tets[s])]))) continue;
+    const int place = static_cast<int>(data.samples.size());
+    if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], place, place});
+    data.samples.push_back(carriedBy(cage, tets[s], samples[s].point));
+    data.runs.back().last = place + 1;
+    for (int k = 0; k < 4; ++k) data.weights[k].push_back(data.samples.back().weights[k]);
+  }
+}
+
+ContactBox restBox(const ShapeData& data, int tet) {
+  ContactBox box;
+  for (const int n : data.tets[static_cast<std::size_t>(tet)]) box.extend(data.nodes[static_cast<std::size_t>(n)]);
+  return box;
+}
+
+/// From points of the tet, so close that the distance cannot change by much between them.
+FilledPart filledPart(const ShapeData& data, const Tet& nodes, btScalar size) {
+  const int along = 2 + static_cast<int>(size / data.grid.spacing());
+  const btScalar step = 1 / static_cast<btScalar>(along);
+  const btScalar reach = kReachCubes * data.grid.spacing() + size * step;
+  FilledPart part;
+  std::fill(part.least, part.least + 4, btScalar(1));
+  for (int i = 0; i <= along; ++i) {
+    for (int j = 0; i + j <= along; ++j) {
+      for (int k = 0; i + j + k <= along; ++k) {
+        const btScalar w[4] = {i * step, j * step, k * step, (along - i - j - k) * step};
+        btVector3 p(0, 0, 0);
+        for (std::size_t n = 0; n < 4; ++n) p += w[n] * data.nodes[static_cast<std::size_t>(nodes[n])];
+        GridDistance known;
+        if (data.grid.at(p, known) && known.distance > reach) continue;
+        for (int n = 0; n < 4; ++n) part.least[n] = std::min(part.least[n], std::max(w[n] - step, btScalar(0)));
+      }
+    }
+  }
+  part.left = 1 - part.least[0] - part.least[1] - part.least[2] - part.least[3];
+  return part;
+}
+
+void makeTrees(const TetMesh& cage, ShapeData& data) {
+  std::vector<ContactBox> tetBoxes, runBoxes;
+  std::vector<int> filled, runs(data.runs.size());
+  for (std::size_t t = 0; t < data.tets.size(); ++t) {
+    tetBoxes.push_back(restBox(data, static_cast<int>(t)));
+    const Tet& n = data.tets[t];
+    data.middles.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
+    const TetCorners corners = cornersOf(cage, cage.tets[t]);
+    data.filled.push_back(filledPart(data, n, static_cast<btScalar>(tetSize(corners))));
+    if (!isFlat(corners) && data.filled.back().left > 0) filled.push_back(static_cast<int>(t));
+  }
+  for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
+  std::iota(runs.begin(), runs.end(), 0);
+  data.runTree = BoxTree(std::move(runs), runBoxes);
+  data.tetTree = BoxTree(std::move(filled), tetBoxes);
+}
+
+/// The numbers of tets that are at one place with others.
+std::vector<int> copiedTets(const Cage& cage) {
+  std::map<int, std::vector<int>> atPlace;
+  for (std::size_t t = 0; t < cage.latticeTets.size(); ++t) atPlace[cage.latticeTets[t]].push_back(static_cast<int>(t));
+  std::vector<int> copied;
+  for (const auto& [place, tets] : atPlace) {
+    if (tets.size() > 1) copied.insert(copied.end(), tets.begin(), tets.end());
+  }
+  return copied;
+}
+
+/// A point of a cell: `along` from 0 to 1 in each direction.
+Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Vector3d& along) {
+  const Eigen::Vector3d low(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong);
+  Eigen::Vector3d w = (low + along) / kCellsAlong;
+  if (w.sum() > 1.0) w /= w.sum();
+  return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + (1.0 - w.sum()) * corners[3];
+}
+
+/// The cells of a tet in some point of which the nearest triangle hangs together with the tet.
+CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator, const TriangleMesh& mesh,
+                          const TriangleTree& surface) {
+  CarriedCells cells{0};
+  const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
+  for (int cell = 0; cell < kCellsAlong * kCellsAlong * kCellsAlong; ++cell) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d along(corner & 1 ? 0.9 : 0.1, corner & 2 ? 0.9 : 0.1, corner & 4 ? 0.9 : 0.1);
+      const Eigen::Vector3d p = pointOfCell(corners, cell, along);
+      const int triangle = surface.nearest(p).triangle;
+      if (locator.locate(p, mesh.triangles[static_cast<std::size_t>(triangle)]) != tet) continue;
+      cells.bits |= std::uint64_t{1} << cell;
+      break;
+    }
+  }
+  return cells;
+}
+
+void findCopies(const Cage& cage, const TriangleMesh& mesh, const TriangleTree& surface, ShapeData& data) {
+  if (cage.vertexTets.empty() || !cage.split()) return;
+  const CageLocator locator(cage);
+  data.carried.assign(cage.tetCount(), {});
+  for (const int tet : copiedTets(cage)) {
+    data.carried[static_cast<std::size_t>(tet)] = carriedCells(cage, tet, locator, mesh, surface);
+  }
+}
+
+}  // namespace
+
+int CarriedCells::cellOf(const btScalar weights[4]) {
+  int cell = 0;
+  for (int k = 2; k >= 0; --k) {
+    const int along = static_cast<int>(weights[k] * kCellsAlong);
+    cell = kCellsAlong * cell + std::min(std::max(along, 0), kCellsAlong - 1);
+  }
+  return cell;
+}
+
+}  // namespace contact_detail
+
+using contact_detail::ShapeData;
+
+ContactShape::ContactShape(std::unique_ptr<const ShapeData> data) : data_(std::move(data)) {}
+ContactShape::~ContactShape() = default;
+
+std::size_t ContactShape::nodeCount() const {
+  return data_->nodes.size();
+}
+std::size_t ContactShape::tetCount() const {
+  return data_->tets.size();
+}
+std::size_t ContactShape::sampleCount() const {
+  return data_->samples.size();
+}
+
+Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, const TriangleMesh& mesh,
+                                                             const ContactShapeOptions& options) {
+  using namespace contact_detail;
+  if (Status status = checkInput(cage, mesh, options); !status.ok()) return status;
+  const TriangleTree solid(mesh);
+  const std::vector<int> visible = visibleTriangles(mesh, solid);
+  const TriangleTree surface(mesh, visible);
+  auto data = std::make_unique<ShapeData>();
+  if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.nodes), options.cells);
+  if (!data->grid.hasInside()) {
+    return Status{StatusCode::Degenerate,
+                  "the mesh encloses nothing that the grid would see; close it, or give the shape more cells"};
+  }
+  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.samples);
+  Status status;
+  const std::vector<int> tets = tetsOf(cage, samples, status);
+  if (!status.ok()) return status;
+  for (const Eigen::Vector3d& p : cage.nodes) data->nodes.push_back(toBullet(p));
+  data->tets = cage.tets;
+  data->edge = static_cast<btScalar>(meanEdge(cage));
+  makeRuns(cage, samples, tets, *data);
+  makeTrees(cage, *data);
+  findCopies(cage, mesh, surface, *data);
+  return std::shared_ptr<const ContactShape>(std::make_shared<ContactShape>(std::move(data)));
+}
+
+}  // namespace tetskin

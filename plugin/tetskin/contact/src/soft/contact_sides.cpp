@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/contact_sides.h>
+
+#include <algorithm>
+
+namespace tetskin::contact_detail {
+namespace {
+
+/// Cosine from which two normals are of one side: edges may be rounded while a sample slides over them.
+constexpr btScalar kSameSide = btScalar(0.5);
+/// Length of a gradient below which it has no direction: on the middle of a thin part.
+constexpr btScalar kNoDirection = btScalar(0.1);
+/// A side follows its sample along the surface by so many projections.
+constexpr int kProjections = 2;
+/// Steps back along its motion in which the way is looked for that a sample has come.
+constexpr int kStepsBack = 4;
+/// A sample is deeper in a part than grid's cubes can be wrong by: so many of them.
+constexpr btScalar kDeepCubes = 2;
+
+bool unitNormal(const GridDistance& at, btVector3& normal) {
+  const btScalar length = at.gradient.length();
+  if (!(length > kNoDirection)) return false;
+  normal = at.gradient / length;
+  return true;
+}
+
+/// The surface's point nearest to one near it, and its normal there.
+bool project(const DistanceGrid& grid, const btVector3& near, ContactSide& side) {
+  GridDistance at;
+  btVector3 normal;
+  if (!grid.at(near, at) || !unitNormal(at, normal)) return false;
+  side.point = near - at.distance * normal;
+  side.normal = normal;
+  return true;
+}
+
+/// Where the side is that a sample has come through, now that the sample has moved on.
+ContactSide followed(const DistanceGrid& grid, const btVector3& rest, const ContactSide& before) {
+  ContactSide side = before;
+  for (int k = 0; k < kProjections; ++k) {
+    const btVector3 way = rest - side.point;
+    ContactSide next = side;
+    if (!project(grid, side.point + way - way.dot(side.normal) * side.normal, next)) break;
+    if (next.normal.dot(side.normal) < kSameSide) break;  // over an edge, or onto another part
+    side = next;
+  }
+  return side;
+}
+
+/// Of a sample that is seen for the first time when it is deep already, and on its way out: it has come from behind.
+bool entered(const DistanceGrid& grid, const btVector3& rest, const btVector3& motion, ContactSide& side) {
+  for (int k = 1; k <= kStepsBack; ++k) {
+    GridDistance at;
+    const btVector3 back = rest - static_cast<btScalar>(k) * motion;
+    if (!grid.at(back, at)) return false;
+    if (at.distance >= 0) return project(grid, back, side);
+  }
+  return false;
+}
+
+}  // namespace
+
+void ContactSides::beginStep() {
+  before_.swap(now_);
+  now_.clear();
+  next_ = 0;
+}
+
+const ContactSide* ContactSides::find(int sample, const btVector3& rest, btScalar within) {
+  while (next_ < before_.size() && before_[next_].sample < sample) ++next_;
+  const ContactSide* nearest = nullptr;
+  btScalar least = within * within;
+  for (std::size_t k = next_; k < before_.size() && before_[k].sample == sample; ++k) {
+    const btScalar squared = (before_[k].point - rest).length2();
+    if (squared < least) nearest = &before_[k];
+    least = std::min(least, squared);
+  }
+  return nearest;
+}
+
+void ContactSides::clear() {
+  before_.clear();
+  now_.clear();
+  next_ = 0;
+}
+
+bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistance& nearest, const btVector3& motion,
+              const ContactSide* before, SideDistance& result) {
+  btVector3 normal(0, 0, 0);
+  const bool known = unitNormal(nearest, normal);
+  result.distance = nearest.distance;
+  result.side.point = rest - nearest.distance * normal;
+  result.side.normal = normal;
+  if (!before) {
+    const bool leaving = known && motion.dot(normal) > 0;
+    if (nearest.distance > -kDeepCubes * grid.spacing() || (known && !leaving)) return known;
+    if (!entered(grid, rest, motion, result.side)) return known;
+    result.distance = (rest - result.side.point).dot(result.side.normal);
+    return true;
+  }
+  if (known && normal.dot(before->normal) > kSameSide) return true;
+  const ContactSide side = followed(grid, rest, *before);
+  if (known && normal.dot(side.normal) > kSameSide) return true;
+  const btScalar distance = (rest - side.point).dot(side.normal);
+  // Outside, and not behind: whatever side is nearer is right.
+  if (known && nearest.distance >= 0 && distance >= 0) return true;
+  result.side = side;
+  result.distance = distance;
+  return true;
+}
+
+}  // namespace tetskin::contact_detail

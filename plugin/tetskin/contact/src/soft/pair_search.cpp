@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/pair_search.h>
+
+#include <algorithm>
+
+namespace tetskin::contact_detail {
+namespace {
+
+/// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
+/// the surface is near.
+constexpr btScalar kLeastWeight = btScalar(-0.02);
+/// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
+constexpr btScalar kOnePlace = btScalar(0.3);
+/// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
+constexpr btScalar kSlackCubes = btScalar(0.5);
+/// Cosine between normals from which two contacts of a node are one.
+constexpr btScalar kOneWay = btScalar(0.7);
+/// A side that is farther away at rest, in mean edges, is of another part.
+constexpr btScalar kOneSide = 1;
+
+/// Rest space to world: a covector, by the gradients of a deformed tet's weights.
+btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& deformed, const btVector3& gradient) {
+  const Tet& n = data.tets[static_cast<std::size_t>(tet)];
+  const btVector3& origin = data.nodes[static_cast<std::size_t>(n[3])];
+  btVector3 carried(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    carried += gradient.dot(data.nodes[static_cast<std::size_t>(n[k])] - origin) * deformed.rows[k];
+  }
+  return carried;
+}
+
+btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
+  const Tet& n = data.tets[static_cast<std::size_t>(tet)];
+  btVector3 p(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) p += weights[k] * data.nodes[static_cast<std::size_t>(n[k])];
+  return p;
+}
+
+}  // namespace
+
+void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, PairMemory& memory,
+                      std::vector<Touch>& touches) {
+  now_ = {&first, &second, reach, dt, &memory.sides};
+  touches_ = &touches;
+  touchOfNode_.assign(first.data().nodes.size(), -1);
+  memory.sides.beginStep();
+  candidates_ = &memory.candidates;
+  const btScalar slack = kSlackCubes * second.data().grid.spacing();
+  if (!memory.candidates.hold(first, second)) memory.candidates.find(first, second, slack);
+  for (const int run : candidates_->runs()) placeRun(run);
+}
+
+void PairSearch::placeRun(int run) {
+  const SampleRun& of = now_.first->data().runs[static_cast<std::size_t>(run)];
+  const int count = of.last - of.first;
+  inside_.resize(static_cast<std::size_t>(count));
+  heads_.assign(static_cast<std::size_t>(count), -1);
+  places_.clear();
+  const ContactBox& around = now_.first->carry(run);
+  candidates_->forEachTet(run, [&](int tet) { testTet(tet, of, around); });
+  for (int k = 0; k < count; ++k) {
+    for (int p = heads_[static_cast<std::size_t>(k)]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
+      touch(of.first + k, run, places_[static_cast<std::size_t>(p)]);
+    }
+  }
+}
+
+void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around) {
+  if (!around.meets(now_.second->around(tet))) return;
+  const DeformedTet& of = now_.second->deformed(tet);
+  if (of.flat) return;
+  const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
+  const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
+                 *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],
+                 *zs = &now_.first->samples[2][static_cast<std::size_t>(run.first)];
+  const int count = run.last - run.first;
+  for (int k = 0; k < count; ++k) {
+    const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
+    const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
+    const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
+    const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
+    inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
+  }
+  for (int k = 0; k < count; ++k) {
+    if (inside_[static_cast<std::size_t>(k)] >= kLeastWeight) offer(tet, run.first + k, k);
+  }
+}
+
+/// But for places that are known from a tet beside this one.
+void PairSearch::offer(int tet, int sample, int k) {
+  const ShapeData& data = now_.second->data();
+  Place place;
+  now_.second->deformed(tet).weightsAt(now_.first->sampleAt(sample), place.weights);
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
+  place.rest = restPoint(data, tet, place.weights);
+  int& head = heads_[static_cast<std::size_t>(k)];
+  const btScalar apart = kOnePlace * data.edge;
+  for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
+    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return;
+  }
+  if (!data.grid.at(place.rest, place.nearest) || place.nearest.distance > now_.reach) return;
+  place.tet = tet;
+  place.next = head;
+  head = static_cast<int>(places_.size());
+  places_.push_back(place);
+}
+
+/// By which the sample has moved in the body's rest space.
+btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const {
+  const ShapeData &of = now_.first->data(), &in = now_.second->data();
+  const int tet = of.runs[static_cast<std::size_t>(run)].tet;
+  const btVector3 velocity = now_.first->velocityAt(tet, of.samples[static_cast<std::size_t>(sample)].weights) -
+                             now_.second->velocityAt(place.tet, place.weights);
+  const DeformedTet& deformed = now_.second->deformed(place.tet);
+  const Tet& n = in.tets[static_cast<std::size_t>(place.tet)];
+  btVector3 motion(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const btVector3 edge = in.nodes[static_cast<std::size_t>(n[k])] - in.nodes[static_cast<std::size_t>(n[3])];
+    motion += now_.dt * deformed.rows[k].dot(velocity) * edge;
+  }
+  return motion;
+}
+
+void PairSearch::touch(int sample, int run, const Place& place) {
+  const ShapeData& in = now_.second->data();
+  const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
+  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, run, place);
+  SideDistance found;
+  if (!findSide(in.grid, place.rest, place.nearest, motion, before, found)) return;
+  const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
+  const btScalar length = normal.length();
+  if (!(length > SIMD_EPSILON)) return;
+  Touch made;
+  made.distance = found.distance / length;
+  if (made.distance > now_.reach) return;
+  found.side.sample = sample;
+  now_.sides->keep(found.side);
+  made.sample = sample;
+  made.run = run;
+  made.tet = place.tet;
+  std::copy(place.weights, place.weights + 4, made.weights);
+  made.normal = normal / length;
+  keepDeepest(made, now_.first->data().samples[static_cast<std::size_t>(sample)].mainNode);
+}
+
+void PairSearch::keepDeepest(const Touch& touch, int node) {
+  int& head = touchOfNode_[static_cast<std::size_t>(node)];
+  for (int t = head; t >= 0; t = (*touches_)[static_cast<std::size_t>(t)].next) {
+    Touch& other = (*touches_)[static_cast<std::size_t>(t)];
+    if (other.normal.dot(touch.normal) < kOneWay) continue;
+    const int next = other.next;
+    if (touch.distance < other.distance) other = touch;
+    other.next = next;
+    return;
+  }
+  touches_->push_back(touch);
+  touches_->back().next = head;
+  head = static_cast<int>(touches_->size()) - 1;
+}
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/surface_samples.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <unordered_set>
+
+namespace tetskin::contact_detail {
+namespace {
+
+/// Cubes that a flat surface passes through, over its area in faces of a cube: 1 along the axes, 1.73 across.
+constexpr double kCubesPerFace = 1.3;
+/// A triangle is divided so often at most: one as long as the whole model has no need of more.
+constexpr int kMostDivisions = 256;
+
+/// Keeps the first point that comes to each cube of a lattice.
+class CubeSieve {
+ public:
+  explicit CubeSieve(double side) : inverse_(1.0 / side) {}
+  bool takes(const Eigen::Vector3d& p) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      // 21 bits a coordinate: beyond, cubes would share a key, and lose a sample.
+      const auto cube = static_cast<std::int64_t>(std::floor(p[k] * inverse_));
+      key = (key << 21) | (static_cast<std::uint64_t>(cube) & 0x1FFFFF);
+    }
+    return taken_.insert(key).second;
+  }
+
+ private:
+  double inverse_;
+  std::unordered_set<std::uint64_t> taken_;
+};
+
+double areaOf(const TriangleMesh& mesh, const std::array<int, 3>& t) {
+  const Eigen::Vector3d& a = mesh.positions[t[0]];
+  return 0.5 * (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm();
+}
+
+double longestEdge(const TriangleMesh& mesh, const std::array<int, 3>& t) {
+  double longest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    longest = std::max(longest, (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm());
+  }
+  return longest;
+}
+
+void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, double spacing, CubeSieve& sieve,
+                    std::vector<SurfaceSample>& samples) {
+  const double steps = std::ceil(longestEdge(mesh, t) / spacing);
+  const int divisions = static_cast<int>(std::min<double>(steps, kMostDivisions));
+  for (int i = 0; i <= divisions; ++i) {
+    for (int j = 0; i + j <= divisions; ++j) {
+      const double u = static_cast<double>(i) / divisions, v = static_cast<double>(j) / divisions;
+      const Eigen::Vector3d p =
+          (1.0 - u - v) * mesh.positions[t[0]] + u * mesh.positions[t[1]] + v * mesh.positions[t[2]];
+      if (sieve.takes(p)) samples.push_back({p, -1, t});
+    }
+  }
+}
+
+/// By vertex: how far it stands out from its neighbours in these triangles, over their distance.
+std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  std::vector<Eigen::Vector3d> way(mesh.vertexCount(), Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> area(mesh.vertexCount(), Eigen::Vector3d::Zero());
+  std::vector<double> length(mesh.vertexCount(), 0.0);
+  for (const int t : triangles) {
+    const auto& corners = mesh.triangles[t];
+    const Eigen::Vector3d &a = mesh.positions[corners[0]], &b = mesh.positions[corners[1]];
+    const Eigen::Vector3d normal = (b - a).cross(mesh.positions[corners[2]] - a);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int v = corners[k];
+      area[v] += normal;
+      for (const int other : {corners[(k + 1) % 3], corners[(k + 2) % 3]}) {
+        way[v] += mesh.positions[v] - mesh.positions[other];
+        length[v] += (mesh.positions[v] - mesh.positions[other]).norm();
+      }
+    }
+  }
+  std::vector<double> out(mesh.vertexCount(), 0.0);
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    const double size = area[v].norm() * length[v];
+    if (size > 0.0) out[v] = way[v].dot(area[v]) / size;
+  }
+  return out;
+}
+
+/// Tips first: they touch before anything around them does.
+std::vector<SurfaceSample> verticesByProminence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  const std::vector<double> out = prominence(mesh, triangles);
+  std::vector<SurfaceSample> vertices;
+  std::vector<char> listed(mesh.vertexCount(), 0);
+  for (const int t : triangles) {
+    for (const int v : mesh.triangles[t]) {
+      if (!listed[v]) vertices.push_back({mesh.positions[v], v, mesh.triangles[t]});
+      listed[v] = 1;
+    }
+  }
+  std::stable_sort(vertices.begin(), vertices.end(),
+                   [&](const SurfaceSample& a, const SurfaceSample& b) { return out[a.vertex] > out[b.vertex]; });
+  return vertices;
+}
+
+}  // namespace
+
+std::vector<SurfaceSample> sampleSurface(const TriangleMesh& mesh, const std::vector<int>& triangles,
+                                         std::size_t count) {
+  assert(count > 0);
+  double area = 0.0;
+  for (const int t : triangles) area += areaOf(mesh, mesh.triangles[t]);
+  std::vector<SurfaceSample> samples;
+  if (!(area > 0.0)) return samples;
+  const double side = std::sqrt(kCubesPerFace * area / static_cast<double>(count));
+  CubeSieve sieve(side);
+  for (const SurfaceSample& vertex : verticesByProminence(mesh, triangles)) {
+    if (sieve.takes(vertex.point)) samples.push_back(vertex);
+  }
+  for (const int t : triangles) {
+    if (longestEdge(mesh, mesh.triangles[t]) > side) sampleTriangle(mesh, mesh.triangles[t], side, sieve, samples);
+  }
+  return samples;
+}
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/contact/soft_contacts.h>
+#include <tetskin/contact/src/soft/contact_force.h>
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using contact_detail::ContactForce;
+using contact_detail::ContactRow;
+
+Status invalidContact(const char* message) {
+  return {StatusCode::InvalidOption, message};
+}
+
+Status checkSoftOptions(const SoftContactOptions& options) {
+  if (!std::isfinite(options.friction)) return invalidContact("the friction of soft contacts must be a number");
+  if (!(options.hold >= 0.0 && options.hold <= 1e6)) return invalidContact("`hold` must be from 0 to 1e6");
+  if (!(options.correction >= 0.0 && options.correction <= 1.0)) {
+    return invalidContact("`correction` must be from 0 to 1");
+  }
+  return {};
+}
+
+/// Bullet tells it to soft bodies alone: an empty one is added for as long as it takes, where there is none.
+btDeformableBodySolver* solverOfWorld(btDeformableMultiBodyDynamicsWorld& world) {
+  const auto solverOf = [](btSoftBody& body) { return static_cast<btDeformableBodySolver*>(body.getSoftBodySolver()); };
+  if (world.getSoftBodyArray().size() > 0) return solverOf(*world.getSoftBodyArray()[0]);
+  btSoftBody nothing(&world.getWorldInfo());
+  world.addSoftBody(&nothing);
+  btDeformableBodySolver* solver = solverOf(nothing);
+  world.removeSoftBody(&nothing);
+  return solver;
+}
+
+/// Bullet lets solvers alone look at this.
+struct SearchingSolver : btDeformableBodySolver {
+  static bool searches(const btDeformableBodySolver& solver) { return solver.*&SearchingSolver::m_lineSearch; }
+};
+
+/// The others keep their order.
+void takeOut(btAlignedObjectArray<btDeformableLagrangianForce*>& list, const btDeformableLagrangianForce* force) {
+  int kept = 0;
+  for (int i = 0; i < list.size(); ++i) {
+    if (list[i] != force) list[kept++] = list[i];
+  }
+  list.resizeNoInitialize(kept);
+}
+
+}  // namespace
+
+struct SoftContacts::Parts {
+  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver,
+        const SoftContactOptions& options)
+      : world(ofWorld), solver(ofSolver), force(ofSolver, ofWorld.getWorldInfo(), options) {}
+
+  btDeformableMultiBodyDynamicsWorld& world;
+  btDeformableBodySolver& solver;
+  ContactForce force;
+};
+
+SoftContacts::SoftContacts(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+SoftContacts::~SoftContacts() {
+  takeOut(*parts_->solver.getLagrangianForceArray(), &parts_->force);
+}
+
+Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDynamicsWorld& world,
+                                                        const SoftContactOptions& options) {
+  if (Status status = checkSoftOptions(options); !status.ok()) return status;
+  btDeformableBodySolver* solver = solverOfWorld(world);
+  if (solver->isReducedSolver()) {
+    return invalidContact(
+        "soft contacts need full bodies; make the world with a DeformableSolver, or a "
+        "btDeformableBodySolver");
+  }
+  if (SearchingSolver::searches(*solver)) {
+    return invalidContact("contacts have no energy, which a line search needs; call setLineSearch(false) of the world");
+  }
+  auto parts = std::make_unique<Parts>(world, *solver, options);
+  parts->force.setIndices(solver->getIndices());
+  solver->getLagrangianForceArray()->push_back(&parts->force);
+  return std::unique_ptr<SoftContacts>(new SoftContacts(std::move(parts)));
+}
+
+Status SoftContacts::include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
+  if (!shape) return {StatusCode::Empty, "a body needs a contact shape; see makeContactShape"};
+  const auto& inWorld = parts_->world.getSoftBodyArray();
+  if (inWorld.findLinearSearch(&body) == inWorld.size()) {
+    return invalidContact("add the body to the world of the contacts before including it");
+  }
+  const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
+  const auto tets = static_cast<std::size_t>(body.m_tetras.size());
+  if (nodes != shape->nodeCount() || tets != shape->tetCount()) {
+    return {StatusCode::SizeMismatch, "the body has " + std::to_string(nodes) + " nodes and " + std::to_string(tets) +
+                                          " tets, the shape " + std::to_string(shape->nodeCount()) + " and " +
+                                          std::to_string(shape->tetCount()) +
+                                          "; include it with the shape of its own cage"};
+  }
+  parts_->force.include(body, std::move(shape), self);
+  return {};
+}
+
+void SoftContacts::exclude(const btSoftBody& body) {
+  parts_->force.exclude(body);
+}
+
+IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
+  if (const contact_detail::ContactBody* of = parts_->force.find(body)) {
+    return of->fits() ? IncludedBody::Active : IncludedBody::Changed;
+  }
+  return parts_->force.isGone(body) ? IncludedBody::Gone : IncludedBody::Unknown;
+}
+
+std::vector<SoftContact> SoftContacts::contacts() const {
+  std::vector<SoftContact> contacts;
+  for (const ContactRow& row : parts_->force.rows()) {
+    if (!row.live()) continue;
+    contacts.push_back(
+        {row.sides[0].of->body, row.sides[1].of->body, row.point, row.normal, row.distance, row.impulse});
+  }
+  return contacts;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "../bullet/deformable_test.h"
+
+#include <tetskin/contact/soft_contacts.h>
+#include <tetskin/contact/src/soft/triangle_tree.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace tetskin::test {
+
+/// A ball in a cage of cubes of 0.2 along each side, 1 long.
+struct Ball {
+  static constexpr double kRadius = 0.42;
+
+  TetMesh cage = latticeCage(5, 5, 5, 0.2);
+  TriangleMesh mesh = sphere(24, kRadius, Eigen::Vector3d(0.5, 0.5, 0.5));
+  std::shared_ptr<const ContactShape> shape = makeShape({});
+
+  std::shared_ptr<const ContactShape> makeShape(const ContactShapeOptions& options) const {
+    Result<std::shared_ptr<const ContactShape>> made = makeContactShape(cage, mesh, options);
+    EXPECT_TRUE(made.ok()) << made.status().message;
+    return made.value();
+  }
+  TetMesh at(const Eigen::Vector3d& offset) const {
+    TetMesh moved = cage;
+    for (Eigen::Vector3d& p : moved.nodes) p += offset;
+    return moved;
+  }
+};
+
+/// Shared: it takes a while to make.
+inline const Ball& ball() {
+  static const Ball made;
+  return made;
+}
+
+/// A plate 1 x 0.12 x 1, in a cage of one layer of cubes.
+struct Plate {
+  static constexpr double kHalfThickness = 0.06;
+  TetMesh cage = latticeCage(5, 1, 5, 0.2);
+  TriangleMesh mesh;
+  std::shared_ptr<const ContactShape> shape;
+
+  Plate() {
+    const Eigen::Vector3d low(0.03, 0.1 - kHalfThickness, 0.03), high(0.97, 0.1 + kHalfThickness, 0.97);
+    for (int c = 0; c < 8; ++c) {
+      mesh.positions.emplace_back(c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(), c & 4 ? high.z() : low.z());
+    }
+    mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+    Result<std::shared_ptr<const ContactShape>> made = makeContactShape(cage, mesh);
+    EXPECT_TRUE(made.ok()) << made.status().message;
+    shape = made.value();
+  }
+};
+
+inline const Plate& plate() {
+  static const Plate made;
+  return made;
+}
+
+enum class Setting { Explicit, Implicit, Solver };
+
+inline std::string nameOf(Setting setting) {
+  return setting == Setting::Explicit ? "explicit" : setting == Setting::Implicit ? "implicit" : "solver";
+}
+
+inline std::unique_ptr<EmptyWorld> worldOf(Setting setting, const btVector3& gravity = btVector3(0, -10, 0)) {
+  std::unique_ptr<EmptyWorld> world =
+      setting == Setting::Solver ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
+  world->deformable().setImplicit(setting == Setting::Implicit);
+  world->deformable().setGravity(gravity);
+  world->deformable().getWorldInfo().m_gravity = gravity;
+  return world;
+}
+
+inline std::unique_ptr<SoftContacts> contactsIn(EmptyWorld& world, const SoftContactOptions& options = {}) {
+  Result<std::unique_ptr<SoftContacts>> made = SoftContacts::add(world.deformable(), options);
+  EXPECT_TRUE(made.ok()) << made.status().message;
+  return std::move(made).value();
+}
+
+inline btVector3 momentumOf(const btSoftBody& body) {
+  btVector3 sum(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    if (body.m_nodes[n].m_im > 0) sum += body.m_nodes[n].m_v / body.m_nodes[n].m_im;
+  }
+  return sum;
+}
+
+inline btVector3 centreOf(const btSoftBody& body) {
+  btVector3 sum(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x;
+  return sum / static_cast<btScalar>(body.m_nodes.size());
+}
+
+/// By how much the deepest vertex of one body is inside another, by all vertices, all tets and all triangles. At rest
+/// both are `mesh` in `cage`.
+inline double deepest(const btSoftBody& body, const TetMesh& cage, const TriangleMesh& mesh, const btSoftBody& other,
+                      const TetMesh& otherCage, const TriangleMesh& otherMesh) {
+  using contact_detail::TriangleTree;
+  const TriangleTree surface(otherMesh);
+  const std::vector<VertexBinding> bindings = embed(cage, viewOf(mesh.positions)).value().bindings();
+  double depth = 0.0;
+  for (const VertexBinding& b : bindings) {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) p += static_cast<double>(b.weights[k]) * toEigen(body.m_nodes[cage.tets[b.tet][k]].m_x);
+    for (const Tet& tet : otherCage.tets) {
+      TetCorners corners;
+      for (int k = 0; k < 4; ++k) corners[k] = toEigen(other.m_nodes[tet[k]].m_x);
+      if (isFlat(corners)) continue;
+      const Eigen::Vector4d w = BarycentricMap(corners)(p);
+      if (w.minCoeff() < 0.0) continue;
+      Eigen::Vector3d rest = Eigen::Vector3d::Zero();
+      for (int k = 0; k < 4; ++k) rest += w[k] * otherCage.nodes[tet[k]];
+      if (surface.windingNumber(rest) < 0.5) continue;
+      depth = std::max(depth, std::sqrt(surface.nearest(rest).squaredDistance));
+    }
+  }
+  return depth;
+}
+
+}  // namespace tetskin::test

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <limits>
+
+#include "soft_fixtures.h"
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Implicit worlds begin a step with the velocities after the last one.
+void push(btSoftBody& body, const btVector3& velocity) {
+  body.addVelocity(velocity);
+  for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_vn = body.m_nodes[n].m_v;
+}
+
+class SoftContactsIn : public testing::TestWithParam<Setting> {
+ protected:
+  std::unique_ptr<DeformableBody> addBall(EmptyWorld& world, const Vector3d& at, double mass = 1.0) {
+    SoftBodyOptions options;
+    options.mass = mass;
+    options.youngsModulus = 2000.0;
+    options.margin = 0.002;
+    options.implicit = GetParam() == Setting::Implicit;
+    return added(world, ball().at(at), options);
+  }
+  static double depth(const DeformableBody& a, const DeformableBody& b) {
+    const Ball& model = ball();
+    return deepest(a.body(), model.cage, model.mesh, b.body(), model.cage, model.mesh);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Settings, SoftContactsIn,
+                         testing::Values(Setting::Explicit, Setting::Implicit, Setting::Solver),
+                         [](const auto& setting) { return nameOf(setting.param); });
+
+TEST_P(SoftContactsIn, ABodyRestsOnAnotherAtItsSurface) {
+  const auto world = worldOf(GetParam());
+  SoftBodyOptions held;
+  held.youngsModulus = 2000.0;
+  held.implicit = GetParam() == Setting::Implicit;
+  held.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(9, 2.35, 9)));
+  const auto below = added(*world, ball().at(Vector3d(0, 2, 0)), held);
+  held.pinned = {};
+  const auto above = addBall(*world, Vector3d(0, 2.95, 0));
+  SoftContactOptions options;
+  options.friction = 1.0;
+  const auto contacts = contactsIn(*world, options);
+  ASSERT_TRUE(contacts->include(below->body(), ball().shape).ok());
+  ASSERT_TRUE(contacts->include(above->body(), ball().shape).ok());
+  step(*world, 30);
+  EXPECT_FALSE(contacts->contacts().empty());
+  EXPECT_GT(centreOf(above->body()).y(), 3.0) << "it has not fallen through";
+  EXPECT_LT(std::max(depth(*above, *below), depth(*below, *above)), 0.005);
+}
+
+TEST_P(SoftContactsIn, BodiesThatWereNotIncludedPass) {
+  const auto world = worldOf(GetParam(), btVector3(0, 0, 0));
+  const auto a = addBall(*world, Vector3d(0, 2, 0)), b = addBall(*world, Vector3d(0.7, 2, 0));
+  const auto contacts = contactsIn(*world);
+  ASSERT_TRUE(contacts->include(a->body(), ball().shape).ok());
+  step(*world, 5);
+  EXPECT_TRUE(contacts->contacts().empty());
+  EXPECT_NEAR(centreOf(b->body()).x(), 1.2, 1e-4);
+  EXPECT_EQ(contacts->statusOf(a->body()), IncludedBody::Active);
+  EXPECT_EQ(contacts->statusOf(b->body()), IncludedBody::Unknown);
+}
+
+/// Without gravity: nothing but contact acts between the bodies.
+TEST_P(SoftContactsIn, ACollisionKeepsMomentumAndGainsNoEnergy) {
+  const auto world = worldOf(GetParam(), btVector3(0, 0, 0));
+  const auto a = addBall(*world, Vector3d(0, 2, 0), 1.0), b = addBall(*world, Vector3d(1.0, 2.1, 0), 3.0);
+  const auto contacts = contactsIn(*world);
+  for (DeformableBody* body : {a.get(), b.get()}) ASSERT_TRUE(contacts->include(body->body(), ball().shape).ok());
+  push(a->body(), btVector3(4, 0, 0));
+  const btVector3 before = momentumOf(a->body()) + momentumOf(b->body());
+  double least = HUGE_VAL;
+  bool touched = false;
+  for (int frame = 0; frame < 40; ++frame) {
+    step(*world, 1);
+    touched |= !contacts->contacts().empty();
+    double kinetic = 0.0;
+    for (const DeformableBody* body : {a.get(), b.get()}) {
+      for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+        const auto& node = body->body().m_nodes[n];
+        kinetic += 0.5 / node.m_im * node.m_v.length2();
+      }
+    }
+    EXPECT_LT(kinetic, 8.0 * 1.01);
+    least = std::min(least, kinetic);
+  }
+  EXPECT_TRUE(touched);
+  const btVector3 after = momentumOf(a->body()) + momentumOf(b->body());
+  EXPECT_NEAR((after - before).length(), 0.0, 0.06 * before.length());
+  EXPECT_GT(momentumOf(b->body()).x(), 0.5) << "the other one was hit";
+  EXPECT_LT(depth(*a, *b), 0.005);
+  EXPECT_LT(least, 8.0);
+}
+
+TEST_P(SoftContactsIn, FrictionSlowsWhatSlidesAndNoneDoesNot) {
+  btScalar speed[2];
+  for (const bool rough : {false, true}) {
+    const auto world = worldOf(GetParam());
+    SoftBodyOptions held;
+    held.youngsModulus = 20000.0;
+    held.implicit = GetParam() == Setting::Implicit;
+    held.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(9, 9, 9)));
+    TetMesh cage = plate().cage;
+    for (Vector3d& p : cage.nodes) p.y() += 2.0;
+    const auto table = added(*world, cage, held);
+    const auto slider = addBall(*world, Vector3d(0, 2.16 - 0.08, 0));
+    SoftContactOptions options;
+    options.friction = rough ? 0.8 : 0.0;
+    const auto contacts = contactsIn(*world, options);
+    ASSERT_TRUE(contacts->include(table->body(), plate().shape).ok());
+    ASSERT_TRUE(contacts->include(slider->body(), ball().shape).ok());
+    push(slider->body(), btVector3(btScalar(0.8), 0, 0));
+    step(*world, 15);
+    speed[rough] = momentumOf(slider->body()).x();
+  }
+  EXPECT_GT(speed[false], 0.7);
+  EXPECT_LT(speed[true], 0.75 * speed[false]);
+}
+
+TEST_P(SoftContactsIn, ABodyMayLeaveTheWorldWhileItTouches) {
+  const auto world = worldOf(GetParam());
+  auto a = addBall(*world, Vector3d(0, 0, 0)), b = addBall(*world, Vector3d(0.3, 0.77, 0));
+  auto c = addBall(*world, Vector3d(0.1, 1.58, 0.1));
+  auto contacts = contactsIn(*world);
+  for (DeformableBody* body : {a.get(), b.get(), c.get()}) {
+    ASSERT_TRUE(contacts->include(body->body(), ball().shape).ok());
+  }
+  step(*world, 10);
+  ASSERT_FALSE(contacts->contacts().empty());
+  world->deformable().removeSoftBody(&b->body());
+  EXPECT_EQ(contacts->statusOf(b->body()), IncludedBody::Gone);
+  step(*world, 10);
+  for (const SoftContact& contact : contacts->contacts()) {
+    EXPECT_NE(contact.body, &b->body());
+    EXPECT_NE(contact.other, &b->body());
+  }
+  a.reset();
+  step(*world, 5);
+  contacts->exclude(c->body());
+  EXPECT_EQ(contacts->statusOf(c->body()), IncludedBody::Unknown);
+  step(*world, 5);
+  contacts.reset();
+  step(*world, 5);
+  EXPECT_TRUE(std::isfinite(centreOf(c->body()).y()));
+}
+
+TEST_P(SoftContactsIn, TheSameStepsHaveTheSameBits) {
+  btVector3 centre[2];
+  for (int run = 0; run < 2; ++run) {
+    const auto world = worldOf(GetParam());
+    const auto a = addBall(*world, Vector3d(0, 2, 0)), b = addBall(*world, Vector3d(0.3, 2.8, 0.1));
+    const auto contacts = contactsIn(*world);
+    for (DeformableBody* body : {a.get(), b.get()}) ASSERT_TRUE(contacts->include(body->body(), ball().shape).ok());
+    step(*world, 15);
+    centre[run] = centreOf(b->body());
+  }
+  EXPECT_EQ(centre[0], centre[1]);
+}
+
+TEST_P(SoftContactsIn, ABodyThatIsNotFiniteMeetsNothing) {
+  const auto world = worldOf(GetParam());
+  const auto a = addBall(*world, Vector3d(0, 2, 0)), b = addBall(*world, Vector3d(0.3, 2.7, 0));
+  const auto contacts = contactsIn(*world);
+  for (DeformableBody* body : {a.get(), b.get()}) ASSERT_TRUE(contacts->include(body->body(), ball().shape).ok());
+  step(*world, 2);
+  a->body().m_nodes[5].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
+  step(*world, 1);
+  EXPECT_TRUE(contacts->contacts().empty());
+  EXPECT_TRUE(std::isfinite(centreOf(b->body()).y()));
+}
+
+TEST(SoftContacts, SaysWhatItCannotServe) {
+  const auto world = worldOf(Setting::Explicit);
+  SoftContactOptions options;
+  options.friction = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
+  options = {};
+  options.correction = 2.0;
+  EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
+  options = {};
+  options.hold = -1.0;
+  EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
+  world->deformable().setImplicit(true);
+  world->deformable().setLineSearch(true);
+  step(*world, 1);  // the world tells its solver then
+  EXPECT_EQ(SoftContacts::add(world->deformable()).status().code, StatusCode::InvalidOption);
+}
+
+TEST(SoftContacts, RefusesBodiesThatAreNotTheShapes) {
+  const auto world = worldOf(Setting::Solver), elsewhere = worldOf(Setting::Solver);
+  const auto contacts = contactsIn(*world);
+  const auto body = added(*world, ball().cage), other = added(*world, latticeCage(2, 2, 2));
+  const auto stranger = added(*elsewhere, ball().cage);
+  EXPECT_EQ(contacts->include(body->body(), nullptr).code, StatusCode::Empty);
+  EXPECT_EQ(contacts->include(other->body(), ball().shape).code, StatusCode::SizeMismatch);
+  EXPECT_EQ(contacts->include(stranger->body(), ball().shape).code, StatusCode::InvalidOption);
+  EXPECT_TRUE(contacts->include(body->body(), ball().shape).ok());
+}
+
+/// A thin plate is hit by a ball so fast that it is past the plate's middle when it is first seen.
+TEST(SoftContacts, AThinPlateIsNotPassedThrough) {
+  const auto world = worldOf(Setting::Solver, btVector3(0, 0, 0));
+  SoftBodyOptions options;
+  options.youngsModulus = 20000.0;
+  options.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(0.01, 9, 9)));
+  TetMesh cage = plate().cage;
+  for (Vector3d& p : cage.nodes) p.y() += 2.0;
+  const auto table = added(*world, cage, options);
+  options.pinned = {};
+  options.youngsModulus = 2000.0;
+  const auto thrown = added(*world, ball().at(Vector3d(0, 2.2, 0)), options);
+  const auto contacts = contactsIn(*world);
+  ASSERT_TRUE(contacts->include(table->body(), plate().shape).ok());
+  ASSERT_TRUE(contacts->include(thrown->body(), ball().shape).ok());
+  push(thrown->body(), btVector3(0, -15, 0));
+  step(*world, 60);
+  EXPECT_LT(deepest(thrown->body(), ball().cage, ball().mesh, table->body(), plate().cage, plate().mesh), 0.02);
+  EXPECT_GT(centreOf(thrown->body()).y() - centreOf(table->body()).y(), 0.2);
+}
+
+/// Two parts of one body, 0.4 apart at rest, that are sent towards each other.
+TEST(SoftContacts, ABodyMeetsItself) {
+  TetMesh cage = latticeCage(3, 3, 3, 0.2);
+  TriangleMesh mesh = sphere(16, 0.25, Vector3d(0.3, 0.3, 0.3));
+  const int nodes = static_cast<int>(cage.nodeCount()), vertices = static_cast<int>(mesh.vertexCount());
+  const std::vector<Tet> tets = cage.tets;
+  const std::vector<std::array<int, 3>> triangles = mesh.triangles;
+  for (int n = 0; n < nodes; ++n) cage.nodes.push_back(cage.nodes[n] + Vector3d(1, 0, 0));
+  for (const Tet& t : tets) cage.tets.push_back({t[0] + nodes, t[1] + nodes, t[2] + nodes, t[3] + nodes});
+  for (int v = 0; v < vertices; ++v) mesh.positions.push_back(mesh.positions[v] + Vector3d(1, 0, 0));
+  for (const auto& [a, b, c] : triangles) mesh.triangles.push_back({a + vertices, b + vertices, c + vertices});
+  const auto shape = makeContactShape(cage, mesh).value();
+  for (const bool self : {false, true}) {
+    const auto world = worldOf(Setting::Solver, btVector3(0, 0, 0));
+    TetMesh placed = cage;
+    for (Vector3d& p : placed.nodes) p.y() += 3.0;
+    const auto body = added(*world, placed);
+    const auto contacts = contactsIn(*world);
+    ASSERT_TRUE(contacts->include(body->body(), shape, self).ok());
+    for (int n = 0; n < nodes; ++n) body->body().m_nodes[n].m_v.setValue(2, 0, 0);
+    step(*world, 40);
+    double left = 0.0, right = 0.0;
+    for (int n = 0; n < nodes; ++n) {
+      left += body->body().m_nodes[n].m_x.x() / nodes;
+      right += body->body().m_nodes[nodes + n].m_x.x() / nodes;
+    }
+    if (self) {
+      EXPECT_LT(left, right - 0.4);
+    } else {
+      EXPECT_GT(left, right);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test

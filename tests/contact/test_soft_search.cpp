@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/pair_search.h>
+
+#include <set>
+
+#include "soft_fixtures.h"
+
+namespace tetskin::test {
+namespace {
+
+using namespace contact_detail;
+
+/// Two balls, one of them squeezed, in no world's step.
+class SoftSearch : public testing::Test {
+ protected:
+  std::unique_ptr<ContactBody> include(const Eigen::Vector3d& offset, double squeeze = 1.0) {
+    bodies_.push_back(makeSoftBody(ball().at(offset), info_).value());
+    btSoftBody& body = *bodies_.back();
+    for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_x.setX(body.m_nodes[n].m_x.x() * squeeze);
+    auto of = std::make_unique<ContactBody>(body, ball().shape, false, static_cast<int>(bodies_.size()));
+    of->read();
+    return of;
+  }
+
+  btSoftBodyWorldInfo info_;
+  std::vector<std::unique_ptr<btSoftBody>> bodies_;
+};
+
+/// Samples of the first in tets of the second, by testing all pairs; those that are inside by more than `margin`.
+std::set<int> insideByBruteForce(const ContactBody& first, const ContactBody& second, double margin) {
+  std::set<int> inside;
+  const ShapeData &of = first.data(), &in = second.data();
+  for (const SampleRun& run : of.runs) {
+    for (int s = run.first; s < run.last; ++s) {
+      btVector3 p(0, 0, 0);
+      for (int k = 0; k < 4; ++k) p += of.samples[s].weights[k] * first.positions[of.tets[run.tet][k]];
+      for (const Tet& tet : in.tets) {
+        TetCorners corners;
+        for (int k = 0; k < 4; ++k) corners[k] = toEigen(second.positions[tet[k]]);
+        const Eigen::Vector4d w = BarycentricMap(corners)(toEigen(p));
+        if (w.minCoeff() < 0.0) continue;
+        btVector3 rest(0, 0, 0);
+        for (int k = 0; k < 4; ++k) rest += static_cast<btScalar>(w[k]) * in.nodes[tet[k]];
+        GridDistance at;
+        if (in.grid.at(rest, at) && at.distance < -margin) inside.insert(s);
+      }
+    }
+  }
+  return inside;
+}
+
+TEST_F(SoftSearch, FindsTheSamplesThatTestingAllPairsFinds) {
+  for (const double squeeze : {1.0, 0.6}) {
+    auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.55, 0.1), squeeze);
+    PairMemory memory;
+    PairSearch search;
+    std::vector<Touch> touches;
+    search.find(*first, *second, ball().shape->data().grid.spacing(), btScalar(0.004), memory, touches);
+    const std::set<int> wanted = insideByBruteForce(*first, *second, 1e-4);
+    ASSERT_GT(wanted.size(), 10u);
+    std::size_t found = 0;
+    memory.sides.beginStep();  // what has been found is now of the step before
+    for (const int s : wanted) found += memory.sides.find(s, btVector3(0, 0, 0), 10) ? 1 : 0;
+    EXPECT_EQ(found, wanted.size()) << squeeze;
+  }
+}
+
+TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.8, 0, 0));
+  PairMemory memory;
+  PairSearch search;
+  std::vector<Touch> touches;
+  search.find(*first, *second, ball().shape->data().grid.spacing(), btScalar(0.004), memory, touches);
+  ASSERT_FALSE(touches.empty());
+  const auto deep = std::min_element(touches.begin(), touches.end(),
+                                     [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
+  EXPECT_NEAR(deep->distance, 0.8 - 2 * Ball::kRadius, 0.005);
+  EXPECT_LT(deep->normal.x(), -0.97) << "out of the second";
+}
+
+TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.5, 0.1));
+  PairCandidates candidates;
+  candidates.find(*first, *second, btScalar(0.1));
+  EXPECT_TRUE(candidates.hold(*first, *second));
+  for (const auto& body : bodies_) body->translate(btVector3(5, 0, 0));
+  for (ContactBody* of : {first.get(), second.get()}) of->read();
+  EXPECT_TRUE(candidates.hold(*first, *second)) << "both have moved by as much";
+  bodies_[1]->m_nodes[7].m_x += btVector3(0, btScalar(0.2), 0);
+  second->read();
+  EXPECT_FALSE(candidates.hold(*first, *second)) << "a node has gone farther than the slack";
+}
+
+TEST_F(SoftSearch, BodiesApartHaveNoCandidates) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(3, 0, 0));
+  PairCandidates candidates;
+  candidates.find(*first, *second, btScalar(0.1));
+  EXPECT_TRUE(candidates.runs().empty());
+}
+
+TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {
+  const DistanceGrid& grid = plate().shape->data().grid;
+  const btScalar top = btScalar(0.1 + Plate::kHalfThickness);
+  ContactSides sides;
+  for (btScalar depth = btScalar(-0.02); depth < btScalar(0.1); depth += btScalar(0.01)) {
+    const btVector3 rest(btScalar(0.5), top - depth, btScalar(0.5));
+    sides.beginStep();
+    GridDistance nearest;
+    ASSERT_TRUE(grid.at(rest, nearest));
+    SideDistance found;
+    ASSERT_TRUE(findSide(grid, rest, nearest, btVector3(0, 0, 0), sides.find(3, rest, 1), found)) << depth;
+    EXPECT_NEAR(found.distance, -depth, 0.5 * grid.spacing()) << "the nearer side is below from 0.06 on";
+    EXPECT_GT(found.side.normal.y(), 0.9);
+    found.side.sample = 3;
+    sides.keep(found.side);
+  }
+}
+
+TEST(ContactSides, ASampleSeenLateHasComeFromBehind) {
+  const DistanceGrid& grid = plate().shape->data().grid;
+  const btVector3 rest(btScalar(0.5), btScalar(0.075), btScalar(0.5)), motion(0, btScalar(-0.12), 0);
+  GridDistance nearest;
+  ASSERT_TRUE(grid.at(rest, nearest));
+  SideDistance found;
+  ASSERT_TRUE(findSide(grid, rest, nearest, motion, nullptr, found));
+  EXPECT_GT(found.side.normal.y(), 0.9) << "though the nearest side is below";
+  EXPECT_NEAR(found.distance, 0.075 - 0.16, 0.005);
+  ASSERT_TRUE(findSide(grid, rest, nearest, -motion, nullptr, found));
+  EXPECT_LT(found.side.normal.y(), -0.9);
+}
+
+TEST(ContactSides, ASampleThatGoesAroundAnEdgeIsFree) {
+  const DistanceGrid& grid = plate().shape->data().grid;
+  ContactSide top;
+  top.point = btVector3(btScalar(0.5), btScalar(0.16), btScalar(0.5));
+  const btVector3 rest(btScalar(0.5), btScalar(0.18), btScalar(0.5));
+  GridDistance nearest;
+  ASSERT_TRUE(grid.at(rest, nearest));
+  SideDistance found;
+  ASSERT_TRUE(findSide(grid, rest, nearest, btVector3(0, 0, 0), &top, found));
+  EXPECT_GT(found.distance, 0);
+}
+
+}  // namespace
+}  // namespace tetskin::test

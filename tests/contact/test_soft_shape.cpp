@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/shape_data.h>
+#include <tetskin/contact/src/soft/surface_samples.h>
+
+#include <numeric>
+#include <set>
+
+#include "soft_fixtures.h"
+
+namespace tetskin::test {
+namespace {
+
+using namespace contact_detail;
+
+std::vector<int> all(const TriangleMesh& mesh) {
+  std::vector<int> triangles(mesh.triangleCount());
+  std::iota(triangles.begin(), triangles.end(), 0);
+  return triangles;
+}
+
+TEST(TriangleTree, FindsTheNearestPointAsTestingAllTrianglesDoes) {
+  const TriangleMesh mesh = sphere(12, 0.4, Eigen::Vector3d(0.5, 0.5, 0.5));
+  const TriangleTree tree(mesh);
+  for (const Eigen::Vector3d& p : randomPoints(300, Box3(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(2, 2, 2)), 3)) {
+    double least = HUGE_VAL;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      least = std::min(
+          least,
+          (p - closestPointOnTriangle(p, mesh.positions[a], mesh.positions[b], mesh.positions[c])).squaredNorm());
+    }
+    const NearestPoint found = tree.nearest(p);
+    EXPECT_EQ(found.squaredDistance, least);
+    EXPECT_NEAR((found.point - p).squaredNorm(), least, 1e-12);
+    EXPECT_EQ(tree.nearest(p, least).triangle, -1) << "nothing is nearer than the nearest";
+  }
+}
+
+TEST(TriangleTree, TellsInsideFromOutside) {
+  const TriangleMesh mesh = sphere(16, 0.4, Eigen::Vector3d::Zero());
+  const TriangleTree tree(mesh);
+  for (const Eigen::Vector3d& p : randomPoints(300, Box3(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)), 4)) {
+    if (std::abs(p.norm() - 0.4) < 0.02) continue;
+    EXPECT_NEAR(tree.windingNumber(p), p.norm() < 0.4 ? 1.0 : 0.0, 0.04);
+  }
+}
+
+TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
+  const Ball& model = ball();
+  const DistanceGrid& grid = model.shape->data().grid;
+  const Eigen::Vector3d centre(0.5, 0.5, 0.5);
+  const TriangleTree tree(model.mesh);
+  for (const Eigen::Vector3d& p : randomPoints(500, around(model.cage, 1.0), 5)) {
+    GridDistance at;
+    ASSERT_TRUE(grid.at(toBullet(p), at));
+    const double distance = std::sqrt(tree.nearest(p).squaredDistance);
+    const double exact = tree.windingNumber(p) > 0.5 ? -distance : distance;
+    EXPECT_NEAR(at.distance, exact, 0.25 * grid.spacing());
+    if (std::abs(exact) > 0.2) continue;  // at the centre it has no direction
+    EXPECT_GT(toEigen(at.gradient).dot((p - centre).normalized()), 0.9);
+  }
+}
+
+TEST(DistanceGrid, KnowsNothingBeyondItsBox) {
+  GridDistance at;
+  const DistanceGrid& grid = ball().shape->data().grid;
+  EXPECT_FALSE(grid.at(btVector3(10, 0, 0), at));
+  EXPECT_FALSE(grid.at(btVector3(0, -10, 0), at));
+  EXPECT_FALSE(grid.at(btVector3(0, 0, std::numeric_limits<btScalar>::quiet_NaN()), at));
+}
+
+TEST(SurfaceSamples, AreAboutAsManyAsWishedForAndOnTheSurface) {
+  for (const int rings : {4, 60}) {
+    const TriangleMesh mesh = sphere(rings, 1.0, Eigen::Vector3d::Zero());
+    const std::vector<SurfaceSample> samples = sampleSurface(mesh, all(mesh), 1000);
+    EXPECT_GT(samples.size(), 660u) << rings;
+    EXPECT_LT(samples.size(), 1500u) << rings;
+    const TriangleTree tree(mesh);
+    for (const SurfaceSample& s : samples) EXPECT_LT(tree.nearest(s.point).squaredDistance, 1e-20);
+  }
+}
+
+TEST(SurfaceSamples, KeepTipsAndLeaveNeighboursOut) {
+  TriangleMesh mesh = sphere(60, 1.0, Eigen::Vector3d::Zero());
+  mesh.positions[700] *= 1.1;
+  const std::vector<SurfaceSample> samples = sampleSurface(mesh, all(mesh), 200);
+  EXPECT_TRUE(std::any_of(samples.begin(), samples.end(), [](const SurfaceSample& s) { return s.vertex == 700; }));
+}
+
+TEST(ContactShape, CarriesEachSampleInItsTet) {
+  const ShapeData& data = ball().shape->data();
+  std::size_t count = 0;
+  for (const SampleRun& run : data.runs) {
+    for (int s = run.first; s < run.last; ++s, ++count) {
+      const CarriedSample& sample = data.samples[s];
+      btVector3 p(0, 0, 0);
+      btScalar sum = 0;
+      for (int k = 0; k < 4; ++k) {
+        p += sample.weights[k] * data.nodes[data.tets[run.tet][k]];
+        sum += sample.acting[k];
+        EXPECT_GE(sample.acting[k], 0);
+      }
+      EXPECT_NEAR((p - sample.rest).length(), 0, 1e-5);
+      EXPECT_NEAR(sum, 1, 1e-5);
+    }
+  }
+  EXPECT_EQ(count, data.samples.size());
+}
+
+TEST(ContactShape, FilledPartsHoldAllThatIsInside) {
+  const Ball& model = ball();
+  const ShapeData& data = model.shape->data();
+  for (const Eigen::Vector3d& p : randomPoints(2000, around(model.cage, 1.0), 6)) {
+    if ((p - Eigen::Vector3d(0.5, 0.5, 0.5)).norm() > Ball::kRadius) continue;
+    for (std::size_t t = 0; t < data.tets.size(); ++t) {
+      const Eigen::Vector4d w = BarycentricMap(cornersOf(model.cage, model.cage.tets[t]))(p);
+      if (w.minCoeff() < 0.0) continue;
+      for (int k = 0; k < 4; ++k) EXPECT_GE(w[k], data.filled[t].least[k] - 1e-5);
+    }
+  }
+}
+
+TEST(ContactShape, LeavesOutWhatIsHiddenInOtherParts) {
+  TriangleMesh mesh = sphere(20, 0.4, Eigen::Vector3d(0.5, 0.5, 0.5));
+  const TriangleMesh inner = sphere(12, 0.2, Eigen::Vector3d(0.5, 0.5, 0.5));
+  const int first = static_cast<int>(mesh.vertexCount());
+  mesh.positions.insert(mesh.positions.end(), inner.positions.begin(), inner.positions.end());
+  for (const auto& [a, b, c] : inner.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+  const auto shape = makeContactShape(latticeCage(5, 5, 5, 0.2), mesh).value();
+  for (const CarriedSample& s : shape->data().samples) {
+    EXPECT_GT((s.rest - btVector3(0.5, 0.5, 0.5)).length(), 0.35);
+  }
+  GridDistance at;
+  ASSERT_TRUE(shape->data().grid.at(btVector3(0.7, 0.5, 0.5), at));
+  EXPECT_NEAR(at.distance, -0.2, 0.02);
+}
+
+TEST(ContactShape, SaysWhatIsWrong) {
+  const Ball& model = ball();
+  const auto codeOf = [](const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {}) {
+    return makeContactShape(cage, mesh, options).status().code;
+  };
+  ContactShapeOptions options;
+  options.cells = 0;
+  EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
+  options = {};
+  options.samples = 0;
+  EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(TetMesh{}, model.mesh), StatusCode::Empty);
+  EXPECT_EQ(codeOf(model.cage, TriangleMesh{}), StatusCode::Empty);
+  TriangleMesh points = model.mesh;
+  points.triangles.clear();
+  EXPECT_EQ(codeOf(model.cage, points), StatusCode::Empty);
+  TriangleMesh bad = model.mesh;
+  bad.triangles[0][1] = 100000;
+  EXPECT_EQ(codeOf(model.cage, bad), StatusCode::IndexOutOfRange);
+  bad = model.mesh;
+  bad.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(codeOf(model.cage, bad), StatusCode::NonFinite);
+  bad = model.mesh;
+  for (auto& p : bad.positions) p.y() = 0.5;
+  EXPECT_EQ(codeOf(model.cage, bad), StatusCode::Degenerate) << "encloses nothing";
+}
+
+}  // namespace
+}  // namespace tetskin::test

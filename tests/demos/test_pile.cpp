@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/io/mesh_loader.h>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(
+      TETSKIN_PILE, {"--bodies", "3", "--tets", "200", "--triangles", "4000", "--frames", "121", "--every", "120"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/pile/summary.json");
+  EXPECT_TRUE(json["finite"]);
+  EXPECT_EQ(json["contact"], "surface");
+  EXPECT_GT(json["contacts_at_end"], 0);
+  EXPECT_GT(json["deepest_contact_at_end"], -0.01);
+  const TriangleMesh first = loadMesh(folder.path("out/pile/frame_0000.obj")).value();
+  const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0120.obj")).value();
+  ASSERT_EQ(first.vertexCount(), last.vertexCount());
+  EXPECT_LT(boundingBox(last.positions).max().y(), 0.8 * boundingBox(first.positions).max().y());
+  EXPECT_GT(boundingBox(last.positions).min().y(), -0.05);
+  EXPECT_TRUE(loadMesh(folder.path("out/pile/obstacles.obj")).ok());
+}
+
+TEST(Pile, RefusesWhatMakesNoSense) {
+  const CommandFolder folder;
+  test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");
+  test::expectRefused(folder.run(TETSKIN_PILE, {"--contact", "nothing"}), "--contact");
+}
+
+}  // namespace
+}  // namespace tetskin
