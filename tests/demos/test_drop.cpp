@@ -153,9 +153,8 @@ TEST_F(Drop, TouchesTheFloorAsDrawnOrByItsCage) {
   double above[2] = {};
   for (const bool surface : {true, false}) {
     const std::string out = surface ? "surface" : "cage";
-    const CommandResult result =
-        drop({"--tets", "300", "--triangles", "8000", "--frames", "180", "--every", "180", "--out", folder.path(out),
-              "--contact", out});
+    const CommandResult result = drop({"--tets", "300", "--triangles", "8000", "--frames", "180", "--every", "180",
+                                       "--out", folder.path(out), "--contact", out});
     ASSERT_EQ(result.status, 0) << result.err;
     const auto json = folder.json(out + "/summary.json");
     EXPECT_EQ(json["contact"], out);

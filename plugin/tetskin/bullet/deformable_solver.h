@@ -39,8 +39,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code has solved it.
   int iterations() const;
 
-  /// What contacts with rigid bodies have pushed a node with in the last step, along the contact's normal, as solved for
-  /// here; 0 for a body that was not, which Bullet's constraints tell.
+  /// What contacts with rigid bodies have pushed a node with in the last step, along the contact's normal, as solved
+  /// for here; 0 for a body that was not, which Bullet's constraints tell.
   btScalar normalImpulse(const btSoftBody& body, int node) const;
 
   // What Bullet calls.

@@ -111,7 +111,7 @@ CarriedTriangle carriedTriangle(const EmbeddingData& data, const std::vector<std
   return carried;
 }
 
-CarriedPoint between(const CarriedTriangle& triangle, const std::array<btScalar, 3>& at) {
+CarriedPoint pointWithin(const CarriedTriangle& triangle, const std::array<btScalar, 3>& at) {
   CarriedPoint point;
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < triangle.nodes.size(); ++k) {
@@ -139,7 +139,7 @@ void appendSamples(const CarriedTriangle& triangle, int steps, std::vector<Carri
       const int k = steps - i - j;
       if (std::max({i, j, k}) == steps) continue;
       const auto share = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
-      points.push_back(between(triangle, {share(i), share(j), share(k)}));
+      points.push_back(pointWithin(triangle, {share(i), share(j), share(k)}));
     }
   }
 }

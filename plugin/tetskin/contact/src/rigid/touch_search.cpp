@@ -145,6 +145,7 @@ Ball TouchSearch::localBall(std::size_t cluster) const {
 
 /// How far the cluster is from everything at least, as far as that is known.
 btScalar TouchSearch::clearance(std::size_t cluster, const Ball& ball) const {
+  if (!(memory_->clusterClear[cluster] > 0)) return 0;
   const Ball& known = memory_->clusterBalls[cluster];
   const btScalar grown = std::max(ball.radius - known.radius, btScalar(0));
   return memory_->clusterClear[cluster] - (ball.centre - known.centre).length() - grown;
@@ -195,6 +196,7 @@ void TouchSearch::readPatch(const ContactPatch& patch) {
 
 /// What is left of what the patch was clear by, now that its nodes have moved.
 btScalar TouchSearch::clearance(const ContactPatch& patch, btScalar known) const {
+  if (!(known > 0)) return 0;
   btScalar moved = 0;
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
     const btVector3& from = memory_->carriers[patch.firstNode + n];
