@@ -118,7 +118,9 @@ void softPair(State& state, std::size_t tets, double apart, bool touch) {
   const scenes::Placement place = scenes::placementOf(boundingBox(cage.nodes));
   cage = place.toWorld(cage);
   place.toWorld(mesh.positions);
-  const auto shape = makeContactShape(cage, mesh).value();
+  ContactShapeOptions shapeOptions;
+  shapeOptions.samples = 4000;
+  const auto shape = makeContactShape(cage, mesh, shapeOptions).value();
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
   world.addBox({0, -2.0, 0}, {10, 1, 10});
   for (int k = 0; k < 2; ++k) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "command.h"
@@ -68,6 +69,7 @@ TEST(SceneTable, AScenesBodyBeginsWhereItIsSaidToBe) {
 TEST(SceneTable, EverySceneMakesStepsAndChecks) {
   // Scenes whose bodies are torn apart by what is done to them, if Bullet does not survive it.
   const std::set<std::string> violent = {"stretch", "mirror", "permute", "spin", "impact"};
+  const std::map<std::string, std::size_t> several = {{"soft_stack", 4}, {"soft_removed", 4}, {"soft_squeezed", 3}};
   std::set<std::string> names;
   for (const SceneEntry& entry : scenes::sceneTable()) {
     SCOPED_TRACE(entry.name);
@@ -77,7 +79,7 @@ TEST(SceneTable, EverySceneMakesStepsAndChecks) {
     SceneOptions options;
     options.frames = 8;
     const auto scene = entry.make(smallCage(), options);
-    ASSERT_EQ(scene->bodyCount(), 1u);
+    ASSERT_EQ(scene->bodyCount(), several.count(entry.name) ? several.at(entry.name) : 1u);
     EXPECT_EQ(scene->options().frames, 8);
     EXPECT_EQ(entry.make(smallCage())->options().frames, entry.frames);
     EXPECT_EQ(entry.lands, scene->floorY > -std::numeric_limits<double>::infinity());

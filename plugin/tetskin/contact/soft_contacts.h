@@ -19,7 +19,7 @@ namespace tetskin {
 struct ContactShapeOptions {
   /// Points of the surface that are looked for in other bodies; met within a third. Coarse meshes get points on their
   /// triangles, of fine ones some vertices are left out.
-  std::size_t samples = 4000;
+  std::size_t samples = 8000;
   /// Cubes of the distance's grid along the longest side of the cage's box. Parts thinner than two of them are not
   /// felt well.
   int cells = 64;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bullet's own contact of soft bodies in the classic worlds, at the cages' surfaces, with bodies made here.
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <gtest/gtest.h>
+#include <tetskin/bullet/soft_body.h>
+
+#include "../bullet/worlds.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin::test {
+namespace {
+
+using Collisions = btSoftBody::fCollision;
+
+TetMesh cubeAbove(double height) {
+  TetMesh cage = latticeCage(3, 3, 3, 0.3);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
+  return cage;
+}
+
+btScalar lowestOf(const btSoftBody& body) {
+  btScalar y = BT_LARGE_FLOAT;
+  for (int n = 0; n < body.m_nodes.size(); ++n) y = std::min(y, body.m_nodes[n].m_x.y());
+  return y;
+}
+
+/// How high the upper of two bodies comes to lie: the lower one is 0.9 high.
+template <class World>
+btScalar restingHeight(int collisions) {
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::MassSpring;
+  options.linkStiffness = 0.9;
+  World world(cubeAbove(0.05), options);
+  auto& soft = static_cast<btSoftRigidDynamicsWorld&>(*world.world);
+  auto upper = makeSoftBody(cubeAbove(1.1), soft.getWorldInfo(), options).value();
+  soft.addSoftBody(upper.get());
+  for (btSoftBody* body : {&world.body(), upper.get()}) {
+    body->m_cfg.collisions |= collisions;
+    body->m_cfg.piterations = 4;
+    if (collisions & Collisions::CL_SS) body->generateClusters(8);
+  }
+  for (int frame = 0; frame < 90; ++frame) soft.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  const btScalar height = lowestOf(*upper);
+  soft.removeSoftBody(upper.get());
+  return height;
+}
+
+TEST(ClassicWorlds, SoftBodiesMeetByTheirVerticesAndFaces) {
+  EXPECT_LT(restingHeight<RigidWorld>(0), 0.3) << "without, they pass through each other";
+  EXPECT_GT(restingHeight<RigidWorld>(Collisions::VF_SS), 0.5);
+}
+
+TEST(ClassicWorlds, SoftBodiesMeetByTheirClusters) {
+  EXPECT_GT(restingHeight<RigidWorld>(Collisions::CL_SS), 0.5);
+}
+
+}  // namespace
+}  // namespace tetskin::test
