@@ -1,4 +1,4 @@
-# cmake -DSOURCE= -DPREFIX= -DSTAGED= -DCOMPILER= -DEIGEN= -P: what is installed is what is public, at most 26 headers; a
+# cmake -DSOURCE= -DPREFIX= -DSTAGED= -DCOMPILER= -DEIGEN= -P: what is installed is what is public, at most 27 headers; a
 # file that includes a private one does not compile, neither with what is installed nor in the build.
 file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*)
 file(GLOB public RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h ${SOURCE}/plugin/tetskin/*/*.h)
@@ -8,8 +8,8 @@ if(NOT installed STREQUAL public)
   message(FATAL_ERROR "Installed: ${installed}\nPublic: ${public}")
 endif()
 list(LENGTH installed count)
-if(count GREATER 26)
-  message(FATAL_ERROR "${count} public headers are more than 26")
+if(count GREATER 27)
+  message(FATAL_ERROR "${count} public headers are more than 27")
 endif()
 
 file(GLOB_RECURSE private RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h)
