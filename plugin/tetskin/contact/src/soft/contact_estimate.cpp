@@ -83,6 +83,7 @@ void startFriction(ContactRow& row, const ContactMemory* before) {
 void correctPositions(std::vector<ContactRow>& rows, btScalar part, btScalar slop) {
   std::vector<btScalar> pushed(rows.size(), 0), wanted(rows.size(), 0);
   std::vector<btVector3> start;
+  start.reserve(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) wanted[r] = part * std::max(-rows[r].distance - slop, btScalar(0));
   const auto place = [](const ContactNodes& side, int node) -> btVector3& {
     return side.of->positions[static_cast<std::size_t>(node)];

@@ -70,6 +70,7 @@ std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samp
     return tets;
   }
   std::vector<Eigen::Vector3d> points;
+  points.reserve(samples.size());
   for (const SurfaceSample& s : samples) points.push_back(s.point);
   const Result<Embedding> embedded = embed(static_cast<const TetMesh&>(cage), viewOf(points));
   status = embedded.status();
@@ -171,7 +172,8 @@ std::vector<int> copiedTets(const Cage& cage) {
 
 /// A point of a cell: `along` from 0 to 1 in each direction.
 Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Vector3d& along) {
-  const Eigen::Vector3d low(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong);
+  const Eigen::Vector3i at(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong);
+  const Eigen::Vector3d low = at.cast<double>();
   Eigen::Vector3d w = (low + along) / kCellsAlong;
   if (w.sum() > 1.0) w /= w.sum();
   return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + (1.0 - w.sum()) * corners[3];
