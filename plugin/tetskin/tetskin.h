@@ -22,6 +22,7 @@
 #include <tetskin/core/types.h>
 #ifdef TETSKIN_HAS_BULLET
 #include <tetskin/bullet/bullet_parallel_for.h>
+#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/elastic_force.h>
@@ -33,6 +34,7 @@
 #include <tetskin/cage/cage_builder.h>
 #endif
 #ifdef TETSKIN_HAS_CONTACT
+#include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 #endif
 #ifdef TETSKIN_HAS_ELASTIC

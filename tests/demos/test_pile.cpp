@@ -14,15 +14,15 @@ using test::CommandResult;
 TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   const CommandFolder folder;
   const CommandResult result = folder.run(
-      TETSKIN_PILE, {"--bodies", "3", "--tets", "200", "--triangles", "4000", "--frames", "121", "--every", "120"});
+      TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000", "--frames", "181", "--every", "180"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/pile/summary.json");
   EXPECT_TRUE(json["finite"]);
   EXPECT_EQ(json["contact"], "surface");
   EXPECT_GT(json["contacts_at_end"], 0);
-  EXPECT_GT(json["deepest_contact_at_end"], -0.01);
+  EXPECT_GT(json["deepest_contact_at_end"], -0.05);  // of coarse bodies that still move
   const TriangleMesh first = loadMesh(folder.path("out/pile/frame_0000.obj")).value();
-  const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0120.obj")).value();
+  const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0180.obj")).value();
   ASSERT_EQ(first.vertexCount(), last.vertexCount());
   EXPECT_LT(boundingBox(last.positions).max().y(), 0.8 * boundingBox(first.positions).max().y());
   EXPECT_GT(boundingBox(last.positions).min().y(), -0.05);
