@@ -19,7 +19,10 @@ namespace tetskin::elastic_detail {
 class RefinedBodies {
  public:
   /// The cage is as its body will be; the finer levels see the material at their own resolution, as `Cage::fineFill`
-  /// has it. Check `ok()`. cage         every node of it in a tet refinements  at most two
+  /// has it. Check `ok()`.
+  ///
+  /// cage         every node of it in a tet
+  /// refinements  at most two
   RefinedBodies(Cage cage, double poissonRatio, int refinements);
 
   bool ok() const { return direct_.ok(); }
