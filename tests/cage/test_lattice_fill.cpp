@@ -34,7 +34,7 @@ LatticeSet touched(const TriangleMesh& mesh, double half) {
 LatticeSet filled(const TriangleMesh& mesh, double half) {
   LatticeSet set = touched(mesh, half);
   const Surface surface = prepareSurface(mesh);
-  EXPECT_TRUE(fillInside(surface, WindingTree(surface), {kOrigin, half}, kNoLimit, set));
+  EXPECT_TRUE(fillInside(surface, windingTreeOf(surface), {kOrigin, half}, kNoLimit, set));
   return set;
 }
 

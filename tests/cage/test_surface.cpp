@@ -5,14 +5,13 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/cage/src/surface/winding_number.h>
+#include <tetskin/core/src/mesh/winding_tree.h>
 
 namespace tetskin::test {
 namespace {
 
 using cage_detail::prepareSurface;
 using cage_detail::Surface;
-using cage_detail::WindingTree;
 
 constexpr double kPi = 3.14159265358979323846;
 /// What the winding number may be off by, see WindingTree.
@@ -20,7 +19,7 @@ constexpr double kDipoleError = 0.03;
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 
 double windingAt(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
-  return WindingTree(prepareSurface(mesh)).windingNumber(p);
+  return windingTreeOf(prepareSurface(mesh)).windingNumber(p);
 }
 
 TEST(Surface, WeldsAndMeasures) {
@@ -70,7 +69,7 @@ TEST(Orientation, RandomIsRepaired) {
   const Surface surface = prepareSurface(shuffledOrientation(unitSphere(12)));
   EXPECT_EQ(surface.openEdges, 0u);
   EXPECT_TRUE(surface.oriented);
-  EXPECT_NEAR(WindingTree(surface).windingNumber({0.1, 0.2, 0.3}), 1.0, kDipoleError);
+  EXPECT_NEAR(windingTreeOf(surface).windingNumber({0.1, 0.2, 0.3}), 1.0, kDipoleError);
 }
 
 TEST(Orientation, InsideOutIsTurned) {
@@ -92,14 +91,14 @@ TEST(Orientation, OpenPatchesThatAgreeAreLeftAlone) {
 
 TEST(WindingTree, AgreesWithTheSumOverAllTriangles) {
   const Surface surface = prepareSurface(figurineMesh(24));
-  const WindingTree tree(surface);
+  const WindingTree tree = windingTreeOf(surface);
   Surface one = surface;
   for (const Eigen::Vector3d& p : randomPoints(50, surface.box, 1)) {
     double sum = 0.0;
     for (std::size_t t = 0; t < surface.solidCount; ++t) {
       one.triangles.assign(1, surface.triangles[t]);
       one.solidCount = 1;
-      sum += WindingTree(one).windingNumber(p);
+      sum += windingTreeOf(one).windingNumber(p);
     }
     EXPECT_NEAR(tree.windingNumber(p), sum, kDipoleError);
   }

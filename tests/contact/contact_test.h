@@ -9,12 +9,25 @@
 #include <tetskin/contact/surface_contact.h>
 
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace tetskin::test {
 
 /// The largest side of the cage's box.
 constexpr double kBodySize = 1.0;
+
+/// In the cube of this half side, the same each time.
+inline std::vector<btVector3> pointsWithin(btScalar reach, int count) {
+  std::mt19937 random(7);
+  std::vector<btVector3> points;
+  const auto coordinate = [&] { return reach * (btScalar(random()) / btScalar(0x80000000u) - 1); };
+  for (int k = 0; k < count; ++k) {
+    const btScalar x = coordinate(), y = coordinate(), z = coordinate();
+    points.emplace_back(x, y, z);
+  }
+  return points;
+}
 
 /// A ball of this radius around the origin.
 inline TriangleMesh ballMesh(int rings, double radius) {

@@ -8,6 +8,7 @@
 #include <tetskin/contact/src/soft/triangle_tree.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <gtest/gtest.h>
 
@@ -109,6 +110,7 @@ inline double deepest(const btSoftBody& body, const TetMesh& cage, const Triangl
                       const TetMesh& otherCage, const TriangleMesh& otherMesh) {
   using contact_detail::TriangleTree;
   const TriangleTree surface(otherMesh);
+  const WindingTree solid(otherMesh);
   const std::vector<VertexBinding> bindings = embed(cage, viewOf(mesh.positions)).value().bindings();
   double depth = 0.0;
   for (const VertexBinding& b : bindings) {
@@ -122,7 +124,7 @@ inline double deepest(const btSoftBody& body, const TetMesh& cage, const Triangl
       if (w.minCoeff() < 0.0) continue;
       Eigen::Vector3d rest = Eigen::Vector3d::Zero();
       for (int k = 0; k < 4; ++k) rest += w[k] * otherCage.nodes[tet[k]];
-      if (surface.windingNumber(rest) < 0.5) continue;
+      if (solid.windingNumber(rest) < kInside) continue;
       depth = std::max(depth, std::sqrt(surface.nearest(rest).squaredDistance));
     }
   }

@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "contact_test.h"
+
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
 #include <tetskin/contact/src/rigid/exact_distance.h>
 
-#include <random>
-
 namespace tetskin {
 namespace {
 
-std::vector<btVector3> pointsWithin(btScalar reach, int count) {
-  std::mt19937 random(7);
-  std::vector<btVector3> points;
-  const auto coordinate = [&] { return reach * (btScalar(random()) / btScalar(0x80000000u) - 1); };
-  for (int k = 0; k < count; ++k) {
-    const btScalar x = coordinate(), y = coordinate(), z = coordinate();
-    points.emplace_back(x, y, z);
-  }
-  return points;
-}
+using test::pointsWithin;
 
 /// The distance is what the point must be moved by, against the normal, to lie on the surface.
 void expectSurfaceAtDistance(const btCollisionShape& shape) {

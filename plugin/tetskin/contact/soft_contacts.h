@@ -47,7 +47,8 @@ class TETSKIN_CONTACT_API ContactShape {
 };
 
 /// cage    as the body was made of it, or moved or turned: rest space. Split cages need their `vertexTets`
-/// mesh    in the cage's rest space. Holes are closed where they are small; surfaces of parts that lie within other
+/// mesh    in the cage's rest space, triangles counter-clockwise from outside. Holes are closed where they are small;
+/// surfaces of parts that lie within other
 ///         parts are left out
 /// Cost    a second for 20,000 triangles and the default grid
 /// Errors  those of `usable`, `Cage::check`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses

@@ -38,7 +38,6 @@ using cage_detail::LatticeCage;
 using cage_detail::LatticeMesh;
 using cage_detail::Surface;
 using cage_detail::SurfaceSamples;
-using cage_detail::WindingTree;
 
 /// Sizes and coordinates outside this range cannot be raised to the powers that areas and their squares need.
 constexpr double kLargestLength = 1e60;
@@ -216,7 +215,7 @@ Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageRep
   if (Status status = checkExtent(surface); !status.ok()) return status;
   reportSurface(surface, report);
 
-  const WindingTree winding(surface);
+  const WindingTree winding = windingTreeOf(surface);
   BoundCage bound = firstCageThatHolds(surface, winding, options);
   assert(!bound.tets.mesh.tets.empty());
   reportLattice(bound, report);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/cage/src/split/body_ways.h>
-#include <tetskin/cage/src/surface/winding_number.h>
+#include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/surface/orientation.h>
-#include <tetskin/cage/src/surface/winding_number.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +145,7 @@ void turnInsideOut(Surface& surface, std::vector<Patch>& patches) {
   }
   const auto suspicious = [](const Patch& p) { return !p.mixed && !p.open && p.volume < 0.0 && !isSheet(p); };
   if (std::none_of(patches.begin(), patches.end(), suspicious)) return;
-  const WindingTree tree(surface);
+  const WindingTree tree = windingTreeOf(surface);
   std::vector<const Patch*> wrong;
   for (const Patch& patch : patches) {
     if (suspicious(patch) && !isCavity(surface, tree, patch)) wrong.push_back(&patch);

@@ -4,6 +4,7 @@
 // The mesh as the later stages want it: welded, without repeated triangles, consistently oriented where it can be.
 #pragma once
 
+#include <tetskin/core/src/mesh/winding_tree.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <array>
@@ -36,6 +37,10 @@ struct Surface {
 /// neighbours agree, and measures. The mesh must have passed `checkTriangleMesh`. Cost O(n log n) at worst, in practice
 /// linear in vertices and triangles.
 Surface prepareSurface(const TriangleMesh& mesh);
+
+inline WindingTree windingTreeOf(const Surface& surface) {
+  return {surface.points, surface.triangles, surface.solidCount};
+}
 
 /// Area-weighted normal of a triangle: half the cross product of two edges.
 inline Eigen::Vector3d areaVector(const Surface& surface, const std::array<int, 3>& t) {

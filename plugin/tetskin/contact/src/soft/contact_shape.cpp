@@ -43,7 +43,7 @@ Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShape
 }
 
 /// Triangles of which at least one corner, or the middle, is not within the solid that all of them bound.
-std::vector<int> visibleTriangles(const TriangleMesh& mesh, const TriangleTree& solid) {
+std::vector<int> visibleTriangles(const TriangleMesh& mesh, const WindingTree& solid) {
   const double over = kOverTriangle * boundingBox(mesh.positions).sizes().maxCoeff();
   std::vector<int> visible;
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -53,7 +53,7 @@ std::vector<int> visibleTriangles(const TriangleMesh& mesh, const TriangleTree& 
     if (!(normal.norm() > 0.0)) continue;
     const Eigen::Vector3d step = over * normal.normalized();
     const Eigen::Vector3d middle = (p + q + r) / 3.0;
-    const auto isOut = [&](const Eigen::Vector3d& at) { return solid.windingNumber(at + step) < 0.5; };
+    const auto isOut = [&](const Eigen::Vector3d& at) { return solid.windingNumber(at + step) < kInside; };
     if (isOut(middle) || isOut(p) || isOut(q) || isOut(r)) visible.push_back(static_cast<int>(t));
   }
   return visible;
@@ -238,7 +238,7 @@ Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, c
                                                              const ContactShapeOptions& options) {
   using namespace contact_detail;
   if (Status status = checkInput(cage, mesh, options); !status.ok()) return status;
-  const TriangleTree solid(mesh);
+  const WindingTree solid(mesh);
   const std::vector<int> visible = visibleTriangles(mesh, solid);
   const TriangleTree surface(mesh, visible);
   auto data = std::make_unique<ShapeData>();

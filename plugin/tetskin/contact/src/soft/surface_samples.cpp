@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/surface_samples.h>
+#include <tetskin/core/src/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
-#include <tuple>
 #include <unordered_set>
 
 namespace tetskin::contact_detail {
@@ -64,25 +63,10 @@ void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, doubl
   }
 }
 
-/// By vertex: the first one at its position. Seams and tips have several.
-std::vector<int> firstAtPosition(const TriangleMesh& mesh) {
-  std::vector<int> order(mesh.vertexCount()), first(mesh.vertexCount());
-  std::iota(order.begin(), order.end(), 0);
-  const auto before = [&](int a, int b) {
-    const Eigen::Vector3d &p = mesh.positions[a], &q = mesh.positions[b];
-    return std::tie(p.x(), p.y(), p.z(), a) < std::tie(q.x(), q.y(), q.z(), b);
-  };
-  std::sort(order.begin(), order.end(), before);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool again = k > 0 && mesh.positions[order[k]] == mesh.positions[order[k - 1]];
-    first[order[k]] = again ? first[order[k - 1]] : order[k];
-  }
-  return first;
-}
-
 /// By vertex: how far it stands out from its neighbours in these triangles, over their distance.
 std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
-  const std::vector<int> first = firstAtPosition(mesh);
+  // Seams and tips have several vertices at a position.
+  const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
   std::vector<Eigen::Vector3d> way(mesh.vertexCount(), Eigen::Vector3d::Zero());
   std::vector<Eigen::Vector3d> area(mesh.vertexCount(), Eigen::Vector3d::Zero());
   std::vector<double> length(mesh.vertexCount(), 0.0);
@@ -91,7 +75,7 @@ std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>&
     const Eigen::Vector3d &a = mesh.positions[corners[0]], &b = mesh.positions[corners[1]];
     const Eigen::Vector3d normal = (b - a).cross(mesh.positions[corners[2]] - a);
     for (std::size_t k = 0; k < 3; ++k) {
-      const int v = first[corners[k]];
+      const std::uint32_t v = first[corners[k]];
       area[v] += normal;
       for (const int other : {corners[(k + 1) % 3], corners[(k + 2) % 3]}) {
         way[v] += mesh.positions[v] - mesh.positions[other];

@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-//
-// This work is based on:
-//   Gavin Barill, Neil G. Dickson, Ryan Schmidt, David I. W. Levin, Alec Jacobson, "Fast Winding Numbers for Soups and
-//   Clouds", SIGGRAPH 2018 (the tree of dipoles)
-//   A. Van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering,
-//   1983, eq. 8
 #include <tetskin/contact/src/soft/triangle_tree.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
@@ -16,19 +10,7 @@
 namespace tetskin::contact_detail {
 namespace {
 
-constexpr double kFullAngle = 4.0 * 3.14159265358979323846;
 constexpr int kTrianglesInLeaf = 6;
-/// From so many radii away a group counts as one dipole.
-constexpr double kDipoleRadii = 2.3;
-
-/// Eq. 8 of Van Oosterom and Strackee.
-double solidAngle(const std::array<Eigen::Vector3d, 3>& t, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d a = t[0] - p, b = t[1] - p, c = t[2] - p;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double numerator = a.dot(b.cross(c));
-  const double denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return numerator == 0.0 ? 0.0 : 2.0 * std::atan2(numerator, denominator);
-}
 
 Eigen::Vector3d middleOf(const TriangleMesh& mesh, int triangle) {
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
@@ -54,13 +36,7 @@ void TriangleTree::build(const TriangleMesh& mesh, int first, int last) {
   nodes_.emplace_back();
   nodes_[index].first = first;
   nodes_[index].last = last;
-  if (last - first <= kTrianglesInLeaf) {
-    for (int i = first; i < last; ++i) {
-      const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(order_[i])];
-      triangles_.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
-    }
-    return measure(nodes_[index]);
-  }
+  if (last - first <= kTrianglesInLeaf) return fillLeaf(mesh, nodes_[index]);
   Box3 middles;
   for (int i = first; i < last; ++i) middles.extend(middleOf(mesh, order_[i]));
   int axis = 0;
@@ -73,23 +49,15 @@ void TriangleTree::build(const TriangleMesh& mesh, int first, int last) {
   build(mesh, first, middle);
   nodes_[index].right = static_cast<int>(nodes_.size());
   build(mesh, middle, last);
-  measure(nodes_[index]);
+  nodes_[index].box = nodes_[index + 1].box.merged(nodes_[nodes_[index].right].box);
 }
 
-/// From its triangles, which are all in place by then.
-void TriangleTree::measure(Node& node) const {
-  for (int t = node.first; t < node.last; ++t) {
-    const Corners& c = triangles_[t];
-    const Eigen::Vector3d normal = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
-    const double area = normal.norm();
-    for (const Eigen::Vector3d& p : c) node.box.extend(p);
-    node.dipole += normal;
-    node.area += area;
-    node.centre += area * (c[0] + c[1] + c[2]) / 3.0;
+void TriangleTree::fillLeaf(const TriangleMesh& mesh, Node& node) {
+  for (int i = node.first; i < node.last; ++i) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(order_[i])];
+    triangles_.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
+    for (const Eigen::Vector3d& p : triangles_.back()) node.box.extend(p);
   }
-  node.centre = node.area > 0.0 ? Eigen::Vector3d(node.centre / node.area) : node.box.center();
-  const Eigen::Vector3d reach = (node.box.max() - node.centre).cwiseMax(node.centre - node.box.min());
-  node.radius = reach.norm();
 }
 
 void TriangleTree::search(int index, const Eigen::Vector3d& p, NearestPoint& best) const {
@@ -118,22 +86,6 @@ NearestPoint TriangleTree::nearest(const Eigen::Vector3d& p, double squaredBound
   best.squaredDistance = squaredBound;
   if (!nodes_.empty()) search(0, p, best);
   return best;
-}
-
-double TriangleTree::wind(int index, const Eigen::Vector3d& p) const {
-  const Node& node = nodes_[index];
-  const Eigen::Vector3d offset = node.centre - p;
-  const double squared = offset.squaredNorm();
-  const double far = kDipoleRadii * node.radius;
-  if (squared > far * far) return node.dipole.dot(offset) / (kFullAngle * squared * std::sqrt(squared));
-  if (node.right > 0) return wind(index + 1, p) + wind(node.right, p);
-  double sum = 0.0;
-  for (int t = node.first; t < node.last; ++t) sum += solidAngle(triangles_[t], p);
-  return sum / kFullAngle;
-}
-
-double TriangleTree::windingNumber(const Eigen::Vector3d& p) const {
-  return nodes_.empty() ? 0.0 : wind(0, p);
 }
 
 }  // namespace tetskin::contact_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ContactShape: how far a point is from a surface at rest, and whether it is inside.
+// Internal to ContactShape: how far a point is from a surface at rest.
 #pragma once
 
 #include <tetskin/core/triangle_mesh.h>
@@ -19,7 +19,7 @@ struct NearestPoint {
   double squaredDistance = std::numeric_limits<double>::infinity();
 };
 
-/// A tree of a mesh's triangles. Flat ones count for distances, not for what is inside.
+/// A tree of a mesh's triangles.
 class TriangleTree {
  public:
   /// mesh  indices in range, coordinates finite. May go away afterwards. Cost O(n log n) for n triangles
@@ -31,26 +31,17 @@ class TriangleTree {
   /// squaredBound  nothing at this distance or beyond is wanted: the smaller, the faster
   NearestPoint nearest(const Eigen::Vector3d& p, double squaredBound = std::numeric_limits<double>::infinity()) const;
 
-  /// 1 inside a closed surface, 0 outside, and in between near holes; 2 where parts overlap. Groups of triangles far
-  /// away count as one dipole, an error of up to 0.03.
-  double windingNumber(const Eigen::Vector3d& p) const;
-
  private:
   struct Node {
     Box3 box;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< area-weighted
-    Eigen::Vector3d dipole = Eigen::Vector3d::Zero();  ///< sum of the area vectors
-    double area = 0.0;
-    double radius = 0.0;  ///< of a ball about the centre that holds the box
     int first = 0, last = 0;
     int right = 0;  ///< second child, 0 in a leaf; the first child is the next node
   };
   using Corners = std::array<Eigen::Vector3d, 3>;
 
   void build(const TriangleMesh& mesh, int first, int last);
-  void measure(Node& node) const;
+  void fillLeaf(const TriangleMesh& mesh, Node& node);
   void search(int index, const Eigen::Vector3d& p, NearestPoint& best) const;
-  double wind(int index, const Eigen::Vector3d& p) const;
 
   std::vector<Node> nodes_;
   std::vector<int> order_;          ///< triangles as the leaves have them

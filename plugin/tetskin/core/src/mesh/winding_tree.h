@@ -2,22 +2,27 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/core/triangle_mesh.h>
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
-namespace tetskin::cage_detail {
+namespace tetskin {
 
-/// Half the view: the winding number from which a point is inside. Either sign, for surfaces that are inside out.
+/// Half the view: the winding number from which a point is inside, of either sign if surfaces may be inside out.
 constexpr double kInside = 0.5;
 
-/// Generalised winding number of the surface's solid triangles: 1 inside a closed surface, 0 outside, and in between,
+/// Generalised winding number of triangles: 1 inside a closed surface, 0 outside, and in between,
 /// smoothly, near holes. Far groups of triangles count as one dipole, which costs an error of up to 0.03.
-class WindingTree {
+class TETSKIN_CORE_API WindingTree {
  public:
-  /// Cost O(n log n) for n triangles. The surface may go away afterwards.
-  explicit WindingTree(const Surface& surface);
+  using Triangles = std::vector<std::array<int, 3>>;
+
+  /// Of the first `count` triangles, all of which have an area. They may go away afterwards. Cost O(n log n)
+  WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count);
+  /// Of those of a mesh that have an area.
+  explicit WindingTree(const TriangleMesh& mesh);
 
   /// Cost about O(log n). 0 if there are no triangles.
   double windingNumber(const Eigen::Vector3d& p) const;
@@ -38,7 +43,8 @@ class WindingTree {
     int triangle = 0;
   };
 
-  void build(const Surface& surface, std::vector<Item>& items, int first, int last);
+  void build(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::vector<Item>& items,
+             int first, int last);
   void fillLeaf(Node& node);
   void fillFromChildren(std::size_t index);
   double walk(int node, const Eigen::Vector3d& p) const;
@@ -47,4 +53,4 @@ class WindingTree {
   std::vector<Corners> triangles_;  ///< in the order of the leaves
 };
 
-}  // namespace tetskin::cage_detail
+}  // namespace tetskin

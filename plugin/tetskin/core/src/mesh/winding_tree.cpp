@@ -8,12 +8,13 @@
 //   Clouds", SIGGRAPH 2018 (the tree of dipoles)
 //   A. Van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering,
 //   1983, eq. 8
-#include <tetskin/cage/src/surface/winding_number.h>
+#include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
-namespace tetskin::cage_detail {
+namespace tetskin {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -32,31 +33,47 @@ double halfSolidAngle(const std::array<Eigen::Vector3d, 3>& t, const Eigen::Vect
   return numerator == 0.0 ? 0.0 : std::atan2(numerator, denominator);
 }
 
-}  // namespace
-
-WindingTree::WindingTree(const Surface& surface) {
-  const auto count = static_cast<int>(surface.solidCount);
-  std::vector<Item> items(surface.solidCount);
-  const Eigen::Vector3d centre = surface.box.center();
-  const double scale = 1.0 / surface.box.sizes().maxCoeff();
-  for (int t = 0; t < count; ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3d middle = (surface.points[a] + surface.points[b] + surface.points[c]) / 3.0;
-    items[t] = {((middle - centre) * scale).cast<float>(), t};
+WindingTree::Triangles trianglesWithArea(const TriangleMesh& mesh) {
+  WindingTree::Triangles solid;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d& a = mesh.positions[t[0]];
+    if ((mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).squaredNorm() > 0.0) solid.push_back(t);
   }
-  triangles_.reserve(surface.solidCount);
-  if (count > 0) build(surface, items, 0, count);
+  return solid;
 }
 
-void WindingTree::build(const Surface& surface, std::vector<Item>& items, int first, int last) {
+}  // namespace
+
+WindingTree::WindingTree(const TriangleMesh& mesh) {
+  const Triangles solid = trianglesWithArea(mesh);
+  *this = WindingTree(mesh.positions, solid, solid.size());
+}
+
+WindingTree::WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count) {
+  assert(count <= triangles.size());
+  std::vector<Item> items(count);
+  const Box3 box = boundingBox(points);
+  const Eigen::Vector3d centre = box.center();
+  const double scale = 1.0 / box.sizes().maxCoeff();
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto& [a, b, c] = triangles[t];
+    const Eigen::Vector3d middle = (points[a] + points[b] + points[c]) / 3.0;
+    items[t] = {((middle - centre) * scale).cast<float>(), static_cast<int>(t)};
+  }
+  triangles_.reserve(count);
+  if (count > 0) build(points, triangles, items, 0, static_cast<int>(count));
+}
+
+void WindingTree::build(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles,
+                        std::vector<Item>& items, int first, int last) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   nodes_[index].first = first;
   nodes_[index].last = last;
   if (last - first <= kLeafSize) {
     for (int i = first; i < last; ++i) {
-      const auto& [a, b, c] = surface.triangles[items[i].triangle];
-      triangles_.push_back({surface.points[a], surface.points[b], surface.points[c]});
+      const auto& [a, b, c] = triangles[items[i].triangle];
+      triangles_.push_back({points[a], points[b], points[c]});
     }
     fillLeaf(nodes_[index]);
     return;
@@ -68,9 +85,9 @@ void WindingTree::build(const Surface& surface, std::vector<Item>& items, int fi
   const int middle = first + (last - first) / 2;
   std::nth_element(items.begin() + first, items.begin() + middle, items.begin() + last,
                    [axis](const Item& a, const Item& b) { return a.middle[axis] < b.middle[axis]; });
-  build(surface, items, first, middle);
+  build(points, triangles, items, first, middle);
   nodes_[index].right = static_cast<int>(nodes_.size());
-  build(surface, items, middle, last);
+  build(points, triangles, items, middle, last);
   fillFromChildren(index);
 }
 
@@ -114,4 +131,4 @@ double WindingTree::windingNumber(const Eigen::Vector3d& p) const {
   return nodes_.empty() ? 0.0 : walk(0, p);
 }
 
-}  // namespace tetskin::cage_detail
+}  // namespace tetskin
