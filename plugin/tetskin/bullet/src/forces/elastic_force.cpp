@@ -177,10 +177,12 @@ void ElasticForce::buildDampingForceDifferentialDiagonal(btScalar scale, TVStack
 
 double ElasticForce::totalElasticEnergy(btScalar) {
   double energy = 0.0;
-  parts_->forActive([&](ForcedBody& of) {
-    readNodes(*of.body, true, *of.dynamics);
-    energy += of.dynamics->energy(nullptr);
-  });
+  for (const auto& of : parts_->bodies) {
+    // Of those that a DeformableSolver solves for, too: it asks for none.
+    if (!of->body->isActive()) continue;
+    readNodes(*of->body, true, *of->dynamics);
+    energy += of->dynamics->energy(nullptr);
+  }
   return energy;
 }
 

@@ -128,7 +128,15 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
 
 template <class S>
 double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
-  return cornerForces(points, true, threads);
+  // What asks is told, and changes nothing: rotations are turned from where they were before.
+  const AlignedVector<S> rotations = rotations_;
+  const S smallestDot = smallestDot_;
+  const double turned = turned_;
+  const double energy = cornerForces(points, true, threads);
+  rotations_ = rotations;
+  smallestDot_ = smallestDot;
+  turned_ = turned;
+  return energy;
 }
 
 template <class S>
