@@ -90,8 +90,8 @@ TYPED_TEST(BlockMatrixOf, WithoutTetsIsTheMasses) {
 TYPED_TEST(BlockMatrixOf, OneRowIsThatOfTheProduct) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(smallCage());
-    const TypeParam normal[3] = {0, 1, 0};
-    body.matrix.resistAcross(3, normal, 4);
+    const TypeParam across[6] = {4, 0, 0, 0, 0, 4};  // the y axis
+    body.matrix.resist(3, across);
     const VectorXd x = test::Random(34).vector(3 * body.nodes.size());
     const VectorXd image = body.times(x);
     body.toWide(x, body.matrix.solution());

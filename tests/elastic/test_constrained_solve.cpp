@@ -105,9 +105,11 @@ TEST(ConjugateGradient, ResistanceIsPartOfTheMatrix) {
   onEachInstructionSet([&] {
     AssembledBody<double> body(smallCage());
     const Vector3d n = Vector3d(1, -2, 2) / 3.0;
-    body.matrix.resistAcross(6, n.data(), 20.0);
+    const Eigen::Matrix3d plane = 20.0 * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const double block[6] = {plane(0, 0), plane(0, 1), plane(0, 2), plane(1, 1), plane(1, 2), plane(2, 2)};
+    body.matrix.resist(6, block);
     MatrixXd a = body.dense();
-    a.block<3, 3>(18, 18) += 20.0 * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    a.block<3, 3>(18, 18) += plane;
     const VectorXd b = rightSide(body);
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;

@@ -124,6 +124,18 @@ TYPED_TEST(FixedNodesOf, AFixedNodeMovesOnlyWhereItMay) {
   });
 }
 
+/// factor (1 - n n^T)
+template <class S>
+std::array<S, 6> across(const Vector3d& n, double factor) {
+  const Matrix3d plane = factor * (Matrix3d::Identity() - n * n.transpose());
+  std::array<S, 6> block;
+  std::size_t k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) block[k++] = static_cast<S>(plane(i, j));
+  }
+  return block;
+}
+
 TYPED_TEST(FixedNodesOf, ResistsAcrossANormalUntilItIsFree) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(smallCage());
@@ -134,7 +146,7 @@ TYPED_TEST(FixedNodesOf, ResistsAcrossANormalUntilItIsFree) {
     const Matrix3d plane = Matrix3d::Identity() - n * n.transpose();
     for (const std::size_t node : {0u, 5u, 9u}) {
       const Matrix3d before = diagonalOf(matrix, node), free = freeInverseOf(matrix, node);
-      matrix.resistAcross(node, normal, 7);
+      matrix.resist(node, across<TypeParam>(n, 7.0).data());
       const Matrix3d expected = before + 7.0 * plane;
       EXPECT_LT((diagonalOf(matrix, node) - expected).norm(), 10.0 * this->kEpsilon * expected.norm());
       EXPECT_LT((inverseInUse(matrix, node) * expected - Matrix3d::Identity()).norm(), 30.0 * this->kEpsilon);
@@ -167,7 +179,7 @@ TYPED_TEST(FixedNodesOf, AHeldNodeStaysHeld) {
     EXPECT_EQ(inverseInUse(matrix, 5), Matrix3d::Zero());
     matrix.fixAllBut(5, normal);
     EXPECT_EQ(inverseInUse(matrix, 5), Matrix3d::Zero());
-    matrix.resistAcross(5, normal, 3);
+    matrix.resist(5, across<TypeParam>(Vector3d::UnitY(), 3.0).data());
     EXPECT_EQ(inverseInUse(matrix, 5), Matrix3d::Zero());
     EXPECT_EQ(diagonalOf(matrix, 5), block);
     matrix.free();

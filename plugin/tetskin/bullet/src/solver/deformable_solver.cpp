@@ -141,11 +141,13 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   for (SolvedBody& of : bodies) of.dynamics->matrix().free();
   for (SolvedBody& of : bodies) parts.readContacts(of);
   parts.addOthers();
-  addDynamicFriction(projection, parts.bodies, m_residual);
-  fixContacts(projection, parts.bodies);
+  parts.tieRigids();
+  addDynamicFriction(projection, parts.ties, parts.bodies, m_residual);
+  fixContacts(projection, parts.ties, parts.bodies);
   parts.solveSystems();
   for (const SolvedBody& of : bodies) parts.iterations += of.iterations;
   keepNormalImpulses(projection, parts.bodies, m_residual);
+  parts.ties.finish(parts.bodies);
   for (SolvedBody& of : bodies) parts.writeVelocities(of);
   parts.hidden.hideLonely(bodies, m_dt);
 }

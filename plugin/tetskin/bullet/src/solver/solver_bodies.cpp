@@ -194,6 +194,31 @@ void SolverBodies::makeSystems(const ForceList& forces) {
   }
 }
 
+SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
+  const auto holds = [&](const SolvedSystem& system) {
+    return std::any_of(system.bodies.begin(), system.bodies.end(), [&](std::size_t body) {
+      return std::find(places.begin(), places.end(), body) != places.end();
+    });
+  };
+  const auto first = std::find_if(systems_.begin(), systems_.end(), holds);
+  const auto others = std::stable_partition(std::next(first), systems_.end(),
+                                            [&](const SolvedSystem& system) { return !holds(system); });
+  for (auto other = others; other != systems_.end(); ++other) {
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(first->bodies, other->bodies);
+    append(first->forces, other->forces);
+    append(first->rigids, other->rigids);
+  }
+  systems_.erase(others, systems_.end());
+  // A force may act on both.
+  std::vector<btDeformableLagrangianForce*> forces;
+  for (btDeformableLagrangianForce* force : first->forces) {
+    if (std::find(forces.begin(), forces.end(), force) == forces.end()) forces.push_back(force);
+  }
+  first->forces = std::move(forces);
+  return *first;
+}
+
 btScalar SolverBodies::normalImpulse(const btSoftBody& body, int node) const {
   const std::size_t place = placeOf(&body);
   if (place == bodies_.size() || !bodies_[place].elastic || !bodies_[place].normalImpulses) return 0;

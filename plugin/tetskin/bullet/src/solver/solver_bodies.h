@@ -31,12 +31,16 @@ struct SolvedBody {
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool constrained = false;  ///< by more than held nodes
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
+
+  /// Of a node of the body, by its number.
+  std::size_t placeOf(int number) const { return static_cast<std::size_t>(number - first); }
 };
 
 /// Bodies that forces couple, and these forces; most are alone.
 struct SolvedSystem {
   std::vector<std::size_t> bodies;
   std::vector<btDeformableLagrangianForce*> forces;  ///< but elastic ones
+  std::vector<std::size_t> rigids;                   ///< bound to them: see RigidTies
 };
 
 class SolverBodies {
@@ -52,6 +56,9 @@ class SolverBodies {
 
   /// Which forces act on which bodies; before each step.
   void assign(const ForceList& forces);
+  /// Makes one system of those that bodies are in.
+  /// places  in `bodies`; not empty
+  SolvedSystem& join(const std::vector<std::size_t>& places);
   /// No body is solved for here: elastic forces act by themselves.
   void release(const ForceList& forces);
 

@@ -2,16 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/solver/rigid_ties.h>
+#include <tetskin/bullet/src/solver/sliding.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 
 #include <algorithm>
 
 namespace tetskin {
 namespace {
-
-std::size_t placeIn(const SolvedBody& of, int node) {
-  return static_cast<std::size_t>(node - of.first);
-}
 
 void fix(Dynamics& dynamics, std::size_t node, const btAlignedObjectArray<btVector3>& directions) {
   auto& matrix = dynamics.matrix();
@@ -22,53 +20,38 @@ void fix(Dynamics& dynamics, std::size_t node, const btAlignedObjectArray<btVect
   matrix.fixAllBut(node, free.m_floats);
 }
 
-/// The normal impulse that friction is bounded by: that of the step before, but no more than what it took in this one
-/// to stop the node with all that hangs on it, and no less than what stops the node alone.
-btScalar normalImpulse(const SolvedBody& of, std::size_t node, const btVector3& normal, btScalar along, btScalar mass) {
-  btScalar d[6];
-  of.dynamics->matrix().diagonal(node, d);
-  const btScalar effective =
-      d[0] * normal[0] * normal[0] + d[3] * normal[1] * normal[1] + d[5] * normal[2] * normal[2] +
-      2 * (d[1] * normal[0] * normal[1] + d[2] * normal[0] * normal[2] + d[4] * normal[1] * normal[2]);
-  return std::max(std::min((*of.normalImpulses)[node], effective * along), mass * along);
-}
-
-/// Friction of one sliding contact as resistance, of the coefficient's force at the speed that it has. It only ever
-/// takes energy away: forces, as Bullet's are, push nodes that hang together back to where they came from, and explode.
 void resist(SolvedBody& of, const btDeformableNodeRigidContactConstraint& constraint, VectorStack& residual) {
   const btSoftBody::Node& bullets = *constraint.m_node;
   const btVector3 dv = constraint.getDv(&bullets), normal = constraint.m_contact->m_cti.m_normal;
   if (bullets.m_im == 0 || dv.isZero() || isNoNumber(dv) || constraint.m_static) return;
-  const std::size_t node = placeIn(of, bullets.index);
-  const btScalar along = dv.dot(normal), mass = 1 / bullets.m_im;
   // Where it binds, the node's normal velocity is fixed.
-  if (!constraint.m_binding) residual[bullets.index] += along * mass * normal;
+  if (!constraint.m_binding) residual[bullets.index] += dv.dot(normal) / bullets.m_im * normal;
   of.touched = true;
-  const btScalar* v = of.dynamics->velocity(node);
-  const btVector3 relative = btVector3(v[0], v[1], v[2]) - constraint.getVa();
-  const btVector3 sliding = relative - relative.dot(normal) * normal;
-  const btScalar impulse = constraint.m_contact->m_c3 * normalImpulse(of, node, normal, along, mass);
-  const btScalar speed = std::max(sliding.length(), btScalar(1e-6));
-  if (!(impulse > 0)) return;
-  of.dynamics->matrix().resistAcross(node, normal.m_floats, impulse / speed);
-  residual[bullets.index] -= impulse / speed * sliding;
+  const Sliding sliding = slidingOf(of, constraint);
+  if (!(sliding.resistance > 0)) return;
+  const btMatrix3x3 w = resistanceAcross(normal, sliding.resistance);
+  const btScalar block[6] = {w[0][0], w[0][1], w[0][2], w[1][1], w[1][2], w[2][2]};
+  of.dynamics->matrix().resist(of.placeOf(bullets.index), block);
+  residual[bullets.index] -= sliding.resistance * sliding.velocity;
 }
 
 }  // namespace
 
-void fixContacts(const btDeformableContactProjection& projection, SolverBodies& bodies) {
+void fixContacts(const btDeformableContactProjection& projection, const RigidTies& ties, SolverBodies& bodies) {
   const auto& fixed = projection.m_projectionsDict;
   for (int k = 0; k < fixed.size(); ++k) {
     const int node = fixed.getKeyAtIndex(k).getUid1();
+    if (ties.ties(node)) continue;
     SolvedBody& of = bodies.bodyOf(node);
-    const std::size_t place = placeIn(of, node);
+    const std::size_t place = of.placeOf(node);
     if (of.dynamics->matrix().mass(place) == 0) continue;
     fix(*of.dynamics, place, *fixed.getAtIndex(k));
     of.constrained = true;
   }
 }
 
-void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual) {
+void addDynamicFriction(const btDeformableContactProjection& projection, const RigidTies& ties, SolverBodies& bodies,
+                        VectorStack& residual) {
   const auto add = [&](const auto& constraint, const btSoftBody::Node& node) {
     const btVector3 dv = constraint.getDv(&node);
     if (node.m_im == 0 || isNoNumber(dv)) return;
@@ -80,6 +63,7 @@ void addDynamicFriction(const btDeformableContactProjection& projection, SolverB
     const auto& nodes = projection.m_nodeRigidConstraints[static_cast<int>(b)];
     for (int k = 0; k < nodes.size(); ++k) {
       const btSoftBody::Node& node = *nodes[k].m_node;
+      if (ties.ties(node.index)) continue;
       of.elastic ? resist(of, nodes[k], residual) : add(nodes[k], node);
     }
     const auto& faces = projection.m_faceRigidConstraints[static_cast<int>(b)];
@@ -104,7 +88,7 @@ void keepNormalImpulses(const btDeformableContactProjection& projection, SolverB
     for (int k = 0; k < contacts.size(); ++k) {
       if (!contacts[k].m_binding) continue;
       const int number = contacts[k].m_node->index;
-      const std::size_t node = placeIn(of, number);
+      const std::size_t node = of.placeOf(number);
       // What the contact had to add to the momentum equation.
       btScalar image[3], own[3];
       of.dynamics->matrix().rowTimesSolution(node, image);

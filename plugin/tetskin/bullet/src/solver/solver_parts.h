@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/bullet/src/solver/solver_bodies.h>
+#include <tetskin/bullet/src/solver/rigid_ties.h>
 
 #include <vector>
 
@@ -39,6 +39,7 @@ struct DeformableSolver::Parts {
 
   // After contacts: solver_solve.cpp.
   void readContacts(SolvedBody& of);
+  void tieRigids();
   void addOthers();
   void solveSystems();
   void solve(const SolvedSystem& system, ParallelFor* inner);
@@ -47,12 +48,13 @@ struct DeformableSolver::Parts {
   elastic_detail::SolveLimits limitsOf(const SolvedSystem& system) const;
   /// What others add to the matrices times `step`, in `extras`.
   void multiplyOthers(const SolvedSystem& system);
-  /// The same times the matrices' own steps, for the conjugate gradient.
+  /// The same times the matrices' own steps, and what ties add, for the conjugate gradient.
   void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
   void writeVelocities(SolvedBody& of) const;
 
   DeformableSolver& solver;
   SolverBodies bodies;
+  RigidTies ties;
   HiddenBodies hidden;
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;

@@ -8,6 +8,12 @@
 #include <algorithm>
 
 namespace tetskin {
+namespace {
+
+/// Of the errors that a solve may leave: what a rigid body pushes back with is known as well as they are small.
+constexpr double kCloserWithRigids = 0.1;
+
+}  // namespace
 
 /// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
 /// velocities the whole step begins with.
@@ -44,6 +50,17 @@ void DeformableSolver::Parts::addOthers() {
   }
 }
 
+void DeformableSolver::Parts::tieRigids() {
+  ties.collect(solver.m_objective->m_projection, bodies);
+  for (std::size_t r = 0; r < ties.rigids().size(); ++r) {
+    std::vector<std::size_t> places;
+    for (const RigidTie& tie : ties.rigids()[r].ties) {
+      if (places.empty() || places.back() != tie.body) places.push_back(tie.body);
+    }
+    if (!places.empty()) bodies.join(places).rigids.push_back(r);
+  }
+}
+
 /// What Bullet's forces have a part in is solved here, one after the other; the rest side by side.
 void DeformableSolver::Parts::solveSystems() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
@@ -75,7 +92,7 @@ void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor
   Solve::Matrices matrices;
   for (const std::size_t b : system.bodies) matrices.push_back(&bodies.bodies()[b].dynamics->matrix());
   Solve::Extra extra;
-  if (!system.forces.empty()) extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
+  if (!system.forces.empty() || !system.rigids.empty()) extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   first.solve->start(std::move(matrices), limits, std::move(extra), inner);
   first.solve->iterate(limits.iterations, inner);
@@ -86,11 +103,16 @@ void DeformableSolver::Parts::addProducts(const SolvedSystem& system, std::vecto
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
     const auto& matrix = of.dynamics->matrix();
+    if (system.forces.empty()) {
+      extras[b].assign(matrix.wideSize(), btScalar(0));
+      continue;
+    }
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
       step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
     }
   }
-  multiplyOthers(system);
+  if (!system.forces.empty()) multiplyOthers(system);
+  ties.addProducts(system.rigids, bodies, extras);
   for (std::size_t k = 0; k < system.bodies.size(); ++k) added[k] = extras[system.bodies[k]].data();
 }
 
@@ -104,6 +126,11 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     if (of.elastic) limits.enough += of.solve->enough();
+  }
+  if (!system.rigids.empty()) {
+    limits.tolerance *= kCloserWithRigids;
+    limits.floor *= kCloserWithRigids;
+    limits.enough = 0;
   }
   return limits;
 }
@@ -119,6 +146,7 @@ void DeformableSolver::Parts::startAgain(const SolvedSystem& system, ParallelFor
     }
     multiplyOthers(system);
   }
+  ties.addForces(system.rigids, bodies, solver.m_residual);
   for (const std::size_t b : system.bodies) {
     SolvedBody& of = bodies.bodies()[b];
     of.dynamics->startAgain(inner);

@@ -120,14 +120,11 @@ void BlockMatrix<S>::free() {
 }
 
 template <class S>
-void BlockMatrix<S>::resistAcross(std::size_t node, const S n[3], S factor) {
+void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
   if (mass(node) == S(0)) return;
   const std::size_t slot = slotOf(node);
   S* d = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
-  std::size_t k = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j, ++k) d[k * kGroup] += factor * ((i == j ? S(1) : S(0)) - n[i] * n[j]);
-  }
+  for (std::size_t k = 0; k < 6; ++k) d[k * kGroup] += block[k];
   S m[6], inverse[6];
   diagonal(node, m);
   invertSymmetric(m, inverse);

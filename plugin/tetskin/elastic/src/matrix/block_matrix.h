@@ -62,8 +62,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void fix(std::size_t node);
   void fixAlong(std::size_t node, const S normal[3]);
   void fixAllBut(std::size_t node, const S direction[3]);
-  /// Adds resistance to a node's motion across a normal: factor (1 - n n^T), factor >= 0. Before the node is fixed.
-  void resistAcross(std::size_t node, const S normal[3], S factor);
+  /// Adds to a node's diagonal block what resists its motion, xx xy xz yy yz zz: no negative eigenvalue. Before the node
+  /// is fixed.
+  void resist(std::size_t node, const S block[6]);
   /// All but the held ones are free again, and meet no resistance.
   void free();
 

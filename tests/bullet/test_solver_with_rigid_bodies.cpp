@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies and dynamic rigid ones that push each other, in the library's solver.
+#include "deformable_test.h"
+
+#include <functional>
+#include <vector>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::latticeCage;
+using test::step;
+using test::TetskinWorld;
+
+/// A box or a ball in a world, as long as it lives.
+struct Rigid {
+  Rigid(TetskinWorld& in, std::unique_ptr<btCollisionShape> ofShape, btScalar mass, const btVector3& at)
+      : world(in), shape(std::move(ofShape)) {
+    btVector3 inertia;
+    shape->calculateLocalInertia(mass, inertia);
+    body = std::make_unique<btRigidBody>(mass, nullptr, shape.get(), inertia);
+    body->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+    body->setInterpolationWorldTransform(body->getWorldTransform());
+    body->setFriction(btScalar(0.5));
+    world.deformable().addRigidBody(body.get());
+  }
+  ~Rigid() { world.deformable().removeRigidBody(body.get()); }
+  Rigid(const Rigid&) = delete;
+  Rigid& operator=(const Rigid&) = delete;
+
+  btVector3 momentum() const { return body->getLinearVelocity() / body->getInvMass(); }
+  double kineticEnergy() const {
+    const btVector3 turn = body->getWorldTransform().getBasis().transpose() * body->getAngularVelocity();
+    const btVector3 inertia = body->getLocalInertia();
+    return 0.5 * static_cast<double>(momentum().dot(body->getLinearVelocity()) + turn.dot(inertia * turn));
+  }
+  double height() const { return static_cast<double>(body->getWorldTransform().getOrigin().y()); }
+
+  TetskinWorld& world;
+  std::unique_ptr<btCollisionShape> shape;
+  std::unique_ptr<btRigidBody> body;
+};
+
+std::unique_ptr<btCollisionShape> ball() {
+  return std::make_unique<btSphereShape>(btScalar(0.25));
+}
+
+btVector3 momentumOf(const btSoftBody& body) {
+  btVector3 sum(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_v / body.m_nodes[n].m_im;
+  return sum;
+}
+
+double kineticAndElasticEnergy(TetskinWorld& world, const btSoftBody& body) {
+  double energy = 0.0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    energy += 0.5 * static_cast<double>(body.m_nodes[n].m_v.length2() / body.m_nodes[n].m_im);
+  }
+  const auto& forces = *world.bodySolver().getLagrangianForceArray();
+  for (int f = 0; f < forces.size(); ++f) energy += forces[f]->totalElasticEnergy(btScalar(1) / 240);
+  return energy;
+}
+
+void forEachSubstep(TetskinWorld& world, int steps, const std::function<void()>& then) {
+  for (int k = 0; k < steps; ++k) {
+    world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+    then();
+  }
+}
+
+/// A block that flies at what is above the origin, in a world without gravity.
+struct FlyingBlock {
+  explicit FlyingBlock(double height = 5.0) {
+    world.deformable().setGravity(btVector3(0, 0, 0));
+    TetMesh cage = latticeCage(3, 3, 3, 0.3);
+    for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.45, height, -0.45);
+    block = added(world, cage);
+    block->body().m_cfg.kDF = btScalar(0.5);
+  }
+  btSoftBody& body() { return block->body(); }
+
+  TetskinWorld world;
+  std::unique_ptr<DeformableBody> block;
+};
+
+TEST(SolverWithRigidBodies, TheyTakeTheMomentumThatTheBodyLoses) {
+  for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
+    for (const double aside : {0.0, 0.2}) {
+      FlyingBlock of;
+      Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(static_cast<btScalar>(aside), 4, 0));
+      of.body().setVelocity(btVector3(0, -2, 0));
+      const btVector3 before = momentumOf(of.body());
+      double given = 0.0, most = 0.0;
+      forEachSubstep(of.world, 240, [&] {
+        given = std::max(given, static_cast<double>(rigid.momentum().length()));
+        most = std::max(most, static_cast<double>((momentumOf(of.body()) + rigid.momentum() - before).length()));
+      });
+      EXPECT_GT(given, 0.9 * std::min(1.0, mass)) << mass;
+      EXPECT_LT(most, 0.01 * 2.0) << mass << " " << aside;
+    }
+  }
+}
+
+TEST(SolverWithRigidBodies, NothingGainsEnergyByAnImpact) {
+  for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
+    FlyingBlock of;
+    Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(btScalar(0.1), 4, 0));
+    of.body().setVelocity(btVector3(0, -2, 0));
+    const double impact = 0.5 * 4.0;
+    double least = impact, risen = 0.0;
+    forEachSubstep(of.world, 240, [&] {
+      const double energy = kineticAndElasticEnergy(of.world, of.body()) + rigid.kineticEnergy();
+      least = std::min(least, energy);
+      risen = std::max(risen, energy - least);
+    });
+    EXPECT_LT(least, 0.999 * impact) << mass;
+    EXPECT_LT(risen, 0.01 * impact) << mass;
+  }
+}
+
+TEST(SolverWithRigidBodies, TwoBodiesPushOneFromBothSides) {
+  FlyingBlock of;
+  TetMesh above = latticeCage(3, 3, 3, 0.3);
+  for (Eigen::Vector3d& p : above.nodes) p += Eigen::Vector3d(-0.45, 2.1, -0.45);
+  const auto other = added(of.world, above);
+  Rigid rigid(of.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
+  of.body().setVelocity(btVector3(0, -2, 0));
+  other->body().setVelocity(btVector3(0, 2, 0));
+  double most = 0.0, fastest = 0.0;
+  forEachSubstep(of.world, 240, [&] {
+    const btVector3 all = momentumOf(of.body()) + momentumOf(other->body()) + rigid.momentum();
+    most = std::max(most, static_cast<double>(all.length()));
+    fastest = std::max(fastest, static_cast<double>(rigid.body->getLinearVelocity().length()));
+  });
+  EXPECT_GT(momentumOf(of.body()).y(), 0);  // thrown back
+  EXPECT_LT(momentumOf(other->body()).y(), 0);
+  EXPECT_LT(most, 0.01 * 4.0);
+  EXPECT_LT(fastest, 4.0);
+}
+
+TEST(SolverWithRigidBodies, LockedFactorsStayLocked) {
+  FlyingBlock of;
+  Rigid rigid(of.world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.1), btScalar(0.4))), 1,
+              btVector3(btScalar(0.6), 4, 0));
+  rigid.body->setLinearFactor(btVector3(1, 0, 1));
+  rigid.body->setAngularFactor(btVector3(1, 1, 0));
+  of.body().setVelocity(btVector3(0, -2, 0));
+  forEachSubstep(of.world, 120, [&] {
+    ASSERT_NEAR(rigid.body->getLinearVelocity().y(), 0, 1e-12);
+    ASSERT_NEAR(rigid.body->getAngularVelocity().z(), 0, 1e-3);  // Bullet's own gyroscopic forces
+  });
+  EXPECT_GT(momentumOf(of.body()).y(), 0);  // as from a wall
+}
+
+TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
+  for (const double mass : {0.1, 1.0, 3.0}) {
+    FlyingBlock of(0.05);
+    of.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid on(of.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.3))),
+             static_cast<btScalar>(mass), btVector3(0, btScalar(1.2), 0));
+    step(of.world, 300);
+    const double height = on.height();
+    double most = 0.0;
+    forEachSubstep(of.world, 60, [&] { most = std::max(most, std::abs(on.height() - height)); });
+    EXPECT_GT(height, 0.7) << mass;
+    EXPECT_LT(height, 1.1) << mass;
+    EXPECT_LT(most, 0.002) << mass;
+  }
+  for (const double mass : {1.0, 3.0}) {
+    // On the floor, which has a part in where the box goes.
+    FlyingBlock of(0.35);
+    of.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid under(of.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.15), btScalar(0.6))),
+                static_cast<btScalar>(mass), btVector3(0, btScalar(0.15), 0));
+    step(of.world, 180);
+    EXPECT_NEAR(under.height(), 0.15, 0.01) << mass;
+    EXPECT_GT(test::lowest(of.body()), 0.28) << mass;
+    EXPECT_LT(test::rmsSpeed(of.body()), 0.02) << mass;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin
