@@ -48,6 +48,23 @@ inline double rmsSpeed(const btSoftBody& body) {
   return std::sqrt(squared / body.m_nodes.size());
 }
 
+inline double kineticEnergyOf(const btSoftBody& body) {
+  double energy = 0.0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    if (node.m_im > 0) energy += 0.5 * static_cast<double>(node.m_v.length2() / node.m_im);
+  }
+  return energy;
+}
+
+/// Of all bodies.
+inline double elasticEnergyIn(EmptyWorld& world) {
+  double energy = 0.0;
+  const auto& forces = *static_cast<btDeformableBodySolver&>(*world.softSolver).getLagrangianForceArray();
+  for (int f = 0; f < forces.size(); ++f) energy += forces[f]->totalElasticEnergy(btScalar(1) / 240);
+  return energy;
+}
+
 inline void step(EmptyWorld& world, int frames) {
   for (int f = 0; f < frames; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
 }

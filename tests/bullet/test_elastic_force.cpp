@@ -104,6 +104,26 @@ TEST(ElasticForce, IsTheGradientOfItsEnergy) {
   }
 }
 
+TEST(ElasticForce, TellsTheEnergyWhoeverSolvesAndAskingChangesNothing) {
+  test::TetskinWorld asked, left;
+  EmptyWorld bullets;
+  const auto a = test::added(asked, cageAbove(0.2)), b = test::added(left, cageAbove(0.2)),
+             c = test::added(bullets, cageAbove(0.2));
+  double most = 0.0, mostInBullets = 0.0;
+  for (int f = 0; f < 40; ++f) {
+    for (EmptyWorld* world : {static_cast<EmptyWorld*>(&asked), static_cast<EmptyWorld*>(&left), &bullets}) {
+      step(*world, 1);
+    }
+    most = std::max(most, test::elasticEnergyIn(asked));
+    mostInBullets = std::max(mostInBullets, test::elasticEnergyIn(bullets));
+    for (int n = 0; n < a->body().m_nodes.size(); ++n) {
+      ASSERT_EQ(a->body().m_nodes[n].m_x, b->body().m_nodes[n].m_x) << f;
+    }
+  }
+  EXPECT_GT(most, 0.1);
+  EXPECT_NEAR(most, mostInBullets, 0.1 * most);
+}
+
 /// Bullet's addForce gives a second body to the first object of a type.
 TEST(ElasticForce, HasSeveralBodies) {
   EmptyWorld world;

@@ -54,16 +54,6 @@ btVector3 momentumOf(const btSoftBody& body) {
   return sum;
 }
 
-double kineticAndElasticEnergy(TetskinWorld& world, const btSoftBody& body) {
-  double energy = 0.0;
-  for (int n = 0; n < body.m_nodes.size(); ++n) {
-    energy += 0.5 * static_cast<double>(body.m_nodes[n].m_v.length2() / body.m_nodes[n].m_im);
-  }
-  const auto& forces = *world.bodySolver().getLagrangianForceArray();
-  for (int f = 0; f < forces.size(); ++f) energy += forces[f]->totalElasticEnergy(btScalar(1) / 240);
-  return energy;
-}
-
 void forEachSubstep(TetskinWorld& world, int steps, const std::function<void()>& then) {
   for (int k = 0; k < steps; ++k) {
     world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
@@ -112,7 +102,7 @@ TEST(SolverWithRigidBodies, NothingGainsEnergyByAnImpact) {
     const double impact = 0.5 * 4.0;
     double least = impact, risen = 0.0;
     forEachSubstep(of.world, 240, [&] {
-      const double energy = kineticAndElasticEnergy(of.world, of.body()) + rigid.kineticEnergy();
+      const double energy = test::kineticEnergyOf(of.body()) + test::elasticEnergyIn(of.world) + rigid.kineticEnergy();
       least = std::min(least, energy);
       risen = std::max(risen, energy - least);
     });
