@@ -53,7 +53,7 @@ bool addNodeContact(btSoftBody& body, const btCollisionObject& object, const Nod
   contact.t2.setZero();
   contact.m_cti.m_colObj = &object;
   contact.m_cti.m_normal = touch.normal;
-  contact.m_cti.m_offset = touch.distance;
+  contact.m_cti.m_offset = touch.room;
   contact.m_c2 = node.m_im;
   contact.m_c3 = body.m_cfg.kDF * object.getFriction();
   contact.m_c4 = object.isStaticOrKinematicObject() ? body.m_cfg.kKHR : body.m_cfg.kCHR;

@@ -11,6 +11,21 @@
 namespace tetskin {
 namespace {
 
+/// Cosine: points whose normals are as near as that stop a node together.
+constexpr btScalar kSameWay = btScalar(0.7);
+
+/// Of two points that one node carries.
+void join(const NodeTouch& other, NodeTouch& touch) {
+  const btScalar room = std::min(touch.room, other.room);
+  const bool sameWay = touch.normal.dot(other.normal) > kSameWay;
+  if (other.predicted < touch.predicted) {
+    const int node = touch.node;
+    touch = other;
+    touch.node = node;
+  }
+  if (sameWay) touch.room = room;
+}
+
 /// Steps on the way of a point. After these it counts as meeting what it has come near to.
 constexpr int kMostSteps = 24;
 /// How near counts as met, over the margin.
@@ -279,11 +294,13 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   if (!(touch.predicted < 0 || touch.distance < 0)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
+  touch.point = patch.firstPoint + point;
+  touch.room = touch.distance;
   keep(patch, point, touch);
   return 0;
 }
 
-/// The nodes that carry a point hold it; each node the one that would go deepest.
+/// The nodes that carry a point hold it; each node the one that would go deepest, as far as all let it.
 void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch) {
   const btScalar* acting = &patches_.acting[patch.firstWeight + point * patch.nodeCount];
   const btScalar least = std::min(share_, *std::max_element(acting, acting + patch.nodeCount));
@@ -294,13 +311,10 @@ void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const Nod
     if (place < 0) {
       place = static_cast<int>(touches_.size());
       touches_.push_back(touch);
-    } else if (touch.predicted < touches_[static_cast<std::size_t>(place)].predicted) {
-      touches_[static_cast<std::size_t>(place)] = touch;
+      touches_.back().node = node;
     } else {
-      continue;
+      join(touch, touches_[static_cast<std::size_t>(place)]);
     }
-    touches_[static_cast<std::size_t>(place)].node = node;
-    touches_[static_cast<std::size_t>(place)].point = patch.firstPoint + point;
   }
 }
 

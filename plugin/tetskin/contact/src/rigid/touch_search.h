@@ -26,6 +26,7 @@ struct NodeTouch {
   btVector3 normal;         ///< of the shape where the point meets it, world space
   btScalar distance = 0;    ///< now, along the normal, less the margin
   btScalar predicted = 0;   ///< the same at the end of the step: one of the two is below 0
+  btScalar room = 0;        ///< the least distance of the points that the node carries and this normal stops
 };
 
 class BoxOfPaths {
