@@ -27,12 +27,17 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
   return {rigid.getWorldTransform(), predictedOf(object) * place};
 }
 
+const DeformableSolver* ownSolverOf(const btSoftBody& body) {
+  auto* solver = static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+  const auto* own = dynamic_cast<const DeformableSolver*>(solver);
+  return own && own->solves() ? own : nullptr;
+}
+
 /// Bullet's implicit steps add elastic forces to velocities as if they were explicit, which overshoots, before they
 /// look for contacts, and drop them afterwards.
 bool velocitiesAreUnsolved(const btSoftBody& body) {
   auto* solver = static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
-  const auto* own = dynamic_cast<const DeformableSolver*>(solver);
-  return solver->m_objective->m_implicit && !(own && own->solves());
+  return solver->m_objective->m_implicit && !ownSolverOf(body);
 }
 
 }  // namespace
@@ -64,7 +69,8 @@ void BodyContacts::readNodes() {
     const btSoftBody::Node& node = body_.m_nodes[n];
     nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * (unsolved ? node.m_vn : node.m_v)};
   }
-  search_.begin(nodes_);
+  // Bullet's own solver throws nodes away that are stopped from opposite sides.
+  search_.begin(nodes_, ownSolverOf(body_) != nullptr);
 }
 
 /// By the boxes that Bullet keeps, and for shapes of one piece by the distance of the body's.

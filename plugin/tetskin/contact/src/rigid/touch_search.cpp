@@ -14,16 +14,17 @@ namespace {
 /// Cosine: points whose normals are as near as that stop a node together.
 constexpr btScalar kSameWay = btScalar(0.7);
 
-/// Of two points that one node carries.
+bool sameWay(const NodeTouch& a, const NodeTouch& b) {
+  return a.normal.dot(b.normal) > kSameWay;
+}
+
+/// Of two points that one node carries: the one that goes deeper, as far as both let it.
 void join(const NodeTouch& other, NodeTouch& touch) {
-  const btScalar room = std::min(touch.room, other.room);
-  const bool sameWay = touch.normal.dot(other.normal) > kSameWay;
-  if (other.predicted < touch.predicted) {
-    const int node = touch.node;
-    touch = other;
-    touch.node = node;
-  }
-  if (sameWay) touch.room = room;
+  const NodeTouch before = touch;
+  if (other.predicted < touch.predicted) touch = other;
+  if (sameWay(before, other)) touch.room = std::min(before.room, other.room);
+  touch.node = before.node;
+  touch.next = before.next;
 }
 
 /// Steps on the way of a point. After these it counts as meeting what it has come near to.
@@ -77,8 +78,9 @@ TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
-void TouchSearch::begin(const std::vector<NodePath>& nodes) {
+void TouchSearch::begin(const std::vector<NodePath>& nodes, bool several) {
   nodes_ = &nodes;
+  several_ = several;
   clustersRead_ = false;
   placeOf_.resize(nodes.size(), -1);
   local_.resize(nodes.size());
@@ -119,7 +121,7 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
   }
   if (allClear) rememberAllClear();
   for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
-  std::sort(touches_.begin(), touches_.end(), [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
+  std::stable_sort(touches_.begin(), touches_.end(), [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
   return touches_;
 }
 
@@ -300,22 +302,29 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   return 0;
 }
 
-/// The nodes that carry a point hold it; each node the one that would go deepest, as far as all let it.
+/// The nodes that carry a point hold it.
 void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch) {
   const btScalar* acting = &patches_.acting[patch.firstWeight + point * patch.nodeCount];
   const btScalar least = std::min(share_, *std::max_element(acting, acting + patch.nodeCount));
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
     if (acting[n] < least) continue;
     const int node = patches_.nodes[patch.firstNode + n];
-    int& place = placeOf_[static_cast<std::size_t>(node)];
-    if (place < 0) {
-      place = static_cast<int>(touches_.size());
-      touches_.push_back(touch);
-      touches_.back().node = node;
-    } else {
-      join(touch, touches_[static_cast<std::size_t>(place)]);
-    }
+    keepAt(node, touch);
   }
+}
+
+/// One for each way in which the node is stopped; in one way at most, if it cannot be in several.
+void TouchSearch::keepAt(int node, const NodeTouch& touch) {
+  int& first = placeOf_[static_cast<std::size_t>(node)];
+  int at = first;
+  while (at >= 0 && several_ && !sameWay(touch, touches_[static_cast<std::size_t>(at)])) {
+    at = touches_[static_cast<std::size_t>(at)].next;
+  }
+  if (at >= 0) return join(touch, touches_[static_cast<std::size_t>(at)]);
+  touches_.push_back(touch);
+  touches_.back().node = node;
+  touches_.back().next = first;
+  first = static_cast<int>(touches_.size()) - 1;
 }
 
 }  // namespace tetskin

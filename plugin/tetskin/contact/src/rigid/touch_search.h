@@ -27,6 +27,7 @@ struct NodeTouch {
   btScalar distance = 0;    ///< now, along the normal, less the margin
   btScalar predicted = 0;   ///< the same at the end of the step: one of the two is below 0
   btScalar room = 0;        ///< the least distance of the points that the node carries and this normal stops
+  int next = -1;            ///< while they are collected: another one of the node
 };
 
 class BoxOfPaths {
@@ -70,8 +71,9 @@ class TouchSearch {
   btScalar margin() const { return margin_; }
 
   /// Where the nodes are in this step; valid until the next call.
-  void begin(const std::vector<NodePath>& nodes);
-  /// Of the body with these nodes and this shape; ascending by node, each once. Valid until the next call.
+  /// several  a node may be stopped in several directions: at an edge, by its two sides
+  void begin(const std::vector<NodePath>& nodes, bool several = true);
+  /// Of the body with these nodes and this shape; ascending by node. Valid until the next call.
   /// memory  of the same shape, or an empty one
   const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
 
@@ -93,11 +95,13 @@ class TouchSearch {
   NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
   btScalar touch(const ContactPatch& patch, std::uint32_t point);
   void keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch);
+  void keepAt(int node, const NodeTouch& touch);
 
   ContactPatches patches_;
   btScalar margin_, share_, slack_;
   btScalar spread_ = 1;  ///< the largest of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
+  bool several_ = true;
   bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
   // Of one call of `find`.
