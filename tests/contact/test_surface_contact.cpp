@@ -70,6 +70,30 @@ TEST_P(SurfaceContactIn, StopsAFastBodyThatWouldPassAThinPlate) {
   EXPECT_GT(worst, -0.02 * kBodySize);
 }
 
+TEST(SurfaceContact, ThinAndSharpObstaclesDoNotCutInAtFifteenSizesASecond) {
+  const btQuaternion turned(btVector3(0, 0, 1), SIMD_PI / 4);
+  for (int kind = 0; kind < 4; ++kind) {
+    TetskinWorld world;
+    std::unique_ptr<btCollisionShape> shape;
+    if (kind == 0) shape = std::make_unique<btBoxShape>(btVector3(1, 1, 1) / btSqrt(btScalar(2)));
+    if (kind == 1) shape = std::make_unique<btSphereShape>(1);
+    if (kind == 2) shape = std::make_unique<btCapsuleShapeZ>(btScalar(0.03), 2);
+    if (kind == 3) shape = std::make_unique<btSphereShape>(btScalar(0.075));
+    const btScalar tops[] = {1, 1, btScalar(0.03), btScalar(0.075)};
+    Obstacle obstacle(world, std::move(shape),
+                      placeAt(btVector3(0, 3, 0), kind == 0 ? turned : btQuaternion::getIdentity()));
+    TouchingBody body(world, ballMesh(48, 0.35), btVector3(btScalar(0.01), 3 + tops[kind] + btScalar(0.5), 0));
+    body.body->body().setVelocity(btVector3(0, -15, 0));
+    double worst = HUGE_VAL;
+    for (int k = 0; k < 60; ++k) {
+      world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+      worst = std::min(worst, body.gap(distanceFrom(obstacle)));
+    }
+    EXPECT_LT(worst, 0.01) << kind;  // it was met
+    EXPECT_GT(worst, -0.005 * kBodySize) << kind;
+  }
+}
+
 TEST_P(SurfaceContactIn, PushesADynamicBodyAsMuchAsItIsPushed) {
   const auto world = worldOf(GetParam());
   world->deformable().setGravity(btVector3(0, 0, 0));

@@ -28,11 +28,15 @@ class TouchSearchTest : public ::testing::Test {
     }
   }
   std::vector<NodeTouch> find(TouchSearch& search, const btCollisionShape& shape, const btVector3& at,
-                              ShapeMemory& memory) {
+                              ShapeMemory& memory, bool several = true) {
+    return find(search, shape, placeAt(at), memory, several);
+  }
+  std::vector<NodeTouch> find(TouchSearch& search, const btCollisionShape& shape, const btTransform& at,
+                              ShapeMemory& memory, bool several) {
     ExactProbe probe;
     probe.take(*ExactShape::of(shape));
-    search.begin(nodes_);
-    return search.find(probe, {placeAt(at), placeAt(at)}, memory);
+    search.begin(nodes_, several);
+    return search.find(probe, {at, at}, memory);
   }
   std::vector<NodeTouch> findAnew(const btCollisionShape& shape, const btVector3& at) {
     TouchSearch search = makeSearch();
@@ -85,6 +89,58 @@ TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
     EXPECT_NEAR(touch.normal.y(), 1, 1e-5);  // on the side where it comes from
     EXPECT_NEAR(touch.distance, touch.position.y() - btScalar(0.005) - kMargin, 1e-3);
   }
+}
+
+TEST_F(TouchSearchTest, StopsANodeByBothSidesOfAnEdge) {
+  const btBoxShape box(btVector3(1, 1, 1));
+  const btTransform edge = placeAt(btVector3(0, -btSqrt(btScalar(2)), 0), btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4));
+  moveBy(btVector3(0, btScalar(0.4), 0), btVector3(0, btScalar(-0.15), 0));
+  for (const bool several : {true, false}) {
+    TouchSearch search = makeSearch();
+    ShapeMemory memory;
+    std::multiset<int> found;
+    const auto touches = find(search, box, edge, memory, several);
+    for (const NodeTouch& touch : touches) {
+      found.insert(touch.node);
+      for (const NodeTouch& other : touches) {
+        if (&other == &touch || other.node != touch.node) continue;
+        EXPECT_LT(touch.normal.dot(other.normal), 0.75);
+      }
+    }
+    std::size_t twice = 0;
+    for (const int node : found) twice += found.count(node) == 2;
+    EXPECT_EQ(twice > 0, several);
+  }
+}
+
+/// The deepest of a node's points may be one that has come from far: another one that is nearer must not go as far.
+TEST_F(TouchSearchTest, LetsANodeGoAsFarAsAllItsPointsMay) {
+  const btBoxShape ground(btVector3(2, 1, 2));
+  // Tilts while it falls: what is lowest is not what goes deepest.
+  for (NodePath& node : nodes_) node.predicted.setY(node.now.y() - btScalar(0.2) - btScalar(0.5) * node.now.x());
+  const auto touches = findAnew(ground, btVector3(0, btScalar(-1.36), 0));
+  std::size_t held = 0;
+  for (const NodeTouch& touch : touches) {
+    btScalar least = touch.distance;
+    for (const ContactPatch& patch : patches_.patches) {
+      for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
+        const std::size_t first = patch.firstWeight + p * patch.nodeCount;
+        btScalar now = 0, predicted = 0, share = 0;
+        for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+          const int node = patches_.nodes[patch.firstNode + n];
+          const NodePath& path = nodes_[static_cast<std::size_t>(node)];
+          now += patches_.weights[first + n] * path.now.y();
+          predicted += patches_.weights[first + n] * path.predicted.y();
+          if (node == touch.node) share = patches_.weights[first + n];
+        }
+        const btScalar above = btScalar(-0.36) + kMargin;
+        if (share >= btScalar(0.1) && predicted < above) least = std::min(least, now - above);
+      }
+    }
+    EXPECT_NEAR(touch.room, least, 1e-4);
+    held += touch.room < touch.distance - btScalar(0.01);
+  }
+  EXPECT_GT(held, 0u);
 }
 
 TEST_F(TouchSearchTest, LeavesAloneWhatGoesAway) {
