@@ -83,7 +83,7 @@ ContactObstacle hills() {
 }
 /// In the body's box, but not near its surface.
 ContactObstacle apart() {
-  return {nullptr, std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(0, btScalar(0.9), 0)};
+  return {nullptr, std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(btScalar(0.6), 1, 0)};
 }
 
 /// A serpent on an obstacle, and what contact costs.

@@ -56,6 +56,8 @@ struct ShapeBound {
 class ShapeProbe {
  public:
   virtual ~ShapeProbe() = default;
+  /// Shapes of the kind with the same box are the same: none changes in place unseen.
+  virtual bool isKnownByItsBox() const { return false; }
   /// Whether anything of the shape may be within `reach` of the ball. Then points in the ball may be asked for.
   virtual bool enter(const Ball& ball, btScalar reach) = 0;
   /// The same for a ball in the last one entered, around these.
@@ -70,6 +72,7 @@ class ShapeProbe {
 class ExactProbe : public ShapeProbe {
  public:
   void take(const ExactShape& shape) { shape_ = shape; }
+  bool isKnownByItsBox() const override { return true; }
   bool enter(const Ball& ball, btScalar reach) override {
     const ShapeDistance centre = shape_.distance(ball.centre);
     bound_ = ShapeBound::behind(centre, ball.centre);

@@ -113,7 +113,7 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
   prepare(memory);
   bool allClear = true;
   for (std::size_t c = 0; c < clusterBalls_.size(); ++c) {
-    const bool again = (memory.steps + c) % kRemembered == 0;
+    const bool again = !probe.isKnownByItsBox() && (memory.steps + c) % kRemembered == 0;
     const Ball ball = localBall(c);
     btScalar left = again ? btScalar(0) : clearance(c, ball);
     if (!(left > 0)) left = searchCluster(c, ball, again);
@@ -134,7 +134,8 @@ void TouchSearch::prepare(ShapeMemory& memory) const {
 
 /// No point has moved by half the slack since all was clear by as much.
 bool TouchSearch::isAllClear() const {
-  if (memory_->steps >= memory_->clearUntil || !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
+  const bool forgotten = memory_->steps >= memory_->clearUntil && !probe_->isKnownByItsBox();
+  if (forgotten || memory_->nodes.empty() || !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
     return false;
   }
   const btScalar most = btScalar(0.25) * slack_ * slack_ / (spread_ * spread_);
