@@ -116,7 +116,7 @@ GapObstacle hull() {
 
 /// Gentle hills, a grid of triangles; as a function of the plane, by the triangle above or below a point.
 struct Hills {
-  static constexpr int kCells = 32;  ///< to either side
+  static constexpr int kCells = 12;  ///< to either side
   static constexpr double kCell = 0.125 * kSize, kDepth = 0.04 * kSize, kLength = 1.5 * kSize;
 
   static double height(int i, int j) {
