@@ -58,8 +58,8 @@ class Watched {
  private:
   static SceneOptions optionsOf(const GapRun& how) {
     SceneOptions options;
-    options.force = how.setting == "solver" ? Force::Elastic : Force::ElasticForceOnly;
-    options.body.implicit = how.setting == "implicit";
+    options.force = forceOf(how.setting);
+    options.body.implicit = how.setting == Setting::Implicit;
     options.body.damping = kDamping;
     return options;
   }
@@ -71,11 +71,6 @@ class Watched {
 };
 
 }  // namespace
-
-const std::vector<std::string>& settingNames() {
-  static const std::vector<std::string> names = {"solver", "explicit", "implicit"};
-  return names;
-}
 
 bool Rest::touches() const {
   return finite && std::abs(gap) < kOff;

@@ -2,19 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "gaps/gap_bodies.h"
 #include "gaps/gap_obstacles.h"
 
 namespace tetskin::gaps {
 
-/// "solver": DeformableSolver; "explicit", "implicit": Bullet's own, with the library's force.
-const std::vector<std::string>& settingNames();
-
 struct GapRun {
-  std::string setting;
+  scenes::Setting setting = scenes::Setting::Solver;
   scenes::Contact contact = scenes::Contact::Surface;
 };
 

@@ -48,6 +48,12 @@ enum class Force {
   ElasticForceOnly,  ///< the library's force with Bullet's solver
 };
 
+/// What solves the library's force: its solver, or Bullet's in explicit or implicit steps.
+enum class Setting { Solver, Explicit, Implicit };
+inline Force forceOf(Setting setting) {
+  return setting == Setting::Solver ? Force::Elastic : Force::ElasticForceOnly;
+}
+
 /// What of a soft body meets rigid ones.
 enum class Contact { Surface, Cage };
 
