@@ -126,6 +126,7 @@ void Pile::add(const PileModel& of, int k, const PileOptions& options) {
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
   const int first = static_cast<int>(mesh_.vertexCount());
+  mesh_.groups.push_back({of.model.name, "", mesh_.triangleCount(), of.model.mesh.triangleCount()});
   mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
   for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
 }
