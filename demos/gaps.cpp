@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How far from an obstacle a body is drawn that lies on it, and how deep in it one that has just hit it: with contact by
-// the visual surface, and by the cage's nodes.
+// How far from an obstacle a body is drawn that lies on it, and how deep in it one that has just hit it: with contact
+// by the visual surface, and by the cage's nodes.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -51,9 +51,8 @@ GapRow measured(const GapOptions& options, const GapObstacle& obstacle, const Ga
 void print(const GapRow& row) {
   const auto word = [](const Rest& rest) { return !rest.touches() ? "off" : rest.still() ? "still" : "moves"; };
   std::printf("%-9s %-7s %-8s %5zu   rest %+.4f %-5s  cage %+.4f %-5s   impact %+.4f  cage %+.4f  %s\n",
-              row.setting.c_str(), row.obstacle.c_str(), row.body.c_str(), row.tets, row.surface.gap,
-              word(row.surface), row.cage.gap, word(row.cage), row.deepest, row.deepestByCage,
-              holds(row) ? "" : "NOT HELD");
+              row.setting.c_str(), row.obstacle.c_str(), row.body.c_str(), row.tets, row.surface.gap, word(row.surface),
+              row.cage.gap, word(row.cage), row.deepest, row.deepestByCage, holds(row) ? "" : "NOT HELD");
   std::fflush(stdout);
 }
 
@@ -104,7 +103,8 @@ int run(const GapOptions& options) {
 
 int main(int argc, char** argv) {
   GapOptions options;
-  CommandLine line("Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.");
+  CommandLine line(
+      "Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.");
   line.addWords("--bodies", options.bodies, "serpent, round, legs (default: all)");
   line.addWords("--obstacles", options.obstacles, "floor, edge, sphere, pole, hull, mesh, ball (default: all)");
   line.addWords("--settings", options.settings,

@@ -81,8 +81,7 @@ Cage placedAt(Cage cage, int k) {
 
 class Pile {
  public:
-  explicit Pile(const PileOptions& options)
-      : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
+  explicit Pile(const PileOptions& options) : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
     for (const BuiltIn builtIn : kModels) {
       ModelOptions of;
       of.builtIn = builtIn;
@@ -91,8 +90,7 @@ class Pile {
       models_.emplace_back(of);
     }
     addBowl(world_);
-    for (int k = 0; k < options.bodies; ++k)
-      add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options);
+    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }

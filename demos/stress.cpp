@@ -74,7 +74,8 @@ int main(int argc, char** argv) {
   StressOptions options;
   CommandLine line("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
   line.addFlag("--quick", options.quick, "A part of the cases, in some 20 s");
-  line.addFlag("--long", options.lasting, "Instead of all others the cases of a minute of simulated time, in some minutes");
+  line.addFlag("--long", options.lasting,
+               "Instead of all others the cases of a minute of simulated time, in some minutes");
   line.addWord("--force", options.force, {"bullet", "tetskin"},
                "Only the cases of Bullet's forces, or of tetskin's force and solver (default: both)");
   line.addText("--only", options.only, "Only the cases with this in their names");

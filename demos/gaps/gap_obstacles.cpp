@@ -67,8 +67,9 @@ GapObstacle balls(const std::string& name, const std::string& about, double radi
 
 GapObstacle spheres() {
   const double radius = 0.6 * kSize, aside = 0.5 * kSize;
-  return balls("sphere", "in the middle of four spheres of radius 0.6 S", radius,
-               {{-aside, -radius, -aside}, {-aside, -radius, aside}, {aside, -radius, -aside}, {aside, -radius, aside}});
+  return balls(
+      "sphere", "in the middle of four spheres of radius 0.6 S", radius,
+      {{-aside, -radius, -aside}, {-aside, -radius, aside}, {aside, -radius, -aside}, {aside, -radius, aside}});
 }
 
 GapObstacle smallBalls() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies come to rest on in the table of gaps, and how far a point is from it: by formulas of their own, which know
-// nothing of how contacts are found.
+// What bodies come to rest on in the table of gaps, and how far a point is from it: by formulas of their own, which
+// know nothing of how contacts are found.
 #pragma once
 
 #include <Eigen/Core>

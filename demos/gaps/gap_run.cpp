@@ -16,11 +16,11 @@ namespace {
 using namespace scenes;
 using Eigen::Vector3d;
 
-constexpr double kAbove = 0.02;      ///< where the surface begins, in sizes
-constexpr double kOff = 0.1;         ///< sizes from the obstacle: the body has fallen off
-constexpr double kStill = 0.05;      ///< sizes a second
-constexpr double kDamping = 0.04;    ///< seconds: half the rocking that the default leaves
-constexpr double kWatched = 0.25;    ///< seconds of an impact
+constexpr double kAbove = 0.02;    ///< where the surface begins, in sizes
+constexpr double kOff = 0.1;       ///< sizes from the obstacle: the body has fallen off
+constexpr double kStill = 0.05;    ///< sizes a second
+constexpr double kDamping = 0.04;  ///< seconds: half the rocking that the default leaves
+constexpr double kWatched = 0.25;  ///< seconds of an impact
 
 /// A body over an obstacle.
 class Watched {

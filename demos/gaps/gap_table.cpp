@@ -57,9 +57,8 @@ std::string tableOf(const std::vector<GapRow>& rows, const std::function<std::st
   for (const std::string& line : lines) {
     text += "| " + line + " |";
     for (const std::string& column : columns) {
-      const auto found = std::find_if(rows.begin(), rows.end(), [&](const GapRow& row) {
-        return lineOf(row) == line && columnOf(row) == column;
-      });
+      const auto found = std::find_if(
+          rows.begin(), rows.end(), [&](const GapRow& row) { return lineOf(row) == line && columnOf(row) == column; });
       text += " " + (found == rows.end() ? std::string() : cell(*found)) + " |";
     }
     text += "\n";

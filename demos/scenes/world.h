@@ -80,7 +80,8 @@ class World {
   std::vector<SoftContact> softContacts() const;
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
-  btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
+  btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0,
+                      double mass = 0.0);
   /// A box that is moved by `moveTo`, and not drawn as an obstacle.
   btRigidBody& addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents);
   /// Along z, half as long as it says beyond its round ends.

@@ -56,8 +56,9 @@ double worstNormalAround(btScalar radius) {
   return worst;
 }
 
-/// Its accuracy is absolute.
+/// Its accuracy is absolute; in double precision it is that of smaller ones.
 TEST(BulletsContact, HasNormalsThatAreOffAroundSmallShapes) {
+  if (sizeof(btScalar) > sizeof(float)) GTEST_SKIP() << "of Bullet in float";
   const double large = worstNormalAround(1), small = worstNormalAround(btScalar(0.1)),
                tiny = worstNormalAround(btScalar(0.03));
   figure("degrees around a cylinder of radius 1", large);

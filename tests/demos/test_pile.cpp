@@ -17,9 +17,8 @@ INSTANTIATE_TEST_SUITE_P(EachSetting, PileIn, testing::Values("solver", "explici
 
 TEST_P(PileIn, BodiesFallIntoTheBowlAndLieOnEachOther) {
   const CommandFolder folder;
-  const CommandResult result =
-      folder.run(TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000", "--frames", "181", "--every",
-                                "180", "--setting", GetParam()});
+  const CommandResult result = folder.run(TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000",
+                                                         "--frames", "181", "--every", "180", "--setting", GetParam()});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/pile/summary.json");
   EXPECT_TRUE(json["finite"]);

@@ -10,9 +10,9 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kApart = 0.05;       ///< sizes: between the body and what moves
+constexpr double kApart = 0.05;        ///< sizes: between the body and what moves
 constexpr double kThick = 0.1;         ///< of plates, half, in sizes
-constexpr double kMoving = 5.0 / 6.0; ///< of the run; then all stands still
+constexpr double kMoving = 5.0 / 6.0;  ///< of the run; then all stands still
 
 int framesOf(const Scene& scene) {
   constexpr int kFrames = 60;

@@ -32,11 +32,13 @@ std::unique_ptr<Scene> makeObstaclesGo(const Cage& cage, const SceneOptions& opt
   const Box3 box = boundingBox(nodePositions(scene->body()));
   const double half = kHalf * options.size, away = 0.5 * box.sizes().y() + kBelow * options.size + half;
   scene->addFloor(2 * kBelow + 2 * kHalf);
-  btRigidBody& shelf = scene->world().addBox(box.center() - Eigen::Vector3d(0, away, 0), {options.size, half, options.size});
+  btRigidBody& shelf =
+      scene->world().addBox(box.center() - Eigen::Vector3d(0, away, 0), {options.size, half, options.size});
   btRigidBody& load = scene->world().addBox(box.center() + Eigen::Vector3d(0, away, 0), {half, half, half}, 0.0,
                                             static_cast<double>(scene->body().getTotalMass()));
   World& world = scene->world();
-  atThirds(*scene, [&] { world.remove(load); }, [&] { world.remove(shelf); });
+  atThirds(
+      *scene, [&] { world.remove(load); }, [&] { world.remove(shelf); });
   return scene;
 }
 
