@@ -89,7 +89,7 @@ class World {
   void addSphere(const Eigen::Vector3d& centre, double radius);
   /// Anything else, which is not drawn as an obstacle. mass  0: fixed
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
-  /// It is gone: from between steps, from an action or from the callback before a step.
+  /// Deletes it. Between steps, or from an action.
   void remove(btRigidBody& body);
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
