@@ -31,6 +31,7 @@ struct PileOptions {
   int bodies = 10;
   std::size_t tets = 500, triangles = 20000;  ///< of each model
   Contact contact = Contact::Surface;
+  Setting setting = Setting::Solver;
   OutputOptions output{"out/pile", "", 600, 1, false};
 };
 
@@ -80,7 +81,7 @@ Cage placedAt(Cage cage, int k) {
 
 class Pile {
  public:
-  explicit Pile(const PileOptions& options) : world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)) {
+  explicit Pile(const PileOptions& options) : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
     for (const BuiltIn builtIn : kModels) {
       ModelOptions of;
       of.builtIn = builtIn;
@@ -89,8 +90,7 @@ class Pile {
       models_.emplace_back(of);
     }
     addBowl(world_);
-    for (int k = 0; k < options.bodies; ++k)
-      add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options.contact);
+    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
@@ -106,7 +106,7 @@ class Pile {
   double nodeSpeed() const;
 
  private:
-  void add(const PileModel& of, int k, Contact contact);
+  void add(const PileModel& of, int k, const PileOptions& options);
 
   World world_;
   std::deque<PileModel> models_;
@@ -115,13 +115,16 @@ class Pile {
   TriangleMesh mesh_;
 };
 
-void Pile::add(const PileModel& of, int k, Contact contact) {
-  btSoftBody& body = world_.add(placedAt(of.model.cage, k), {});
-  if (contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
+void Pile::add(const PileModel& of, int k, const PileOptions& options) {
+  SoftBodyOptions how;
+  how.implicit = options.setting == Setting::Implicit;
+  btSoftBody& body = world_.add(placedAt(of.model.cage, k), how);
+  if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
   world_.touchEachOther(body, of.shape);
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
   const int first = static_cast<int>(mesh_.vertexCount());
+  mesh_.groups.push_back({of.model.name, "", mesh_.triangleCount(), of.model.mesh.triangleCount()});
   mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
   for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
 }
@@ -205,6 +208,7 @@ int main(int argc, char** argv) {
   line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);
   line.addContactOption(options.contact);
+  line.addSettingOption(options.setting);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] { return run(options); });
 }

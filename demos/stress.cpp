@@ -22,6 +22,7 @@ namespace {
 
 struct StressOptions {
   bool quick = false;
+  bool lasting = false;
   bool quiet = false;
   std::string force;  ///< whose; empty: both
   std::string only;
@@ -36,7 +37,7 @@ bool isOfForce(const StressCase& stressCase, const std::string& whose) {
 std::vector<StressCase> chosenCases(const StressOptions& options) {
   std::vector<StressCase> cases = stressCases();
   const auto leftOut = [&](const StressCase& c) {
-    return (options.quick && !c.quick) || !isOfForce(c, options.force) ||
+    return c.lasts != options.lasting || (options.quick && !c.quick) || !isOfForce(c, options.force) ||
            c.name.find(options.only) == std::string::npos;
   };
   cases.erase(std::remove_if(cases.begin(), cases.end(), leftOut), cases.end());
@@ -73,6 +74,8 @@ int main(int argc, char** argv) {
   StressOptions options;
   CommandLine line("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
   line.addFlag("--quick", options.quick, "A part of the cases, in some 20 s");
+  line.addFlag("--long", options.lasting,
+               "Instead of all others the cases of a minute of simulated time, in some minutes");
   line.addWord("--force", options.force, {"bullet", "tetskin"},
                "Only the cases of Bullet's forces, or of tetskin's force and solver (default: both)");
   line.addText("--only", options.only, "Only the cases with this in their names");

@@ -2,6 +2,9 @@
 """Draws the pictures from what the demos wrote; called by the script make, which see.
 
 compose.py drop  FOLDER PNG FRAME...         moments of the drop demo's sequence in FOLDER, side by side
+compose.py gap   FOLDER PNG FOLDER FRAME     the same moment of two sequences from nearby, by the cage's nodes and by the
+                                             surface
+compose.py pile  FOLDER PNG FRAME            a moment of the pile demo's sequence, from two sides
 compose.py cages MESH.obj PNG CAGE.vtk...    cages around their mesh, side by side
 compose.py turn  CAGE.vtk TURNED.vtk         a cage twisted about its z axis, for tetskin_deform
 compose.py twist MESH.obj PNG MESH.obj       two surfaces that followed it, with their normals, side by side
@@ -22,6 +25,11 @@ INK = (84, 86, 92)
 SUN = np.array((0.30, -1.0, -0.25))  # where its light goes, for the shadows
 FLOOR_HALF_SIDE = 8.0
 
+# Position, focus, angle.
+DROP_VIEW = (-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5
+GAP_VIEW = (-0.5, -0.80, 5.5), (-0.05, -0.72, 0.0), 20.0
+PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0, 1.5, 0.0), 29.0)
+
 TWIST = 1.8  # radians a unit of length
 TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle
 
@@ -37,6 +45,11 @@ MATERIALS = {
     "dome": ((0.93, 0.66, 0.50), 0.4, 0.7, 0.0),
     "floor": (tuple(c / 255 for c in BACKGROUND), 0.0, 1.0, 0.0),
     "cage": ((0.95, 0.45, 0.12), 0.0, 1.0, 0.0),
+    "wall": ((0.78, 0.80, 0.82), 0.4, 0.7, 0.0),
+    "pole": ((0.35, 0.36, 0.40), 0.6, 0.5, 0.2),
+    "serpent": ((0.10, 0.44, 0.27), 1.0, 0.25, 0.25),
+    "hand": ((0.86, 0.58, 0.42), 0.9, 0.3, 0.1),
+    "bar": ((0.22, 0.38, 0.62), 0.9, 0.3, 0.1),
 }
 
 
@@ -147,7 +160,7 @@ def add_mesh(scene, vertices, parts):
         scene.add(material, vertices[used], renumbered.reshape(-1, 3))
 
 
-def drop_panel(folder, frame):
+def drop_panel(folder, frame, view):
     vertices, parts = read_obj(folder / f"frame_{frame:04d}.obj")
     points, ((_, _, base), (_, _, ramp), (_, _, dome)) = read_obj(folder / "obstacles.obj")
     floor = points[base, 1].max()
@@ -164,7 +177,26 @@ def drop_panel(folder, frame):
     # The rest of the sphere lies below the floor. The ramp's shadow falls behind it, out of sight.
     cap = on_floor(points, floor), dome[points[dome, 1].min(axis=1) > floor]
     shadows = {"floor": shadow(2048, serpent, cap), "ramp": shadow(2048, serpent), "dome": shadow(2048, serpent)}
-    return scene.draw((-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5, shadows)
+    return scene.draw(*view, shadows)
+
+
+def pile_panel(folder, frame, view):
+    """Without the wall that is between the viewer and the bodies."""
+    scene = Scene()
+    vertices, parts = read_obj(folder / f"frame_{frame:04d}.obj")
+    add_mesh(scene, vertices, [(group, group, triangles) for group, _, triangles in parts])
+    points, boxes = read_obj(folder / "obstacles.obj")
+    floor = points[boxes[0][2], 1].max()
+    square = FLOOR_HALF_SIDE * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]) + (0, floor, 0)
+    bodies = on_floor(vertices, floor), np.concatenate([triangles for _, _, triangles in parts])
+    scene.add("floor", square, np.array([[0, 1, 2], [0, 2, 3]]), on_floor(square, floor))
+    for k, (_, _, box) in enumerate(boxes[1:]):
+        corners = points[box.ravel()]
+        is_pole = k % 3 == 2  # of each side: a wall that leans, one that does not, a pole
+        if not is_pole and corners.mean(axis=0) @ (view[0] * np.array((1, 0, 1))) > 0:
+            continue
+        scene.add("pole" if is_pole else "wall", corners, np.arange(len(corners)).reshape(-1, 3))
+    return scene.draw(*view, {"floor": shadow(2048, bodies)})
 
 
 def cage_panel(mesh, cage):
@@ -242,7 +274,12 @@ def main():
     if what == "drop":
         frames = [int(frame) for frame in rest]
         labels = [f"{frame / 60:.1f} s" for frame in frames]
-        save([drop_panel(Path(source), frame) for frame in frames], labels, GAP, target)
+        save([drop_panel(Path(source), frame, DROP_VIEW) for frame in frames], labels, GAP, target)
+    elif what == "gap":
+        panels = [drop_panel(Path(folder), int(rest[1]), GAP_VIEW) for folder in (source, rest[0])]
+        save(panels, ["by the cage's nodes", "by the surface"], GAP, target)
+    elif what == "pile":
+        save([pile_panel(Path(source), int(rest[0]), view) for view in PILE_VIEWS], ["", ""], GAP, target)
     elif what == "turn":
         turn(source, target)
     elif what == "twist":

@@ -140,6 +140,12 @@ void CommandLine::addContactOption(Contact& contact) {
             "What meets the obstacles: the surface as drawn, or the cage's nodes, as Bullet has it");
 }
 
+void CommandLine::addSettingOption(Setting& setting) {
+  addChoice(parser_->app, "--setting", setting,
+            {{"solver", Setting::Solver}, {"explicit", Setting::Explicit}, {"implicit", Setting::Implicit}},
+            "What solves the library's force: its own solver, or Bullet's in explicit or implicit steps");
+}
+
 void CommandLine::addInterpolationOption(SkinOptions& options) {
   addChoice(parser_->app, "--interpolation", options.interpolation,
             {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},

@@ -71,6 +71,8 @@ class CommandLine {
   /// --force: bullet (neo-Hookean) or tetskin.
   void addForceOption(Force& force);
   void addContactOption(Contact& contact);
+  /// --setting: solver, explicit or implicit.
+  void addSettingOption(Setting& setting);
   /// --interpolation.
   void addInterpolationOption(SkinOptions& options);
   /// --normals, --outside, --max-distance.

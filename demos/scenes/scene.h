@@ -28,6 +28,7 @@ struct SceneOptions {
   double frameSeconds = 1.0 / kFrameRate;
   int frames = 0;          ///< of the whole run, over which the scene spreads what happens; 0: its own
   std::size_t bodies = 1;  ///< in scenes of several
+  double harshness = 0.0;  ///< where a scene can be harder or easier, in units of its own; 0: its own
   double size = kSize;     ///< largest side of a body; gravity is in proportion: all sizes fall alike
   Box3 box;                ///< what the scene is laid out by, the same for many cages; empty: the cage's own
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< how far from where the cage is the body is put

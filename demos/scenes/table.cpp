@@ -30,11 +30,20 @@ namespace tetskin::scenes {
   SCENE(SoftStack, "soft_stack", 60, true, "four bodies on top of each other, which touch")                 \
   SCENE(SoftRemoved, "soft_removed", 60, true, "the same, and all but the lowest leave one by one")         \
   SCENE(SoftSqueezed, "soft_squeezed", 60, false, "squeezed to half its height between two others")         \
+  SCENE(SoftPile, "soft_pile", 120, true, "ten bodies between four walls, which touch")                     \
   SCENE(Pull, "pull", 30, false, "held by one node, pulled away three lengths by another")                  \
   SCENE(HeavyBox, "heavy_box", 30, true, "a box of 1,000 times its mass falls on it")                       \
   SCENE(LightBox, "light_box", 30, true, "a box of a tenth of its mass falls on it")                        \
   SCENE(Pole, "pole", 60, true, "falls on a pole thinner than a tet")                                       \
   SCENE(Press, "press", 60, true, "is pressed to half its height by a plate, and let go")                   \
+  SCENE(Blade, "blade", 60, true, "falls on an edge thinner than a tet")                                    \
+  SCENE(Bed, "bed", 60, true, "falls on 225 small balls")                                                   \
+  SCENE(Hail, "hail", 60, true, "a hundred little boxes fall on it")                                        \
+  SCENE(Flatten, "flatten", 60, false, "squeezed to a tenth of its height between two plates, and let go")  \
+  SCENE(Squeeze, "squeeze", 60, false, "squeezed to half its height between plates once a second")          \
+  SCENE(Mill, "mill", 60, true, "hit by a bar that turns and moves")                                        \
+  SCENE(ObstaclesGo, "obstacles_go", 60, true, "what it lies on, and what lies on it, is taken away")       \
+  SCENE(BodyGoes, "body_goes", 60, true, "is taken away from the floor on which it lies")                   \
   SCENE(NodeNaN, "node_nan", 30, false, "a node is not a number, for one update")                           \
   SCENE(NodeInfinite, "node_infinite", 30, false, "a node is infinite, for one update")                     \
   SCENE(NodeTooFar, "node_too_far", 30, false, "a node is beyond what a surface can follow, for one update")

@@ -15,6 +15,8 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 
+#include <algorithm>
+
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
 
@@ -38,6 +40,11 @@ ForceModel modelOf(Force force) {
       break;
   }
   return ForceModel::Corotated;
+}
+
+/// radians about z
+btTransform turned(const Eigen::Vector3d& centre, double turn) {
+  return btTransform(btQuaternion(btVector3(0, 0, 1), static_cast<btScalar>(turn)), toBullet(centre));
 }
 
 }  // namespace
@@ -154,10 +161,10 @@ double World::youngsModulus() const {
   return deformableBodies_.back()->youngsModulus();
 }
 
-void World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope, double mass) {
-  const btQuaternion turn(btVector3(0, 0, 1), static_cast<btScalar>(slope));
-  addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)), btTransform(turn, toBullet(centre)), mass);
+btRigidBody& World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope,
+                           double mass) {
   if (mass == 0.0) appendBox(obstacles_, centre, halfExtents, slope);
+  return addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)), turned(centre, slope), mass);
 }
 
 btRigidBody& World::addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents) {
@@ -194,14 +201,20 @@ btRigidBody& World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTr
   return *rigid_.back();
 }
 
+void World::remove(btRigidBody& body) {
+  world_->removeRigidBody(&body);
+  const auto isIt = [&](const std::unique_ptr<btRigidBody>& one) { return one.get() == &body; };
+  rigid_.erase(std::find_if(rigid_.begin(), rigid_.end(), isIt));
+}
+
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options) {
   World world(Force::NeoHookean, btVector3(0, static_cast<btScalar>(-kEarth), 0));
   world.add(cage, options);
   return world.youngsModulus();
 }
 
-void moveTo(btRigidBody& body, const Eigen::Vector3d& centre) {
-  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(centre)));
+void moveTo(btRigidBody& body, const Eigen::Vector3d& centre, double turn) {
+  body.setWorldTransform(turned(centre, turn));
 }
 
 void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {

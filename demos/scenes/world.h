@@ -48,6 +48,12 @@ enum class Force {
   ElasticForceOnly,  ///< the library's force with Bullet's solver
 };
 
+/// What solves the library's force: its solver, or Bullet's in explicit or implicit steps.
+enum class Setting { Solver, Explicit, Implicit };
+inline Force forceOf(Setting setting) {
+  return setting == Setting::Solver ? Force::Elastic : Force::ElasticForceOnly;
+}
+
 /// What of a soft body meets rigid ones.
 enum class Contact { Surface, Cage };
 
@@ -74,12 +80,17 @@ class World {
   std::vector<SoftContact> softContacts() const;
 
   /// slope  radians about z; mass  0: fixed, and an obstacle to draw
-  void addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0, double mass = 0.0);
+  btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope = 0.0,
+                      double mass = 0.0);
   /// A box that is moved by `moveTo`, and not drawn as an obstacle.
   btRigidBody& addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents);
   /// Along z, half as long as it says beyond its round ends.
   void addPole(const Eigen::Vector3d& centre, double radius, double halfLength);
   void addSphere(const Eigen::Vector3d& centre, double radius);
+  /// Anything else, which is not drawn as an obstacle. mass  0: fixed
+  btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
+  /// Deletes it. Between steps, or from an action.
+  void remove(btRigidBody& body);
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
   int step(double seconds);
@@ -96,8 +107,6 @@ class World {
   void makeClassic();
   void makeDeformable();
   void addCorotated(btSoftBody& body, const SoftBodyOptions& options);
-  btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
-
   Force force_;
   std::unique_ptr<btCollisionConfiguration> configuration_;
   std::unique_ptr<btDispatcher> dispatcher_;
@@ -122,7 +131,8 @@ class World {
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
 
 /// Sends a box made by `addMovingBox` elsewhere, in the next step.
-void moveTo(btRigidBody& body, const Eigen::Vector3d& centre);
+/// turn  radians about z
+void moveTo(btRigidBody& body, const Eigen::Vector3d& centre, double turn = 0.0);
 
 /// Sends a node without inverse mass to where it shall be at the end of a substep. Bullet moves it by its velocity, and
 /// changes that by no force: so it arrives, and its neighbours feel it move.

@@ -43,7 +43,8 @@ StressCase named(const std::string& group, std::initializer_list<std::string> wo
 StressCase named(const std::string& group, const Method& method, std::initializer_list<std::string> words) {
   StressCase made = named(group, words);
   const std::string force = toString(method.force);
-  made.name.insert(group.size(), "/" + (isOurs(method.force) ? force : force + "/" + integrator(method.implicit)));
+  const bool ownSolver = method.force == Force::Elastic;
+  made.name.insert(group.size(), "/" + (ownSolver ? force : force + "/" + integrator(method.implicit)));
   made.force = method.force;
   made.implicit = method.implicit;
   return made;

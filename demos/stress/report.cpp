@@ -79,6 +79,8 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["normal_error"] = verdict.normalError;
     row["weight_error"] = verdict.weightError;
     row["extent_max"] = verdict.extentMax;
+    row["lowest"] = verdict.lowest;
+    row["rest_speed"] = verdict.restSpeed;
     row["expected"] = toString(stressCase.simulation);
     row["held"] = verdict.held();
     row["broken"] = verdict.broken;
@@ -93,6 +95,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["time_step"] = stressCase.timeStep;
     row["substeps"] = stressCase.substeps;
     row["event"] = stressCase.scene;
+    row["harshness"] = stressCase.harshness;
     row["cage"] = toString(stressCase.cage);
     row["mesh"] = toString(stressCase.surface);
     row["interpolation"] = toString(stressCase.interpolation);

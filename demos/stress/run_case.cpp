@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "stress/run_case.h"
 
+#include <cmath>
+
 #include "scenes/table.h"
 #include "scenes/timer.h"
 
@@ -10,8 +12,14 @@ namespace {
 
 /// RMS in diagonals, under its own weight or shortly after an event, of a shape that counts as recovered.
 constexpr double kRecovered = 0.02;
+/// Sizes below a floor that a surface may have sunk in at the end, when it may still move.
+constexpr double kSunk = 0.02;
+/// Sizes a second that count as rest.
+constexpr double kAtRest = 0.02;
 
 void expectOfBody(const StressCase& stressCase, Verdict& verdict) {
+  if (stressCase.staysAbove) verdict.expect(verdict.lowest >= -kSunk, "the surface is above the floor at the end");
+  if (stressCase.rests) verdict.expect(verdict.restSpeed <= kAtRest, "the bodies are at rest at the end");
   if (stressCase.recovers) verdict.expect(verdict.shapeError <= kRecovered, "the body comes back to its shape");
   if (stressCase.simulation == Simulation::Either) return;
   const bool bounded = stressCase.simulation == Simulation::Bounded;
@@ -25,6 +33,7 @@ scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressMode
   options.frameSeconds = stressCase.timeStep;
   options.substeps = stressCase.substeps;
   options.frames = stressCase.frames;
+  options.harshness = stressCase.harshness;
   options.size = model.size;
   options.offset = model.offset;
   SoftBodyOptions& body = options.body;
@@ -42,10 +51,15 @@ scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressMode
 void simulate(const StressCase& stressCase, const StressModel& model, scenes::Scene& scene, SoftBodySkin& skin,
               Verdict& verdict) {
   SkinJudge judge(stressCase, model, scene, skin, verdict);
+  const int last = static_cast<int>(std::ceil(0.5 / stressCase.timeStep));
+  double squaredSpeed = 0.0;
   for (int frame = 1; frame <= stressCase.frames; ++frame) {
     scene.step(frame, [&] { judge.update(); });
     judge.update();
+    if (frame > stressCase.frames - last) squaredSpeed += scene.nodeSpeed() * scene.nodeSpeed() / last;
   }
+  verdict.restSpeed = std::sqrt(squaredSpeed);
+  if (std::isfinite(scene.floorY)) verdict.lowest = (skin.bounds().min().y() - scene.floorY) / model.size;
   judge.judgeShape();
   scene.restore();
   judge.judgeRest();
@@ -80,7 +94,9 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   SoftBodySkin skin;
   const Status fit = skin.bind(scene->body(), model.cage, model.mesh, options).status();
   if (!fit.ok() || stressCase.refusal != StatusCode::Ok) return expectRefusal(stressCase, fit, skin, verdict);
-  if (stressCase.touchesBySurface) scene->world().touchBySurface(scene->body(), *skin.binding(), model.mesh);
+  for (std::size_t b = 0; stressCase.touchesBySurface && b < scene->bodyCount(); ++b) {
+    scene->world().touchBySurface(scene->body(b), *skin.binding(), model.mesh);
+  }
   simulate(stressCase, model, *scene, skin, verdict);
   expectOfBody(stressCase, verdict);
 }

@@ -21,6 +21,8 @@ struct Verdict {
   /// RMS in diagonals of the mesh: how far the surface was from its rest shape, wherever it lay, when the event was
   /// over: whether the body has recovered.
   double shapeError = 0.0;
+  double lowest = 0.0;     ///< of the surface at the end, over the scene's floor, in sizes; 0 where there is none
+  double restSpeed = 0.0;  ///< root mean square of the nodes' in the last half second, in sizes a second
   bool skinFinite = true;  ///< at every update
   std::string status;      ///< the worst that `update` said, or why there is no skin
   /// Largest over all updates of: the longest way of a vertex since bind, over the longest way of a node. Updates in

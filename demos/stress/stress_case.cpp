@@ -23,7 +23,7 @@ bool isOurs(scenes::Force force) {
 
 bool areTwins(const StressCase& ours, const StressCase& bullets) {
   const auto felt = [](const StressCase& c) {
-    return std::tie(c.stiffness, c.poisson, c.damping, c.timeStep, c.substeps, c.frames, c.scene, c.cage,
+    return std::tie(c.stiffness, c.poisson, c.damping, c.timeStep, c.substeps, c.frames, c.scene, c.harshness, c.cage,
                     c.touchesBySurface);
   };
   return isOurs(ours.force) && bullets.force == scenes::Force::NeoHookean && felt(ours) == felt(bullets);

@@ -63,6 +63,7 @@ struct StressCase {
   int frames = 30;
 
   std::string scene = "land";  ///< of the table of scenes: what happens to the body
+  double harshness = 0.0;      ///< of the scene, in units of its own; 0: its own
   Cage cage = Cage::Bar;
   Surface surface = Surface::Bar;
   bool touchesBySurface = false;  ///< rigid bodies, instead of by the cage's nodes
@@ -71,8 +72,11 @@ struct StressCase {
 
   Simulation simulation = Simulation::Bounded;
   bool recovers = false;                ///< the body shall come back to its shape
+  bool staysAbove = false;              ///< its surface shall be above the scene's floor at the end
+  bool rests = false;                   ///< it shall be at rest at the end
   StatusCode refusal = StatusCode::Ok;  ///< of makeSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
+  bool lasts = false;                   ///< a minute and more of simulated time: only runs with --long
 
   double substep() const { return timeStep / substeps; }
 };

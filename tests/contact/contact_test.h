@@ -29,26 +29,9 @@ inline std::vector<btVector3> pointsWithin(btScalar reach, int count) {
   return points;
 }
 
-/// A ball of this radius around the origin.
+/// A ball around the origin, about as finely cut along its rings as across.
 inline TriangleMesh ballMesh(int rings, double radius) {
-  TriangleMesh mesh;
-  const int sides = 2 * rings;
-  for (int i = 0; i <= rings; ++i) {
-    for (int j = 0; j < sides; ++j) {
-      const double phi = 2.0 * EIGEN_PI * j / sides;
-      // The poles at one place each, to the bit.
-      const double theta = EIGEN_PI * i / rings, ring = i > 0 && i < rings ? std::sin(theta) : 0.0;
-      mesh.positions.push_back(radius * Eigen::Vector3d(ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)));
-    }
-  }
-  for (int i = 0; i < rings; ++i) {
-    for (int j = 0; j < sides; ++j) {
-      const int a = i * sides + j, b = i * sides + (j + 1) % sides;
-      if (i > 0) mesh.triangles.push_back({a, b, a + sides});
-      if (i < rings - 1) mesh.triangles.push_back({b, b + sides, a + sides});
-    }
-  }
-  return mesh;
+  return sphere(rings, radius, Eigen::Vector3d::Zero(), 2 * rings);
 }
 
 /// The six sides of a box, two triangles each.
@@ -147,6 +130,10 @@ inline btTransform placeAt(const btVector3& at, const btQuaternion& turned = btQ
 
 /// Bullet's solver explicit and implicit, and ours.
 enum class Setting { Explicit, Implicit, OwnSolver };
+inline std::string settingName(const ::testing::TestParamInfo<Setting>& of) {
+  const char* names[] = {"Explicit", "Implicit", "OwnSolver"};
+  return names[static_cast<int>(of.param)];
+}
 inline std::unique_ptr<EmptyWorld> worldOf(Setting setting) {
   std::unique_ptr<EmptyWorld> world;
   if (setting == Setting::OwnSolver) {

@@ -27,13 +27,13 @@ btScalar lowestOf(const btSoftBody& body) {
 }
 
 /// How high the upper of two bodies comes to lie: the lower one is 0.9 high.
-template <class World>
+template <class World, class BulletsWorld>
 btScalar restingHeight(int collisions) {
   SoftBodyOptions options;
   options.forceModel = ForceModel::MassSpring;
   options.linkStiffness = 0.9;
   World world(cubeAbove(0.05), options);
-  auto& soft = static_cast<btSoftRigidDynamicsWorld&>(*world.world);
+  auto& soft = static_cast<BulletsWorld&>(*world.world);
   auto upper = makeSoftBody(cubeAbove(1.1), soft.getWorldInfo(), options).value();
   soft.addSoftBody(upper.get());
   for (btSoftBody* body : {&world.body(), upper.get()}) {
@@ -47,13 +47,22 @@ btScalar restingHeight(int collisions) {
   return height;
 }
 
+btScalar inARigidWorld(int collisions) {
+  return restingHeight<RigidWorld, btSoftRigidDynamicsWorld>(collisions);
+}
+btScalar inAMultiBodyWorld(int collisions) {
+  return restingHeight<MultiBodyWorld, btSoftMultiBodyDynamicsWorld>(collisions);
+}
+
 TEST(ClassicWorlds, SoftBodiesMeetByTheirVerticesAndFaces) {
-  EXPECT_LT(restingHeight<RigidWorld>(0), 0.3) << "without, they pass through each other";
-  EXPECT_GT(restingHeight<RigidWorld>(Collisions::VF_SS), 0.5);
+  for (const auto height : {inARigidWorld, inAMultiBodyWorld}) {
+    EXPECT_LT(height(0), 0.3) << "without, they pass through each other";
+    EXPECT_GT(height(Collisions::VF_SS), 0.5);
+  }
 }
 
 TEST(ClassicWorlds, SoftBodiesMeetByTheirClusters) {
-  EXPECT_GT(restingHeight<RigidWorld>(Collisions::CL_SS), 0.5);
+  for (const auto height : {inARigidWorld, inAMultiBodyWorld}) EXPECT_GT(height(Collisions::CL_SS), 0.5);
 }
 
 }  // namespace

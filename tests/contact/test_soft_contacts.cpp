@@ -200,9 +200,10 @@ TEST(SoftContacts, RefusesBodiesThatAreNotTheShapes) {
 }
 
 /// A thin plate is hit by a ball so fast that it is past the plate's middle when it is first seen.
-TEST(SoftContacts, AThinPlateIsNotPassedThrough) {
-  const auto world = worldOf(Setting::Solver, btVector3(0, 0, 0));
+TEST_P(SoftContactsIn, AThinPlateIsNotPassedThrough) {
+  const auto world = worldOf(GetParam(), btVector3(0, 0, 0));
   SoftBodyOptions options;
+  options.implicit = GetParam() == Setting::Implicit;
   options.youngsModulus = 20000.0;
   options.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(0.01, 9, 9)));
   TetMesh cage = plate().cage;
@@ -221,7 +222,7 @@ TEST(SoftContacts, AThinPlateIsNotPassedThrough) {
 }
 
 /// Two parts of one body, 0.4 apart at rest, that are sent towards each other.
-TEST(SoftContacts, ABodyMeetsItself) {
+TEST_P(SoftContactsIn, ABodyMeetsItself) {
   TetMesh cage = latticeCage(3, 3, 3, 0.2);
   TriangleMesh mesh = sphere(16, 0.25, Vector3d(0.3, 0.3, 0.3));
   const int nodes = static_cast<int>(cage.nodeCount()), vertices = static_cast<int>(mesh.vertexCount());
@@ -233,13 +234,15 @@ TEST(SoftContacts, ABodyMeetsItself) {
   for (const auto& [a, b, c] : triangles) mesh.triangles.push_back({a + vertices, b + vertices, c + vertices});
   const auto shape = makeContactShape(cage, mesh).value();
   for (const bool self : {false, true}) {
-    const auto world = worldOf(Setting::Solver, btVector3(0, 0, 0));
+    const auto world = worldOf(GetParam(), btVector3(0, 0, 0));
     TetMesh placed = cage;
     for (Vector3d& p : placed.nodes) p.y() += 3.0;
-    const auto body = added(*world, placed);
+    SoftBodyOptions options;
+    options.implicit = GetParam() == Setting::Implicit;
+    const auto body = added(*world, placed, options);
     const auto contacts = contactsIn(*world);
     ASSERT_TRUE(contacts->include(body->body(), shape, self).ok());
-    for (int n = 0; n < nodes; ++n) body->body().m_nodes[n].m_v.setValue(2, 0, 0);
+    for (int n = 0; n < nodes; ++n) body->body().m_nodes[n].m_v = body->body().m_nodes[n].m_vn = btVector3(2, 0, 0);
     step(*world, 40);
     double left = 0.0, right = 0.0;
     for (int n = 0; n < nodes; ++n) {

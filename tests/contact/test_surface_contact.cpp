@@ -11,10 +11,6 @@ namespace {
 constexpr double kAllowedGap = 0.003 * kBodySize;
 
 class SurfaceContactIn : public ::testing::TestWithParam<Setting> {};
-std::string settingName(const ::testing::TestParamInfo<Setting>& of) {
-  const char* names[] = {"Explicit", "Implicit", "OwnSolver"};
-  return names[static_cast<int>(of.param)];
-}
 INSTANTIATE_TEST_SUITE_P(EachSetting, SurfaceContactIn,
                          ::testing::Values(Setting::Explicit, Setting::Implicit, Setting::OwnSolver), settingName);
 

@@ -11,10 +11,14 @@ namespace {
 using test::CommandFolder;
 using test::CommandResult;
 
-TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
+class PileIn : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(EachSetting, PileIn, testing::Values("solver", "explicit", "implicit"),
+                         [](const auto& of) { return std::string(of.param); });
+
+TEST_P(PileIn, BodiesFallIntoTheBowlAndLieOnEachOther) {
   const CommandFolder folder;
-  const CommandResult result = folder.run(
-      TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000", "--frames", "181", "--every", "180"});
+  const CommandResult result = folder.run(TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000",
+                                                         "--frames", "181", "--every", "180", "--setting", GetParam()});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/pile/summary.json");
   EXPECT_TRUE(json["finite"]);
@@ -33,6 +37,7 @@ TEST(Pile, RefusesWhatMakesNoSense) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");
   test::expectRefused(folder.run(TETSKIN_PILE, {"--contact", "nothing"}), "--contact");
+  test::expectRefused(folder.run(TETSKIN_PILE, {"--setting", "nothing"}), "--setting");
 }
 
 }  // namespace

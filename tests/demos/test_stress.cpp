@@ -119,6 +119,16 @@ TEST_F(StressCommand, RunsTheCasesOfOneForce) {
   EXPECT_EQ(forces, (std::set<std::string>{"mass_spring", "linear_elasticity", "neo_hookean"}));
 }
 
+TEST_F(StressCommand, LongCasesComeToRest) {
+  expectRefused(stress({"--only", "long/"}), "long/");
+  const CommandResult result = stress({"--long", "--only", "long/tetskin/mill", "--json", "s.json", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  const auto cases = folder.json("s.json");
+  ASSERT_EQ(cases.size(), 1u);
+  EXPECT_LT(cases[0]["rest_speed"], 0.02);
+  EXPECT_GT(cases[0]["lowest"], -0.02);
+}
+
 TEST_F(StressCommand, RefusesBadInput) {
   expectRefused(stress({"--force", "spring"}), "spring");
   expectRefused(stress({"--force", "tetskin", "--only", "mesh/"}), "mesh/");

@@ -215,10 +215,10 @@ TetMesh overlappingCage() {
   return mesh;
 }
 
-TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre) {
+TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre, int around) {
   constexpr double kPi = 3.14159265358979323846;
   TriangleMesh mesh;
-  const int around = rings + 1;
+  if (around == 0) around = rings + 1;
   mesh.positions.push_back(centre + Eigen::Vector3d(0, radius, 0));
   for (int r = 1; r < rings; ++r) {
     for (int a = 0; a < around; ++a) {

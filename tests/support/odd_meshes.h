@@ -60,8 +60,8 @@ TetMesh thinLayerCage(double thickness);
 /// Two equal lattices, the second shifted by half a cell: every vertex inside both lies in two tets.
 TetMesh overlappingCage();
 
-/// Closed sphere of about 2 x rings x rings triangles.
-TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre);
+/// Closed sphere of about 2 x rings x `around` triangles; 0: about as many around as rings.
+TriangleMesh sphere(int rings, double radius, const Eigen::Vector3d& centre, int around = 0);
 
 /// The box of the cage's nodes, scaled about its centre.
 Box3 around(const TetMesh& cage, double factor);

@@ -30,22 +30,24 @@ std::unique_ptr<Scene> makeLand(const Cage& cage, const SceneOptions& options) {
 std::unique_ptr<Scene> makeImpact(const Cage& cage, const SceneOptions& options) {
   constexpr double kLengths = 100.0;  // a second
   auto scene = makeFall(cage, options, kNear);
-  scene->beforeFrame = [s = scene.get()](int frame, const Moved&) {
+  const double lengths = options.harshness > 0.0 ? options.harshness : kLengths;
+  scene->beforeFrame = [s = scene.get(), lengths](int frame, const Moved&) {
     if (frame != eventFrame(s->options())) return;
-    s->body().setVelocity(btVector3(0, static_cast<btScalar>(-kLengths * s->options().size), 0));
+    s->body().setVelocity(btVector3(0, static_cast<btScalar>(-lengths * s->options().size), 0));
   };
   return scene;
 }
 
 std::unique_ptr<Scene> makeHeavyBox(const Cage& cage, const SceneOptions& options) {
   constexpr double kMass = 1000.0;  // times the body's
+  const double mass = options.harshness > 0.0 ? options.harshness : kMass;
   auto scene = makeFall(cage, options, kNear);
   const Box3 box = boundingBox(nodePositions(scene->body()));
   const double half = 0.5 * options.size;
   Eigen::Vector3d above = box.center();
   above.y() = box.max().y() + kNear * options.size + half;
   scene->world().addBox(above, Eigen::Vector3d::Constant(half), 0.0,
-                        kMass * static_cast<double>(scene->body().getTotalMass()));
+                        mass * static_cast<double>(scene->body().getTotalMass()));
   return scene;
 }
 

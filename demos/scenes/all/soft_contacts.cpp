@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "scenes/input_error.h"
+#include "scenes/once.h"
 #include "scenes/table.h"
 
 namespace tetskin::scenes {
@@ -57,16 +58,43 @@ std::unique_ptr<Scene> makeSoftStack(const Cage& cage, const SceneOptions& optio
   return makeStack(cage, options);
 }
 
+/// The second and the last go within a step, from an action.
 std::unique_ptr<Scene> makeSoftRemoved(const Cage& cage, const SceneOptions& options) {
   auto scene = makeStack(cage, options);
-  Scene* const made = scene.get();
+  const auto once = std::make_shared<Once>(scene->world().bullet());
   const int frames = std::max(options.frames, kPiled);
-  scene->beforeFrame = [made, frames](int frame, const Moved&) {
+  scene->beforeFrame = [made = scene.get(), once, frames](int frame, const Moved&) {
     for (int k = 1; k < kPiled; ++k) {
-      btSoftBody& body = made->body(static_cast<std::size_t>(k));
-      if (frame == frames * (k + 1) / (kPiled + 1)) made->world().bullet().removeCollisionObject(&body);
+      if (frame != frames * (k + 1) / (kPiled + 1)) continue;
+      const auto leave = [made, k] {
+        made->world().bullet().removeCollisionObject(&made->body(static_cast<std::size_t>(k)));
+      };
+      k % 2 ? once->atTheNextStep(leave) : leave();
     }
   };
+  return scene;
+}
+
+/// Ten bodies between four walls.
+std::unique_ptr<Scene> makeSoftPile(const Cage& cage, const SceneOptions& options) {
+  constexpr int kBodies = 10, kInALayer = 2;
+  constexpr double kWall = 0.7, kAside = 0.6;
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  const Eigen::Vector3d sizes = boundingBox(cage.nodes).sizes();
+  for (int k = 0; k < kBodies; ++k) {
+    const int layer = k / kInALayer, beside = k % kInALayer;
+    scene->add(cage, {}, {0.1 * options.size * (layer % 2), layer * 1.2 * sizes.y(), kAside * options.size * beside});
+  }
+  scene->addFloor(kGap);
+  const double wall = kWall * options.size, thick = 0.25 * options.size, high = 3.0 * options.size;
+  for (const double side : {-1.0, 1.0}) {
+    const double away = side * (wall + thick);
+    const double middle = 0.5 * kAside * options.size;
+    scene->world().addBox({away, scene->floorY, middle}, {thick, high, 2 * wall});
+    scene->world().addBox({0, scene->floorY, middle + away}, {2 * wall, high, thick});
+  }
+  meetEachOther(*scene, cage);
+  scene->extent = 4.0;
   return scene;
 }
 

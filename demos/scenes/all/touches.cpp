@@ -17,36 +17,76 @@ std::unique_ptr<Scene> onNothing(const Cage& cage, const SceneOptions& options) 
   return scene;
 }
 
+/// What a body of the first frames' box is over.
+Eigen::Vector3d under(const Scene& scene) {
+  const Box3 box = boundingBox(nodePositions(scene.body()));
+  return {box.center().x(), box.min().y() - kClose * scene.options().size, box.center().z()};
+}
+
+/// At as many sizes a second as the options say.
+void throwDown(Scene& scene) {
+  const double speed = scene.options().harshness * scene.options().size;
+  btSoftBody& body = scene.body();
+  body.setVelocity(btVector3(0, static_cast<btScalar>(-speed), 0));
+  // Implicit steps begin with the velocities after the last one.
+  for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_vn = body.m_nodes[n].m_v;
+}
+
 }  // namespace
 
 /// Thinner than a tet, under the middle of the body; the floor is half a size below.
 std::unique_ptr<Scene> makePole(const Cage& cage, const SceneOptions& options) {
   constexpr double kRadius = 0.015;
   auto scene = onNothing(cage, options);
-  const Box3 box = boundingBox(nodePositions(scene->body()));
   const double radius = kRadius * options.size;
-  Eigen::Vector3d below = box.center();
-  below.y() = box.min().y() - kClose * options.size - radius;
-  scene->world().addPole(below, radius, options.size);
+  scene->world().addPole(under(*scene) - Eigen::Vector3d(0, radius, 0), radius, options.size);
   scene->addFloor(0.5);
+  throwDown(*scene);
   return scene;
 }
 
-/// Down to half of the body's height in half of the run, and up again.
-std::unique_ptr<Scene> makePress(const Cage& cage, const SceneOptions& options) {
-  constexpr double kLeft = 0.5;
+/// The edge of a thin box that stands upright.
+std::unique_ptr<Scene> makeBlade(const Cage& cage, const SceneOptions& options) {
+  constexpr double kThick = 0.01, kHalfHeight = 0.2;
   auto scene = onNothing(cage, options);
+  const Eigen::Vector3d half = options.size * Eigen::Vector3d(0.5 * kThick, kHalfHeight, 1.0);
+  scene->world().addBox(under(*scene) - Eigen::Vector3d(0, half.y(), 0), half);
+  scene->addFloor(0.5);
+  throwDown(*scene);
+  return scene;
+}
+
+/// A bed of 225 small balls.
+std::unique_ptr<Scene> makeBed(const Cage& cage, const SceneOptions& options) {
+  constexpr int kAside = 7;
+  constexpr double kRadius = 0.05;
+  auto scene = onNothing(cage, options);
+  const double radius = kRadius * options.size;
+  for (int i = -kAside; i <= kAside; ++i) {
+    for (int j = -kAside; j <= kAside; ++j) {
+      scene->world().addSphere(under(*scene) + radius * Eigen::Vector3d(2 * i, -1, 2 * j), radius);
+    }
+  }
+  scene->addFloor(kClose + 2 * kRadius);
+  throwDown(*scene);
+  return scene;
+}
+
+/// A hundred little boxes, together as heavy as the body, fall on it.
+std::unique_ptr<Scene> makeHail(const Cage& cage, const SceneOptions& options) {
+  constexpr int kSide = 5, kLayers = 4;
+  constexpr double kHalf = 0.03;
+  auto scene = onNothing(cage, options);
+  scene->addFloor(kClose);
   const Box3 box = boundingBox(nodePositions(scene->body()));
-  scene->addFloor(0.0);
-  const double half = 0.1 * options.size, top = box.max().y() + half + kClose * options.size;
-  const double way = (1.0 - kLeft) * box.sizes().y() + kClose * options.size;
-  const Eigen::Vector3d at(box.center().x(), top, box.center().z());
-  btRigidBody& plate = scene->world().addMovingBox(at, {options.size, half, options.size});
-  const int frames = options.frames > 0 ? options.frames : 60;
-  scene->beforeSubstep = [=, &plate](double frame, double) {
-    const double down = std::sin(EIGEN_PI * std::min(frame / frames, 1.0));
-    moveTo(plate, at - Eigen::Vector3d(0.0, way * down, 0.0));
-  };
+  const double half = kHalf * options.size;
+  const double mass = static_cast<double>(scene->body().getTotalMass()) / (kSide * kSide * kLayers);
+  for (int k = 0; k < kSide * kSide * kLayers; ++k) {
+    const int i = k % kSide - kSide / 2, j = k / kSide % kSide - kSide / 2, layer = k / (kSide * kSide);
+    const Eigen::Vector3d at(4 * i * half, (2 + 3 * layer) * half, 3 * j * half);
+    scene->world().addBox(Eigen::Vector3d(box.center().x(), box.max().y(), box.center().z()) + at,
+                          Eigen::Vector3d::Constant(half), 0.0, mass);
+  }
   return scene;
 }
 

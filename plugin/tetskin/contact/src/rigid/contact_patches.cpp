@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/rigid/contact_patches.h>
 #include <tetskin/core/src/embedding/embedding_data.h>
 
@@ -122,13 +123,6 @@ CarriedPoint pointWithin(const CarriedTriangle& triangle, const std::array<btSca
   return point;
 }
 
-double longestEdge(const TriangleMesh& mesh, const std::array<int, 3>& t) {
-  const auto edge = [&](int a, int b) {
-    return (mesh.positions[static_cast<std::size_t>(a)] - mesh.positions[static_cast<std::size_t>(b)]).norm();
-  };
-  return std::max({edge(t[0], t[1]), edge(t[1], t[2]), edge(t[2], t[0])});
-}
-
 /// More would be a mistake in the spacing, and would not end.
 constexpr double kMostCuts = 256;
 
@@ -148,7 +142,7 @@ void appendTrianglePatches(const EmbeddingData& data, const TriangleMesh& mesh, 
                            std::vector<LoosePatch>& patches) {
   const std::vector<std::uint32_t> runs = runsOfVertices(data);
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::min(std::ceil(longestEdge(mesh, t) / spacing), kMostCuts);
+    const double steps = std::min(std::ceil(contact_detail::longestEdge(mesh, t) / spacing), kMostCuts);
     if (!(steps > 1.0)) continue;
     const CarriedTriangle triangle = carriedTriangle(data, runs, t);
     LoosePatch patch;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/soft/surface_samples.h>
 #include <tetskin/core/src/mesh/weld.h>
 
@@ -39,14 +40,6 @@ class CubeSieve {
 double areaOf(const TriangleMesh& mesh, const std::array<int, 3>& t) {
   const Eigen::Vector3d& a = mesh.positions[t[0]];
   return 0.5 * (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm();
-}
-
-double longestEdge(const TriangleMesh& mesh, const std::array<int, 3>& t) {
-  double longest = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    longest = std::max(longest, (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm());
-  }
-  return longest;
 }
 
 void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, double spacing, CubeSieve& sieve,

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "gaps/gap_obstacles.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "scenes/input_error.h"
+
+namespace tetskin::gaps {
+namespace {
+
+using Eigen::Vector3d;
+using scenes::kSize;
+using scenes::World;
+
+using Distance = std::function<double(const Vector3d&)>;
+
+/// Of a union.
+Distance nearestOf(const std::vector<Vector3d>& centres, const Distance& ofOne) {
+  return [=](const Vector3d& p) {
+    double nearest = HUGE_VAL;
+    for (const Vector3d& c : centres) nearest = std::min(nearest, ofOne(p - c));
+    return nearest;
+  };
+}
+
+double toBox(const Vector3d& p, const Vector3d& half) {
+  const Vector3d q = p.cwiseAbs() - half;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+GapObstacle floor() {
+  const Vector3d half(5 * kSize, kSize, 5 * kSize), centre(0, -kSize, 0);
+  return {"floor", "a flat floor", [=](World& world) { world.addBox(centre, half); },
+          [=](const Vector3d& p) { return toBox(p - centre, half); }};
+}
+
+GapObstacle edges() {
+  constexpr double kTurn = 0.25 * EIGEN_PI;
+  const double side = 0.2 * kSize, below = -side * std::sqrt(2.0);
+  const Vector3d half(side, side, 2 * kSize);
+  const std::vector<Vector3d> centres = {{-0.25 * kSize, below, 0}, {0.25 * kSize, below, 0}};
+  const auto one = [=](const Vector3d& p) {
+    const double c = std::cos(kTurn), s = std::sin(kTurn);
+    return toBox({c * p.x() + s * p.y(), c * p.y() - s * p.x(), p.z()}, half);
+  };
+  return {"edge", "the upper edges of two boxes at 45 degrees, 0.5 S apart",
+          [=](World& world) {
+            for (const Vector3d& c : centres) world.addBox(c, half, kTurn);
+          },
+          nearestOf(centres, one)};
+}
+
+GapObstacle balls(const std::string& name, const std::string& about, double radius,
+                  const std::vector<Vector3d>& centres) {
+  return {name, about,
+          [=](World& world) {
+            for (const Vector3d& c : centres) world.addSphere(c, radius);
+          },
+          nearestOf(centres, [=](const Vector3d& p) { return p.norm() - radius; })};
+}
+
+GapObstacle spheres() {
+  const double radius = 0.6 * kSize, aside = 0.5 * kSize;
+  return balls(
+      "sphere", "in the middle of four spheres of radius 0.6 S", radius,
+      {{-aside, -radius, -aside}, {-aside, -radius, aside}, {aside, -radius, -aside}, {aside, -radius, aside}});
+}
+
+GapObstacle smallBalls() {
+  const double radius = 0.075 * kSize;
+  std::vector<Vector3d> centres;
+  for (int k = 0; k < 3; ++k) {
+    const double turn = 2.0 * EIGEN_PI * k / 3;
+    centres.emplace_back(0.25 * kSize * std::cos(turn), -radius, 0.25 * kSize * std::sin(turn));
+  }
+  GapObstacle made = balls("ball", "three balls of radius 0.075 S, 0.25 S from the middle", radius, centres);
+  made.roundOnly = true;
+  return made;
+}
+
+GapObstacle poles() {
+  const double radius = 0.03 * kSize, half = 2 * kSize;
+  const std::vector<Vector3d> centres = {{-0.25 * kSize, -radius, 0}, {0.25 * kSize, -radius, 0}};
+  const auto one = [=](const Vector3d& p) {
+    return (p - Vector3d(0, 0, std::clamp(p.z(), -half, half))).norm() - radius;
+  };
+  return {"pole", "two poles of radius 0.03 S, 0.5 S apart",
+          [=](World& world) {
+            for (const Vector3d& c : centres) world.addPole(c, radius, half);
+          },
+          nearestOf(centres, one)};
+}
+
+/// A slab whose sides slope at 45 degrees. Its distance is that of the farthest plane: exact within and over faces.
+GapObstacle hull() {
+  const double top = 0.3 * kSize, height = 0.2 * kSize;
+  const auto add = [=](World& world) {
+    auto shape = std::make_unique<btConvexHullShape>();
+    for (int k = 0; k < 8; ++k) {
+      const double y = k & 4 ? 0.0 : -height, side = k & 4 ? top : top + height;
+      shape->addPoint(btVector3(static_cast<btScalar>(k & 1 ? side : -side), static_cast<btScalar>(y),
+                                static_cast<btScalar>(k & 2 ? side : -side)));
+    }
+    world.addRigid(std::move(shape), btTransform::getIdentity(), 0.0);
+  };
+  return {"hull", "the hull of a slab 0.6 S wide with sloping sides", add, [=](const Vector3d& p) {
+            const double slope = (std::max(std::abs(p.x()), std::abs(p.z())) + p.y() - top) * std::sqrt(0.5);
+            return std::max({p.y(), slope, -height - p.y()});
+          }};
+}
+
+/// Gentle hills, a grid of triangles; as a function of the plane, by the triangle above or below a point.
+struct Hills {
+  static constexpr int kCells = 12;  ///< to either side
+  static constexpr double kCell = 0.125 * kSize, kDepth = 0.04 * kSize, kLength = 1.5 * kSize;
+
+  static double height(int i, int j) {
+    const double turn = 2.0 * EIGEN_PI * kCell / kLength;
+    return 0.5 * kDepth * (std::cos(turn * i) * std::cos(turn * j) - 1.0);
+  }
+  static btVector3 corner(int i, int j) {
+    return {static_cast<btScalar>(i * kCell), static_cast<btScalar>(height(i, j)), static_cast<btScalar>(j * kCell)};
+  }
+  /// From the plane of the triangle at a place: two a cell, cut from (1, 0) to (0, 1).
+  static double distance(const Vector3d& p) {
+    const double x = p.x() / kCell, z = p.z() / kCell;
+    const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(z));
+    const double u = x - i, v = z - j, first = height(i + 1, j), second = height(i, j + 1);
+    const bool lower = u + v < 1.0;
+    const double at = lower ? height(i, j) : height(i + 1, j + 1);
+    const double alongX = lower ? first - at : at - second, alongZ = lower ? second - at : at - first;
+    const double y = lower ? at + u * alongX + v * alongZ : at - (1.0 - u) * alongX - (1.0 - v) * alongZ;
+    return (p.y() - y) / std::sqrt(1.0 + (alongX * alongX + alongZ * alongZ) / (kCell * kCell));
+  }
+};
+
+struct HillTriangles {
+  btTriangleMesh mesh;
+  HillTriangles() {
+    for (int i = -Hills::kCells; i < Hills::kCells; ++i) {
+      for (int j = -Hills::kCells; j < Hills::kCells; ++j) {
+        const btVector3 a = Hills::corner(i, j), b = Hills::corner(i + 1, j), c = Hills::corner(i, j + 1);
+        mesh.addTriangle(a, c, b);
+        mesh.addTriangle(b, c, Hills::corner(i + 1, j + 1));
+      }
+    }
+  }
+};
+
+/// Bullet's shape keeps a pointer to its triangles.
+struct HillShape : private HillTriangles, public btBvhTriangleMeshShape {
+  HillShape() : btBvhTriangleMeshShape(&mesh, true) {}
+};
+
+GapObstacle hills() {
+  return {"mesh", "a mesh of hills 0.04 S high",
+          [](World& world) { world.addRigid(std::make_unique<HillShape>(), btTransform::getIdentity(), 0.0); },
+          &Hills::distance};
+}
+
+}  // namespace
+
+const std::vector<GapObstacle>& gapObstacles() {
+  static const std::vector<GapObstacle> all = {floor(), edges(), spheres(), poles(), hull(), hills(), smallBalls()};
+  return all;
+}
+
+const GapObstacle& obstacleNamed(const std::string& name) {
+  std::string names;
+  for (const GapObstacle& obstacle : gapObstacles()) {
+    if (obstacle.name == name) return obstacle;
+    names += (names.empty() ? "" : ", ") + obstacle.name;
+  }
+  throw scenes::InputError("there is no obstacle '" + name + "'; there are: " + names);
+}
+
+}  // namespace tetskin::gaps

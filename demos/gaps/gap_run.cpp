@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "gaps/gap_run.h"
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/input_error.h"
+#include "scenes/scene.h"
+
+namespace tetskin::gaps {
+namespace {
+
+using namespace scenes;
+using Eigen::Vector3d;
+
+constexpr double kAbove = 0.02;    ///< where the surface begins, in sizes
+constexpr double kOff = 0.1;       ///< sizes from the obstacle: the body has fallen off
+constexpr double kStill = 0.05;    ///< sizes a second
+constexpr double kDamping = 0.04;  ///< seconds: half the rocking that the default leaves
+constexpr double kWatched = 0.25;  ///< seconds of an impact
+
+/// A body over an obstacle.
+class Watched {
+ public:
+  Watched(const GapObstacle& obstacle, const GapBody& body, const GapRun& how)
+      : obstacle_(obstacle),
+        scene_(optionsOf(how), kEarth),
+        soft_(scene_.add(body.cage, {}, Vector3d(0, -boundingBox(body.mesh.positions).min().y() + kAbove * kSize, 0))) {
+    obstacle.addTo(scene_.world());
+    require(skin_.bind(soft_, body.binding));
+    if (how.contact == Contact::Surface) scene_.world().touchBySurface(soft_, *body.binding, body.mesh);
+  }
+
+  void throwDown(double speed) {
+    soft_.setVelocity(btVector3(0, static_cast<btScalar>(-speed * kSize), 0));
+    // Implicit steps begin with the velocities after the last one.
+    for (int n = 0; n < soft_.m_nodes.size(); ++n) soft_.m_nodes[n].m_vn = soft_.m_nodes[n].m_v;
+  }
+  bool step() {
+    scene_.world().step(scene_.options().substep());
+    skin_.markMoved();
+    return skin_.update() == UpdateStatus::Updated;
+  }
+  double gap() const {
+    double least = HUGE_VAL;
+    for (std::size_t v = 0; v < skin_.positions().size(); ++v) {
+      const btScalar* p = skin_.positions()[v];
+      least = std::min(least, obstacle_.distance(Vector3d(p[0], p[1], p[2])));
+    }
+    return least / kSize;
+  }
+  double speed() const { return scene_.nodeSpeed(); }
+  double substep() const { return scene_.options().substep(); }
+
+ private:
+  static SceneOptions optionsOf(const GapRun& how) {
+    SceneOptions options;
+    options.force = forceOf(how.setting);
+    options.body.implicit = how.setting == Setting::Implicit;
+    options.body.damping = kDamping;
+    return options;
+  }
+
+  const GapObstacle& obstacle_;
+  Scene scene_;
+  btSoftBody& soft_;
+  SoftBodySkin skin_;
+};
+
+}  // namespace
+
+bool Rest::touches() const {
+  return finite && std::abs(gap) < kOff;
+}
+bool Rest::still() const {
+  return speed < kStill;
+}
+
+Rest restOn(const GapObstacle& obstacle, const GapBody& body, const GapRun& how, double seconds) {
+  constexpr double kLast = 0.5, kBetween = 1.0 / 60;
+  Watched watched(obstacle, body, how);
+  Rest rest;
+  double squared = 0.0, next = seconds - kLast;
+  int count = 0;
+  for (double time = 0.0; time < seconds; time += watched.substep()) {
+    if (!watched.step()) return {0.0, 0.0, false};
+    if (time < next) continue;
+    next += kBetween;
+    const double gap = watched.gap();
+    if (std::abs(gap) > std::abs(rest.gap)) rest.gap = gap;
+    squared += watched.speed() * watched.speed();
+    ++count;
+  }
+  rest.speed = std::sqrt(squared / std::max(1, count));
+  return rest;
+}
+
+double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, const GapRun& how) {
+  Watched watched(obstacle, body, how);
+  watched.throwDown(speed);
+  double deepest = HUGE_VAL;
+  for (double time = 0.0; time < kWatched; time += watched.substep()) {
+    if (!watched.step()) return -HUGE_VAL;
+    deepest = std::min(deepest, watched.gap());
+  }
+  return deepest;
+}
+
+}  // namespace tetskin::gaps

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// How Bullet's own contact of soft and rigid bodies fails, as far as it can be reproduced with the installed Bullet,
+// with SurfaceContact beside it doing it right. The README's table names these tests.
+#include "bullets_figure.h"
+#include "contact_test.h"
+
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
+#include <tetskin/contact/src/rigid/exact_distance.h>
+
+#include <cmath>
+#include <optional>
+
+namespace tetskin::test {
+namespace {
+
+/// What `SurfaceContact` measures other convex shapes by, too: it adds the margin, and takes hulls by their faces and
+/// cylinders exactly.
+btScalar gjkDistance(const btConvexShape& shape, const btVector3& point, btVector3* normal = nullptr) {
+  btGjkEpaSolver2::sResults results;
+  const btScalar distance = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
+  if (normal) *normal = results.normal;
+  return distance;
+}
+
+double degreesBetween(const btVector3& a, const btVector3& b) {
+  const auto cosine = static_cast<double>(a.dot(b));
+  return std::acos(std::min(cosine, 1.0)) * 180.0 / EIGEN_PI;
+}
+
+/// Above the middle of a face, at half a unit from what is drawn.
+TEST(BulletsContact, FindsHullsAMarginLargerThanTheyAreDrawn) {
+  btConvexHullShape hull;
+  for (const Eigen::Vector3d& p : boxMesh(Eigen::Vector3d(1, 1, 1)).positions) hull.addPoint(toBullet(p));
+  const btScalar distance = gjkDistance(hull, btVector3(0, btScalar(1.5), 0));
+  figure("distance by GJK where it is 0.5", static_cast<double>(distance));
+  EXPECT_NEAR(distance, btScalar(0.5) - hull.getMargin(), 1e-4);
+  EXPECT_GT(hull.getMargin(), btScalar(0.03));
+}
+
+/// The largest error of a normal around a cylinder as high as it is thick, at 0.02 to 0.5 of its radius.
+double worstNormalAround(btScalar radius) {
+  btCylinderShape cylinder(btVector3(radius, radius, radius));
+  cylinder.setMargin(0);
+  double worst = 0.0;
+  for (const btVector3& p : pointsWithin(2 * radius, 2000)) {
+    btVector3 nearest(p.x(), 0, p.z()), normal;
+    nearest *= std::min(btScalar(1), radius / nearest.length());
+    nearest.setY(std::max(-radius, std::min(radius, p.y())));
+    const btScalar distance = (p - nearest).length() / radius;
+    if (distance < btScalar(0.02) || distance > btScalar(0.5)) continue;
+    (void)gjkDistance(cylinder, p, &normal);
+    worst = std::max(worst, degreesBetween(normal, (p - nearest).normalized()));
+  }
+  return worst;
+}
+
+/// Its accuracy is absolute; in double precision it is that of smaller ones.
+TEST(BulletsContact, HasNormalsThatAreOffAroundSmallShapes) {
+  if (sizeof(btScalar) > sizeof(float)) GTEST_SKIP() << "of Bullet in float";
+  const double large = worstNormalAround(1), small = worstNormalAround(btScalar(0.1)),
+               tiny = worstNormalAround(btScalar(0.03));
+  figure("degrees around a cylinder of radius 1", large);
+  figure("degrees around a cylinder of radius 0.1", small);
+  figure("degrees around a cylinder of radius 0.03", tiny);
+  EXPECT_LT(large, 3.0);
+  EXPECT_GT(small, 4.0);
+  EXPECT_GT(tiny, 10.0);
+}
+
+/// Half a second after it began just above something whose upper side is at 3.5.
+double heightOver(TetskinWorld& world, bool ours, const btVector3& at) {
+  TouchingBody body(world, ballMesh(16, 0.35), at);
+  if (!ours) body.contact.reset();
+  step(world, 40);
+  return body.height();
+}
+
+TEST(BulletsContact, PlacesChildrenOfChildrenElsewhere) {
+  const btQuaternion quarter(btVector3(0, 1, 0), SIMD_HALF_PI);
+  for (const bool ours : {false, true}) {
+    TetskinWorld world;
+    btBoxShape box(btVector3(1, 1, 1) / 2);
+    btCompoundShape inner;
+    inner.addChildShape(placeAt(btVector3(2, 0, 0)), &box);
+    auto outer = std::make_unique<btCompoundShape>();
+    outer->addChildShape(placeAt(btVector3(0, 0, 0), quarter), &inner);  // so that the box is at -z
+    const Obstacle obstacle(world, std::move(outer), placeAt(btVector3(0, 3, 0)));
+    const double height = heightOver(world, ours, btVector3(0, btScalar(4.1), -2));
+    EXPECT_EQ(std::abs(height - 3.5) < 0.01, ours) << height;
+  }
+}
+
+/// With the transform that is drawn, but not with the one that Bullet predicts from.
+TEST(BulletsContact, MissesBodiesThatWereOnlyToldOnceWhereTheyAre) {
+  for (const bool ours : {false, true}) {
+    TetskinWorld world;
+    Obstacle shelf(world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)), placeAt(btVector3(0, 3, 0)));
+    shelf.body().setInterpolationWorldTransform(btTransform::getIdentity());
+    const double height = heightOver(world, ours, btVector3(0, btScalar(4.1), 0));
+    EXPECT_EQ(std::abs(height - 3.5) < 0.01, ours) << height;
+  }
+}
+
+TEST(BulletsContact, AsksOnlyTheRigidBodyWhetherItResponds) {
+  for (const bool ours : {false, true}) {
+    TetskinWorld world;
+    TouchingBody body(world, ballMesh(16, 0.35), btVector3(0, btScalar(0.6), 0));
+    if (!ours) body.contact.reset();
+    btSoftBody& soft = body.body->body();
+    soft.setCollisionFlags(soft.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    step(world, 60);
+    EXPECT_EQ(body.height() < -1.0, ours) << body.height();
+  }
+}
+
+/// The box by which the broadphase finds partners is around where nodes were when the step began.
+TEST(BulletsContact, LooksForPartnersWhereABodyWas) {
+  EmptyWorld world;
+  const auto body = added(world, looseCage());
+  btSoftBody& soft = body->body();
+  soft.translate(btVector3(0, 5, 0));
+  step(world, 1);
+  soft.setVelocity(btVector3(0, -60, 0));
+  world.softSolver->predictMotion(btScalar(1) / 60);
+  btScalar predicted = BT_LARGE_FLOAT;
+  for (int n = 0; n < soft.m_nodes.size(); ++n) predicted = std::min(predicted, soft.m_nodes[n].m_q.y());
+  btVector3 low, high;
+  soft.getAabb(low, high);
+  figure("nodes' way beyond their box, of 1 in a step", static_cast<double>(low.y() - predicted));
+  EXPECT_LT(predicted, low.y() - btScalar(0.9));
+}
+
+/// Bullet's distance field has cubes of 0.25, whatever it is of.
+TEST(BulletsContact, HasADistanceFieldTooCoarseForSmallBodies) {
+  const btScalar radius = btScalar(0.1);
+  btSphereShape ball(radius);
+  const ExactShape exact = *ExactShape::of(ball);
+  btSparseSdf<3> field;
+  field.Initialize();
+  double worst = 0.0, worstOfOurs = 0.0;
+  for (const btVector3& p : pointsWithin(2 * radius, 1000)) {
+    btVector3 normal;
+    const btScalar distance = p.length() - radius;
+    worst = std::max<double>(worst, std::abs(field.Evaluate(p, &ball, normal, 0) - distance));
+    worstOfOurs = std::max<double>(worstOfOurs, std::abs(exact.distance(p).distance - distance));
+  }
+  figure("error of the distance from a ball of radius 0.1", worst);
+  EXPECT_GT(worst, 0.04);
+  EXPECT_LT(worstOfOurs, 1e-6);
+}
+
+/// The field knows a shape by its address alone.
+TEST(BulletsContact, MeetsAShapeThatIsGoneWhereAnotherTookItsPlace) {
+  btSparseSdf<3> field;
+  field.Initialize();
+  std::optional<btSphereShape> ball;
+  btVector3 normal;
+  btScalar distance[2];
+  for (const int radius : {1, 3}) {
+    ball.emplace(btScalar(radius));
+    distance[radius == 3] = field.Evaluate(btVector3(4, 0, 0), &*ball, normal, 0);
+  }
+  EXPECT_NEAR(distance[0], 3, 0.1);
+  EXPECT_NEAR(distance[1], 3, 0.1) << "from the larger one it is 1";
+}
+
+using BulletsContactDeathTest = testing::Test;
+
+/// So that a body that has exploded near a box ends the program.
+TEST_F(BulletsContactDeathTest, CrashesFarFromADistanceField) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  btBoxShape box(btVector3(1, 1, 1));
+  EXPECT_DEATH(
+      {
+        btSparseSdf<3> field;
+        field.Initialize();
+        btVector3 normal;
+        (void)field.Evaluate(btVector3(btScalar(1e20), btScalar(1e20), 0), &box, normal, 0);
+      },
+      "");
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// How Bullet's own contact among soft bodies of a deformable world fails, and what else of such a world stands in the
+// way, as far as it can be reproduced with the installed Bullet. The README's table names these tests.
+#include <BulletSoftBody/btDeformableMousePickingForce.h>
+
+#include "bullets_figure.h"
+#include "soft_fixtures.h"
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+using Collisions = btSoftBody::fCollision;
+
+constexpr btScalar kStep = btScalar(1) / 240;
+
+TetMesh cubeAt(const Vector3d& at) {
+  TetMesh cage = latticeCage(3, 3, 3, 0.3);
+  for (Vector3d& p : cage.nodes) p += at;
+  return cage;
+}
+
+/// What the cube is drawn as: its cage.
+const std::shared_ptr<const ContactShape>& cubeShape() {
+  static const std::shared_ptr<const ContactShape> shape = [] {
+    const TetMesh cage = cubeAt(Vector3d::Zero());
+    TriangleMesh mesh;
+    mesh.positions = cage.nodes;
+    mesh.triangles = boundaryFaces(cage);
+    ContactShapeOptions options;
+    options.samples = 1000;
+    options.cells = 32;
+    return makeContactShape(cage, mesh, options).value();
+  }();
+  return shape;
+}
+
+/// A cube and another nearly above it, 0.1 from it. The options' pinned nodes are of the lower one.
+struct TwoCubes {
+  explicit TwoCubes(int collisions, double height = 5.0, SoftBodyOptions options = {}) {
+    lower = added(world, cubeAt({0, height, 0}), options);
+    options.pinned = {};
+    upper = added(world, cubeAt({0.1, height + 1.0, 0.07}), options);
+    for (DeformableBody* body : {lower.get(), upper.get()}) {
+      body->body().m_cfg.collisions |= collisions;
+      if (collisions & Collisions::CL_SS) body->body().generateClusters(8);
+    }
+  }
+  void floatFreely() {
+    for (DeformableBody* body : {lower.get(), upper.get()}) body->setGravity(btVector3(0, 0, 0));
+  }
+  btScalar apart() const { return centreOf(upper->body()).y() - centreOf(lower->body()).y(); }
+
+  EmptyWorld world;
+  std::unique_ptr<DeformableBody> lower, upper;
+};
+
+/// How far apart a cube and one that falls on it are in the end, the lower one held. Less than 0: they have passed.
+btScalar restingOn(int collisions) {
+  SoftBodyOptions held;
+  held.pinned = [](const Vector3d&) { return true; };
+  TwoCubes cubes(collisions, 5.0, held);
+  step(cubes.world, 50);
+  return cubes.apart();
+}
+
+/// They are of the classic worlds.
+TEST(BulletsSoftContact, HasKindsThatDoNothingInADeformableWorld) {
+  EXPECT_LT(restingOn(Collisions::VF_SS), 0);
+  EXPECT_LT(restingOn(Collisions::CL_SS), 0);
+  EXPECT_GT(restingOn(Collisions::VF_DD), btScalar(0.5)) << "the one that does something";
+}
+
+TEST(BulletsSoftContact, IsOffWhereTwoKindsAreAskedFor) {
+  EXPECT_LT(restingOn(Collisions::VF_DD | Collisions::VF_SS), 0);
+}
+
+/// The largest speed of two stiff cubes on the floor after one was thrown on the other.
+double wildest(double speed, bool ours) {
+  SoftBodyOptions options;
+  options.youngsModulus = 20000;
+  TwoCubes cubes(ours ? 0 : Collisions::VF_DD, 0.1, options);
+  std::unique_ptr<SoftContacts> contacts;
+  if (ours) {
+    contacts = contactsIn(cubes.world);
+    EXPECT_TRUE(contacts->include(cubes.lower->body(), cubeShape()).ok());
+    EXPECT_TRUE(contacts->include(cubes.upper->body(), cubeShape()).ok());
+  }
+  cubes.upper->body().setVelocity(btVector3(0, static_cast<btScalar>(-speed), 0));
+  double most = 0.0;
+  for (int frame = 0; frame < 60; ++frame) {
+    step(cubes.world, 1);
+    most = std::max({most, rmsSpeed(cubes.lower->body()), rmsSpeed(cubes.upper->body())});
+  }
+  return most;
+}
+
+TEST(BulletsSoftContact, ExplodesWhereStiffBodiesMeetFast) {
+  double bullets = 0.0, ours = 0.0;
+  for (const double speed : {10.0, 15.0, 20.0}) {
+    bullets = std::max(bullets, wildest(speed, false) / speed);
+    ours = std::max(ours, wildest(speed, true) / speed);
+  }
+  figure("speed over that of the impact, VF_DD", bullets);
+  figure("speed over that of the impact, ours", ours);
+  EXPECT_GT(bullets, 3.0);
+  EXPECT_LT(ours, 1.1);
+}
+
+/// A tet, point down, hits another that is as heavy at 1 a second. Returns how fast any node of it comes back.
+btScalar thrownBack(btScalar stiffness) {
+  const auto tetOf = [](double y, double half) {
+    TetMesh tet;
+    tet.nodes = {{0, y, 0}, {half, y + 0.9, 0}, {-half, y + 0.9, half}, {-half, y + 0.9, -half}};
+    tet.tets = {{0, 1, 2, 3}};
+    (void)repairTetMesh(tet);
+    return tet;
+  };
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.youngsModulus = 1;
+  const auto lower = added(world, tetOf(5.0, 0.5), options), upper = added(world, tetOf(6.0, 0.3), options);
+  for (DeformableBody* body : {lower.get(), upper.get()}) {
+    body->setGravity(btVector3(0, 0, 0));
+    body->body().m_cfg.collisions |= Collisions::VF_DD;
+    body->body().setSpringStiffness(stiffness);
+  }
+  upper->body().setVelocity(btVector3(0, -1, 0));
+  btScalar fastest = -1;
+  for (int k = 0; k < 120; ++k) {
+    world.deformable().stepSimulation(kStep, 0);
+    for (int n = 0; n < 4; ++n) fastest = std::max(fastest, upper->body().m_nodes[n].m_v.y());
+  }
+  return fastest;
+}
+
+TEST(BulletsSoftContact, ThrowsBackFasterThanItWasHit) {
+  const btScalar fastest = thrownBack(btScalar(1e6));
+  figure("speed of a node thrown back, hit at 1", static_cast<double>(fastest));
+  EXPECT_LT(thrownBack(btScalar(0.5)), 0) << "with the spring of the default";
+  EXPECT_GT(fastest, btScalar(1.1));
+}
+
+/// Contacts by continuous detection are listed, and the list of others is gone through.
+TEST(BulletsSoftContact, FindsFastContactsAndForgetsThem) {
+  TwoCubes cubes(Collisions::VF_DD);
+  cubes.floatFreely();
+  cubes.upper->body().setVelocity(btVector3(0, -60, 0));
+  int found = 0;
+  for (int k = 0; k < 20; ++k) {
+    cubes.world.deformable().stepSimulation(kStep, 0);
+    found += cubes.lower->body().m_faceNodeContactsCCD.size() + cubes.upper->body().m_faceNodeContactsCCD.size();
+  }
+  figure("contacts found by continuous detection", found);
+  EXPECT_GT(found, 0);
+  EXPECT_LT(cubes.apart(), -1) << "they have passed through each other";
+}
+
+/// With the world's projection on, without which bodies hang in the air.
+TEST(BulletsSoftContact, LetsFacesFallThroughTheFloor) {
+  EmptyWorld world;
+  const auto body = added(world, cubeAt({0, 0.1, 0}));
+  body->body().m_cfg.collisions = Collisions::SDF_RDF;
+  step(world, 60);
+  EXPECT_LT(lowest(body->body()), -1.0);
+  const auto byNodes = added(world, cubeAt({3, 0.1, 0}));
+  step(world, 60);
+  EXPECT_GT(lowest(byNodes->body()), 0.0);
+}
+
+/// A body of makeSoftBody under Bullet's own force. What `DeformableBody` does instead: SurfaceContactIn.FallsAsleep...
+TEST(BulletsSoftContact, JumpsWhenItFallsAsleep) {
+  DeformableWorld world(cubeAt({0, 0.1, 0}));
+  btSoftBody& soft = world.body();
+  std::vector<btVector3> before(static_cast<std::size_t>(soft.m_nodes.size()));
+  for (int k = 0; k < 3000 && soft.isActive(); ++k) {
+    for (int n = 0; n < soft.m_nodes.size(); ++n) before[static_cast<std::size_t>(n)] = soft.m_nodes[n].m_x;
+    world.world->stepSimulation(kStep, 0);
+  }
+  ASSERT_FALSE(soft.isActive());
+  world.world->stepSimulation(kStep, 0);
+  double jump = 0.0;
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    jump = std::max<double>(jump, (soft.m_nodes[n].m_x - before[static_cast<std::size_t>(n)]).length());
+  }
+  figure("jump of a node over the body's size", jump / 0.9);
+  EXPECT_GT(jump / 0.9, 0.001);
+}
+
+TEST(BulletsSoftContact, IgnoresAddForce) {
+  EmptyWorld world;
+  const auto body = added(world, cubeAt({0, 5, 0}));
+  body->setGravity(btVector3(0, 0, 0));
+  for (int k = 0; k < 10; ++k) {
+    body->body().addForce(btVector3(100, 0, 0));
+    world.deformable().stepSimulation(kStep, 0);
+  }
+  EXPECT_NEAR(momentumOf(body->body()).x(), 0, 1e-6) << "of 267";
+}
+
+/// In explicit steps.
+TEST(BulletsSoftContact, PicksTwiceAStep) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.youngsModulus = 1;
+  const auto body = added(world, cubeAt({0, 5, 0}), options);
+  body->setGravity(btVector3(0, 0, 0));
+  btSoftBody& soft = body->body();
+  const btSoftBody::Face& face = soft.m_faces[0];
+  const btVector3 mouse = face.m_n[0]->m_x + btVector3(1, 0, 0);
+  constexpr btScalar kStiffness = 10;
+  btDeformableMousePickingForce picking(kStiffness, 0, face, mouse, 1000);
+  btScalar once = 0;
+  for (const btSoftBody::Node* node : face.m_n) once += kStiffness * (mouse - node->m_x).x() * kStep;
+  world.deformable().addForce(&soft, &picking);
+  world.deformable().stepSimulation(kStep, 0);
+  const btScalar times = momentumOf(soft).x() / once;
+  world.deformable().removeForce(&soft, &picking);
+  figure("impulse of a picking force, over force times step", static_cast<double>(times));
+  EXPECT_GT(times, btScalar(1.8));
+  EXPECT_LT(times, btScalar(2.2));
+}
+
+}  // namespace
+}  // namespace tetskin::test

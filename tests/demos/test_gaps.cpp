@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+/// On shapes of each kind: its distances and the contacts know nothing of each other.
+TEST(Gaps, AreSmallByTheSurfaceAndNotByTheCage) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(
+      TETSKIN_GAPS, {"--bodies", "round", "--tets", "300", "--triangles", "8000", "--settings", "solver", "--obstacles",
+                     "floor,edge,hull,mesh,ball", "--seconds", "2", "--json", "g.json", "--markdown", "g.md"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  const auto rows = folder.json("g.json");
+  ASSERT_EQ(rows.size(), 5u);
+  for (const auto& row : rows) {
+    EXPECT_TRUE(row["held"].get<bool>()) << row;
+    ASSERT_TRUE(row["surface"]["touches"].get<bool>()) << row;
+    EXPECT_LT(std::abs(row["surface"]["gap"].get<double>()), 0.003) << row;
+    EXPECT_TRUE(!row["cage"]["touches"].get<bool>() || std::abs(row["cage"]["gap"].get<double>()) > 0.006) << row;
+    EXPECT_GT(row["deepest_surface"].get<double>(), -0.02) << row;
+  }
+  const std::string markdown = folder.read("g.md");
+  EXPECT_NE(markdown.find("| floor | solver | +0.00"), std::string::npos) << markdown;
+}
+
+TEST(Gaps, RefuseWhatTheyDoNotKnow) {
+  const CommandFolder folder;
+  test::expectRefused(folder.run(TETSKIN_GAPS, {"--bodies", "cloud"}), "cloud");
+  test::expectRefused(folder.run(TETSKIN_GAPS, {"--obstacles", "air"}), "air");
+  test::expectRefused(folder.run(TETSKIN_GAPS, {"--settings", "wishful"}), "wishful");
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Contact of what a split cage keeps apart: parts of the mesh in tets that are at one place.
+#include <gtest/gtest.h>
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/contact/soft_contacts.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/src/mesh/tet_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/slotted_beam.h"
+#include "scenes/world.h"
+#include "support/odd_meshes.h"
+#include "support/part_models.h"
+
+namespace tetskin::scenes {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kBall = 0.3;    ///< radius
+constexpr double kRoot = -0.4;   ///< where the slot ends, along the beam
+constexpr double kPlace = 1.0;   ///< of the ball
+constexpr double kOpened = 0.4;  ///< radians, each prong
+
+/// The beam in a split cage, and a ball.
+struct Models {
+  TriangleMesh mesh = makeSlottedBeam(6000), ballMesh = test::sphere(20, kBall, Vector3d::Zero());
+  Cage cage;
+  TetMesh ballCage = test::latticeCage(4, 4, 4, kBall / 1.8);
+  std::vector<VertexBinding> bindings;
+  std::shared_ptr<const ContactShape> shape, ballShape;
+  Vector3d along = slottedBeamPlane().normal(), across = Vector3d::UnitZ().cross(along);
+
+  Models() {
+    CageOptions options;
+    options.targetTets = 2000;  // fewer would not keep the prongs apart
+    cage = buildCage(mesh, options).value();
+    EXPECT_EQ(test::countPartsBeyond(cage, test::Plane(along, 0.6 * along)), 2);
+    bindings = embed(cage, mesh).value().bindings();
+    shape = makeContactShape(cage, mesh).value();
+    const Vector3d centre = boundingBox(ballCage.nodes).center();
+    for (Vector3d& p : ballCage.nodes) p -= centre;
+    ballShape = makeContactShape(ballCage, ballMesh).value();
+  }
+};
+
+const Models& models() {
+  static const Models made;
+  return made;
+}
+
+class TouchingProngs : public testing::TestWithParam<Setting> {
+ protected:
+  TouchingProngs() : world_(forceOf(GetParam()), btVector3(0, 0, 0)) {
+    SoftBodyOptions options = material(2e3);
+    options.pinned = [](const Vector3d& p) { return p.dot(models().along) < kRoot - 0.3; };
+    beam_ = &world_.add(models().cage, options);
+    contacts_ = SoftContacts::add(static_cast<btDeformableMultiBodyDynamicsWorld&>(world_.bullet())).value();
+  }
+  static SoftBodyOptions material(double youngsModulus) {
+    SoftBodyOptions options;
+    options.youngsModulus = youngsModulus;
+    options.implicit = GetParam() == Setting::Implicit;
+    return options;
+  }
+  void addBall() {
+    TetMesh cage = models().ballCage;
+    for (Vector3d& p : cage.nodes) p += kPlace * models().along;
+    ball_ = &world_.add(cage, material(2e4));
+  }
+  /// Turns each prong outwards about where the slot ends.
+  void openProngs() {
+    const Models& m = models();
+    const std::vector<int> part = test::partsBeyond(m.cage, test::Plane(m.along, kRoot * m.along));
+    std::vector<double> side(m.cage.nodeCount(), 0.0);
+    for (const VertexBinding& b : m.bindings) {
+      Vector3d p = Vector3d::Zero();
+      for (int k = 0; k < 4; ++k) p += static_cast<double>(b.weights[k]) * m.cage.nodes[m.cage.tets[b.tet][k]];
+      for (const int n : m.cage.tets[b.tet]) side[n] += p.dot(m.across);
+    }
+    const Vector3d root = kRoot * m.along;
+    for (std::size_t n = 0; n < side.size(); ++n) {
+      const Vector3d arm = m.cage.nodes[n] - root;
+      if (arm.dot(m.along) < 0.0) continue;
+      const Eigen::AngleAxisd turn(side[n] > 0.0 ? kOpened : -kOpened, Vector3d::UnitZ());
+      btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
+      node.m_x = node.m_q = toBullet(root + turn * arm);
+    }
+  }
+  void step(int frames) {
+    for (int k = 0; k < 4 * frames; ++k) world_.step(1.0 / 240);
+  }
+  Vector3d surfacePoint(std::size_t vertex) const {
+    const VertexBinding& b = models().bindings[vertex];
+    Vector3d p = Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) {
+      p += static_cast<double>(b.weights[k]) * toEigen(beam_->m_nodes[models().cage.tets[b.tet][k]].m_x);
+    }
+    return p;
+  }
+  /// By how much the deepest vertex of the beam is inside the ball, as that is deformed.
+  double depth() const {
+    double deepest = 0.0;
+    for (const Tet& tet : models().ballCage.tets) {
+      TetCorners corners;
+      for (int k = 0; k < 4; ++k) corners[k] = toEigen(ball_->m_nodes[tet[k]].m_x);
+      if (isFlat(corners)) continue;
+      const BarycentricMap map(corners);
+      for (std::size_t v = 0; v < models().mesh.vertexCount(); ++v) {
+        const Eigen::Vector4d w = map(surfacePoint(v));
+        if (w.minCoeff() < 0.0) continue;
+        Vector3d rest = Vector3d::Zero();
+        for (int k = 0; k < 4; ++k) rest += w[k] * models().ballCage.nodes[tet[k]];
+        deepest = std::max(deepest, kBall - rest.norm());
+      }
+    }
+    return deepest;
+  }
+
+  /// Opened, and let go.
+  double deepestWhileTheyClose() {
+    constexpr int kSpells = 5, kFrames = 5;
+    openProngs();
+    EXPECT_TRUE(contacts_->include(*beam_, models().shape).ok());
+    double deepest = 0.0;
+    for (int spell = 0; spell < kSpells; ++spell) {
+      step(kFrames);
+      deepest = std::max(deepest, depth());
+    }
+    return deepest;
+  }
+
+  World world_;
+  btSoftBody* beam_;
+  btSoftBody* ball_ = nullptr;
+  std::unique_ptr<SoftContacts> contacts_;
+};
+
+std::string nameOfSetting(const testing::TestParamInfo<Setting>& of) {
+  const char* const names[] = {"Solver", "Explicit", "Implicit"};
+  return names[static_cast<int>(of.param)];
+}
+INSTANTIATE_TEST_SUITE_P(EachSetting, TouchingProngs,
+                         testing::Values(Setting::Solver, Setting::Explicit, Setting::Implicit), nameOfSetting);
+
+TEST_P(TouchingProngs, CloseAboutABall) {
+  addBall();
+  ASSERT_TRUE(contacts_->include(*ball_, models().ballShape).ok());
+  EXPECT_LT(deepestWhileTheyClose(), 0.2 * kBall);
+  EXPECT_FALSE(contacts_->contacts().empty());
+}
+
+TEST_P(TouchingProngs, PassThroughABallThatWasNotIncluded) {
+  addBall();
+  EXPECT_GT(deepestWhileTheyClose(), 0.4 * kBall);
+}
+
+/// Though each is, all along, in copies of the other's tets. They do not meet at all: a body meets itself where parts
+/// were more than two cage edges apart.
+TEST_P(TouchingProngs, DoNotTouchEachOtherAtRest) {
+  ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
+  step(10);
+  EXPECT_TRUE(contacts_->contacts().empty());
+  for (int n = 0; n < beam_->m_nodes.size(); ++n) {
+    EXPECT_LT((toEigen(beam_->m_nodes[n].m_x) - models().cage.nodes[static_cast<std::size_t>(n)]).norm(), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::scenes
