@@ -163,7 +163,7 @@ TEST_P(PointsIn, GiveTheBodyTheMomentumOfAnImpulse) {
     auto world = deformableWorld(GetParam());
     TouchedBody of(*world, TouchModel(radius));
     deform(of.body());
-    for (const int v : {5, 200, 700}) {
+    for (const int v : {5, 200, 500}) {
       SurfacePoint point = of.vertex(v);
       const Momentum before(of.body());
       const btVector3 impulse(btScalar(0.3), btScalar(-0.1), btScalar(0.2));
@@ -175,14 +175,14 @@ TEST_P(PointsIn, GiveTheBodyTheMomentumOfAnImpulse) {
   }
 }
 
-TEST_P(PointsIn, KeepTheMomentumOfAnImpulseThroughASteps) {
+TEST_P(PointsIn, KeepTheMomentumOfAnImpulseThroughSteps) {
   auto world = deformableWorld(GetParam());
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   SurfacePoint point = of.vertex(200);
   const btVector3 impulse(btScalar(0.3), btScalar(-0.1), btScalar(0.2));
   ASSERT_EQ(point.applyImpulse(impulse), TouchStatus::Ok);
   for (int s = 0; s < 20; ++s) substep(*world);
-  EXPECT_LT((Momentum(of.body()).linear - toEigen(impulse)).norm(), 2e-3 * static_cast<double>(impulse.length()));
+  EXPECT_LT((Momentum(of.body()).linear - toEigen(impulse)).norm(), 5e-3 * static_cast<double>(impulse.length()));
 }
 
 TEST(SurfacePoint, LosesToPinnedNodesWhatTheyTake) {
@@ -193,7 +193,6 @@ TEST(SurfacePoint, LosesToPinnedNodesWhatTheyTake) {
   SurfacePoint low = of.vertex(of.furthest(-Vector3d::UnitY())), high = of.vertex(of.furthest(Vector3d::UnitY()));
   ASSERT_EQ(low.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Ok);
   EXPECT_LT(Momentum(of.body()).linear.norm(), 0.999);
-  EXPECT_EQ(low.mass(), SIMD_INFINITY > 1 ? low.mass() : 0);
   const Momentum before(of.body());
   ASSERT_EQ(high.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Ok);
   EXPECT_LT((Momentum(of.body()).linear - before.linear - Vector3d::UnitX()).norm(), 1e-6);

@@ -24,17 +24,17 @@ TEST_P(WeldsIn, KeepAHangingBodyAtItsPlace) {
     RigidBox box(*world, mass, *point.position() + btVector3(btScalar(0.05), btScalar(-0.15), 0));
     box->setActivationState(DISABLE_DEACTIVATION);
     auto weld = SurfaceWeld::add(world->deformable(), point, *box).value();
-    double worst = 0, turned = 0;
-    for (int s = 0; s < 1200; ++s) {
+    double worst = 0, turned = 0, mean = 0;
+    for (int s = 0; s < 1440; ++s) {
       substep(*world);
+      if (s >= 960) mean += static_cast<double>(weld->force().y()) / 480;
       worst = std::max(worst, static_cast<double>(weld->separation()));
       turned = std::max(turned, static_cast<double>(weld->turn()));
     }
     EXPECT_LT(worst, 1e-4) << mass;
     EXPECT_LT(turned, 0.02) << mass;
-    EXPECT_NEAR(static_cast<double>(weld->force().y()), -10 * mass, 0.5 * mass) << mass;
+    EXPECT_NEAR(mean, -10 * mass, 0.3 * mass) << mass;
     EXPECT_TRUE(isFinite(of.body()));
-    std::printf("mass %g worst %g turn %g force %g\n", mass, worst, turned, weld->force().y());
   }
 }
 
@@ -56,7 +56,6 @@ TEST_P(WeldsIn, FollowABodyThatIsSwung) {
   }
   EXPECT_LT(worst, 1e-4);
   EXPECT_TRUE(isFinite(of.body()));
-  std::printf("swung worst %g\n", worst);
 }
 
 TEST_P(WeldsIn, TurnTheBodyWithWhatIsFixedToIt) {
@@ -134,7 +133,6 @@ TEST_P(WeldsIn, MoveTheLinkOfAMultibody) {
     EXPECT_LT(worst, 2e-4);
     EXPECT_NEAR(static_cast<double>(weld->force().y()), -5, 0.6);  // the weight of both
     EXPECT_TRUE(isFinite(of.body()));
-    std::printf("link worst %g force %g\n", worst, weld->force().y());
   }
   world->deformable().removeCollisionObject(&link);
   world->deformable().removeCollisionObject(&base);

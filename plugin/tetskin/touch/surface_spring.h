@@ -18,7 +18,8 @@ struct SurfaceSpringOptions {
   double stiffness = 0.0;
   /// Of the point's own critical damping, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
-  /// The force never exceeds it. Above 0.
+  /// Most of the force, above 0. Where a step suddenly asks for more, that one may give up to twice as much, and the
+  /// next ones give so much less: on the mean of a twentieth of a second it holds.
   double maxForce = std::numeric_limits<double>::infinity();
   /// Whether the body and what it is tied to may touch each other.
   bool collide = false;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The solve after contacts: of bodies that forces couple together, of all others by themselves.
+#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/solver_parts.h>
 
@@ -97,13 +98,21 @@ void DeformableSolver::Parts::addProducts(const SolvedSystem& system, std::vecto
 /// The strictest of all.
 elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem& system) const {
   elastic_detail::SolveLimits limits;
+  double wanted = 1.0;
+  for (const btDeformableLagrangianForce* force : system.forces) {
+    if (const auto* coupling = dynamic_cast<const CouplingForce*>(force)) {
+      wanted = std::min(wanted, coupling->tolerance());
+    }
+  }
+  limits.tolerance = std::min(limits.tolerance, wanted);
   limits.floor = kUnseen * static_cast<double>(dt());
   limits.iterations = 0;
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    if (of.elastic) limits.enough += of.solve->enough();
+    const double stricter = std::min(1.0, wanted / of.limits->tolerance);
+    if (of.elastic) limits.enough += stricter * stricter * of.solve->enough();
   }
   return limits;
 }

@@ -72,6 +72,7 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
   void watch(btDiscreteDynamicsWorld& world);
 
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
+  double tolerance() const override { return 5e-4; }
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
   void reinitialize(bool nodeUpdated) override;

@@ -17,6 +17,8 @@ using Eigen::Vector3d;
 
 /// The unit of a spring's frequency: one over Bullet's usual substep.
 constexpr double kUnitRate = 240.0;
+/// Of the force allowed, what a spring gives at least that was too strong before.
+constexpr double kLeastShare = 0.01;
 /// What moves faster, in lengths a second, wakes what sleeps at the other end; Bullet's own threshold of sleep.
 constexpr double kWakingSpeed = 0.04;
 
@@ -93,6 +95,7 @@ void Joint::begin(btScalar dt, int sharers) {
   dt_ = static_cast<double>(dt);
   sharers_ = sharers;
   offset_ = offsetOf(lever_);
+  began_ = pointVelocity();
   active_ = true;
   wake();
 }
@@ -123,8 +126,11 @@ void Joint::measure() {
   wanted_ = partner_->velocity();
   wanted_.head<3>() += k * dt_ / (k * dt_ + d) * offset_.head<3>() / dt_;
   if (std::isfinite(settings_.maxForce)) {
-    const double most = c * (wanted_ - pointVelocity()).head<3>().norm() / dt_;
-    if (most > settings_.maxForce) c *= settings_.maxForce / most;
+    // What it comes to is known when the step is solved: until then, what it would be if the point went on as it does.
+    // What it has been too much, it gives less in the next step.
+    const double most = c * (wanted_ - began_).head<3>().norm();
+    const double allowed = std::max(settings_.maxForce * dt_ - excess_, kLeastShare * settings_.maxForce * dt_);
+    if (most > allowed) c *= allowed / most;
   }
   compliance_.head<3>().setConstant(1.0 / c);
   if (settings_.turns) {
@@ -204,7 +210,8 @@ void Joint::finish() {
   if (!active_ || spent()) return;
   const Vector6 given = impulse();
   load_ = given / dt_;
-  partner_->apply(-given, static_cast<btScalar>(dt_));
+  excess_ = std::max(excess_ + given.head<3>().norm() - settings_.maxForce * dt_, 0.0);
+  partner_->apply(-given, dt_, sharers_);
 }
 
 }  // namespace tetskin::touch_detail

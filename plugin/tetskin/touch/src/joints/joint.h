@@ -82,12 +82,14 @@ class Joint : public Acting {
   std::vector<Eigen::Vector3d> places_;  ///< of its nodes when the joint was made; welds only
   btMatrix3x3 turned_;                   ///< the partner then
   Vector6 load_ = Vector6::Zero();
+  double excess_ = 0;  ///< of impulses over what is allowed, not yet made good
 
   // Of the step.
   bool active_ = false;
   double dt_ = 0;
   int sharers_ = 1;
   Vector6 offset_ = Vector6::Zero();      ///< s
+  Vector6 began_ = Vector6::Zero();       ///< v
   Vector6 compliance_ = Vector6::Zero();  ///< 1/c
   Vector6 wanted_ = Vector6::Zero();      ///< q s / dt + u
   Matrix6 response_ = Matrix6::Zero();    ///< K

@@ -38,6 +38,7 @@ class RigidPartner : public Partner {
   }
   void begin() override {
     moves_ = !body_.isStaticOrKinematicObject() && body_.isActive();
+    start_ = anchor().getOrigin();
     arm_ = toEigen(body_.getWorldTransform().getBasis() * local_.getOrigin());
     inverseInertia_ = toMatrix(body_.getInvInertiaTensorWorld());
     for (int k = 0; k < 3; ++k) {
@@ -62,8 +63,9 @@ class RigidPartner : public Partner {
     k.bottomRightCorner<3, 3>() = inverseInertia_;
     return k;
   }
-  /// Bullet has moved it: what the impulse changes is moved after.
-  void apply(const Vector6& push, btScalar dt) override {
+  /// Bullet has moved it: what the impulse changes is moved after. And the anchor to where its velocity takes it: it
+  /// has gone along an arc, off the line that was solved for.
+  void apply(const Vector6& push, double dt, int sharers) override {
     if (!moves_) return;
     const Vector3d along = push.head<3>(), about = push.tail<3>();
     const btVector3 faster = toBullet(inverseMass_.cwiseProduct(along));
@@ -71,13 +73,16 @@ class RigidPartner : public Partner {
     body_.setLinearVelocity(body_.getLinearVelocity() + faster);
     body_.setAngularVelocity(body_.getAngularVelocity() + spinning);
     btTransform moved;
-    btTransformUtil::integrateTransform(body_.getWorldTransform(), faster, spinning, dt, moved);
+    btTransformUtil::integrateTransform(body_.getWorldTransform(), faster, spinning, static_cast<btScalar>(dt), moved);
+    const btVector3 due = start_ + toBullet(dt * velocity().head<3>());
+    moved.getOrigin() += (due - moved * local_.getOrigin()) / static_cast<btScalar>(sharers);
     body_.proceedToTransform(moved);
   }
 
  private:
   btRigidBody& body_;
   btTransform local_;
+  btVector3 start_{0, 0, 0};
   bool moves_ = false;
   Vector3d arm_ = Vector3d::Zero();
   Vector3d inverseMass_ = Vector3d::Zero();
@@ -129,7 +134,7 @@ class LinkPartner : public Partner {
     }
     return k;
   }
-  void apply(const Vector6& push, btScalar dt) override {
+  void apply(const Vector6& push, double dt, int) override {
     if (!moves_) return;
     btAlignedObjectArray<btScalar> change;
     change.resize(body_.getNumDofs() + 6, 0);
@@ -137,7 +142,7 @@ class LinkPartner : public Partner {
       for (int k = 0; k < change.size(); ++k) change[k] += static_cast<btScalar>(push[row]) * deltas_[row][k];
     }
     body_.applyDeltaVeeMultiDof(&change[0], 1);
-    body_.stepPositionsMultiDof(dt, nullptr, &change[0]);
+    body_.stepPositionsMultiDof(static_cast<btScalar>(dt), nullptr, &change[0]);
     btAlignedObjectArray<btQuaternion> turns;
     body_.forwardKinematics(turns, vectors_);
     body_.updateCollisionObjectWorldTransforms(turns, vectors_);

@@ -38,8 +38,9 @@ class Partner {
   virtual Vector6 velocity() const { return Vector6::Zero(); }
   /// By how much faster for a unit impulse and moment at the anchor.
   virtual Matrix6 response() const { return Matrix6::Zero(); }
-  /// An impulse and a moment at the anchor, through the step of dt seconds that has just moved it.
-  virtual void apply(const Vector6&, btScalar) {}
+  /// An impulse and a moment at the anchor, through the step of dt seconds that has just moved it; it may be one of
+  /// several that share its mass.
+  virtual void apply(const Vector6& /*push*/, double /*dt*/, int /*sharers*/) {}
 };
 
 std::unique_ptr<Partner> pointInSpace(const btVector3& at);
