@@ -13,10 +13,11 @@ class btMultiBodyLinkCollider;
 namespace tetskin {
 
 struct SurfaceSpringOptions {
-  /// Over the mass of the point (see `SurfacePoint::mass`), in units of 1 / (1/240 s)^2: so the same spring in steps of
-  /// any length. 0: 10 to a point in space, 1,000 to a body. Stable at any value.
+  /// Over the mass that the point would have if the body's were spread evenly over its nodes, in units of 1 / (1/240
+  /// s)^2: so the same spring in steps of any length, and no weaker at tips of light nodes, on which the body hangs as
+  /// heavily. 0: 10 to a point in space, 1,000 to a body. Stable at any value.
   double stiffness = 0.0;
-  /// Of the point's own critical damping, against the target; 0 leaves what an implicit step damps anyway.
+  /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
   /// Most of the force, above 0. Where a step suddenly asks for more, that one may give up to twice as much, and the
   /// next ones give so much less: on the mean of a twentieth of a second it holds.

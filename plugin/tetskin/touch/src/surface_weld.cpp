@@ -16,8 +16,8 @@ using touch_detail::JointOwner;
 using touch_detail::JointSettings;
 using touch_detail::Partner;
 
-/// Over the point's mass: a body of ten times the soft one's weight hangs on it within 1e-5 of a size.
-constexpr double kWeldStiffness = 1e5;
+/// As a spring's: a body of ten times the soft one's weight hangs on it within 1e-5 of a size.
+constexpr double kWeldStiffness = 3e4;
 
 /// Where the point is, in the object's own space.
 btTransform anchorIn(const btTransform& object, const SurfacePoint& point) {

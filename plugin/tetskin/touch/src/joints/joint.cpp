@@ -22,6 +22,32 @@ constexpr double kLeastShare = 0.01;
 /// What moves faster, in lengths a second, wakes what sleeps at the other end; Bullet's own threshold of sleep.
 constexpr double kWakingSpeed = 0.04;
 
+/// Of all nodes that can move: a body hangs as heavily on light ones.
+double meanNodeMass(const btSoftBody& body) {
+  double sum = 0.0;
+  int count = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    if (body.m_nodes[n].m_im == 0) continue;
+    sum += 1.0 / static_cast<double>(body.m_nodes[n].m_im);
+    ++count;
+  }
+  return count > 0 ? sum / count : 1.0;
+}
+
+struct JointMass {
+  double along = 0.0, about = 0.0;
+};
+
+/// Of a point among nodes of one mass.
+JointMass massAt(const Lever& lever, double nodeMass) {
+  double along = 0.0, about = 0.0;
+  for (const LeverNode& of : lever) {
+    along += of.linear.squaredNorm();
+    about += of.angular.squaredNorm();
+  }
+  return {3.0 * nodeMass / along, about > 0.0 ? 3.0 * nodeMass / about : nodeMass};
+}
+
 Vector3d turnOf(const Matrix3d& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
@@ -34,6 +60,7 @@ Joint::Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const 
       partner_(std::move(partner)),
       settings_(settings),
       nodeCount_(point.body()->m_nodes.size()),
+      nodeMass_(meanNodeMass(*point.body())),
       lever_(leverOf(point.data(), *point.body())),
       places_(placesOf(lever_, *point.body())),
       turned_(partner_->anchor().getBasis()) {
@@ -108,20 +135,12 @@ Vector6 Joint::pointVelocity() const {
   return v;
 }
 
-double Joint::stiffnessOf(const Matrix3d& pointResponse, const Matrix3d& partnerResponse) const {
-  // Pinned nodes hold anything: then the partner's mass counts.
-  const double mass = std::min(massOf(pointResponse), 1e30);
-  return settings_.stiffness * kUnitRate * kUnitRate * (mass < 1e30 ? mass : std::min(massOf(partnerResponse), 1.0));
-}
-
 void Joint::measure() {
   partner_->begin();
-  const btSoftBody& soft = *point_.body();
   response_ = sharers_ * partner_->response();
-  const Matrix3d along = linearResponse(lever_, soft);
-  const double k = stiffnessOf(along, response_.topLeftCorner<3, 3>());
-  const double mass = std::min(massOf(along), 1e30);
-  const double d = 2.0 * settings_.damping * (mass < 1e30 ? std::sqrt(k * mass) : 0.0);
+  const JointMass mass = massAt(lever_, nodeMass_);
+  const double k = settings_.stiffness * kUnitRate * kUnitRate * mass.along;
+  const double d = 2.0 * settings_.damping * std::sqrt(k * mass.along);
   double c = dt_ * (k * dt_ + d);
   wanted_ = partner_->velocity();
   wanted_.head<3>() += k * dt_ / (k * dt_ + d) * offset_.head<3>() / dt_;
@@ -134,7 +153,7 @@ void Joint::measure() {
   }
   compliance_.head<3>().setConstant(1.0 / c);
   if (settings_.turns) {
-    const double turning = stiffnessOf(angularResponse(lever_, soft), response_.bottomRightCorner<3, 3>());
+    const double turning = settings_.stiffness * kUnitRate * kUnitRate * mass.about;
     compliance_.tail<3>().setConstant(1.0 / (dt_ * dt_ * turning));
     wanted_.tail<3>() += offset_.tail<3>() / dt_;
   }

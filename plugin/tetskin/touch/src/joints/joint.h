@@ -64,7 +64,6 @@ class Joint : public Acting {
   bool softMoves() const;
   Vector6 offsetOf(const Lever& lever) const;
   Vector6 pointVelocity() const;
-  double stiffnessOf(const Eigen::Matrix3d& pointResponse, const Eigen::Matrix3d& partnerResponse) const;
   /// Of the partner as it is now: what the impulse is made of.
   void measure();
   /// What gives the impulse for an error in velocity, if all of this gives way to it.
@@ -76,6 +75,7 @@ class Joint : public Acting {
   std::unique_ptr<Partner> partner_;
   JointSettings settings_;
   int nodeCount_;
+  double nodeMass_;  ///< the mean
   bool dropped_ = false;
   bool hidden_ = false;  ///< body and partner do not collide, by us
   Lever lever_;
