@@ -13,9 +13,9 @@ class btMultiBodyLinkCollider;
 namespace tetskin {
 
 struct SurfaceSpringOptions {
-  /// Over the mass that the point would have if the body's were spread evenly over its nodes, in units of 1 / (1/240
-  /// s)^2: so the same spring in steps of any length, and no weaker at tips of light nodes, on which the body hangs as
-  /// heavily. 0: 10 to a point in space, 1,000 to a body. Stable at any value.
+  /// Over the mass of a point, in units of 1 / (1/240 s)^2: so the same spring in steps of any length. The mass is that
+  /// of a tet's four nodes, as they are on the mean: no less at tips of light nodes, on which the body hangs as heavily.
+  /// 0: 10 to a point in space, 1,000 to a body. Stable at any value.
   double stiffness = 0.0;
   /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;

@@ -34,18 +34,11 @@ double meanNodeMass(const btSoftBody& body) {
   return count > 0 ? sum / count : 1.0;
 }
 
-struct JointMass {
-  double along = 0.0, about = 0.0;
-};
-
-/// Of a point among nodes of one mass.
-JointMass massAt(const Lever& lever, double nodeMass) {
-  double along = 0.0, about = 0.0;
-  for (const LeverNode& of : lever) {
-    along += of.linear.squaredNorm();
-    about += of.angular.squaredNorm();
-  }
-  return {3.0 * nodeMass / along, about > 0.0 ? 3.0 * nodeMass / about : nodeMass};
+/// What it takes to turn the nodes of a point, all of one mass.
+double inertiaAt(const Lever& lever, double nodeMass) {
+  double about = 0.0;
+  for (const LeverNode& of : lever) about += of.angular.squaredNorm();
+  return about > 0.0 ? 3.0 * nodeMass / about : nodeMass;
 }
 
 Vector3d turnOf(const Matrix3d& rotation) {
@@ -138,9 +131,9 @@ Vector6 Joint::pointVelocity() const {
 void Joint::measure() {
   partner_->begin();
   response_ = sharers_ * partner_->response();
-  const JointMass mass = massAt(lever_, nodeMass_);
-  const double k = settings_.stiffness * kUnitRate * kUnitRate * mass.along;
-  const double d = 2.0 * settings_.damping * std::sqrt(k * mass.along);
+  const double mass = 4.0 * nodeMass_, rate = settings_.stiffness * kUnitRate * kUnitRate;
+  const double k = rate * mass;
+  const double d = 2.0 * settings_.damping * std::sqrt(k * mass);
   double c = dt_ * (k * dt_ + d);
   wanted_ = partner_->velocity();
   wanted_.head<3>() += k * dt_ / (k * dt_ + d) * offset_.head<3>() / dt_;
@@ -153,7 +146,7 @@ void Joint::measure() {
   }
   compliance_.head<3>().setConstant(1.0 / c);
   if (settings_.turns) {
-    const double turning = settings_.stiffness * kUnitRate * kUnitRate * mass.about;
+    const double turning = rate * inertiaAt(lever_, nodeMass_);
     compliance_.tail<3>().setConstant(1.0 / (dt_ * dt_ * turning));
     wanted_.tail<3>() += offset_.tail<3>() / dt_;
   }
