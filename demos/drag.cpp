@@ -161,7 +161,9 @@ Drag::Drag(const DragOptions& options)
   world_.touchBySurface(body_, *binding_, model_.mesh);
   require(skin_.bind(body_, binding_));
   const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
-  auto crown = tree_.pointAtRest(body_, tip - 0.09 * kSize * Vector3d::UnitY());
+  // In front of the horns, from above.
+  const btVector3 over = toBullet(tip + kSize * Vector3d(0.035, 0.1, 0.035)), under = over - btVector3(0, kSize, 0);
+  auto crown = tree_.pointAt(body_, tree_.raycast(skin_, over, under));
   require(crown.status());
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);

@@ -128,7 +128,9 @@ std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, co
     least = distance;
     nearest = f;
   }
-  const double k = stiffness * static_cast<double>(point.mass()) * 240 * 240 / 3;
+  double mass = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) mass += 1 / static_cast<double>(body.m_nodes[n].m_im);
+  const double k = stiffness * 4 * mass / body.m_nodes.size() * 240 * 240 / 3;  // at each of three nodes
   auto force = std::make_unique<btDeformableMousePickingForce>(static_cast<btScalar>(k), btScalar(0), body.m_faces[nearest],
                                                                at, btScalar(1e30));
   auto* solver = static_cast<btDeformableBodySolver*>(body.getSoftBodySolver());

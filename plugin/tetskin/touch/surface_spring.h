@@ -20,7 +20,7 @@ struct SurfaceSpringOptions {
   /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
   /// Most of the force, above 0. Where a step suddenly asks for more, that one may give up to twice as much, and the
-  /// next ones give so much less: on the mean of a twentieth of a second it holds.
+  /// next ones give so much less: on the mean of a twentieth of a second it holds to some hundredths.
   double maxForce = std::numeric_limits<double>::infinity();
   /// Whether the body and what it is tied to may touch each other.
   bool collide = false;
