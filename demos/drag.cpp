@@ -51,7 +51,8 @@ double eased(double from, double to, double t) {
 Vector3d pointerAt(double t) {
   const double angle = 2 * EIGEN_PI * std::clamp(t - kLifted, 0.0, kSwung - kLifted);
   return kLift * eased(kPicked, kLifted, t) * Vector3d::UnitY() +
-         kSwing * Vector3d(std::sin(angle), 0, 1 - std::cos(angle)) + 0.3 * kSize * eased(kSwung, kThere, t) * Vector3d::UnitX();
+         kSwing * Vector3d(std::sin(angle), 0, 1 - std::cos(angle)) +
+         0.3 * kSize * eased(kSwung, kThere, t) * Vector3d::UnitX();
 }
 
 /// A rigid ring that hangs on a pin at its top.
@@ -103,7 +104,8 @@ Model placedSerpent(const DragOptions& options) {
 
 int highest(const TriangleMesh& mesh) {
   const auto lower = [](const Vector3d& a, const Vector3d& b) { return a.y() < b.y(); };
-  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), lower) - mesh.positions.begin());
+  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), lower) -
+                          mesh.positions.begin());
 }
 
 class Drag {
@@ -121,7 +123,8 @@ class Drag {
   void hang();
   void push();
   void measure(double t);
-  void place(std::size_t first, const TriangleMesh& part, const btTransform& where, std::vector<Vector3d>& points) const;
+  void place(std::size_t first, const TriangleMesh& part, const btTransform& where,
+             std::vector<Vector3d>& points) const;
 
   DragOptions options_;
   Model model_;
@@ -133,7 +136,8 @@ class Drag {
   SurfacePoint horn_, crown_;
   std::unique_ptr<SurfaceSpring> spring_;
   std::unique_ptr<Ring> ring_;
-  TriangleMesh hat_ = makeHat(kHat), hoop_ = makeRing(kRing, 0.02 * kSize), pointer_ = makePointer(0.02 * kSize), drawn_;
+  TriangleMesh hat_ = makeHat(kHat), hoop_ = makeRing(kRing, 0.02 * kSize), pointer_ = makePointer(0.02 * kSize),
+               drawn_;
   std::size_t hatFirst_, hoopFirst_, pointerFirst_;
   btVector3 picked_{0, 0, 0};
   double lag_ = 0, hangs_ = 0;
@@ -304,7 +308,8 @@ int run(const DragOptions& options) {
 
 int main(int argc, char** argv) {
   DragOptions options;
-  CommandLine line("A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.");
+  CommandLine line(
+      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.");
   line.addCount("--tets", options.tets, "Tets of the cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
   line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");

@@ -62,7 +62,8 @@ const TouchModel& serpent() {
 /// The vertex of the mesh that is furthest along an axis.
 int furthest(const TriangleMesh& mesh, const Vector3d& along) {
   const auto less = [&](const Vector3d& a, const Vector3d& b) { return a.dot(along) < b.dot(along); };
-  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), less) - mesh.positions.begin());
+  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), less) -
+                          mesh.positions.begin());
 }
 
 void bend(btSoftBody& body, double phase) {
@@ -117,7 +118,8 @@ btVector3 swung(const btVector3& start, double seconds) {
 enum class Puller { Spring, Bullets };
 
 /// Bullet's own force on the face nearest to the point, as stiff.
-std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, const SurfacePoint& point, double stiffness) {
+std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, const SurfacePoint& point,
+                                                            double stiffness) {
   const btVector3 at = *point.position();
   int nearest = 0;
   btScalar least = BT_LARGE_FLOAT;
@@ -131,8 +133,8 @@ std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, co
   double mass = 0;
   for (int n = 0; n < body.m_nodes.size(); ++n) mass += 1 / static_cast<double>(body.m_nodes[n].m_im);
   const double k = stiffness * 4 * mass / body.m_nodes.size() * 240 * 240 / 3;  // at each of three nodes
-  auto force = std::make_unique<btDeformableMousePickingForce>(static_cast<btScalar>(k), btScalar(0), body.m_faces[nearest],
-                                                               at, btScalar(1e30));
+  auto force = std::make_unique<btDeformableMousePickingForce>(static_cast<btScalar>(k), btScalar(0),
+                                                               body.m_faces[nearest], at, btScalar(1e30));
   auto* solver = static_cast<btDeformableBodySolver*>(body.getSoftBodySolver());
   force->addSoftBody(&body);
   force->setIndices(solver->getIndices());
@@ -247,7 +249,8 @@ void registerSwings() {
     for (const double stiffness : {1.0, 10.0, 1000.0}) {
       for (const int rate : {60, 240, 1000}) {
         const std::string name = std::string("Touch/") + of.name + named("stiffness", stiffness) + named("rate", rate);
-        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { swing(state, of.puller, of.force, stiffness, rate); })
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [=](State& state) { swing(state, of.puller, of.force, stiffness, rate); })
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);
       }
@@ -258,14 +261,18 @@ void registerSwings() {
 }  // namespace
 
 void registerTouchCases() {
-  benchmark::RegisterBenchmark("Touch/ray", [](State& state) { castRays(state, false); })->Unit(benchmark::kMicrosecond);
-  benchmark::RegisterBenchmark("Touch/ray_after_a_step", [](State& state) { castRays(state, true); })
-      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Touch/ray", [](State& state) {
+    castRays(state, false);
+  })->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Touch/ray_after_a_step", [](State& state) {
+    castRays(state, true);
+  })->Unit(benchmark::kMicrosecond);
   registerSwings();
   for (const bool welded : {true, false}) {
     for (const double mass : {0.01, 0.1, 1.0, 10.0}) {
       for (const int rate : {60, 240}) {
-        const std::string name = std::string("Touch/") + (welded ? "weld" : "ball_joint") + named("mass", mass) + named("rate", rate);
+        const std::string name =
+            std::string("Touch/") + (welded ? "weld" : "ball_joint") + named("mass", mass) + named("rate", rate);
         benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { hang(state, welded, mass, rate); })
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);

@@ -15,9 +15,8 @@ Vector3d at(PointView<const btScalar> points, std::size_t v) {
 const double kRounding = 20 * static_cast<double>(SIMD_EPSILON);
 
 class SurfacePoints : public testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(, SurfacePoints, testing::Values(0.38, 0.55), [](const auto& of) {
-  return of.param < 0.4 ? "Inside" : "Outside";
-});
+INSTANTIATE_TEST_SUITE_P(, SurfacePoints, testing::Values(0.38, 0.55),
+                         [](const auto& of) { return of.param < 0.4 ? "Inside" : "Outside"; });
 
 TEST_P(SurfacePoints, AreWhereALinearSkinDrawsTheirVertices) {
   auto world = deformableWorld(Solving::Tetskin);
@@ -136,7 +135,6 @@ TEST(SurfacePoint, HasATangentThatTurnsLittleWhereTheBodyDeformsLittle) {
     before = now;
   }
 }
-
 
 class PointsIn : public testing::TestWithParam<Solving> {};
 INSTANTIATE_TEST_SUITE_P(, PointsIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),

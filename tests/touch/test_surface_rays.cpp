@@ -45,7 +45,8 @@ void compare(TouchedBody& of, int rays, unsigned seed) {
   std::uniform_real_distribution<double> number(-0.7, 1.7);
   int hits = 0;
   for (int r = 0; r < rays; ++r) {
-    const Vector3d from(number(random), number(random), number(random)), to(number(random), number(random), number(random));
+    const Vector3d from(number(random), number(random), number(random)),
+        to(number(random), number(random), number(random));
     const btVector3 a = toBullet(from), b = toBullet(to);
     const SurfaceHit hit = of.tree.raycast(of.skin, a, b);
     const Found wanted = bruteForce(of.skin, of.model.mesh, toEigen(a), toEigen(b));
@@ -78,7 +79,8 @@ TEST(SurfaceTree, MeetsQuadraticSurfacesAsTheyAreDrawn) {
   deform(of.body(), 0.1);
   ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
   compare(of, 1000, 9);
-  const SurfaceHit hit = of.tree.raycast(of.skin, btVector3(btScalar(0.53), 3, btScalar(0.48)), btVector3(btScalar(0.5), -3, btScalar(0.5)));
+  const SurfaceHit hit = of.tree.raycast(of.skin, btVector3(btScalar(0.53), 3, btScalar(0.48)),
+                                         btVector3(btScalar(0.5), -3, btScalar(0.5)));
   ASSERT_TRUE(hit);
   const SurfacePoint point = of.tree.pointAt(of.body(), hit).value();
   EXPECT_LT((*point.position(of.skin) - hit.point).length(), 1e-5);
@@ -127,7 +129,8 @@ TEST(SurfaceTree, FollowsBodiesOfOneBindingInTurn) {
   auto world = deformableWorld(Solving::Tetskin);
   TouchedBody first(*world);
   const auto second = added(*world, first.model.cage);
-  for (int n = 0; n < second->body().m_nodes.size(); ++n) second->body().m_nodes[n].m_x.setX(second->body().m_nodes[n].m_x.x() + 4);
+  for (int n = 0; n < second->body().m_nodes.size(); ++n)
+    second->body().m_nodes[n].m_x.setX(second->body().m_nodes[n].m_x.x() + 4);
   SoftBodySkin skin;
   ASSERT_TRUE(skin.bind(second->body(), first.binding).ok());
   for (int turn = 0; turn < 3; ++turn) {

@@ -57,7 +57,7 @@ TEST_P(SpringsIn, AreStableAtAnyStiffness) {
         if (stiffness == 1e3 || (stiffness > 1e3 && radius < 0.4)) {
           EXPECT_LT(lag, radius < 0.4 ? 0.001 : 0.03) << stiffness << " " << dt << " " << radius;
         }
-          }
+      }
     }
   }
 }

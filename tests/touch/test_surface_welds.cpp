@@ -42,7 +42,8 @@ TEST_P(WeldsIn, FollowABodyThatIsSwung) {
   auto world = deformableWorld(GetParam(), 10);
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint top = of.vertex(of.furthest(Vector3d::UnitY())), low = of.vertex(of.furthest(-Vector3d::UnitY()));
-  RigidBox box(*world, 0.2, *low.position() - btVector3(0, btScalar(0.2), 0), btVector3(btScalar(0.02), btScalar(0.2), btScalar(0.02)));
+  RigidBox box(*world, 0.2, *low.position() - btVector3(0, btScalar(0.2), 0),
+               btVector3(btScalar(0.02), btScalar(0.2), btScalar(0.02)));
   box->setActivationState(DISABLE_DEACTIVATION);
   auto weld = SurfaceWeld::add(world->deformable(), low, *box).value();
   auto spring = SurfaceSpring::add(world->deformable(), top).value();
@@ -50,7 +51,8 @@ TEST_P(WeldsIn, FollowABodyThatIsSwung) {
   double worst = 0;
   for (int s = 0; s < 720; ++s) {
     const double angle = 2 * EIGEN_PI * s / 240;
-    ASSERT_EQ(spring->setTarget(start + toBullet({0.3 * std::sin(angle), 0, 0.3 - 0.3 * std::cos(angle)})), TouchStatus::Ok);
+    ASSERT_EQ(spring->setTarget(start + toBullet({0.3 * std::sin(angle), 0, 0.3 - 0.3 * std::cos(angle)})),
+              TouchStatus::Ok);
     substep(*world);
     worst = std::max(worst, static_cast<double>(weld->separation()));
   }

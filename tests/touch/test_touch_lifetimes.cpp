@@ -97,7 +97,8 @@ TEST_P(LifetimesIn, SpringsLeaveNothingInTheWorld) {
 
 TEST_P(LifetimesIn, BodiesMayGoBeforeTheirSpringsAndWelds) {
   auto world = deformableWorld(GetParam(), 10);
-  auto first = std::make_unique<TouchedBody>(*world), second = std::make_unique<TouchedBody>(*world, TouchModel(0.38, 3));
+  auto first = std::make_unique<TouchedBody>(*world),
+       second = std::make_unique<TouchedBody>(*world, TouchModel(0.38, 3));
   RigidBox box(*world, 1, btVector3(0, 6, 0));
   auto spring = SurfaceSpring::add(world->deformable(), first->vertex(5)).value();
   auto weld = SurfaceWeld::add(world->deformable(), first->vertex(50), *box).value();
@@ -152,7 +153,8 @@ TEST_P(LifetimesIn, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   for (const Vector3d& p : model.cage.nodes) nodes.push_back(toBullet(p));
   btDeformableGravityForce gravity(btVector3(0, 0, 0));
   btDeformableNeoHookeanForce elasticity(400, 600, btScalar(0.05));
-  auto body = std::make_unique<btSoftBody>(&world->deformable().getWorldInfo(), static_cast<int>(nodes.size()), nodes.data(), nullptr);
+  auto body = std::make_unique<btSoftBody>(&world->deformable().getWorldInfo(), static_cast<int>(nodes.size()),
+                                           nodes.data(), nullptr);
   for (const Tet& t : model.cage.tets) body->appendTetra(t[0], t[1], t[2], t[3]);
   body->initializeDmInverse();
   body->m_tetraScratches.resize(body->m_tetras.size());

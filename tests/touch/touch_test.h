@@ -100,8 +100,8 @@ struct Momentum {
 inline void deform(btSoftBody& body, double amount = 0.05) {
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const Eigen::Vector3d x = toEigen(body.m_nodes[n].m_x);
-    const Eigen::Vector3d moved = x + amount * Eigen::Vector3d(std::sin(5 * x.y() + 1), std::sin(4 * x.z()),
-                                                               std::cos(6 * x.x() + x.y()));
+    const Eigen::Vector3d moved =
+        x + amount * Eigen::Vector3d(std::sin(5 * x.y() + 1), std::sin(4 * x.z()), std::cos(6 * x.x() + x.y()));
     body.m_nodes[n].m_x = body.m_nodes[n].m_q = toBullet(moved);
   }
 }

@@ -62,9 +62,9 @@ struct PointData {
 /// A point on a triangle of a body's visual surface, by its corners' nodes and weights. A value of some 250 bytes: copy
 /// it, keep it as long as the body lives, or longer.
 ///
-/// It is made by a `SurfaceTree`. Points of a body made by `makeSoftBody`, a `DeformableBody`'s among them, know when it
-/// is gone, and all functions say so. Of a body that the application has made itself they do not: call `release` before
-/// that is deleted.
+/// It is made by a `SurfaceTree`. Points of a body made by `makeSoftBody`, a `DeformableBody`'s among them, know when
+/// it is gone, and all functions say so. Of a body that the application has made itself they do not: call `release`
+/// before that is deleted.
 ///
 /// Reading works in every world. So do impulses, but for reduced bodies, whose nodes have no velocities of their own.
 class TETSKIN_TOUCH_API SurfacePoint {
@@ -93,8 +93,8 @@ class TETSKIN_TOUCH_API SurfacePoint {
   std::optional<SurfaceFrame> frame() const;
   std::optional<SurfaceFrame> frame(const SoftBodySkin& skin, btScalar alpha = 1) const;
 
-  /// Mass that a push feels at the first moment, by the nodes around it alone; 0 if the status is not Ok, infinite where
-  /// all of them are pinned.
+  /// Mass that a push feels at the first moment, by the nodes around it alone; 0 if the status is not Ok, infinite
+  /// where all of them are pinned.
   btScalar mass() const;
 
   /// Changes the velocities of the nodes around the point so that the body's linear and angular momentum grow by
@@ -106,7 +106,8 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// that `makeSoftBody` has not made, the point must live until then.
   /// force  world space; forces add up
   /// steps  of Bullet's, that is substeps, 1 or more
-  /// Errors OutOfWorld; InvalidOption outside the deformable world, and for reduced bodies; those of `status`; NonFinite
+  /// Errors OutOfWorld; InvalidOption outside the deformable world, and for reduced bodies; those of `status`;
+  /// NonFinite
   TouchStatus applyForce(const btVector3& force, int steps = 1);
 
   /// Null if it is gone, or released.
@@ -116,9 +117,9 @@ class TETSKIN_TOUCH_API SurfacePoint {
 
  private:
   btSoftBody* body_ = nullptr;
-  bool watched_ = false;               ///< the body tells when it goes
-  std::weak_ptr<const void> life_;     ///< of a watched body
-  std::shared_ptr<void> forces_;       ///< of a body that is not: what applies them
+  bool watched_ = false;            ///< the body tells when it goes
+  std::weak_ptr<const void> life_;  ///< of a watched body
+  std::shared_ptr<void> forces_;    ///< of a body that is not: what applies them
   int nodeCount_ = 0, tetCount_ = 0;
   touch_detail::PointData data_;
 };

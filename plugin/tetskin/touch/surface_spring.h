@@ -14,8 +14,8 @@ namespace tetskin {
 
 struct SurfaceSpringOptions {
   /// Over the mass of a point, in units of 1 / (1/240 s)^2: so the same spring in steps of any length. The mass is that
-  /// of a tet's four nodes, as they are on the mean: no less at tips of light nodes, on which the body hangs as heavily.
-  /// 0: 10 to a point in space, 1,000 to a body. Stable at any value.
+  /// of a tet's four nodes, as they are on the mean: no less at tips of light nodes, on which the body hangs as
+  /// heavily. 0: 10 to a point in space, 1,000 to a body. Stable at any value.
   double stiffness = 0.0;
   /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
@@ -26,8 +26,8 @@ struct SurfaceSpringOptions {
   bool collide = false;
 };
 
-/// Pulls a point of a surface to a point in space, which the application moves, or to one of a rigid body or a link of a
-/// multibody, which feels it: a ball joint. In the deformable world, solved for with the body, and with the other's
+/// Pulls a point of a surface to a point in space, which the application moves, or to one of a rigid body or a link of
+/// a multibody, which feels it: a ball joint. In the deformable world, solved for with the body, and with the other's
 /// mass, at once.
 ///
 ///     auto spring = tetskin::SurfaceSpring::add(*world, point).value();   // picked

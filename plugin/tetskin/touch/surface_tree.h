@@ -15,11 +15,11 @@ namespace tetskin {
 struct SurfaceHit {
   TouchStatus status = TouchStatus::Miss;
   const btSoftBody* body = nullptr;
-  int triangle = -1;                  ///< of the mesh
-  btScalar weights[3] = {0, 0, 0};    ///< of its corners, adding up to 1
-  btVector3 point{0, 0, 0};           ///< world space, on the drawn triangle
-  btVector3 normal{0, 1, 0};          ///< of the drawn triangle, of unit length, whichever side was hit
-  btScalar distance = 0;              ///< from where the ray begins, world units
+  int triangle = -1;                ///< of the mesh
+  btScalar weights[3] = {0, 0, 0};  ///< of its corners, adding up to 1
+  btVector3 point{0, 0, 0};         ///< world space, on the drawn triangle
+  btVector3 normal{0, 1, 0};        ///< of the drawn triangle, of unit length, whichever side was hit
+  btScalar distance = 0;            ///< from where the ray begins, world units
 
   explicit operator bool() const { return status == TouchStatus::Ok; }
 };

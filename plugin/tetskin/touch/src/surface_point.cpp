@@ -44,8 +44,8 @@ bool drawCorners(const SoftBodySkin& skin, btScalar alpha, const btSoftBody& bod
   const bool bends = skin.interpolation() == Interpolation::Quadratic;
   for (std::size_t k = 0; k < 3; ++k) {
     const Corner& corner = data.corners[k];
-    corners[k] =
-        bends ? touch_detail::quadraticPosition(corner, *binding, nodeAt) : touch_detail::linearPosition(corner, nodeAt);
+    corners[k] = bends ? touch_detail::quadraticPosition(corner, *binding, nodeAt)
+                       : touch_detail::linearPosition(corner, nodeAt);
   }
   return true;
 }
@@ -84,8 +84,8 @@ const char* toString(TouchStatus status) {
 }
 
 btTransform SurfaceFrame::transform() const {
-  const btMatrix3x3 basis(tangent.x(), normal.x(), -bitangent.x(), tangent.y(), normal.y(), -bitangent.y(),
-                          tangent.z(), normal.z(), -bitangent.z());
+  const btMatrix3x3 basis(tangent.x(), normal.x(), -bitangent.x(), tangent.y(), normal.y(), -bitangent.y(), tangent.z(),
+                          normal.z(), -bitangent.z());
   return btTransform(basis, position);
 }
 

@@ -30,9 +30,9 @@ Status checkMesh(const SoftBodyBinding* binding, const TriangleMesh& mesh) {
 struct SurfaceTree::Parts {
   Status status;
   std::shared_ptr<const SoftBodyBinding> binding;
-  TriangleMesh mesh;  ///< positions and triangles
+  TriangleMesh mesh;                     ///< positions and triangles
   std::vector<Eigen::Vector3d> normals;  ///< by vertex, at rest
-  std::vector<double> areas;  ///< by vertex: its share of the surface at rest
+  std::vector<double> areas;             ///< by vertex: its share of the surface at rest
   touch_detail::FittedSurface fitted;
 
   Status checkBody(const btSoftBody& body) const {
@@ -108,8 +108,8 @@ Result<SurfacePoint> SurfaceTree::pointAt(btSoftBody& body, const SurfaceHit& hi
     return Status{StatusCode::InvalidOption, "the ray has met nothing: ask the hit first"};
   }
   if (hit.body != &body) return Status{StatusCode::InvalidOption, "the ray has hit another body"};
-  return parts_->pointOf(body, static_cast<std::size_t>(hit.triangle),
-                         {hit.weights[0], hit.weights[1], hit.weights[2]}, 0);
+  return parts_->pointOf(body, static_cast<std::size_t>(hit.triangle), {hit.weights[0], hit.weights[1], hit.weights[2]},
+                         0);
 }
 
 Result<SurfacePoint> SurfaceTree::pointOfVertex(btSoftBody& body, int vertex) const {

@@ -57,8 +57,7 @@ Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& w
 Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                       btMultiBodyLinkCollider& link, bool collide) {
   if (Status status = JointOwner::check(world, point); !status.ok()) return status;
-  return Parts::make(world, point, touch_detail::linkPartner(link, anchorIn(link.getWorldTransform(), point)),
-                     collide);
+  return Parts::make(world, point, touch_detail::linkPartner(link, anchorIn(link.getWorldTransform(), point)), collide);
 }
 
 TouchStatus SurfaceWeld::status() const {

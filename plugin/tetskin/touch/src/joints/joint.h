@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: a point tied to something, by a spring along, and for welds by one about, which are solved
-// for implicitly, and with the masses of both sides.
+// Internal to tetskin::touch: a point tied to something, by a spring along, and for welds by one about, which are
+// solved for implicitly, and with the masses of both sides.
 //
 // In a step the point moves with v, and what it is tied to with u + K (-P), where P is the impulse that the joint gives
 // the point, u is what the partner would do without, and K its response. A spring of stiffness k and damping d gives
@@ -22,9 +22,9 @@
 namespace tetskin::touch_detail {
 
 struct JointSettings {
-  bool turns = false;      ///< a weld: about, too
-  double stiffness = 10;   ///< as SurfaceSpringOptions
-  double damping = 0;      ///< as SurfaceSpringOptions; along only
+  bool turns = false;                                         ///< a weld: about, too
+  double stiffness = 10;                                      ///< as SurfaceSpringOptions
+  double damping = 0;                                         ///< as SurfaceSpringOptions; along only
   double maxForce = std::numeric_limits<double>::infinity();  ///< along only
   bool collide = false;
 };

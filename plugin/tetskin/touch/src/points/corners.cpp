@@ -76,7 +76,8 @@ Vector3d bendAt(const Edges& edges, const std::array<btScalar, 4>& b) {
   Vector3d sum = Vector3d::Zero();
   int k = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = i + 1; j < 4; ++j) sum += static_cast<double>(b[i]) * static_cast<double>(b[j]) * edges.of[k++];
+    for (std::size_t j = i + 1; j < 4; ++j)
+      sum += static_cast<double>(b[i]) * static_cast<double>(b[j]) * edges.of[k++];
   }
   return sum;
 }
@@ -95,9 +96,8 @@ Corner cornerOf(const Embedding& embedding, std::size_t vertex) {
   const EmbeddingData& of = embedding.data();
   assert(vertex < of.vertexCount());
   const std::uint32_t slot = of.vertexSlots[vertex];
-  const auto after =
-      std::upper_bound(of.runs.begin(), of.runs.end(), slot,
-                       [](std::uint32_t s, const EmbeddingData::Run& run) { return s < run.firstSlot; });
+  const auto after = std::upper_bound(of.runs.begin(), of.runs.end(), slot,
+                                      [](std::uint32_t s, const EmbeddingData::Run& run) { return s < run.firstSlot; });
   const EmbeddingData::Run& run = *std::prev(after);
   Corner corner;
   corner.tet = static_cast<int>(run.tet);

@@ -9,9 +9,9 @@
 namespace tetskin::touch_detail {
 
 struct NearestTriangle {
-  int triangle = -1;                        ///< -1: none
-  Eigen::Vector3d weights{1.0, 0.0, 0.0};   ///< of its corners, where it is nearest
-  int firstCorner = 0;                      ///< which of its corners was asked for
+  int triangle = -1;                       ///< -1: none
+  Eigen::Vector3d weights{1.0, 0.0, 0.0};  ///< of its corners, where it is nearest
+  int firstCorner = 0;                     ///< which of its corners was asked for
 };
 
 /// mesh  with triangles

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // This work is based on:
-//   Tomas Möller and Ben Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2, 1997,
-//   doi 10.1080/10867651.1997.10487468
+//   Tomas Möller and Ben Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2,
+//   1997, doi 10.1080/10867651.1997.10487468
 #include <tetskin/touch/src/tree/ray_tree.h>
 
 #include <algorithm>

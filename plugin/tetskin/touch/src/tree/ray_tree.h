@@ -19,8 +19,8 @@ struct Ray {
 };
 
 struct RayHit {
-  int triangle = -1;  ///< of the mesh; -1: none
-  double at = 0.0;    ///< in units of the ray's `along`
+  int triangle = -1;                 ///< of the mesh; -1: none
+  double at = 0.0;                   ///< in units of the ray's `along`
   double second = 0.0, third = 0.0;  ///< weights of these corners
 };
 
