@@ -83,7 +83,7 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// status is Ok.
   std::optional<btVector3> position() const;
   /// Where this skin, of the same body, draws it after `update(alpha)`, whether it is updated, visible or moved by an
-  /// origin or not. Nothing if it is of another body, or of another binding.
+  /// origin or not. Nothing if it is of another body.
   /// Cost  under a microsecond; of a quadratic skin a few
   std::optional<btVector3> position(const SoftBodySkin& skin, btScalar alpha = 1) const;
   /// Of `position()`, world units a second: what it has moved by in the last of Bullet's steps, over its time. It is
