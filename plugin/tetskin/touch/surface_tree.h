@@ -54,7 +54,7 @@ class TETSKIN_TOUCH_API SurfaceTree {
  public:
   /// binding  not null, of this mesh
   /// mesh     copied as far as it is needed; its triangles name existing vertices: see `check`
-  /// Cost     O(n log n) for n triangles: 25 ms for 60,000. Memory some 60 bytes a triangle, 90 a vertex
+  /// Cost     O(n log n) for n triangles
   SurfaceTree(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh);
   ~SurfaceTree();
   SurfaceTree(SurfaceTree&&) noexcept;
