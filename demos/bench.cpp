@@ -21,6 +21,7 @@
 #include "bench/body_cases.h"
 #include "bench/contact_cases.h"
 #include "bench/step_cases.h"
+#include "bench/touch_cases.h"
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
@@ -352,6 +353,7 @@ int main(int argc, char** argv) {
       bench::registerBodyCases();
       bench::registerStepCases();
       bench::registerContactCases();
+      bench::registerTouchCases();
       registerAttachSizes();
       registerBuildCageSizes();
     }

@@ -50,3 +50,9 @@
 #ifdef TETSKIN_HAS_THREADS
 #include <tetskin/threads/thread_pool.h>
 #endif
+#ifdef TETSKIN_HAS_TOUCH
+#include <tetskin/touch/surface_point.h>
+#include <tetskin/touch/surface_spring.h>
+#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_weld.h>
+#endif

@@ -72,6 +72,26 @@ TEST_F(FramesBetweenSteps, AreSkinsOfTheNodesBetweenThem) {
   for (const btScalar alpha : {btScalar(0.0), btScalar(0.5)}) EXPECT_EQ(at(alpha), bent);
 }
 
+TEST_F(FramesBetweenSteps, AreToldNodeByNode) {
+  EXPECT_EQ(skin.body(), nullptr);
+  EXPECT_EQ(skin.interpolation(), Interpolation::Linear);
+  SkinOptions quadratic;
+  quadratic.interpolation = Interpolation::Quadratic;
+  const btVector3 before = body->m_nodes[3].m_x;
+  bindAndKeepTwo(quadratic);
+  EXPECT_EQ(skin.body(), body.get());
+  EXPECT_EQ(skin.interpolation(), Interpolation::Quadratic);
+  const btVector3 now = body->m_nodes[3].m_x;
+  EXPECT_EQ(skin.nodeAt(3, 0), before);
+  EXPECT_LT((skin.nodeAt(3, btScalar(0.5)) - (before + now) / 2).length(), kRounding);
+  EXPECT_EQ(skin.nodeAt(3), now);
+  InstanceOptions plain;
+  plain.leaveOutQuadratic = true;
+  ASSERT_TRUE(skin.bind(*body, skin.binding(), plain).ok());
+  EXPECT_EQ(skin.interpolation(), Interpolation::Linear);
+  EXPECT_EQ(skin.nodeAt(3, 0), now);
+}
+
 TEST_F(FramesBetweenSteps, AtOneAreTheBodyItselfToTheBit) {
   bindAndKeepTwo();
   using Limits = std::numeric_limits<btScalar>;

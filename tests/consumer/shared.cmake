@@ -20,7 +20,7 @@ if(PKG_CONFIG)
 endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" abi ${VERSION})  # while the major version is 0
-foreach(library core bullet cage contact elastic io threads)
+foreach(library core bullet cage contact elastic io threads touch)
   file(GLOB_RECURSE so ${prefix}/libtetskin_${library}.so.${abi})
   if(NOT so)
     message(FATAL_ERROR "No library tetskin_${library} with the ABI ${abi} in its name")

@@ -38,6 +38,16 @@ class KeptStepsOf : public testing::Test {
 using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(KeptStepsOf, Precisions, );
 
+TYPED_TEST(KeptStepsOf, TellOfASingleNodeWhatTheyTellOfAll) {
+  (void)this->steps.keep(viewOf(this->a));
+  EXPECT_EQ(this->steps.nodeAt(7, TypeParam(0.5)), this->a[7]);
+  (void)this->steps.keep(viewOf(this->b));
+  for (const double alpha : {-1.0, 0.0, 0.3, 1.0, 2.0}) {
+    const auto all = this->at(TypeParam(alpha));
+    for (const std::size_t n : {0u, 7u, 49u}) EXPECT_EQ(this->steps.nodeAt(n, TypeParam(alpha)), all[n]) << alpha;
+  }
+}
+
 TYPED_TEST(KeptStepsOf, AreTheLastTwo) {
   EXPECT_TRUE(this->steps.empty());
   EXPECT_FALSE(this->steps.keep(viewOf(this->a)));

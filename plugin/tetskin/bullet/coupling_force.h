@@ -21,6 +21,10 @@ class TETSKIN_BULLET_API CouplingForce : public btDeformableLagrangianForce {
   /// `reinitialize`.
   virtual const std::vector<std::array<btSoftBody*, 2>>& pairs() const = 0;
 
+  /// What a `DeformableSolver` solves its bodies' systems to at most, instead of their own tolerance: a load on a few
+  /// nodes is a small part of what a body's residual is measured by.
+  virtual double tolerance() const { return 1.0; }
+
   /// None of Bullet's, so that `addForce` joins nobody's body to it.
   btDeformableLagrangianForceType getForceType() override;
 };

@@ -113,6 +113,12 @@ class TETSKIN_BULLET_API SoftBodySkin {
   const Box3& bounds() const { return skin_.bounds(); }
   /// To share; null before a successful bind.
   std::shared_ptr<const SoftBodyBinding> binding() const { return skin_.binding(); }
+  /// Whose surface it is; null before a successful bind.
+  const btSoftBody* body() const { return body_; }
+  /// What is drawn: Linear also where the quadratic surface was left out, and before a successful bind.
+  Interpolation interpolation() const { return skin_.interpolation(); }
+  /// A node of the body as `update(alpha)` takes it, world space. The body must be there, with the nodes it had.
+  btVector3 nodeAt(int node, btScalar alpha = 1) const;
   /// The first such node when `update` last returned NonFinite.
   std::size_t firstBadNode() const { return skin_.firstBadNode(); }
   /// Moves the origin for the updates to come. Errors: InvalidOption if it is not finite or beyond 1e18, and it stays.

@@ -156,6 +156,8 @@ class TETSKIN_CORE_API KeptSteps {
   ///        and as 1 if it is not a number
   /// out    size() x 3, of the caller's, any stride
   void nodesAt(Scalar alpha, PointView<Scalar> out) const;
+  /// The same of one node, below size().
+  Eigen::Matrix<Scalar, 3, 1> nodeAt(std::size_t node, Scalar alpha) const;
 
  private:
   std::vector<Eigen::Matrix<Scalar, 3, 1>> before_, last_;
@@ -199,6 +201,8 @@ class TETSKIN_CORE_API MeshSkin {
 
   bool bound() const { return parts_ != nullptr; }
   std::size_t nodeCount() const;
+  /// What is drawn: Linear also where the quadratic surface was left out, and before a successful bind.
+  Interpolation interpolation() const;
   /// vertexCount current positions, minus the origin, in the binding's order: the skin's own array, empty where the
   /// target is the caller's.
   PointView<const Scalar> positions() const;

@@ -20,17 +20,16 @@ bool KeptSteps<Scalar>::keep(PointView<const Scalar> nodes) {
 }
 
 template <class Scalar>
+Eigen::Matrix<Scalar, 3, 1> KeptSteps<Scalar>::nodeAt(std::size_t node, Scalar alpha) const {
+  assert(node < size());
+  if (!between_ || !(alpha < 1)) return last_[node];
+  return before_[node] + std::max(alpha, Scalar(0)) * (last_[node] - before_[node]);
+}
+
+template <class Scalar>
 void KeptSteps<Scalar>::nodesAt(Scalar alpha, PointView<Scalar> out) const {
   assert(out.size() == size());
-  if (!between_ || !(alpha < 1)) {
-    for (std::size_t i = 0; i < size(); ++i) std::copy_n(last_[i].data(), 3, out[i]);
-    return;
-  }
-  const Scalar share = std::max(alpha, Scalar(0));
-  for (std::size_t i = 0; i < size(); ++i) {
-    const Eigen::Matrix<Scalar, 3, 1> node = before_[i] + share * (last_[i] - before_[i]);
-    std::copy_n(node.data(), 3, out[i]);
-  }
+  for (std::size_t i = 0; i < size(); ++i) std::copy_n(nodeAt(i, alpha).data(), 3, out[i]);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar) template class KeptSteps<Scalar>;

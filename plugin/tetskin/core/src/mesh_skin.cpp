@@ -51,15 +51,15 @@ struct MeshSkin<Scalar>::Parts {
   /// Allocates what the options ask for, and nothing else.
   Parts(Binding made, const InstanceOptions& wanted);
   void skin();
+  /// Those of a quadratic surface; null for a linear one.
+  const QuadraticStencils<Scalar>* stencils() const {
+    return bound().quadratic && !options.leaveOutQuadratic ? &*bound().quadratic : nullptr;
+  }
 
  private:
   const SkinParts<Scalar>& bound() const { return binding->parts(); }
   VertexOrder order() const { return bound().options.order; }
   Normals normalsKind() const { return options.leaveOutNormals ? Normals::None : bound().options.normals; }
-  /// Those of a quadratic surface; null for a linear one.
-  const QuadraticStencils<Scalar>* stencils() const {
-    return bound().quadratic && !options.leaveOutQuadratic ? &*bound().quadratic : nullptr;
-  }
   PointView<float> normalsOut() { return options.normalTarget.empty() ? viewOf(normals) : options.normalTarget; }
   PointView<float> tangentsOut() { return options.tangentTarget.empty() ? viewOf(tangents) : options.tangentTarget; }
   void prepareNormals();
@@ -220,6 +220,11 @@ std::size_t MeshSkin<Scalar>::firstBadNode() const {
 template <class Scalar>
 std::size_t MeshSkin<Scalar>::nodeCount() const {
   return bound() ? parts_->nodes.size() : 0;
+}
+
+template <class Scalar>
+Interpolation MeshSkin<Scalar>::interpolation() const {
+  return bound() && parts_->stencils() ? Interpolation::Quadratic : Interpolation::Linear;
 }
 
 template <class Scalar>

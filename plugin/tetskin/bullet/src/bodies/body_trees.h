@@ -49,6 +49,8 @@ class BodyWithTrees : public btSoftBody {
 
   /// Expires with the body.
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
+  /// What has to live as long as the body: one thing, of whoever puts it there.
+  std::shared_ptr<void>& companion() { return companion_; }
 
   /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
   /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
@@ -67,6 +69,7 @@ class BodyWithTrees : public btSoftBody {
   Kind kind_ = Kind::None;
   btScalar reach_ = -1;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
+  std::shared_ptr<void> companion_;
 };
 
 /// Of a body that `makeSoftBody` has made; null for others.

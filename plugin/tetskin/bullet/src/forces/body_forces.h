@@ -10,6 +10,7 @@
 
 #include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/export.h>
 
 #include <optional>
 
@@ -22,7 +23,7 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 
 /// Puts a nameless force that does nothing, and is nobody's, in the place of `force`: its neighbours in the list stay
 /// where they are, so that Bullet may be walking over it.
-void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
+TETSKIN_BULLET_API void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
 /// Whether it is what `replaceByNothing` puts there.
 bool isNoForce(const btDeformableLagrangianForce& force);

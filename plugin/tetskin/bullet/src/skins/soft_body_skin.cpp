@@ -204,6 +204,13 @@ void SoftBodySkin::setVisible(bool visible) {
   skin_.hold();  // what happened meanwhile is no motion
 }
 
+btVector3 SoftBodySkin::nodeAt(int node, btScalar alpha) const {
+  assert(body_ && node >= 0 && node < body_->m_nodes.size());
+  if (!isBetween(alpha)) return body_->m_nodes[node].m_x;
+  const Eigen::Matrix<btScalar, 3, 1> at = steps_.nodeAt(static_cast<std::size_t>(node), alpha);
+  return {at.x(), at.y(), at.z()};
+}
+
 Status SoftBodySkin::setOrigin(const btVector3& origin) {
   Status status = skin_.setOrigin(toEigen(origin));
   if (status.ok()) moved_ = true;

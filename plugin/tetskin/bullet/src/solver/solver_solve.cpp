@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The solve after contacts: of bodies that forces couple together, of all others by themselves.
+#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/solver_parts.h>
 
@@ -93,7 +94,9 @@ void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor
   Solve::Matrices matrices;
   for (const std::size_t b : system.bodies) matrices.push_back(&bodies.bodies()[b].dynamics->matrix());
   Solve::Extra extra;
-  if (!system.forces.empty() || !system.rigids.empty()) extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
+  if (!system.forces.empty() || !system.rigids.empty()) {
+    extra = [&](std::vector<const btScalar*>& added) { addProducts(system, added); };
+  }
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   first.solve->start(std::move(matrices), limits, std::move(extra), inner);
   first.solve->iterate(limits.iterations, inner);
@@ -122,19 +125,24 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   elastic_detail::SolveLimits limits;
   limits.floor = kUnseen * static_cast<double>(dt());
   limits.iterations = 0;
+  bool inContact = false;
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     if (of.elastic) limits.enough += of.solve->enough();
+    inContact |= of.constrained || of.touched;
   }
-  const bool inContact = std::any_of(system.bodies.begin(), system.bodies.end(), [&](std::size_t b) {
-    return bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
-  });
   const double closer = !system.rigids.empty() ? kCloserWithRigids : inContact ? kCloserInContact : 1.0;
-  limits.tolerance *= closer;
+  double tolerance = closer * limits.tolerance;
+  for (const btDeformableLagrangianForce* force : system.forces) {
+    const auto* coupling = dynamic_cast<const CouplingForce*>(force);
+    if (coupling) tolerance = std::min(tolerance, coupling->tolerance());
+  }
+  const double share = tolerance / std::max(limits.tolerance, 1e-300);  // 0 is a tolerance, too
+  limits.tolerance = tolerance;
   limits.floor *= closer;
-  limits.enough *= closer * closer;  // of squares
+  limits.enough *= share * share;  // of squares
   return limits;
 }
 

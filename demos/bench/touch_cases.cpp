@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "bench/touch_cases.h"
+
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableMousePickingForce.h>
+#include <benchmark/benchmark.h>
+#include <btBulletDynamicsCommon.h>
+#include <tetskin/cage/cage_builder.h>
+#include <tetskin/touch/surface_spring.h>
+#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_weld.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "scenes/placement.h"
+#include "scenes/serpent.h"
+#include "scenes/world.h"
+
+namespace tetskin::bench {
+namespace {
+
+using benchmark::State;
+using Eigen::Vector3d;
+
+constexpr std::size_t kTouchTets = 1000;
+constexpr double kFrameTime = 1.0 / 60.0;
+/// Two seconds of one turn each.
+constexpr int kSwingFrames = 120;
+/// Farther than any body is sent, in sizes: it has exploded.
+constexpr double kLost = 50.0;
+
+struct TouchModel {
+  Cage cage;
+  TriangleMesh mesh;
+  std::shared_ptr<const SoftBodyBinding> binding;
+};
+
+/// The serpent, kSize long, its cage's middle two sizes up.
+const TouchModel& serpent() {
+  static const TouchModel model = [] {
+    TouchModel made;
+    made.mesh = scenes::makeSerpent();
+    CageOptions options;
+    options.targetTets = kTouchTets;
+    made.cage = buildCage(made.mesh, options).value();
+    const scenes::Placement place = scenes::placementOf(boundingBox(made.cage.nodes));
+    made.cage = place.toWorld(made.cage);
+    place.toWorld(made.mesh.positions);
+    for (auto* points : {&made.cage.nodes, &made.mesh.positions}) {
+      for (Vector3d& p : *points) p.y() += 2 * scenes::kSize;
+    }
+    made.binding = SoftBodyBinding::make(made.cage, made.mesh).value();
+    return made;
+  }();
+  return model;
+}
+
+/// The vertex of the mesh that is furthest along an axis.
+int furthest(const TriangleMesh& mesh, const Vector3d& along) {
+  const auto less = [&](const Vector3d& a, const Vector3d& b) { return a.dot(along) < b.dot(along); };
+  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), less) -
+                          mesh.positions.begin());
+}
+
+void bend(btSoftBody& body, double phase) {
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    btVector3& x = body.m_nodes[n].m_x;
+    x.setZ(x.z() + static_cast<btScalar>(0.02 * std::sin(3 * static_cast<double>(x.x()) + phase)));
+  }
+}
+
+std::vector<std::array<btVector3, 2>> raysThrough(const SoftBodySkin& skin, std::size_t count) {
+  std::mt19937 random(1);
+  const Vector3d low = skin.bounds().min(), size = skin.bounds().sizes();
+  std::uniform_real_distribution<double> number(-0.5, 1.5);
+  const auto point = [&] {
+    return toBullet(low + size.cwiseProduct(Vector3d(number(random), number(random), number(random))));
+  };
+  std::vector<std::array<btVector3, 2>> rays(count);
+  for (auto& ray : rays) ray = {point(), point()};
+  return rays;
+}
+
+/// fits  the body moves before every ray
+void castRays(State& state, bool fits) {
+  const TouchModel& model = serpent();
+  scenes::World world(scenes::Force::Elastic, btVector3(0, 0, 0));
+  btSoftBody& body = world.add(model.cage, {});
+  SoftBodySkin skin;
+  (void)skin.bind(body, model.binding);
+  const SurfaceTree tree(model.binding, model.mesh);
+  bend(body, 1);
+  (void)skin.update();
+  const auto rays = raysThrough(skin, 10'000);
+  std::size_t r = 0, hits = 0;
+  for (auto _ : state) {
+    if (fits) {
+      btVector3& x = body.m_nodes[0].m_x;
+      x.setX(x.x() + btScalar(1e-6));
+    }
+    const auto& [from, to] = rays[r++ % rays.size()];
+    hits += static_cast<bool>(tree.raycast(skin, from, to));
+  }
+  state.counters["hits"] = static_cast<double>(hits) / static_cast<double>(r);
+  state.counters["triangles"] = static_cast<double>(model.mesh.triangleCount());
+}
+
+/// Half a size around in a second.
+btVector3 swung(const btVector3& start, double seconds) {
+  const double angle = 2 * EIGEN_PI * seconds, radius = 0.25 * scenes::kSize;
+  return start + toBullet({radius * std::sin(angle), 0, radius * (1 - std::cos(angle))});
+}
+
+enum class Puller { Spring, Bullets };
+
+/// Bullet's own force on the face nearest to the point, as stiff.
+std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, const SurfacePoint& point,
+                                                            double stiffness) {
+  const btVector3 at = *point.position();
+  int nearest = 0;
+  btScalar least = BT_LARGE_FLOAT;
+  for (int f = 0; f < body.m_faces.size(); ++f) {
+    const auto& n = body.m_faces[f].m_n;
+    const btScalar distance = ((n[0]->m_x + n[1]->m_x + n[2]->m_x) / 3 - at).length();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = f;
+  }
+  double mass = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) mass += 1 / static_cast<double>(body.m_nodes[n].m_im);
+  const double k = stiffness * 4 * mass / body.m_nodes.size() * 240 * 240 / 3;  // at each of three nodes
+  auto force = std::make_unique<btDeformableMousePickingForce>(static_cast<btScalar>(k), btScalar(0),
+                                                               body.m_faces[nearest], at, btScalar(1e30));
+  auto* solver = static_cast<btDeformableBodySolver*>(body.getSoftBodySolver());
+  force->addSoftBody(&body);
+  force->setIndices(solver->getIndices());
+  solver->getLagrangianForceArray()->push_back(force.get());
+  return force;
+}
+
+/// The serpent hangs by its top, and is swung. The lag is the largest distance between point and target after a frame,
+/// from half a second on.
+void swing(State& state, Puller puller, scenes::Force force, double stiffness, int rate) {
+  const TouchModel& model = serpent();
+  double lag = 0;
+  bool lost = false;
+  for (auto _ : state) {
+    scenes::World world(force, btVector3(0, btScalar(-9.81), 0));
+    btSoftBody& body = world.add(model.cage, {});
+    body.setActivationState(DISABLE_DEACTIVATION);
+    const SurfaceTree tree(model.binding, model.mesh);
+    const SurfacePoint point = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
+    const btVector3 start = *point.position();
+    std::unique_ptr<SurfaceSpring> spring;
+    std::unique_ptr<btDeformableMousePickingForce> bullets;
+    SurfaceSpringOptions options;
+    options.stiffness = stiffness;
+    if (puller == Puller::Spring) {
+      spring = SurfaceSpring::add(world.bullet(), point, options).value();
+    } else {
+      bullets = bulletsForce(body, point, stiffness);
+    }
+    const int substeps = static_cast<int>(std::lround(rate * kFrameTime));
+    for (int frame = 1; frame <= kSwingFrames && !lost; ++frame) {
+      const btVector3 target = swung(start, frame * kFrameTime);
+      if (spring) (void)spring->setTarget(target);
+      if (bullets) bullets->setMousePos(target);
+      for (int s = 0; s < substeps; ++s) world.step(kFrameTime / substeps);
+      const auto at = point.position();
+      lost = !at || (*at - target).length() > kLost;
+      if (frame > kSwingFrames / 4 && !lost) lag = std::max(lag, static_cast<double>((*at - target).length()));
+    }
+    if (bullets) {
+      static_cast<btDeformableBodySolver*>(body.getSoftBodySolver())->getLagrangianForceArray()->remove(bullets.get());
+    }
+  }
+  state.counters["lag_S"] = lost ? HUGE_VAL : lag / scenes::kSize;
+  state.counters["tets"] = static_cast<double>(model.cage.tetCount());
+}
+
+/// A rigid body of so much mass, the soft one's being 1, hangs at the serpent's lowest point, while its top is swung.
+void hang(State& state, bool welded, double mass, int rate) {
+  const TouchModel& model = serpent();
+  double worst = 0;
+  for (auto _ : state) {
+    scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
+    btSoftBody& body = world.add(model.cage, {});
+    body.setActivationState(DISABLE_DEACTIVATION);
+    const SurfaceTree tree(model.binding, model.mesh);
+    const SurfacePoint top = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
+    const SurfacePoint low = tree.pointOfVertex(body, furthest(model.mesh, -Vector3d::UnitY())).value();
+    const btVector3 start = *top.position(), pivot(0, btScalar(0.1), 0);
+    btBoxShape shape(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
+    btVector3 inertia;
+    shape.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+    btRigidBody box(static_cast<btScalar>(mass), nullptr, &shape, inertia);
+    box.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), *low.position() - pivot));
+    box.setInterpolationWorldTransform(box.getWorldTransform());
+    box.setActivationState(DISABLE_DEACTIVATION);
+    world.bullet().addRigidBody(&box);
+    {
+      SurfaceSpringOptions firm;
+      firm.stiffness = 100;
+      const auto holder = SurfaceSpring::add(world.bullet(), top, firm).value();
+      std::unique_ptr<SurfaceWeld> weld;
+      std::unique_ptr<SurfaceSpring> joint;
+      if (welded) {
+        weld = SurfaceWeld::add(world.bullet(), low, box).value();
+      } else {
+        joint = SurfaceSpring::add(world.bullet(), low, box, pivot).value();
+      }
+      const int substeps = static_cast<int>(std::lround(rate * kFrameTime));
+      for (int frame = 1; frame <= kSwingFrames; ++frame) {
+        (void)holder->setTarget(swung(start, frame * kFrameTime));
+        for (int s = 0; s < substeps; ++s) {
+          world.step(kFrameTime / substeps);
+          worst = std::max(worst, static_cast<double>(weld ? weld->separation() : joint->stretch()));
+        }
+      }
+      if (!toEigen(*low.position()).allFinite() || low.position()->length() > kLost) worst = HUGE_VAL;
+    }
+    world.bullet().removeRigidBody(&box);
+  }
+  state.counters["separation_S"] = worst / scenes::kSize;
+}
+
+std::string named(const std::string& what, double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return "/" + what + ":" + text;
+}
+
+void registerSwings() {
+  struct Case {
+    const char* name;
+    Puller puller;
+    scenes::Force force;
+  };
+  const Case cases[] = {{"spring", Puller::Spring, scenes::Force::Elastic},
+                        {"spring_in_bullets_solver", Puller::Spring, scenes::Force::ElasticForceOnly},
+                        {"bullets_picking", Puller::Bullets, scenes::Force::Elastic},
+                        {"bullets_picking_in_bullets_solver", Puller::Bullets, scenes::Force::ElasticForceOnly}};
+  for (const Case& of : cases) {
+    for (const double stiffness : {1.0, 10.0, 1000.0}) {
+      for (const int rate : {60, 240, 1000}) {
+        const std::string name = std::string("Touch/") + of.name + named("stiffness", stiffness) + named("rate", rate);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [=](State& state) { swing(state, of.puller, of.force, stiffness, rate); })
+            ->Iterations(1)
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void registerTouchCases() {
+  benchmark::RegisterBenchmark("Touch/ray", [](State& state) {
+    castRays(state, false);
+  })->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Touch/ray_after_a_step", [](State& state) {
+    castRays(state, true);
+  })->Unit(benchmark::kMicrosecond);
+  registerSwings();
+  for (const bool welded : {true, false}) {
+    for (const double mass : {0.01, 0.1, 1.0, 10.0}) {
+      for (const int rate : {60, 240}) {
+        const std::string name =
+            std::string("Touch/") + (welded ? "weld" : "ball_joint") + named("mass", mass) + named("rate", rate);
+        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { hang(state, welded, mass, rate); })
+            ->Iterations(1)
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+  }
+}
+
+}  // namespace tetskin::bench

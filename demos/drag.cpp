@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A scripted pointer picks the serpent by a horn, swings it, and hangs it on a ring; an explosion pushes it, and a hat
+// rides on its head.
+#include <btBulletDynamicsCommon.h>
+#include <tetskin/touch/surface_spring.h>
+#include <tetskin/touch/surface_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "drag/props.h"
+#include "scenes/command_line.h"
+#include "scenes/frame_writer.h"
+#include "scenes/input_error.h"
+#include "scenes/placement.h"
+#include "scenes/progress.h"
+#include "scenes/summary.h"
+#include "scenes/timer.h"
+
+namespace {
+
+using namespace tetskin;
+using namespace tetskin::scenes;
+using Eigen::Vector3d;
+
+struct DragOptions {
+  std::size_t tets = 1000, triangles = 60000;
+  double stiffness = 10;
+  OutputOptions output{"out/drag", "", 600, 1, false};
+};
+
+constexpr double kFrame = 1.0 / 60.0;
+constexpr int kSubsteps = 4;
+constexpr double kFarthest = 100.0 * kSize;
+/// The script, in seconds: lies, is lifted, swung one turn a second, carried to the ring, let go there, pushed.
+constexpr double kPicked = 0.25, kLifted = 1.5, kSwung = 4.5, kThere = 5.5, kPushed = 7.0;
+/// World lengths.
+constexpr double kLift = 1.7 * kSize, kSwing = 0.25 * kSize, kRing = 0.12 * kSize, kHat = 0.045 * kSize;
+
+double eased(double from, double to, double t) {
+  const double x = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+/// Where the pointer is, from where it has picked.
+Vector3d pointerAt(double t) {
+  const double angle = 2 * EIGEN_PI * std::clamp(t - kLifted, 0.0, kSwung - kLifted);
+  return kLift * eased(kPicked, kLifted, t) * Vector3d::UnitY() +
+         kSwing * Vector3d(std::sin(angle), 0, 1 - std::cos(angle)) +
+         0.3 * kSize * eased(kSwung, kThere, t) * Vector3d::UnitX();
+}
+
+/// A rigid ring that hangs on a pin at its top.
+class Ring {
+ public:
+  Ring(btDiscreteDynamicsWorld& world, const Vector3d& lowest) : world_(world) {
+    btVector3 inertia;
+    shape_.calculateLocalInertia(kMass, inertia);
+    body_ = std::make_unique<btRigidBody>(kMass, nullptr, &shape_, inertia);
+    const btTransform at(btMatrix3x3::getIdentity(), toBullet(lowest + kRing * Vector3d::UnitY()));
+    body_->setWorldTransform(at);
+    body_->setInterpolationWorldTransform(at);
+    body_->setActivationState(DISABLE_DEACTIVATION);
+    pin_ = std::make_unique<btPoint2PointConstraint>(*body_, btVector3(0, static_cast<btScalar>(kRing), 0));
+    world_.addRigidBody(body_.get());
+    world_.addConstraint(pin_.get());
+  }
+  ~Ring() {
+    world_.removeConstraint(pin_.get());
+    world_.removeRigidBody(body_.get());
+  }
+  Ring(const Ring&) = delete;
+  Ring& operator=(const Ring&) = delete;
+  btRigidBody& body() { return *body_; }
+  static btVector3 lowest() { return {0, -static_cast<btScalar>(kRing), 0}; }
+
+ private:
+  static constexpr btScalar kMass = btScalar(0.5);
+  btDiscreteDynamicsWorld& world_;
+  btCylinderShapeZ shape_{btVector3(static_cast<btScalar>(kRing), static_cast<btScalar>(kRing), btScalar(0.02))};
+  std::unique_ptr<btRigidBody> body_;
+  std::unique_ptr<btPoint2PointConstraint> pin_;
+};
+
+Model placedSerpent(const DragOptions& options) {
+  ModelOptions of;
+  of.tets = options.tets;
+  of.triangles = options.triangles;
+  Model model = loadModel(of);
+  Placement place = placementOf(boundingBox(model.cage.nodes));
+  model.cage = place.toWorld(model.cage);
+  place.toWorld(model.mesh.positions);
+  const double lift = 0.01 * kSize - boundingBox(model.mesh.positions).min().y();
+  for (auto* points : {&model.cage.nodes, &model.mesh.positions}) {
+    for (Vector3d& p : *points) p.y() += lift;
+  }
+  return model;
+}
+
+int highest(const TriangleMesh& mesh) {
+  const auto lower = [](const Vector3d& a, const Vector3d& b) { return a.y() < b.y(); };
+  return static_cast<int>(std::max_element(mesh.positions.begin(), mesh.positions.end(), lower) -
+                          mesh.positions.begin());
+}
+
+class Drag {
+ public:
+  explicit Drag(const DragOptions& options);
+  /// False if the serpent has exploded.
+  bool step(int frame);
+  const TriangleMesh& drawn() const { return drawn_; }
+  std::vector<Vector3d> surface() const;
+  const TriangleMesh& floor() const { return world_.obstacles(); }
+  void tell(nlohmann::ordered_json& json) const;
+
+ private:
+  void pick();
+  void hang();
+  void push();
+  void measure(double t);
+  void place(std::size_t first, const TriangleMesh& part, const btTransform& where,
+             std::vector<Vector3d>& points) const;
+
+  DragOptions options_;
+  Model model_;
+  World world_;
+  btSoftBody& body_;
+  std::shared_ptr<const SoftBodyBinding> binding_;
+  SurfaceTree tree_;
+  SoftBodySkin skin_;
+  SurfacePoint horn_, crown_;
+  std::unique_ptr<SurfaceSpring> spring_;
+  std::unique_ptr<Ring> ring_;
+  TriangleMesh hat_ = makeHat(kHat), hoop_ = makeRing(kRing, 0.02 * kSize), pointer_ = makePointer(0.02 * kSize),
+               drawn_;
+  std::size_t hatFirst_, hoopFirst_, pointerFirst_;
+  btVector3 picked_{0, 0, 0};
+  double lag_ = 0, hangs_ = 0;
+  SurfacePush pushed_;
+  double rayMicroseconds_ = 0;
+  Vector3d pointerNow_ = Vector3d::Zero();
+};
+
+SoftBodyBinding::Pointer bound(const Model& model) {
+  auto made = SoftBodyBinding::make(model.cage, model.mesh);
+  require(made.status());
+  return made.value();
+}
+
+Drag::Drag(const DragOptions& options)
+    : options_(options),
+      model_(placedSerpent(options)),
+      world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
+      body_(world_.add(model_.cage, {})),
+      binding_(bound(model_)),
+      tree_(binding_, model_.mesh) {
+  require(tree_.check());
+  body_.setActivationState(DISABLE_DEACTIVATION);
+  world_.addBox({0, -0.25 * kSize, 0}, {3 * kSize, 0.25 * kSize, 3 * kSize});
+  world_.touchBySurface(body_, *binding_, model_.mesh);
+  require(skin_.bind(body_, binding_));
+  const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
+  // In front of the horns, from above.
+  const btVector3 over = toBullet(tip + kSize * Vector3d(0.035, 0.1, 0.035)), under = over - btVector3(0, kSize, 0);
+  auto crown = tree_.pointAt(body_, tree_.raycast(skin_, over, under));
+  require(crown.status());
+  crown_ = crown.value();
+  const Vector3d ringAt = tip + pointerAt(kThere);
+  ring_ = std::make_unique<Ring>(world_.bullet(), ringAt);
+  drawn_.positions = model_.mesh.positions;
+  drawn_.triangles = model_.mesh.triangles;
+  hatFirst_ = append(hat_, drawn_);
+  hoopFirst_ = append(hoop_, drawn_);
+  pointerFirst_ = append(pointer_, drawn_);
+  pointerNow_ = tip;
+}
+
+/// The middle of the horn's tip.
+btVector3 tipOf(const SoftBodySkin& skin, const btVector3& tip) {
+  btVector3 sum(0, 0, 0);
+  int count = 0;
+  for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+    const btScalar* p = skin.positions()[v];
+    const btVector3 at(p[0], p[1], p[2]);
+    if ((at - tip).length() > static_cast<btScalar>(0.02 * kSize)) continue;
+    sum += at;
+    ++count;
+  }
+  return sum / static_cast<btScalar>(count);
+}
+
+/// As the mouse would: by a ray through the horn.
+void Drag::pick() {
+  const btVector3 tip = *tree_.pointOfVertex(body_, highest(model_.mesh)).value().position();
+  const btVector3 aim = tipOf(skin_, tip), eye = aim + btVector3(1, 1, 6);
+  const WallTimer timer;
+  const SurfaceHit hit = tree_.raycast(skin_, eye, aim + (aim - eye));
+  rayMicroseconds_ = 1e3 * timer.milliseconds();
+  auto point = tree_.pointAt(body_, hit);
+  require(point.status());
+  horn_ = point.value();
+  picked_ = *horn_.position();
+  SurfaceSpringOptions options;
+  options.stiffness = options_.stiffness;
+  auto spring = SurfaceSpring::add(world_.bullet(), horn_, options);
+  require(spring.status());
+  spring_ = std::move(spring).value();
+}
+
+void Drag::hang() {
+  spring_.reset();
+  auto spring = SurfaceSpring::add(world_.bullet(), horn_, ring_->body(), Ring::lowest());
+  require(spring.status());
+  spring_ = std::move(spring).value();
+}
+
+void Drag::push() {
+  const Box3& box = skin_.bounds();
+  const Vector3d below(box.min().x(), box.min().y(), box.center().z());
+  pushed_ = tree_.applyImpulse(body_, {toBullet(below), static_cast<btScalar>(0.8 * kSize), 4});
+}
+
+bool Drag::step(int frame) {
+  const double t = frame * kFrame;
+  const auto starts = [&](double when) { return t >= when && t - kFrame < when; };
+  if (starts(kPicked)) pick();
+  if (starts(kThere)) hang();
+  if (starts(kPushed)) push();
+  if (spring_ && t < kThere) {
+    const btVector3 target = picked_ + toBullet(pointerAt(t));
+    (void)spring_->setTarget(target);
+    pointerNow_ = toEigen(target);
+  }
+  for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
+  measure(t);
+  return skin_.update() == UpdateStatus::Updated && largestCoordinate(skin_.bounds()) < kFarthest;
+}
+
+void Drag::measure(double t) {
+  if (!spring_) return;
+  const auto stretch = static_cast<double>(spring_->stretch()) / kSize;
+  if (t > kLifted + 0.5 && t < kSwung) lag_ = std::max(lag_, stretch);
+  if (t > kThere + 0.5) hangs_ = std::max(hangs_, stretch);
+}
+
+void Drag::place(std::size_t first, const TriangleMesh& part, const btTransform& where,
+                 std::vector<Vector3d>& points) const {
+  for (std::size_t v = 0; v < part.vertexCount(); ++v) points[first + v] = toEigen(where * toBullet(part.positions[v]));
+}
+
+std::vector<Vector3d> Drag::surface() const {
+  std::vector<Vector3d> points = drawn_.positions;
+  for (std::size_t v = 0; v < skin_.positions().size(); ++v) {
+    const btScalar* p = skin_.positions()[v];
+    points[v] = Vector3d(p[0], p[1], p[2]);
+  }
+  if (const auto frame = crown_.frame(skin_)) place(hatFirst_, hat_, frame->transform(), points);
+  place(hoopFirst_, hoop_, ring_->body().getWorldTransform(), points);
+  place(pointerFirst_, pointer_, btTransform(btMatrix3x3::getIdentity(), toBullet(pointerNow_)), points);
+  return points;
+}
+
+void Drag::tell(nlohmann::ordered_json& json) const {
+  json["tets"] = model_.cage.tetCount();
+  json["triangles"] = model_.mesh.triangleCount();
+  json["stiffness"] = options_.stiffness;
+  json["ray_us"] = rayMicroseconds_;
+  json["lag_swinging"] = lag_;
+  json["stretch_hanging"] = hangs_;
+  json["pushed_vertices"] = pushed_.vertices;
+  json["push"] = {pushed_.linear.x(), pushed_.linear.y(), pushed_.linear.z()};
+}
+
+int run(const DragOptions& options) {
+  Drag drag(options);
+  const OutputOptions& output = options.output;
+  FrameWriter writer({output.out, output.frames, output.every, false}, ObjLayout::fromMesh(drag.drawn()));
+  const std::string floor = (std::filesystem::path(output.out) / "obstacles.obj").string();
+  require(ObjLayout::fromMesh(drag.floor()).writeTo(floor, viewOf(drag.floor().positions)));
+  Progress progress("simulating", output.frames, output.quiet);
+  double milliseconds = 0.0;
+  bool finite = true;
+  for (int frame = 0; frame < output.frames && finite; ++frame) {
+    const WallTimer timer;
+    finite = frame == 0 || drag.step(frame);
+    milliseconds += timer.milliseconds();
+    const std::vector<Vector3d> surface = drag.surface();
+    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
+    progress.show(frame + 1);
+  }
+  nlohmann::ordered_json json;
+  drag.tell(json);
+  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
+  json["finite"] = finite;
+  writeJson(json, summaryPath(output));
+  if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (finite) return kDone;
+  std::fprintf(stderr, "tetskin_drag: the simulation exploded\n");
+  return kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  DragOptions options;
+  CommandLine line(
+      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.");
+  line.addCount("--tets", options.tets, "Tets of the cage", 20000);
+  line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
+  line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");
+  line.addOutputOptions(options.output);
+  return line.run(argc, argv, [&] { return run(options); });
+}

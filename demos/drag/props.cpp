@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "drag/props.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr int kAround = 32;
+
+/// Turns a line of (radius, height) about the y axis, outside to the left of its way up.
+TriangleMesh turned(const std::vector<std::pair<double, double>>& line) {
+  TriangleMesh mesh;
+  for (const auto& [radius, height] : line) {
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2 * EIGEN_PI * k / kAround;
+      mesh.positions.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
+    }
+  }
+  for (int row = 0; row + 1 < static_cast<int>(line.size()); ++row) {
+    for (int k = 0; k < kAround; ++k) {
+      const int a = row * kAround + k, b = row * kAround + (k + 1) % kAround;
+      mesh.triangles.push_back({a, a + kAround, b});
+      mesh.triangles.push_back({b, a + kAround, b + kAround});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TriangleMesh makeHat(double radius) {
+  const double r = radius;
+  return turned({{0, 0}, {1.7 * r, 0}, {1.7 * r, 0.1 * r}, {r, 0.15 * r}, {0.85 * r, 1.5 * r}, {0, 1.5 * r}});
+}
+
+TriangleMesh makePointer(double radius) {
+  return turned({{0, -radius}, {radius, 0}, {0, radius}});
+}
+
+TriangleMesh makeRing(double radius, double thickness) {
+  constexpr int kAcross = 12;
+  TriangleMesh mesh;
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kAcross; ++j) {
+      const double u = 2 * EIGEN_PI * i / kAround, v = 2 * EIGEN_PI * j / kAcross;
+      const double reach = radius + thickness * std::cos(v);
+      mesh.positions.emplace_back(reach * std::cos(u), reach * std::sin(u), thickness * std::sin(v));
+      const int a = i * kAcross + j, b = i * kAcross + (j + 1) % kAcross;
+      const int c = (i + 1) % kAround * kAcross + j, d = (i + 1) % kAround * kAcross + (j + 1) % kAcross;
+      mesh.triangles.push_back({a, c, b});
+      mesh.triangles.push_back({b, c, d});
+    }
+  }
+  return mesh;
+}
+
+std::size_t append(const TriangleMesh& part, TriangleMesh& whole) {
+  const std::size_t first = whole.vertexCount();
+  whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
+  for (const auto& [a, b, c] : part.triangles) {
+    const int shift = static_cast<int>(first);
+    whole.triangles.push_back({a + shift, b + shift, c + shift});
+  }
+  return first;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/touch/src/forces/node_pushes.h>
+#include <tetskin/touch/src/forces/touch_force.h>
+#include <tetskin/touch/src/points/body_kind.h>
+
+namespace tetskin::touch_detail {
+namespace {
+
+/// Constant forces on nodes, for some steps.
+class Load : public Acting {
+ public:
+  Load(btSoftBody& body, NodePushes forces, int steps) : body_(&body), forces_(std::move(forces)), left_(steps) {}
+
+  btSoftBody* body() const override { return body_; }
+  void drop() override { body_ = nullptr; }
+  bool spent() const override { return !body_ || left_ == 0; }
+  void begin(btScalar dt, int) override {
+    dt_ = static_cast<double>(dt);
+    --left_;
+  }
+  void addPrediction(VectorStack& impulses) override { addTo(impulses); }
+  void addTo(VectorStack& impulses) override {
+    if (!body_->isActive()) return;
+    for (const NodePush& of : forces_) {
+      const btSoftBody::Node& node = body_->m_nodes[of.node];
+      if (node.m_im > 0) impulses[node.index] += toBullet(dt_ * of.push);
+    }
+  }
+  void addResistance(const VectorStack&, VectorStack&) const override {}
+  void addDiagonal(VectorStack&) const override {}
+  double energy() const override {
+    double sum = 0;
+    for (const NodePush& of : forces_) sum -= dt_ * of.push.dot(toEigen(body_->m_nodes[of.node].m_v));
+    return sum;
+  }
+  void finish() override {}
+
+ private:
+  btSoftBody* body_;
+  NodePushes forces_;
+  int left_;
+  double dt_ = 0;
+};
+
+/// Kept by the body, or by the point that asks.
+std::shared_ptr<TouchForce> forceFor(btDeformableBodySolver& solver, std::shared_ptr<void>& keeper) {
+  auto kept = std::static_pointer_cast<TouchForce>(keeper);
+  if (!kept || &kept->solver() != &solver) kept = TouchForce::of(solver);
+  keeper = kept;
+  return kept;
+}
+
+}  // namespace
+
+void addPush(const Lever& lever, const Eigen::Vector3d& push, NodePushes& pushes) {
+  for (const LeverNode& of : lever) pushes.push_back({of.node, of.linear.transpose() * push});
+}
+
+void applyImpulses(const NodePushes& impulses, btSoftBody& body) {
+  for (const NodePush& of : impulses) {
+    btSoftBody::Node& node = body.m_nodes[of.node];
+    const btVector3 change = toBullet(static_cast<double>(node.m_im) * of.push);
+    node.m_v += change;
+    node.m_vn += change;  // implicit worlds begin the step with this one
+  }
+  body.activate();
+}
+
+TouchStatus applyForces(NodePushes forces, int steps, btSoftBody& body, std::shared_ptr<void>* owner) {
+  if (!body.getBroadphaseHandle()) return TouchStatus::OutOfWorld;
+  btDeformableBodySolver* solver = deformableSolverOf(body);
+  BodyWithTrees* made = bodyWithTrees(body);
+  if (!solver || isReduced(body) || steps < 1 || !(made || owner)) return TouchStatus::InvalidOption;
+  std::shared_ptr<void>& keeper = made ? made->companion() : *owner;
+  forceFor(*solver, keeper)->add(std::make_shared<Load>(body, std::move(forces), steps));
+  body.activate();
+  return TouchStatus::Ok;
+}
+
+}  // namespace tetskin::touch_detail

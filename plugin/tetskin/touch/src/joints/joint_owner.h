@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::touch: what springs and welds have in common, in their worlds.
+#pragma once
+
+#include <tetskin/touch/src/joints/joint.h>
+
+class btDiscreteDynamicsWorld;
+
+namespace tetskin::touch_detail {
+
+/// A joint in the force of its world.
+class JointOwner {
+ public:
+  static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point);
+
+  /// The two are checked.
+  JointOwner(btDiscreteDynamicsWorld& world, std::shared_ptr<Joint> joint);
+  ~JointOwner() { release(); }
+  JointOwner(const JointOwner&) = delete;
+  JointOwner& operator=(const JointOwner&) = delete;
+
+  Joint& joint() { return *joint_; }
+  const Joint& joint() const { return *joint_; }
+  TouchStatus status() const;
+  void release();
+
+ private:
+  std::shared_ptr<Joint> joint_;
+  std::shared_ptr<TouchForce> force_;
+  bool released_ = false;
+};
+
+}  // namespace tetskin::touch_detail

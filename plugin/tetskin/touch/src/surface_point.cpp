@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/touch/src/forces/node_pushes.h>
+#include <tetskin/touch/src/points/body_kind.h>
+#include <tetskin/touch/src/points/corners.h>
+#include <tetskin/touch/src/points/lever.h>
+
+#include <cassert>
+
+namespace tetskin {
+
+using touch_detail::Corner;
+using touch_detail::Lever;
+using touch_detail::LeverNode;
+using touch_detail::NodeAt;
+using touch_detail::PointData;
+
+namespace {
+
+/// Of a triangle as it is drawn: along its first side, and out of it.
+SurfaceFrame frameOf(const btVector3 corners[3], const PointData& of) {
+  SurfaceFrame frame;
+  frame.position = corners[0];
+  for (std::size_t k = 1; k < 3; ++k) frame.position += of.shares[k] * (corners[k] - corners[0]);
+  const btVector3 side = corners[1] - corners[0];
+  const btVector3 area = side.cross(corners[2] - corners[0]);
+  if (!(side.length2() > 0) || !(area.length2() > 0)) return frame;
+  const btVector3 tangent = side.normalized(), out = area.normalized(), across = out.cross(tangent);
+  frame.normal = (of.restNormal[0] * tangent + of.restNormal[1] * across + of.restNormal[2] * out).normalized();
+  frame.tangent = (tangent - tangent.dot(frame.normal) * frame.normal).normalized();
+  frame.bitangent = frame.normal.cross(frame.tangent);
+  return frame;
+}
+
+/// How a skin draws a point's triangle; nothing if it is of another body.
+bool drawCorners(const SoftBodySkin& skin, btScalar alpha, const btSoftBody& body, const PointData& data,
+                 btVector3 corners[3]) {
+  const auto binding = skin.binding();
+  if (skin.body() != &body || binding->embedding().tetCount() <= static_cast<std::size_t>(data.corners[0].tet)) {
+    return false;
+  }
+  const NodeAt nodeAt = [&](int node) { return skin.nodeAt(node, alpha); };
+  const bool bends = skin.interpolation() == Interpolation::Quadratic;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corner& corner = data.corners[k];
+    corners[k] = bends ? touch_detail::quadraticPosition(corner, *binding, nodeAt)
+                       : touch_detail::linearPosition(corner, nodeAt);
+  }
+  return true;
+}
+
+void linearCorners(const btSoftBody& body, const PointData& data, btVector3 corners[3]) {
+  const NodeAt nodeAt = [&](int node) { return body.m_nodes[node].m_x; };
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = touch_detail::linearPosition(data.corners[k], nodeAt);
+}
+
+}  // namespace
+
+const char* toString(TouchStatus status) {
+  switch (status) {
+    case TouchStatus::Ok:
+      return "ok";
+    case TouchStatus::Miss:
+      return "miss";
+    case TouchStatus::Unbound:
+      return "unbound";
+    case TouchStatus::Gone:
+      return "gone";
+    case TouchStatus::Released:
+      return "released";
+    case TouchStatus::OtherBody:
+      return "other body";
+    case TouchStatus::TopologyChanged:
+      return "topology changed";
+    case TouchStatus::NonFinite:
+      return "not finite";
+    case TouchStatus::OutOfWorld:
+      return "out of the world";
+    case TouchStatus::InvalidOption:
+      return "invalid option";
+  }
+  return "unknown touch status";
+}
+
+btTransform SurfaceFrame::transform() const {
+  const btMatrix3x3 basis(tangent.x(), normal.x(), -bitangent.x(), tangent.y(), normal.y(), -bitangent.y(), tangent.z(),
+                          normal.z(), -bitangent.z());
+  return btTransform(basis, position);
+}
+
+SurfacePoint::SurfacePoint(btSoftBody& body, const PointData& data)
+    : body_(&body), nodeCount_(body.m_nodes.size()), tetCount_(body.m_tetras.size()), data_(data) {
+  if (const BodyWithTrees* made = bodyWithTrees(body)) {
+    life_ = made->lifetime();
+    watched_ = true;
+  }
+}
+
+TouchStatus SurfacePoint::status() const {
+  if (!body_) return TouchStatus::Released;
+  if (watched_ && life_.expired()) return TouchStatus::Gone;
+  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return TouchStatus::TopologyChanged;
+  for (const Corner& corner : data_.corners) {
+    for (const int node : corner.nodes) {
+      if (!touch_detail::isFiniteVector(body_->m_nodes[node].m_x)) return TouchStatus::NonFinite;
+    }
+  }
+  return TouchStatus::Ok;
+}
+
+void SurfacePoint::release() {
+  *this = {};
+}
+
+btSoftBody* SurfacePoint::body() const {
+  return watched_ && life_.expired() ? nullptr : body_;
+}
+
+std::optional<btVector3> SurfacePoint::position() const {
+  const auto at = frame();
+  return at ? std::optional(at->position) : std::nullopt;
+}
+
+std::optional<btVector3> SurfacePoint::position(const SoftBodySkin& skin, btScalar alpha) const {
+  const auto at = frame(skin, alpha);
+  return at ? std::optional(at->position) : std::nullopt;
+}
+
+std::optional<SurfaceFrame> SurfacePoint::frame() const {
+  if (status() != TouchStatus::Ok) return {};
+  btVector3 corners[3];
+  linearCorners(*body_, data_, corners);
+  return frameOf(corners, data_);
+}
+
+std::optional<SurfaceFrame> SurfacePoint::frame(const SoftBodySkin& skin, btScalar alpha) const {
+  btVector3 corners[3];
+  if (status() != TouchStatus::Ok || !drawCorners(skin, alpha, *body_, data_, corners)) return {};
+  return frameOf(corners, data_);
+}
+
+std::optional<btVector3> SurfacePoint::velocity() const {
+  if (status() != TouchStatus::Ok) return {};
+  btVector3 sum(0, 0, 0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Corner& corner = data_.corners[c];
+    const auto of = [&](std::size_t k) {
+      const btSoftBody::Node& node = body_->m_nodes[corner.nodes[k]];
+      return node.m_v + node.m_splitv;
+    };
+    btVector3 here = of(3);
+    for (std::size_t k = 0; k < 3; ++k) here += corner.weights[k] * (of(k) - of(3));
+    sum += data_.shares[c] * here;
+  }
+  return sum;
+}
+
+btScalar SurfacePoint::mass() const {
+  if (status() != TouchStatus::Ok) return 0;
+  const Lever lever = touch_detail::leverOf(data_, *body_);
+  return static_cast<btScalar>(touch_detail::massOf(touch_detail::linearResponse(lever, *body_)));
+}
+
+TouchStatus SurfacePoint::applyImpulse(const btVector3& impulse) {
+  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
+  if (!touch_detail::isFiniteVector(impulse)) return TouchStatus::NonFinite;
+  if (touch_detail::isReduced(*body_)) return TouchStatus::InvalidOption;
+  touch_detail::NodePushes pushes;
+  touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(impulse), pushes);
+  touch_detail::applyImpulses(pushes, *body_);
+  return TouchStatus::Ok;
+}
+
+TouchStatus SurfacePoint::applyForce(const btVector3& force, int steps) {
+  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
+  if (!touch_detail::isFiniteVector(force)) return TouchStatus::NonFinite;
+  touch_detail::NodePushes pushes;
+  touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(force), pushes);
+  return touch_detail::applyForces(std::move(pushes), steps, *body_, watched_ ? nullptr : &forces_);
+}
+
+}  // namespace tetskin

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/touch/src/joints/joint_owner.h>
+#include <tetskin/touch/src/points/body_kind.h>
+#include <tetskin/touch/surface_spring.h>
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using touch_detail::Joint;
+using touch_detail::JointOwner;
+using touch_detail::JointSettings;
+using touch_detail::Partner;
+
+constexpr double kToPoint = 10.0, kToBody = 1000.0;
+
+bool isStiffness(double s) {
+  return s > 0.0 && std::isfinite(s);
+}
+
+Status checkSpring(const SurfaceSpringOptions& options) {
+  if (options.stiffness != 0.0 && !isStiffness(options.stiffness)) {
+    return {StatusCode::InvalidOption, "the stiffness of a spring must be above 0 and finite, or 0 for the default"};
+  }
+  if (!(options.damping >= 0.0) || !std::isfinite(options.damping)) {
+    return {StatusCode::InvalidOption, "the damping of a spring must be 0 or more, and finite"};
+  }
+  if (!(options.maxForce > 0.0)) return {StatusCode::InvalidOption, "the force of a spring must be allowed above 0"};
+  return {};
+}
+
+JointSettings settingsOf(const SurfaceSpringOptions& options, double stiffness) {
+  JointSettings settings;
+  settings.stiffness = options.stiffness > 0.0 ? options.stiffness : stiffness;
+  settings.damping = options.damping;
+  settings.maxForce = options.maxForce;
+  settings.collide = options.collide;
+  return settings;
+}
+
+btTransform at(const btVector3& pivot) {
+  return btTransform(btMatrix3x3::getIdentity(), pivot);
+}
+
+}  // namespace
+
+struct SurfaceSpring::Parts {
+  Parts(btDiscreteDynamicsWorld& world, const SurfacePoint& point, std::unique_ptr<Partner> partner,
+        const JointSettings& settings)
+      : owner(world, std::make_shared<Joint>(point, std::move(partner), settings)) {}
+
+  static Result<std::unique_ptr<SurfaceSpring>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
+                                                     std::unique_ptr<Partner> partner, const Options& options) {
+    const double stiffness = partner->object() ? kToBody : kToPoint;
+    auto parts = std::make_unique<Parts>(world, point, std::move(partner), settingsOf(options, stiffness));
+    return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(parts)));
+  }
+  static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Options& options) {
+    if (Status status = checkSpring(options); !status.ok()) return status;
+    return JointOwner::check(world, point);
+  }
+
+  JointOwner owner;
+};
+
+SurfaceSpring::SurfaceSpring(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SurfaceSpring::~SurfaceSpring() = default;
+
+Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
+                                                          const Options& options) {
+  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  return Parts::make(world, point, touch_detail::pointInSpace(*point.position()), options);
+}
+
+Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
+                                                          btRigidBody& rigid, const btVector3& pivot,
+                                                          const Options& options) {
+  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  return Parts::make(world, point, touch_detail::rigidPartner(rigid, at(pivot)), options);
+}
+
+Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
+                                                          btMultiBodyLinkCollider& link, const btVector3& pivot,
+                                                          const Options& options) {
+  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  return Parts::make(world, point, touch_detail::linkPartner(link, at(pivot)), options);
+}
+
+TouchStatus SurfaceSpring::setTarget(const btVector3& target) {
+  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
+  if (!touch_detail::isFiniteVector(target)) return TouchStatus::NonFinite;
+  Joint& joint = parts_->owner.joint();
+  const btVector3 before = joint.partnerOf().anchor().getOrigin();
+  joint.partnerOf().moveAnchor(target);
+  if (joint.partnerOf().anchor().getOrigin() != before) joint.body()->activate();
+  return TouchStatus::Ok;
+}
+
+TouchStatus SurfaceSpring::setStiffness(double stiffness) {
+  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
+  if (!isStiffness(stiffness)) return TouchStatus::InvalidOption;
+  parts_->owner.joint().settings().stiffness = stiffness;
+  parts_->owner.joint().body()->activate();
+  return TouchStatus::Ok;
+}
+
+TouchStatus SurfaceSpring::setMaxForce(double force) {
+  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
+  if (!(force > 0.0)) return TouchStatus::InvalidOption;
+  parts_->owner.joint().settings().maxForce = force;
+  parts_->owner.joint().body()->activate();
+  return TouchStatus::Ok;
+}
+
+TouchStatus SurfaceSpring::status() const {
+  return parts_->owner.status();
+}
+
+btVector3 SurfaceSpring::force() const {
+  return toBullet(parts_->owner.joint().load().head<3>());
+}
+
+btScalar SurfaceSpring::stretch() const {
+  if (status() != TouchStatus::Ok) return 0;
+  return static_cast<btScalar>(parts_->owner.joint().offset().head<3>().norm());
+}
+
+void SurfaceSpring::release() {
+  parts_->owner.release();
+}
+
+}  // namespace tetskin

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SurfaceTree: the surface of one body at a time, and a tree fitted to it.
+#pragma once
+
+#include <tetskin/touch/src/tree/ray_tree.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin::touch_detail {
+
+class FittedSurface {
+ public:
+  FittedSurface() = default;
+  /// Of each other; both good.
+  FittedSurface(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh);
+
+  /// Computes what the skin draws, and the tree, unless the last one had the same nodes. Ok, or Unbound, OtherBody,
+  /// TopologyChanged, NonFinite: then there is nothing to cast against.
+  TouchStatus fit(const SoftBodySkin& skin);
+  /// After `fit` has returned Ok. The hit has no body yet.
+  SurfaceHit cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const;
+
+ private:
+  bool isFitted(const btSoftBody& body) const;
+  void keepNodes(const btSoftBody& body);
+
+  std::shared_ptr<const SoftBodyBinding> binding_;
+  RayTree tree_;
+  std::vector<std::array<int, 3>> triangles_;  ///< by place of their vertices among the skin's points
+  MeshSkin<btScalar> skin_;
+  std::vector<btScalar> nodes_;  ///< 3 a node, of the last fit; empty: none
+};
+
+}  // namespace tetskin::touch_detail

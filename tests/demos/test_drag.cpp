@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/io/mesh_loader.h>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+TEST(Drag, TheSerpentIsPickedSwungHungAndPushed) {
+  const CommandFolder folder;
+  const CommandResult result =
+      folder.run(TETSKIN_DRAG, {"--tets", "300", "--triangles", "20000", "--frames", "481", "--every", "240"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/drag/summary.json");
+  EXPECT_TRUE(json["finite"]);
+  EXPECT_LT(json["lag_swinging"], 0.01);
+  EXPECT_GT(json["lag_swinging"], 0);
+  EXPECT_LT(json["stretch_hanging"], 0.001);
+  EXPECT_GT(json["pushed_vertices"], 10);
+  const TriangleMesh first = loadMesh(folder.path("out/drag/frame_0000.obj")).value();
+  const TriangleMesh swung = loadMesh(folder.path("out/drag/frame_0240.obj")).value();
+  ASSERT_EQ(first.vertexCount(), swung.vertexCount());
+  EXPECT_GT(boundingBox(swung.positions).sizes().y(), 1.0);  // it hangs, all of its length
+  EXPECT_TRUE(loadMesh(folder.path("out/drag/obstacles.obj")).ok());
+}
+
+TEST(Drag, RefusesWhatMakesNoSense) {
+  const CommandFolder folder;
+  test::expectRefused(folder.run(TETSKIN_DRAG, {"--stiffness", "0"}), "--stiffness");
+  test::expectRefused(folder.run(TETSKIN_DRAG, {"--tets", "0"}), "--tets");
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "touch_test.h"
+
+#include <tetskin/touch/src/tree/ray_tree.h>
+
+#include <random>
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d corner(const SoftBodySkin& skin, int v) {
+  const btScalar* p = skin.positions()[static_cast<std::size_t>(v)];
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
+struct Found {
+  int triangle = -1;
+  double distance = HUGE_VAL;
+};
+
+/// By all triangles, and by volumes: another way than the tree's.
+Found bruteForce(const SoftBodySkin& skin, const TriangleMesh& mesh, const Vector3d& from, const Vector3d& to) {
+  Found best;
+  const Vector3d along = (to - from).normalized();
+  const double length = (to - from).norm();
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const auto& [ia, ib, ic] = mesh.triangles[t];
+    const Vector3d a = corner(skin, ia) - from, b = corner(skin, ib) - from, c = corner(skin, ic) - from;
+    const double u = along.dot(b.cross(c)), v = along.dot(c.cross(a)), w = along.dot(a.cross(b));
+    if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) || u + v + w == 0) continue;
+    const double distance = (u * a + v * b + w * c).dot(along) / (u + v + w);
+    if (distance < 0 || distance > length || distance >= best.distance) continue;
+    best.triangle = static_cast<int>(t);
+    best.distance = distance;
+  }
+  return best;
+}
+
+/// Counts the rays that differ from brute force.
+void compare(TouchedBody& of, int rays, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> number(-0.7, 1.7);
+  int hits = 0;
+  for (int r = 0; r < rays; ++r) {
+    const Vector3d from(number(random), number(random), number(random)),
+        to(number(random), number(random), number(random));
+    const btVector3 a = toBullet(from), b = toBullet(to);
+    const SurfaceHit hit = of.tree.raycast(of.skin, a, b);
+    const Found wanted = bruteForce(of.skin, of.model.mesh, toEigen(a), toEigen(b));
+    ASSERT_EQ(static_cast<bool>(hit), wanted.triangle >= 0) << r;
+    if (!hit) continue;
+    ++hits;
+    ASSERT_NEAR(static_cast<double>(hit.distance), wanted.distance, 1e-6) << r;
+    if (hit.triangle == wanted.triangle) continue;
+    // Then two triangles are met at once, at an edge.
+    ASSERT_LT(std::min({hit.weights[0], hit.weights[1], hit.weights[2]}), 1e-6) << r;
+  }
+  EXPECT_GT(hits, rays / 10);
+}
+
+TEST(SurfaceTree, MeetsWhatBruteForceMeetsAtDeformedStates) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  for (int state = 0; state < 5; ++state) {
+    deform(of.body(), 0.06);
+    ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
+    compare(of, 2000, static_cast<unsigned>(state));
+  }
+}
+
+TEST(SurfaceTree, MeetsQuadraticSurfacesAsTheyAreDrawn) {
+  auto world = deformableWorld(Solving::Tetskin);
+  BindingOptions quadratic;
+  quadratic.interpolation = Interpolation::Quadratic;
+  TouchedBody of(*world, TouchModel(0.55), {}, quadratic);
+  deform(of.body(), 0.1);
+  ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
+  compare(of, 1000, 9);
+  const SurfaceHit hit = of.tree.raycast(of.skin, btVector3(btScalar(0.53), 3, btScalar(0.48)),
+                                         btVector3(btScalar(0.5), -3, btScalar(0.5)));
+  ASSERT_TRUE(hit);
+  const SurfacePoint point = of.tree.pointAt(of.body(), hit).value();
+  EXPECT_LT((*point.position(of.skin) - hit.point).length(), 1e-5);
+  EXPECT_GT((*point.position() - hit.point).length(), 1e-4);
+}
+
+TEST(SurfaceTree, TellsThePointTheNormalAndTheWeights) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  deform(of.body());
+  const btVector3 from(btScalar(0.41), 3, btScalar(0.57)), to(btScalar(0.45), -3, btScalar(0.52));
+  const SurfaceHit hit = of.tree.raycast(of.skin, from, to);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.body, &of.body());
+  EXPECT_LT((from + (to - from).normalized() * hit.distance - hit.point).length(), 2e-6);
+  const SurfacePoint point = of.tree.pointAt(of.body(), hit).value();
+  EXPECT_LT((*point.position() - hit.point).length(), 2e-6);
+  EXPECT_GT(point.frame()->normal.dot(hit.normal), 0.97);  // the one is smooth, the other a facet's
+  EXPECT_GT(hit.normal.y(), 0.5);
+}
+
+TEST(SurfaceTree, ServesHiddenSkinsOtherTargetsOrdersAndOrigins) {
+  auto world = deformableWorld(Solving::Tetskin);
+  BindingOptions sorted;
+  sorted.order = VertexOrder::Sorted;
+  TouchedBody of(*world, TouchModel(), {}, sorted);
+  std::vector<Eigen::Vector3f> buffer(of.model.mesh.vertexCount());
+  SoftBodySkin other;
+  InstanceOptions elsewhere;
+  elsewhere.target = viewOf(buffer);
+  elsewhere.origin = Vector3d(100, 0, 0);
+  ASSERT_TRUE(other.bind(of.body(), of.binding, elsewhere).ok());
+  other.setVisible(false);
+  deform(of.body());
+  SoftBodySkin plain;
+  ASSERT_TRUE(plain.bind(of.body(), of.model.cage, of.model.mesh).ok());
+  const SurfaceTree plainTree(plain.binding(), of.model.mesh);
+  const btVector3 from(btScalar(0.41), 3, btScalar(0.57)), to(btScalar(0.45), -3, btScalar(0.52));
+  const SurfaceHit hit = of.tree.raycast(other, from, to), wanted = plainTree.raycast(plain, from, to);
+  ASSERT_TRUE(hit && wanted);
+  EXPECT_EQ(hit.triangle, wanted.triangle);
+  EXPECT_NEAR(hit.distance, wanted.distance, 1e-6);
+}
+
+TEST(SurfaceTree, FollowsBodiesOfOneBindingInTurn) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody first(*world);
+  const auto second = added(*world, first.model.cage);
+  for (int n = 0; n < second->body().m_nodes.size(); ++n)
+    second->body().m_nodes[n].m_x.setX(second->body().m_nodes[n].m_x.x() + 4);
+  SoftBodySkin skin;
+  ASSERT_TRUE(skin.bind(second->body(), first.binding).ok());
+  for (int turn = 0; turn < 3; ++turn) {
+    const btScalar x = btScalar(0.5);
+    EXPECT_TRUE(first.tree.raycast(first.skin, btVector3(x, 3, x), btVector3(x, -3, x)));
+    EXPECT_FALSE(first.tree.raycast(skin, btVector3(x, 3, x), btVector3(x, -3, x)));
+    const SurfaceHit hit = first.tree.raycast(skin, btVector3(x + 4, 3, x), btVector3(x + 4, -3, x));
+    EXPECT_EQ(hit.body, &second->body());
+    EXPECT_FALSE(first.tree.pointAt(first.body(), hit).ok());  // of another body
+  }
+}
+
+TEST(SurfaceTree, LetsRaysPassWhatAFilterLeavesOut) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  const btVector3 from(btScalar(0.51), 3, btScalar(0.52)), to(btScalar(0.51), -3, btScalar(0.52));
+  const SurfaceHit first = of.tree.raycast(of.skin, from, to);
+  const SurfaceHit second = of.tree.raycast(of.skin, from, to, [&](int t) { return t != first.triangle; });
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(first.triangle, second.triangle);
+  EXPECT_NEAR(second.distance - first.distance, 0.76, 0.03);  // through the ball
+  EXPECT_FALSE(of.tree.raycast(of.skin, from, to, [](int) { return false; }));
+}
+
+TEST(SurfaceTree, SaysWhyARayMeetsNothing) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  const btVector3 from(btScalar(0.5), 3, btScalar(0.5)), to(btScalar(0.5), -3, btScalar(0.5));
+  EXPECT_EQ(of.tree.raycast(of.skin, from, btVector3(3, 3, 3)).status, TouchStatus::Miss);
+  EXPECT_EQ(of.tree.raycast(of.skin, from, from).status, TouchStatus::Miss);
+  EXPECT_EQ(of.tree.raycast({}, from, to).status, TouchStatus::Unbound);
+  SoftBodySkin other;
+  ASSERT_TRUE(other.bind(of.body(), of.model.cage, of.model.mesh).ok());
+  EXPECT_EQ(of.tree.raycast(other, from, to).status, TouchStatus::OtherBody);
+  EXPECT_EQ(of.tree.raycast(of.skin, btVector3(NAN, 0, 0), to).status, TouchStatus::NonFinite);
+  of.body().m_nodes[7].m_x.setX(NAN);
+  EXPECT_EQ(of.tree.raycast(of.skin, from, to).status, TouchStatus::NonFinite);
+  of.body().m_nodes[7].m_x.setX(0);
+  EXPECT_TRUE(of.tree.raycast(of.skin, from, to));
+}
+
+TEST(SurfaceTree, RefusesWhatIsNoSurface) {
+  const TouchModel model;
+  const auto binding = model.bind();
+  EXPECT_EQ(SurfaceTree(nullptr, model.mesh).check().code, StatusCode::Empty);
+  TriangleMesh points = model.mesh;
+  points.triangles.clear();
+  EXPECT_EQ(SurfaceTree(binding, points).check().code, StatusCode::Empty);
+  EXPECT_EQ(SurfaceTree(binding, sphere(5, 0.3, {0, 0, 0})).check().code, StatusCode::SizeMismatch);
+  EXPECT_TRUE(SurfaceTree(binding, model.mesh).check().ok());
+}
+
+TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  EXPECT_EQ(of.tree.pointOfVertex(of.body(), -1).status().code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(of.tree.pointOfVertex(of.body(), 1 << 30).status().code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(of.tree.pointAt(of.body(), {}).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(of.tree.pointAtRest(of.body(), {NAN, 0, 0}).status().code, StatusCode::NonFinite);
+  const auto small = added(*world, smallCageAbove(5));
+  EXPECT_EQ(of.tree.pointOfVertex(small->body(), 0).status().code, StatusCode::SizeMismatch);
+}
+
+TEST(RayTree, FindsTheOnlyTriangleAndSkipsFlatOnes) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}};
+  mesh.triangles = {{0, 3, 1}, {0, 1, 2}};
+  touch_detail::RayTree tree(mesh, {0, 1, 2, 3});
+  const std::vector<Eigen::Matrix<btScalar, 3, 1>> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {btScalar(0.5), 0, 0}};
+  tree.fit(viewOf(points));
+  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, -2}}, {}).triangle, 1);
+  EXPECT_NEAR(tree.cast({{0.2, 0.3, 1}, {0, 0, -2}}, {}).at, 0.5, 1e-12);
+  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, -0.9}}, {}).triangle, -1);
+  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, 2}}, {}).triangle, -1);
+  EXPECT_EQ(tree.cast({{0.25, 0, 1}, {0, 0, -2}}, {}).triangle, 1);  // on its edge
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "touch_test.h"
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// One turn a second, a quarter of a unit around.
+btVector3 onCircle(const btVector3& start, double seconds) {
+  const double angle = 2 * EIGEN_PI * seconds;
+  return start + toBullet({0.25 * std::sin(angle), 0.25 * (1 - std::cos(angle)), 0});
+}
+
+/// The largest distance between point and target in two seconds of swinging, the first half second apart.
+double worstLag(EmptyWorld& world, const SurfacePoint& point, SurfaceSpring& spring, double dt) {
+  const btVector3 start = *point.position();
+  double worst = 0;
+  for (double t = 0; t < 2; t += dt) {
+    const btVector3 target = onCircle(start, t);
+    EXPECT_EQ(spring.setTarget(target), TouchStatus::Ok);
+    substep(world, dt);
+    if (t > 0.5) worst = std::max(worst, static_cast<double>((*point.position() - target).length()));
+  }
+  return worst;
+}
+
+class SpringsIn : public testing::TestWithParam<Solving> {};
+INSTANTIATE_TEST_SUITE_P(, SpringsIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
+                         testing::PrintToStringParamName());
+
+TEST_P(SpringsIn, KeepAPointNearItsTarget) {
+  for (const double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
+    auto world = deformableWorld(GetParam(), 10);
+    TouchedBody of(*world, TouchModel(0.38, 3.0));
+    const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+    auto spring = SurfaceSpring::add(world->deformable(), point).value();
+    EXPECT_LT(worstLag(*world, point, *spring, dt), 0.02) << dt;
+    EXPECT_TRUE(isFinite(of.body())) << dt;
+  }
+}
+
+TEST_P(SpringsIn, AreStableAtAnyStiffness) {
+  for (const double radius : {0.38, 0.55}) {
+    for (const double stiffness : {1e-3, 1.0, 1e3, 1e6}) {
+      for (const double dt : {1.0 / 60, 1.0 / 1000}) {
+        auto world = deformableWorld(GetParam(), 10);
+        TouchedBody of(*world, TouchModel(radius, 3.0));
+        const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+        SurfaceSpringOptions options;
+        options.stiffness = stiffness;
+        auto spring = SurfaceSpring::add(world->deformable(), point, options).value();
+        const double lag = worstLag(*world, point, *spring, dt);
+        EXPECT_TRUE(isFinite(of.body())) << stiffness << " " << dt << " " << radius;
+        // Outside, the point's tet bends away from under it: a spring of any stiffness is a step behind that.
+        if (stiffness == 1e3 || (stiffness > 1e3 && radius < 0.4)) {
+          EXPECT_LT(lag, radius < 0.4 ? 0.001 : 0.03) << stiffness << " " << dt << " " << radius;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(SpringsIn, CarryTheBodysWeight) {
+  auto world = deformableWorld(GetParam(), 10);
+  TouchedBody of(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+  auto spring = SurfaceSpring::add(world->deformable(), point).value();
+  Vector3d mean = Vector3d::Zero();
+  for (int s = 0; s < 1440; ++s) {
+    substep(*world);
+    if (s >= 960) mean += toEigen(spring->force()) / 480;
+  }
+  EXPECT_LT((mean - Vector3d(0, 10, 0)).norm(), 0.2);
+}
+
+TEST_P(SpringsIn, NeverPullHarderThanAllowed) {
+  auto world = deformableWorld(GetParam(), 10);
+  TouchedBody of(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+  SurfaceSpringOptions options;
+  options.stiffness = 1000;
+  options.maxForce = 14;
+  auto spring = SurfaceSpring::add(world->deformable(), point, options).value();
+  const btVector3 start = *point.position();
+  ASSERT_EQ(spring->setTarget(start + btVector3(0, 1, 0)), TouchStatus::Ok);
+  double most = 0, once = 0;
+  std::vector<double> forces;
+  for (std::size_t s = 0; s < 1500; ++s) {
+    substep(*world);
+    forces.push_back(static_cast<double>(spring->force().length()));
+    once = std::max(once, forces.back());
+    if (s < 11) continue;
+    double mean = 0;
+    for (std::size_t k = s - 11; k <= s; ++k) mean += forces[k] / 12;
+    most = std::max(most, mean);
+  }
+  EXPECT_LE(once, 28);
+  EXPECT_LE(most, 14 * 1.05);
+  EXPECT_GT(most, 12);
+  EXPECT_LT((*point.position() - start - btVector3(0, 1, 0)).length(), 0.02);  // above its weight: it gets there
+  ASSERT_EQ(spring->setMaxForce(6), TouchStatus::Ok);
+  for (int s = 0; s < 200; ++s) substep(*world);
+  EXPECT_LT(point.position()->y(), start.y());  // below: it does not stay
+  EXPECT_TRUE(isFinite(of.body()));
+}
+
+TEST_P(SpringsIn, HangABodyOnARigidOneThatFeelsIt) {
+  for (const double mass : {0.1, 1.0, 10.0}) {
+    auto world = deformableWorld(GetParam(), 10);
+    SoftBodyOptions held;
+    held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
+    TouchedBody of(*world, TouchModel(0.38, 3.0), held);
+    const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+    const btVector3 pivot(0, btScalar(0.1), 0);
+    RigidBox box(*world, mass, *point.position() - pivot);
+    box->setActivationState(DISABLE_DEACTIVATION);
+    auto spring = SurfaceSpring::add(world->deformable(), point, *box, pivot).value();
+    double worst = 0, mean = 0;
+    for (int s = 0; s < 1440; ++s) {
+      substep(*world);
+      worst = std::max(worst, static_cast<double>(spring->stretch()));
+      if (s >= 960) mean += static_cast<double>(spring->force().y()) / 480;
+    }
+    EXPECT_LT(worst, 0.001) << mass;
+    EXPECT_NEAR(mean, -10 * mass, 0.3 * mass) << mass;
+  }
+}
+
+TEST_P(SpringsIn, ExchangeMomentumWithARigidBody) {
+  auto world = deformableWorld(GetParam());
+  TouchedBody of(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+  RigidBox box(*world, 0.5, *point.position() + btVector3(btScalar(0.15), 0, 0));
+  box->setActivationState(DISABLE_DEACTIVATION);
+  auto spring = SurfaceSpring::add(world->deformable(), point, *box, btVector3(btScalar(-0.15), 0, 0)).value();
+  box->setLinearVelocity(btVector3(0, 1, 0));
+  for (int s = 0; s < 240; ++s) substep(*world);
+  const Vector3d sum = Momentum(of.body()).linear + 0.5 * toEigen(box->getLinearVelocity());
+  EXPECT_LT((sum - Vector3d(0, 0.5, 0)).norm(), 0.01);
+  EXPECT_GT(Momentum(of.body()).linear.y(), 0.1);
+}
+
+TEST_P(SpringsIn, HoldARigidBodyByManyPointsAtOnce) {
+  auto world = deformableWorld(GetParam(), 10);
+  SoftBodyOptions held;
+  held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
+  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
+  RigidBox box(*world, 0.3, btVector3(btScalar(0.5), btScalar(2.9), btScalar(0.5)));
+  box->setActivationState(DISABLE_DEACTIVATION);
+  std::vector<std::unique_ptr<SurfaceSpring>> springs;
+  for (int v = 0; v < 12; ++v) {
+    const SurfacePoint point = of.vertex(v * 17);
+    const btVector3 pivot = box->getWorldTransform().invXform(*point.position());
+    springs.push_back(SurfaceSpring::add(world->deformable(), point, *box, pivot).value());
+  }
+  for (int s = 0; s < 480; ++s) substep(*world);
+  EXPECT_LT(box->getLinearVelocity().length(), 0.05);
+  for (const auto& spring : springs) EXPECT_LT(spring->stretch(), 0.01);
+}
+
+TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  const SurfacePoint point = of.vertex(0);
+  const auto codeOf = [&](double stiffness, double damping, double maxForce) {
+    SurfaceSpringOptions options;
+    options.stiffness = stiffness;
+    options.damping = damping;
+    options.maxForce = maxForce;
+    return SurfaceSpring::add(world->deformable(), point, options).status().code;
+  };
+  EXPECT_EQ(codeOf(10, 1, 5), StatusCode::Ok);
+  EXPECT_EQ(codeOf(-1, 0, 5), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(INFINITY, 0, 5), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(10, -1, 5), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(10, NAN, 5), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(10, 0, 0), StatusCode::InvalidOption);
+  EXPECT_EQ(SurfaceSpring::add(world->deformable(), {}).status().code, StatusCode::InvalidOption);
+  auto other = deformableWorld(Solving::Tetskin);
+  EXPECT_EQ(SurfaceSpring::add(other->deformable(), point).status().code, StatusCode::InvalidOption);
+  auto spring = SurfaceSpring::add(world->deformable(), point).value();
+  EXPECT_EQ(spring->setTarget(btVector3(NAN, 0, 0)), TouchStatus::NonFinite);
+  EXPECT_EQ(spring->setStiffness(0), TouchStatus::InvalidOption);
+  EXPECT_EQ(spring->setMaxForce(-1), TouchStatus::InvalidOption);
+  EXPECT_EQ(spring->setStiffness(100), TouchStatus::Ok);
+}
+
+TEST(SurfaceSpring, LeavesCollisionsAsTheyWere) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  RigidBox box(*world, 1, btVector3(3, 3, 3));
+  const auto& hidden = of.body().m_collisionDisabledObjects;
+  auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0)).value();
+  EXPECT_EQ(hidden.size(), 1);
+  auto second = SurfaceSpring::add(world->deformable(), of.vertex(9), *box, btVector3(0, 0, 0)).value();
+  EXPECT_EQ(hidden.size(), 1);
+  second.reset();
+  EXPECT_EQ(hidden.size(), 1);
+  spring.reset();
+  EXPECT_EQ(hidden.size(), 0);
+  SurfaceSpringOptions both;
+  both.collide = true;
+  spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0), both).value();
+  EXPECT_EQ(hidden.size(), 0);
+}
+
+}  // namespace
+}  // namespace tetskin::test

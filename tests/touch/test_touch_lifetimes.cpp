@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "touch_test.h"
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Forces of a world.
+int forceCount(TouchedBody& of) {
+  return static_cast<btDeformableBodySolver*>(of.body().getSoftBodySolver())->getLagrangianForceArray()->size();
+}
+
+TEST(TouchLifetime, PointsSayThatTheirBodyIsGone) {
+  auto world = deformableWorld(Solving::Tetskin);
+  auto of = std::make_unique<TouchedBody>(*world);
+  SurfacePoint point = of->vertex(5);
+  of.reset();
+  EXPECT_EQ(point.status(), TouchStatus::Gone);
+  EXPECT_FALSE(point.position());
+  EXPECT_FALSE(point.velocity());
+  EXPECT_FALSE(point.frame());
+  EXPECT_EQ(point.mass(), 0);
+  EXPECT_EQ(point.body(), nullptr);
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Gone);
+  EXPECT_EQ(point.applyForce(btVector3(1, 0, 0)), TouchStatus::Gone);
+}
+
+TEST(TouchLifetime, PointsOfNobodySaySo) {
+  SurfacePoint point;
+  EXPECT_EQ(point.status(), TouchStatus::Released);
+  EXPECT_FALSE(point.position());
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Released);
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  point = of.vertex(3);
+  EXPECT_EQ(point.status(), TouchStatus::Ok);
+  point.release();
+  EXPECT_EQ(point.status(), TouchStatus::Released);
+  EXPECT_STREQ(toString(point.status()), "released");
+}
+
+TEST(TouchLifetime, PointsSayThatTheTopologyHasChanged) {
+  auto world = deformableWorld(Solving::Explicit);
+  TouchedBody of(*world);
+  SurfacePoint point = of.vertex(5);
+  auto own = makeSoftBody(of.model.cage, world->deformable().getWorldInfo()).value();
+  SurfacePoint other = of.tree.pointOfVertex(*own, 5).value();
+  own->appendNode(btVector3(9, 9, 9), 1);
+  EXPECT_EQ(other.status(), TouchStatus::TopologyChanged);
+  EXPECT_EQ(other.applyImpulse(btVector3(1, 0, 0)), TouchStatus::TopologyChanged);
+  EXPECT_EQ(point.status(), TouchStatus::Ok);
+}
+
+TEST(TouchLifetime, PointsSayThatTheirNodesAreNoNumbers) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  SurfacePoint point = of.vertex(5);
+  of.body().m_nodes[point.data().corners[0].nodes[2]].m_x.setY(INFINITY);
+  EXPECT_EQ(point.status(), TouchStatus::NonFinite);
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::NonFinite);
+}
+
+TEST(TouchLifetime, PointsAreNotReadOfSkinsOfOtherBodies) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody first(*world), second(*world);
+  EXPECT_FALSE(first.vertex(5).position(second.skin));
+  EXPECT_FALSE(first.vertex(5).position(SoftBodySkin()));
+  EXPECT_TRUE(first.vertex(5).position(first.skin));
+}
+
+class LifetimesIn : public testing::TestWithParam<Solving> {};
+INSTANTIATE_TEST_SUITE_P(, LifetimesIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
+                         testing::PrintToStringParamName());
+
+TEST_P(LifetimesIn, SpringsLeaveNothingInTheWorld) {
+  auto world = deformableWorld(GetParam(), 10);
+  TouchedBody of(*world);
+  substep(*world);
+  RigidBox box(*world, 1, btVector3(0, 3, 0));
+  const int before = forceCount(of);
+  {
+    auto spring = SurfaceSpring::add(world->deformable(), of.vertex(5)).value();
+    auto weld = SurfaceWeld::add(world->deformable(), of.vertex(50), *box).value();
+    substep(*world);
+    EXPECT_EQ(spring->status(), TouchStatus::Ok);
+    EXPECT_EQ(forceCount(of), before + 1);
+    spring->release();
+    EXPECT_EQ(spring->status(), TouchStatus::Released);
+    EXPECT_EQ(spring->setTarget(btVector3(0, 0, 0)), TouchStatus::Released);
+    substep(*world);
+  }
+  for (int s = 0; s < 10; ++s) substep(*world);
+  EXPECT_TRUE(isFinite(of.body()));
+}
+
+TEST_P(LifetimesIn, BodiesMayGoBeforeTheirSpringsAndWelds) {
+  auto world = deformableWorld(GetParam(), 10);
+  auto first = std::make_unique<TouchedBody>(*world),
+       second = std::make_unique<TouchedBody>(*world, TouchModel(0.38, 3));
+  RigidBox box(*world, 1, btVector3(0, 6, 0));
+  auto spring = SurfaceSpring::add(world->deformable(), first->vertex(5)).value();
+  auto weld = SurfaceWeld::add(world->deformable(), first->vertex(50), *box).value();
+  auto kept = SurfaceSpring::add(world->deformable(), second->vertex(50)).value();
+  ASSERT_EQ(first->vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
+  substep(*world);
+  first.reset();
+  EXPECT_EQ(spring->status(), TouchStatus::Gone);
+  EXPECT_EQ(weld->status(), TouchStatus::Gone);
+  EXPECT_EQ(weld->separation(), 0);
+  EXPECT_EQ(kept->status(), TouchStatus::Ok);
+  for (int s = 0; s < 3; ++s) substep(*world);
+  spring.reset();
+  weld.reset();
+  for (int s = 0; s < 3; ++s) substep(*world);
+  second.reset();
+  for (int s = 0; s < 3; ++s) substep(*world);
+}
+
+TEST_P(LifetimesIn, WorldsMayGoWithForcesPending) {
+  auto world = deformableWorld(GetParam(), 10);
+  auto of = std::make_unique<TouchedBody>(*world);
+  auto spring = SurfaceSpring::add(world->deformable(), of->vertex(5)).value();
+  substep(*world);
+  ASSERT_EQ(of->vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
+  // The world's end, before anybody's: against what is asked for, but nothing may be touched that is gone.
+  of->skin = {};
+  world.reset();
+  of.reset();
+  EXPECT_EQ(spring->status(), TouchStatus::Gone);
+}
+
+TEST_P(LifetimesIn, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
+  auto world = deformableWorld(GetParam(), 10);
+  TouchedBody of(*world);
+  auto spring = SurfaceSpring::add(world->deformable(), of.vertex(5)).value();
+  ASSERT_EQ(of.vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
+  substep(*world);
+  world->deformable().removeSoftBody(&of.body());
+  EXPECT_EQ(spring->status(), TouchStatus::OutOfWorld);
+  EXPECT_EQ(of.vertex(9).applyForce(btVector3(1, 0, 0)), TouchStatus::OutOfWorld);
+  EXPECT_EQ(of.vertex(9).applyImpulse(btVector3(1, 0, 0)), TouchStatus::Ok);
+  substep(*world);
+}
+
+TEST_P(LifetimesIn, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
+  auto world = deformableWorld(GetParam(), 0);
+  const TouchModel model(0.38, 3);
+  const auto binding = model.bind();
+  const SurfaceTree tree(binding, model.mesh);
+  std::vector<btVector3> nodes;
+  for (const Vector3d& p : model.cage.nodes) nodes.push_back(toBullet(p));
+  btDeformableGravityForce gravity(btVector3(0, 0, 0));
+  btDeformableNeoHookeanForce elasticity(400, 600, btScalar(0.05));
+  auto body = std::make_unique<btSoftBody>(&world->deformable().getWorldInfo(), static_cast<int>(nodes.size()),
+                                           nodes.data(), nullptr);
+  for (const Tet& t : model.cage.tets) body->appendTetra(t[0], t[1], t[2], t[3]);
+  body->initializeDmInverse();
+  body->m_tetraScratches.resize(body->m_tetras.size());
+  body->m_tetraScratchesTn.resize(body->m_tetras.size());
+  body->setTotalMass(1, false);
+  body->setActivationState(DISABLE_DEACTIVATION);
+  world->deformable().addSoftBody(body.get());
+  world->deformable().addForce(body.get(), &gravity);
+  world->deformable().addForce(body.get(), &elasticity);
+  SurfacePoint point = tree.pointOfVertex(*body, 100).value();
+  ASSERT_EQ(point.applyForce(btVector3(0, 24, 0)), TouchStatus::Ok);
+  substep(*world);
+  EXPECT_NEAR(Momentum(*body).linear.y(), 0.1, 0.002);
+  auto spring = SurfaceSpring::add(world->deformable(), point).value();
+  substep(*world);
+  spring->release();
+  point.release();
+  world->deformable().removeSoftBody(body.get());
+  body.reset();
+  EXPECT_EQ(spring->status(), TouchStatus::Released);
+  EXPECT_EQ(point.status(), TouchStatus::Released);
+  substep(*world);
+}
+
+TEST_P(LifetimesIn, WhatHangsFallsAsleepAndWakesTogether) {
+  auto world = deformableWorld(GetParam(), 10);
+  SoftBodyOptions held;
+  held.pinned = [](const Vector3d& rest) { return rest.y() > 3.5; };
+  held.damping = 0.1;
+  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
+  of.body().forceActivationState(ACTIVE_TAG);
+  const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+  RigidBox box(*world, 0.05, *point.position() - btVector3(0, btScalar(0.1), 0));
+  auto spring = SurfaceSpring::add(world->deformable(), point, *box, btVector3(0, btScalar(0.1), 0)).value();
+  int slept = 0;
+  for (; slept < 7200 && (of.body().isActive() || box->isActive()); ++slept) substep(*world);
+  EXPECT_LT(slept, 7200);
+  for (int s = 0; s < 240; ++s) substep(*world);
+  EXPECT_FALSE(of.body().isActive());
+  EXPECT_LT(spring->stretch(), 0.001);
+  box->activate();
+  box->applyCentralImpulse(btVector3(btScalar(0.02), 0, 0));
+  for (int s = 0; s < 10; ++s) substep(*world);
+  EXPECT_TRUE(of.body().isActive());
+  EXPECT_LT(spring->stretch(), 0.001);
+}
+
+}  // namespace
+}  // namespace tetskin::test

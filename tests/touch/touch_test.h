@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "../bullet/deformable_test.h"
+
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/touch/surface_point.h>
+#include <tetskin/touch/surface_spring.h>
+#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_weld.h>
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+namespace tetskin::test {
+
+/// A cage of 5 x 4 x 5 cubes, 1 x 0.8 x 1, with a ball in it or around it.
+struct TouchModel {
+  TetMesh cage = latticeCage(5, 4, 5, 0.2);
+  TriangleMesh mesh;
+
+  /// radius  above 0.4, the ball sticks out of the cage
+  explicit TouchModel(double radius = 0.38, double height = 0.0) : mesh(sphere(24, radius, {0.5, 0.4, 0.5})) {
+    for (auto* points : {&cage.nodes, &mesh.positions}) {
+      for (Eigen::Vector3d& p : *points) p.y() += height;
+    }
+  }
+  std::shared_ptr<const SoftBodyBinding> bind(const BindingOptions& options = {}) const {
+    return SoftBodyBinding::make(cage, mesh, options).value();
+  }
+};
+
+/// The three ways a deformable world solves.
+enum class Solving { Explicit, Implicit, Tetskin };
+
+inline void PrintTo(Solving solving, std::ostream* out) {
+  *out << (solving == Solving::Explicit ? "Explicit" : solving == Solving::Implicit ? "Implicit" : "Tetskin");
+}
+
+inline std::unique_ptr<EmptyWorld> deformableWorld(Solving solving, double gravity = 0.0) {
+  std::unique_ptr<EmptyWorld> world =
+      solving == Solving::Tetskin ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
+  world->deformable().setImplicit(solving == Solving::Implicit);
+  const btVector3 down(0, -static_cast<btScalar>(gravity), 0);
+  world->deformable().setGravity(down);
+  world->deformable().getWorldInfo().m_gravity = down;
+  return world;
+}
+
+/// A body of a model in such a world, with a skin and a tree.
+struct TouchedBody {
+  explicit TouchedBody(EmptyWorld& world, const TouchModel& of = TouchModel(), const SoftBodyOptions& options = {},
+                       const BindingOptions& how = {})
+      : model(of), owner(added(world, of.cage, options)), binding(of.bind(how)), tree(binding, of.mesh) {
+    EXPECT_TRUE(skin.bind(owner->body(), binding).ok());
+    body().setActivationState(DISABLE_DEACTIVATION);
+  }
+  btSoftBody& body() { return owner->body(); }
+  SurfacePoint vertex(int v) {
+    Result<SurfacePoint> made = tree.pointOfVertex(body(), v);
+    EXPECT_TRUE(made.ok()) << made.status().message;
+    return made.value();
+  }
+  /// The lowest or highest vertex along an axis at rest.
+  int furthest(const Eigen::Vector3d& along) const {
+    int best = 0;
+    for (std::size_t v = 0; v < model.mesh.vertexCount(); ++v) {
+      if (model.mesh.positions[v].dot(along) > model.mesh.positions[static_cast<std::size_t>(best)].dot(along)) {
+        best = static_cast<int>(v);
+      }
+    }
+    return best;
+  }
+
+  TouchModel model;
+  std::unique_ptr<DeformableBody> owner;
+  std::shared_ptr<const SoftBodyBinding> binding;
+  SurfaceTree tree;
+  SoftBodySkin skin;
+};
+
+/// Of all nodes; angular about the origin. Pinned ones have none.
+struct Momentum {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+
+  explicit Momentum(const btSoftBody& body) {
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      const btSoftBody::Node& node = body.m_nodes[n];
+      if (node.m_im == 0) continue;
+      const Eigen::Vector3d of = toEigen(node.m_v) / static_cast<double>(node.m_im);
+      linear += of;
+      angular += toEigen(node.m_x).cross(of);
+    }
+  }
+};
+
+/// Shakes all nodes, so that no tet is as it was at rest.
+inline void deform(btSoftBody& body, double amount = 0.05) {
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const Eigen::Vector3d x = toEigen(body.m_nodes[n].m_x);
+    const Eigen::Vector3d moved =
+        x + amount * Eigen::Vector3d(std::sin(5 * x.y() + 1), std::sin(4 * x.z()), std::cos(6 * x.x() + x.y()));
+    body.m_nodes[n].m_x = body.m_nodes[n].m_q = toBullet(moved);
+  }
+}
+
+/// One of Bullet's steps.
+inline void substep(EmptyWorld& world, double dt = 1.0 / 240) {
+  world.deformable().stepSimulation(static_cast<btScalar>(dt), 1, static_cast<btScalar>(dt));
+}
+
+/// A rigid body in a world, and taken out of it again.
+class RigidBox {
+ public:
+  RigidBox(EmptyWorld& world, double mass, const btVector3& at, const btVector3& half = btVector3(0.1, 0.1, 0.1))
+      : world_(world), shape_(half) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape_.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+    body_ = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, &shape_, inertia);
+    const btTransform where(btMatrix3x3::getIdentity(), at);
+    body_->setWorldTransform(where);
+    body_->setInterpolationWorldTransform(where);
+    world_.deformable().addRigidBody(body_.get());
+  }
+  ~RigidBox() { world_.deformable().removeRigidBody(body_.get()); }
+  RigidBox(const RigidBox&) = delete;
+  RigidBox& operator=(const RigidBox&) = delete;
+  btRigidBody& operator*() { return *body_; }
+  btRigidBody* operator->() { return body_.get(); }
+
+ private:
+  EmptyWorld& world_;
+  btBoxShape shape_;
+  std::unique_ptr<btRigidBody> body_;
+};
+
+inline bool isFinite(const btSoftBody& body) {
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    if (!toEigen(body.m_nodes[n].m_x).allFinite() || body.m_nodes[n].m_x.length() > 100) return false;
+  }
+  return true;
+}
+
+}  // namespace tetskin::test
