@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace tetskin::report {
 namespace {
 
+/// Of the deformation: a larger error shows.
+constexpr double kVisible = 0.1;
 constexpr double kLeastOrder = 1.0, kMostOrder = 3.0;
 
 /// The rows of one kind, coarsest first.
@@ -73,6 +76,54 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
   if (sorted.size() < 2) return {};
   return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorTotalRms),
           slope(sorted, &Row::errorEmbeddingRms)};
+}
+
+ReductionLimit reductionLimit(const std::vector<Row>& rows) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (row.isReduced() && (!best || row.modes > best->modes)) best = &row;
+  }
+  if (!best) return {};
+  // Up to the smallest amplitude at which it is not good enough: a vibration passes small ones again and again.
+  double good = 0.0, bad = HUGE_VAL;
+  for (std::size_t k = 0; k < best->errorByFrame.size(); ++k) {
+    const double amplitude = best->amplitudeByFrame[k];
+    if (best->errorByFrame[k] > kVisible * amplitude) {
+      bad = std::min(bad, amplitude);
+    }
+  }
+  for (const double amplitude : best->amplitudeByFrame) {
+    if (amplitude < bad) good = std::max(good, amplitude);
+  }
+  return {best->modes, good};
+}
+
+std::string reductionAdvice(const std::vector<Row>& rows) {
+  const Row *reduced = nullptr, *cage = nullptr;
+  for (const Row& row : rows) {
+    if (row.isReduced() && row.isChoice() && (!reduced || row.errorTotalRms < reduced->errorTotalRms)) reduced = &row;
+  }
+  if (!reduced) return {};
+  for (const Row& row : rows) {
+    if (!row.isChoice() || row.isReduced() || row.totalMs > reduced->totalMs) continue;
+    if (!cage || row.errorTotalRms < cage->errorTotalRms) cage = &row;
+  }
+  char text[512];
+  if (!cage) {
+    std::snprintf(text, sizeof text, "Take a reduced body of %.0f modes where %.3g ms a frame are all there is: no cage is as fast.",
+                  reduced->modes, reduced->totalMs);
+  } else if (cage->errorTotalRms <= reduced->errorTotalRms) {
+    std::snprintf(text, sizeof text,
+                  "Take embedding: %.0f tets have an error of %.2e at %.3g ms a frame, the best reduced body, of %.0f "
+                  "modes, %.2e at %.3g ms.",
+                  cage->tets, cage->errorTotalRms, cage->totalMs, reduced->modes, reduced->errorTotalRms, reduced->totalMs);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "Take a reduced body: %.0f modes have an error of %.2e at %.3g ms a frame, the best cage that is as "
+                  "fast, of %.0f tets, %.2e at %.3g ms.",
+                  reduced->modes, reduced->errorTotalRms, reduced->totalMs, cage->tets, cage->errorTotalRms, cage->totalMs);
+  }
+  return text;
 }
 
 double referenceError(const std::vector<Row>& rows) {

@@ -4,6 +4,7 @@
 // What the rows of one scene say together.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "report/report_row.h"
@@ -31,5 +32,17 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
 /// the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1 and 3). 0 if
 /// there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
+
+/// A reduced body against cages, by the deformation.
+struct ReductionLimit {
+  double modes = 0;
+  double amplitude = 0;  ///< RMS of the reference's surface from rest, up to which the error is at most a tenth of that
+};
+/// Of the reduced row of most modes, over its frames; amplitude 0 if there is none, or none of its frames is so good.
+ReductionLimit reductionLimit(const std::vector<Row>& rows);
+
+/// What to take in this scene, in a sentence: the most accurate reduced body, or the cages that cost no more. Empty
+/// without reduced rows.
+std::string reductionAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

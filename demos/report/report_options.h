@@ -21,6 +21,7 @@ struct ReportOptions {
   std::string reference;  ///< file of tets that count as right, in the mesh's space; empty: made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
+  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; none: there are none
   bool bullet = false;           ///< bodies by Bullet's forces instead of the library's
   bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
   int frames = 0;                ///< 0: the scene's own
@@ -48,7 +49,7 @@ class ReportCommandLine {
 
   std::vector<std::string> cages_;
   std::string interpolation_, force_ = "tetskin";
-  bool quick_ = false, full_ = false, noCalibration_ = false;
+  bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };
 
 }  // namespace tetskin::report

@@ -128,13 +128,22 @@ void ModalBody::rest() {
   m_interpolationWorldTransform = m_rigidTransformWorld;
 }
 
+/// Bullet integrates sleeping bodies, too, which rounds their frame anew each time: from the same one, to the same bits.
+void ModalBody::stay() {
+  if (!slept_ && !held_) frame_ = m_rigidTransformWorld;
+  slept_ = true;
+  m_rigidTransformWorld = frame_;
+  rest();
+}
+
 /// May be called at any time, and any number of times in a substep: what it sets depends on the state before the substep
 /// alone.
 void ModalBody::correctPrediction() {
   const auto* solver = dynamic_cast<const btReducedDeformableBodySolver*>(getSoftBodySolver());
   if (!solver) return;
   for (int n = 0; n < m_nodes.size(); ++n) m_nodes[n].index = n;
-  if (!isActive()) return rest();
+  if (!isActive()) return stay();
+  slept_ = false;
   const btScalar seconds = Step::seconds(*solver);
   const btVector3& gravity = Step::gravity(*solver);
   if (m_sleepingThreshold != threshold_) sleepSpeed_ = m_sleepingThreshold;

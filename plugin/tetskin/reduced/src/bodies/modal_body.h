@@ -44,12 +44,13 @@ class ModalBody : public btReducedDeformableBody {
   void setMasses(const CageModes& modes, double density);
   void setFrame(const btTransform& frame);
   void correctPrediction();
+  void stay();
   void rest();
   void vibrate(btScalar seconds, const btVector3& gravity);
 
-  bool held_;
+  bool held_, slept_ = false;
   btScalar damping_ = 0;
-  btTransform frame_ = btTransform::getIdentity();  ///< where a held body is
+  btTransform frame_ = btTransform::getIdentity();  ///< where a held or sleeping body is
   std::vector<btVector3> momenta_;                  ///< by mode: over gravity, in the body's frame
   btScalar sleepSpeed_, threshold_;  ///< as the application has it; with what gravity gives in a substep
 };

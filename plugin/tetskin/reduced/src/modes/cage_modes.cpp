@@ -16,7 +16,7 @@ namespace {
 
 /// Weight of the cage's own bending beside the fine nodes' distances, which it must not spoil; it is there for nodes
 /// that carry next to nothing.
-constexpr double kBendingWeight = 1e-4;
+constexpr double kBendingWeight = 1e-6;
 /// Least mass of a node over the mean: nodes that carry nothing, or whose weights are of nodes outside, would have none.
 constexpr double kLeastMass = 1e-3;
 
