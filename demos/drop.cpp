@@ -159,7 +159,8 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   }
   row("attach", number("attach_ms", "%.2f ms"));
   row("rest error", number("rest_error_max", "%.1e box diagonals"));
-  row("body", json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
+  row("body",
+      json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
   row("force", json.at("force").get<std::string>());
   row("contact", json.at("contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
@@ -205,8 +206,9 @@ int main(int argc, char** argv) {
   CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
   line.addModelOptions(options.model);
   line.addForceOption(options.force);
-  line.addWord("--body", options.body, {"elastic", "reduced"},
-               "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
+  line.addWord(
+      "--body", options.body, {"elastic", "reduced"},
+      "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
   line.addCount("--modes", options.modes, "Vibrations of a reduced body");
   line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of");
   line.addContactOption(options.contact);

@@ -109,9 +109,10 @@ def reduction_text(scene):
     rows = [row for row in scene["rows"] if row["modes"]]
     if not rows:
         return NOT_REDUCED if scene["scene"] == "twist" else ""
+    shown = max(row["tets"] for row in rows)
     text = f"\nReduced bodies: modes of the reference's tets, found in {rows[0]['modes_ms'] / 1000:.3g} s; "
     text += "the cage's nodes tell them to " + ", ".join(
-        f"{row['projection_error']:.1%} ({row['modes']:.0f} modes)" for row in rows) + ". "
+        f"{row['projection_error']:.1%} ({row['modes']:.0f} modes)" for row in rows if row["tets"] == shown) + ". "
     limit = scene["reduction_limit"]
     if scene["scene"] == "sag" and limit["amplitude"] > 0:
         text += (f"Linear modes serve up to a deformation of {limit['amplitude']:.2g} (RMS): beyond, {limit['modes']:.0f} of "
@@ -202,12 +203,22 @@ def draw_totals(axes, scene):
             if not rows:
                 continue
             bullet = interpolation == "bullet"
-            for row in rows:
-                if row["modes"]:
-                    axes.annotate(f"{row['modes']:.0f} modes", (row["total_ms"], row["error_total_rms"]), fontsize=7,
-                                  textcoords="offset points", xytext=(5, 4), color="#000000")
+            if material == "reduced":
+                draw_reduced(axes, rows, look_of(interpolation, material))
+                continue
             axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], linewidth=1.4,
                       linestyle="" if bullet else style, zorder=5 if bullet else 3, **look_of(interpolation, material))
+
+
+def draw_reduced(axes, rows, look):
+    """A line a cage, by the number of modes."""
+    for tets in sorted({row["tets"] for row in rows}):
+        line = sorted((row for row in rows if row["tets"] == tets), key=lambda row: row["modes"])
+        axes.plot([r["total_ms"] for r in line], [r["error_total_rms"] for r in line], linewidth=1.2, zorder=4,
+                  linestyle=STYLES["reduced"], **look)
+        for row in line:
+            axes.annotate(f"{row['modes']:.0f}", (row["total_ms"], row["error_total_rms"]), fontsize=7,
+                          textcoords="offset points", xytext=(3, -9))
 
 
 def draw_embedding(axes, scene):
@@ -254,7 +265,8 @@ def legend_of(axes, scene):
         if any_series(scene, (interpolation,)):
             for material, style in STYLES.items():
                 if series(scene, interpolation, material):
-                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material],
+                    modes = " (number: modes)" if material == "reduced" else ""
+                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material] + modes,
                                           **look_of(interpolation, material)))
             entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding alone",
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
@@ -313,6 +325,7 @@ def error_over_amplitude(scene, name, tets):
     """Frame by frame: how wrong reduced bodies and a cage are, over how far the surface is from rest."""
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
     rows = [r for r in scene["rows"] if r["modes"] and r["finite"]]
+    rows = [r for r in rows if r["tets"] == max(r["tets"] for r in rows)]
     cages = [r for r in scene["rows"] if r["material"] == "calibrated" and r["interpolation"] == rows[0]["interpolation"]]
     rows += sorted(cages, key=lambda r: abs(math.log(r["tets"] / tets)))[:1]
     for k, row in enumerate(rows):

@@ -84,46 +84,53 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows) {
     if (row.isReduced() && (!best || row.modes > best->modes)) best = &row;
   }
   if (!best) return {};
-  // Up to the smallest amplitude at which it is not good enough: a vibration passes small ones again and again.
-  double good = 0.0, bad = HUGE_VAL;
+  double good = 0.0;
   for (std::size_t k = 0; k < best->errorByFrame.size(); ++k) {
     const double amplitude = best->amplitudeByFrame[k];
-    if (best->errorByFrame[k] > kVisible * amplitude) {
-      bad = std::min(bad, amplitude);
-    }
-  }
-  for (const double amplitude : best->amplitudeByFrame) {
-    if (amplitude < bad) good = std::max(good, amplitude);
+    if (best->errorByFrame[k] <= kVisible * amplitude) good = std::max(good, amplitude);
   }
   return {best->modes, good};
 }
 
+namespace {
+
+/// The most accurate cage that costs no more; null if there is none.
+const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (!row.isChoice() || row.isReduced() || row.totalMs > reduced.totalMs) continue;
+    if (!best || row.errorTotalRms < best->errorTotalRms) best = &row;
+  }
+  return best;
+}
+
+std::string inWords(const Row& row) {
+  char text[128];
+  std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms a frame", row.errorTotalRms, row.totalMs);
+  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets";
+  return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
+}
+
+}  // namespace
+
 std::string reductionAdvice(const std::vector<Row>& rows) {
   const Row *reduced = nullptr, *cage = nullptr;
+  double gain = 0.0;
   for (const Row& row : rows) {
-    if (row.isReduced() && row.isChoice() && (!reduced || row.errorTotalRms < reduced->errorTotalRms)) reduced = &row;
+    if (!row.isReduced() || !row.isChoice()) continue;
+    const Row* beside = cageBeside(row, rows);
+    const double quotient = beside ? beside->errorTotalRms / row.errorTotalRms : HUGE_VAL;
+    if (reduced && quotient <= gain) continue;
+    reduced = &row;
+    cage = beside;
+    gain = quotient;
   }
   if (!reduced) return {};
-  for (const Row& row : rows) {
-    if (!row.isChoice() || row.isReduced() || row.totalMs > reduced->totalMs) continue;
-    if (!cage || row.errorTotalRms < cage->errorTotalRms) cage = &row;
-  }
-  char text[512];
-  if (!cage) {
-    std::snprintf(text, sizeof text, "Take a reduced body of %.0f modes where %.3g ms a frame are all there is: no cage is as fast.",
-                  reduced->modes, reduced->totalMs);
-  } else if (cage->errorTotalRms <= reduced->errorTotalRms) {
-    std::snprintf(text, sizeof text,
-                  "Take embedding: %.0f tets have an error of %.2e at %.3g ms a frame, the best reduced body, of %.0f "
-                  "modes, %.2e at %.3g ms.",
-                  cage->tets, cage->errorTotalRms, cage->totalMs, reduced->modes, reduced->errorTotalRms, reduced->totalMs);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "Take a reduced body: %.0f modes have an error of %.2e at %.3g ms a frame, the best cage that is as "
-                  "fast, of %.0f tets, %.2e at %.3g ms.",
-                  reduced->modes, reduced->errorTotalRms, reduced->totalMs, cage->tets, cage->errorTotalRms, cage->totalMs);
-  }
-  return text;
+  if (!cage)
+    return "Take a reduced body where nothing else is fast enough: " + inWords(*reduced) + ", and no cage is as fast.";
+  const char* winner = gain > 1.0 ? "Take a reduced body: " : "Take embedding: ";
+  const Row &better = gain > 1.0 ? *reduced : *cage, &worse = gain > 1.0 ? *cage : *reduced;
+  return winner + inWords(better) + ", " + inWords(worse) + ".";
 }
 
 double referenceError(const std::vector<Row>& rows) {

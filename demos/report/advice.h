@@ -36,13 +36,14 @@ double referenceError(const std::vector<Row>& rows);
 /// A reduced body against cages, by the deformation.
 struct ReductionLimit {
   double modes = 0;
-  double amplitude = 0;  ///< RMS of the reference's surface from rest, up to which the error is at most a tenth of that
+  double amplitude =
+      0;  ///< the largest at which the error is at most a tenth of it: RMS of the reference's surface from rest
 };
 /// Of the reduced row of most modes, over its frames; amplitude 0 if there is none, or none of its frames is so good.
 ReductionLimit reductionLimit(const std::vector<Row>& rows);
 
-/// What to take in this scene, in a sentence: the most accurate reduced body, or the cages that cost no more. Empty
-/// without reduced rows.
+/// What to take in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
+/// these. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

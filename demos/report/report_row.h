@@ -29,10 +29,10 @@ struct Row {
   double normalErrorMeanDeg = 0;
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< a frame
   double attachMs = 0, calibrateMs = 0;              ///< once
-  double modes = 0;              ///< in use by a reduced body; 0: it is simulated by its tets
-  double modesLeftOut = 0;       ///< too fast for the substep
-  double modesMs = 0;            ///< once: to find the modes
-  double projectionError = 0;    ///< of the modes in use, the largest: see ReductionReport
+  double modes = 0;                                  ///< in use by a reduced body; 0: it is simulated by its tets
+  double modesLeftOut = 0;                           ///< too fast for the substep
+  double modesMs = 0;                                ///< once: to find the modes
+  double projectionError = 0;                        ///< of the modes in use, the largest: see ReductionReport
   double speedup = 0;                                ///< against the reference's total; 0 where nothing is simulated
   double speedupAgainstBullet = 0;                   ///< the same against a reference by Bullet's forces; 0 without
   double memoryBytes = 0;
@@ -42,7 +42,7 @@ struct Row {
 
   std::vector<double> errorByFrame;      ///< total, RMS
   std::vector<double> amplitudeByFrame;  ///< how far the reference's surface is from rest, RMS
-  bool pareto = false;               ///< nothing in its scene is both faster and more accurate
+  bool pareto = false;                   ///< nothing in its scene is both faster and more accurate
 
   bool isReduced() const { return modes != 0; }
   bool isReference() const { return interpolation == "reference"; }

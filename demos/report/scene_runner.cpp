@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -34,8 +35,8 @@ std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options,
   return {options.surfaces.front()};
 }
 
-/// Where bodies move by vibrations, too. In the others nodes are moved by hand, which a body that has only its vibrations
-/// cannot follow.
+/// Where bodies move by vibrations, too. In the others nodes are moved by hand, which a body that has only its
+/// vibrations cannot follow.
 bool isReducible(const std::string& scene) {
   return scene == "sag" || scene == "drop";
 }
@@ -72,13 +73,16 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   return jobs;
 }
 
-/// One surface of each, in the cage that is shown: what they cost beyond the modes is that of the cage's nodes.
+/// One surface of each, in the coarsest cage and in the one that is shown: a reduced body's step costs its modes times
+/// the cage's nodes, and what it gets wrong depends on the cage least.
 void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
   const auto shown = std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return job.coloured; });
   if (shown == jobs.end()) return;
-  const std::size_t tets = shown->tets;
-  for (const std::size_t modes : options.modes) {
-    jobs.push_back({tets, CageKind::Calibrated, {ours(options.surfaces).front()}, false, false, static_cast<int>(modes)});
+  for (const std::size_t tets : std::set<std::size_t>{options.tets.front(), shown->tets}) {
+    for (const std::size_t modes : options.modes) {
+      jobs.push_back(
+          {tets, CageKind::Calibrated, {ours(options.surfaces).front()}, false, false, static_cast<int>(modes)});
+    }
   }
 }
 

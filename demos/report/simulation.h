@@ -45,7 +45,7 @@ struct Simulation {
   SurfaceCosts surfaces;
   int modes = 0;                 ///< of a reduced body
   double projectionError = 0.0;  ///< of these, the largest
-  bool finite = true;  ///< and not exploded; the trajectory ends before the first frame that is not
+  bool finite = true;            ///< and not exploded; the trajectory ends before the first frame that is not
 };
 
 /// Told of every frame that is done.

@@ -16,7 +16,7 @@ struct SurfaceErrors {
   double normalMeanDeg = 0.0;
   std::vector<double> rmsByFrame;
   std::vector<double> amplitudeByFrame;  ///< of the reference itself, from rest, RMS
-  std::vector<float> rmsByVertex;  ///< over the frames
+  std::vector<float> rmsByVertex;        ///< over the frames
 };
 
 /// Of the surface that the nodes of a cage carry.

@@ -25,7 +25,7 @@ constexpr double kFloorTolerance = 0.01;
 struct SceneOptions {
   SoftBodyOptions body;
   Force force = Force::Elastic;
-  int substeps = 4;  ///< of a frame
+  int substeps = 4;                      ///< of a frame
   std::shared_ptr<Reduction> reduction;  ///< with Force::Reduced: whose vibrations
   int modes = 20;                        ///< the same: of each body
   double frameSeconds = 1.0 / kFrameRate;

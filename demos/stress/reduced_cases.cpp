@@ -19,6 +19,7 @@ StressCase reduced(std::initializer_list<std::string> words) {
 void addReducedCases(Cases& cases) {
   for (const double stiffness : {1e2, 1e3, 1e4, 1e5}) {
     for (const int substeps : {1, 4, 16}) {
+      if (stiffness > 1e4 && substeps == 1) continue;  // not one mode is slow enough
       StressCase made = reduced({"land", text(stiffness), std::to_string(substeps)});
       made.scene = "land";
       made.stiffness = stiffness;
@@ -42,7 +43,7 @@ void addReducedCases(Cases& cases) {
     made.quick = true;
     cases.push_back(made);
   }
-  for (const Cage cage : {Cage::NeedleTets, Cage::Inverted, Cage::Far1e5, Cage::Tiny, Cage::Huge}) {
+  for (const Cage cage : {Cage::Inverted, Cage::Far1e5, Cage::Tiny, Cage::Huge}) {
     StressCase made = reduced({"cage", toString(cage)});
     made.scene = "sag";
     made.cage = cage;

@@ -105,6 +105,13 @@ inline ReducedBodyOptions barOptions(const btTransform& placement = btTransform:
   return options;
 }
 
+/// Quick to step.
+inline ReducedBodyOptions fewModes(const btTransform& placement) {
+  ReducedBodyOptions options = barOptions(placement);
+  options.modes = 6;
+  return options;
+}
+
 inline std::unique_ptr<ReducedBody> added(World& world, const VibrationModes& modes,
                                           const ReducedBodyOptions& options = barOptions()) {
   Result<std::unique_ptr<ReducedBody>> body = ReducedBody::add(*world.world, modes, barCage(), options);

@@ -96,6 +96,9 @@ TEST(BadReducedBodies, ModesAndCages) {
   torn.shapes[3].pop_back();
   expectError(world, torn, barCage(), barOptions(), StatusCode::SizeMismatch, "shapes");
   expectError(world, barModes(), {}, barOptions(), StatusCode::Empty, "");
+  Cage away = barCage();
+  for (Eigen::Vector3d& node : away.nodes) node.y() += 2.0;
+  expectError(world, barModes(), away, barOptions(), StatusCode::OutsideCage, "not where the cage is");
   Cage flat = barCage();
   flat.tets.push_back({0, 1, 2, 3});
   expectError(world, barModes(), flat, barOptions(), StatusCode::Degenerate, "flat");

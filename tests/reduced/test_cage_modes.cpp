@@ -52,7 +52,8 @@ TEST(CageModes, AreWhatTheReportedErrorSays) {
       for (std::size_t k = 0; k < 3; ++k) {
         double carried = 0.0;
         for (std::size_t c = 0; c < 4; ++c) {
-          carried += bindings[n].weights[c] * coarse.shapes[r][3 * static_cast<std::size_t>(cage.tets[bindings[n].tet][c]) + k];
+          carried += bindings[n].weights[c] *
+                     coarse.shapes[r][3 * static_cast<std::size_t>(cage.tets[bindings[n].tet][c]) + k];
         }
         difference += barModes().masses[n] * std::pow(carried - barModes().shapes[r][3 * n + k], 2);
       }

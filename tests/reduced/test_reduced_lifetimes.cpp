@@ -12,7 +12,7 @@ using namespace test;
 TEST(ReducedBodies, LandAndSleepWhereTheyLie) {
   World world;
   world.addFloor();
-  const auto body = added(world, barModes(), barOptions(at(0, 0.5, 0)));
+  const auto body = added(world, barModes(), fewModes(at(0, 0.5, 0)));
   SoftBodySkin skin;
   const TetMesh bar = fineBar();
   ASSERT_TRUE(skin.bind(body->body(), barCage(), viewOf(bar.nodes)).ok());
@@ -47,11 +47,11 @@ TEST(ReducedBodies, OfDifferentSizesLandBesideEachOther) {
   const VibrationModes smallModes = vibrationModes(small, few).value();
   const auto first = ReducedBody::add(*world.world, smallModes, small, options);
   ASSERT_TRUE(first.ok()) << first.status().message;
-  const auto second = added(world, barModes(), barOptions(at(0, 0.5, 0)));
-  const auto third = added(world, barModes(), barOptions(at(3, 0.8, 0)));
+  const auto second = added(world, barModes(), fewModes(at(0, 0.5, 0)));
+  const auto third = added(world, barModes(), fewModes(at(3, 0.8, 0)));
   world.step(480);
-  for (const btSoftBody* body : {static_cast<btSoftBody*>(&first.value()->body()), static_cast<btSoftBody*>(&second->body()),
-                                 static_cast<btSoftBody*>(&third->body())}) {
+  for (const btSoftBody* body : {static_cast<btSoftBody*>(&first.value()->body()),
+                                 static_cast<btSoftBody*>(&second->body()), static_cast<btSoftBody*>(&third->body())}) {
     EXPECT_TRUE(allFinite(*body));
     EXPECT_GT(lowest(*body), -0.03);
     EXPECT_LT(lowest(*body), 0.3);

@@ -88,9 +88,7 @@ class FineBar {
       for (std::size_t k = 0; k < 3; ++k) x[n][k] += seconds * v[n][k];
     }
   }
-  Vector3d displacement(std::size_t n) {
-    return Eigen::Map<const Vector3d>(body_.positions()[n]) - fineBarNodes()[n];
-  }
+  Vector3d displacement(std::size_t n) { return Eigen::Map<const Vector3d>(body_.positions()[n]) - fineBarNodes()[n]; }
 
  private:
   static const std::vector<Vector3d>& fineBarNodes() {
@@ -159,7 +157,8 @@ TEST(ReducedMotion, OfAFreeBarIsThatOfItsTetsWhereItIsSmall) {
     for (std::size_t n = 0; n < modes.nodeCount(); ++n) {
       for (std::size_t k = 0; k < 3; ++k) fine.velocities()[n][k] += speed * modes.shapes[r][3 * n + k];
     }
-    body->body().m_reducedVelocityBuffer[static_cast<int>(r)] = static_cast<btScalar>(speed * std::sqrt(options.density));
+    body->body().m_reducedVelocityBuffer[static_cast<int>(r)] =
+        static_cast<btScalar>(speed * std::sqrt(options.density));
   }
   EXPECT_LT(errorOver(world, *body, fine, Vector3d::Zero(), 2 * kPi / omega), 0.02);
 }
@@ -181,7 +180,8 @@ TEST(ReducedMotion, OfAHeldBodyEndsWhereItsTetsWouldHang) {
 TEST(ReducedMotion, OfATurnedHeldBodyBendsByGravityInTheWorld) {
   World world;
   // Upside down: bends the other way in its own frame.
-  const auto body = added(world, barModes(true), barOptions(btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(kPi)))));
+  const auto body =
+      added(world, barModes(true), barOptions(btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(kPi)))));
   const double before = lowest(body->body());
   world.step(1200);
   EXPECT_LT(lowest(body->body()), before - 0.5);

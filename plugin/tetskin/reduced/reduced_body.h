@@ -43,10 +43,10 @@ struct TETSKIN_REDUCED_API ReductionReport {
   /// By mode in use: how far the fine nodes are, carried by the cage, from where the mode has them; over the mode
   /// itself, in the mean of squares by mass. 0: the cage tells all.
   std::vector<double> projectionErrors;
-  std::size_t leftOut = 0;   ///< modes that are too fast
-  std::size_t outside = 0;   ///< fine nodes in no tet of the cage, which are extrapolated
-  double fastest = 0.0;      ///< angular frequency of the last mode in use, radians a second
-  double milliseconds = 0.0; ///< wall time
+  std::size_t leftOut = 0;    ///< modes that are too fast
+  std::size_t outside = 0;    ///< fine nodes in no tet of the cage, which are extrapolated
+  double fastest = 0.0;       ///< angular frequency of the last mode in use, radians a second
+  double milliseconds = 0.0;  ///< wall time
 
   /// One line a fact, for people.
   std::string describe() const;
@@ -75,9 +75,10 @@ class TETSKIN_REDUCED_API ReducedBody {
   /// Cost    that of `embed` of the fine nodes, and a factorisation of a matrix of the cage's nodes
   /// Errors  InvalidOption: options out of range, modes too fast for the time step (or all of them, where they may be
   ///         left out), another solver, a soft body in the world that is not reduced; Empty: no modes; SizeMismatch;
-  ///         those of `makeSoftBody` about the cage, and of `embed`
-  static Result<std::unique_ptr<ReducedBody>> add(btDeformableMultiBodyDynamicsWorld& world, const VibrationModes& modes,
-                                                  const Cage& cage, const ReducedBodyOptions& options = {});
+  ///         OutsideCage: modes and cage are not at one place; those of `makeSoftBody` about the cage, and of `embed`
+  static Result<std::unique_ptr<ReducedBody>> add(btDeformableMultiBodyDynamicsWorld& world,
+                                                  const VibrationModes& modes, const Cage& cage,
+                                                  const ReducedBodyOptions& options = {});
   ~ReducedBody();
   ReducedBody(const ReducedBody&) = delete;
   ReducedBody& operator=(const ReducedBody&) = delete;
@@ -88,9 +89,8 @@ class TETSKIN_REDUCED_API ReducedBody {
   double youngsModulus() const;
   std::size_t modeCount() const;
 
-  /// Puts the body elsewhere, as it is bent and without any motion; it wakes. Bullet's own `transform` would take the bent
-  /// shape for the rest shape.
-  /// placement  as in the options
+  /// Puts the body elsewhere, as it is bent and without any motion; it wakes. Bullet's own `transform` would take the
+  /// bent shape for the rest shape. placement  as in the options
   void placeAt(const btTransform& placement);
 
  private:

@@ -120,8 +120,7 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
   }
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
-  const ModalMaterial material =
-      materialOf(modes, cage, options, static_cast<double>(world.getGravity().length()));
+  const ModalMaterial material = materialOf(modes, cage, options, static_cast<double>(world.getGravity().length()));
   const std::vector<double> frequencies = modes.frequencies(material.youngsModulus, material.density);
   const Selection selection = select(frequencies, options);
   if (Status status = checkSelection(selection, frequencies, options); !status.ok()) return status;
@@ -133,7 +132,8 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
   auto body = std::make_unique<ModalBody>(world.getWorldInfo(), nodes, !modes.pinned.empty());
   appendElements(positive, *body);
   meetRigidBodies(positive, options.margin, options.friction, *body);
-  body->begin(ofCage.value(), {modes.eigenvalues.begin(), modes.eigenvalues.begin() + static_cast<std::ptrdiff_t>(selection.slow)},
+  body->begin(ofCage.value(),
+              {modes.eigenvalues.begin(), modes.eigenvalues.begin() + static_cast<std::ptrdiff_t>(selection.slow)},
               material);
   body->updateConstants();
   buildTrees(*body);
@@ -182,8 +182,8 @@ std::string ReductionReport::describe() const {
   std::ostringstream text;
   text << projectionErrors.size() << " modes, up to " << fastest << " radians a second";
   if (leftOut > 0) text << "; " << leftOut << " were left out, too fast for the time step";
-  text << "\nthe cage's nodes tell them to "
-       << *std::max_element(projectionErrors.begin(), projectionErrors.end()) << " of themselves, or better";
+  text << "\nthe cage's nodes tell them to " << *std::max_element(projectionErrors.begin(), projectionErrors.end())
+       << " of themselves, or better";
   if (outside > 0) text << "\n" << outside << " nodes of the fine tets lie outside of the cage";
   return text.str();
 }

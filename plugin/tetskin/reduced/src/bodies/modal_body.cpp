@@ -66,7 +66,8 @@ void ModalBody::begin(const CageModes& modes, const std::vector<double>& eigenva
         static_cast<btScalar>(eigenvalues[static_cast<std::size_t>(r)] * material.youngsModulus / material.density);
     m_Kr[r] = m_eigenvalues[r];
     m_modes[r].resize(3 * m_nFull);
-    for (int k = 0; k < 3 * m_nFull; ++k) m_modes[r][k] = static_cast<btScalar>(shape[static_cast<std::size_t>(k)] / root);
+    for (int k = 0; k < 3 * m_nFull; ++k)
+      m_modes[r][k] = static_cast<btScalar>(shape[static_cast<std::size_t>(k)] / root);
     momenta_.push_back(toBulletVector(root * modes.momenta[static_cast<std::size_t>(r)]));
   }
   setMasses(modes, material.density);
@@ -128,7 +129,8 @@ void ModalBody::rest() {
   m_interpolationWorldTransform = m_rigidTransformWorld;
 }
 
-/// Bullet integrates sleeping bodies, too, which rounds their frame anew each time: from the same one, to the same bits.
+/// Bullet integrates sleeping bodies, too, which rounds their frame anew each time: from the same one, to the same
+/// bits.
 void ModalBody::stay() {
   if (!slept_ && !held_) frame_ = m_rigidTransformWorld;
   slept_ = true;
@@ -136,8 +138,8 @@ void ModalBody::stay() {
   rest();
 }
 
-/// May be called at any time, and any number of times in a substep: what it sets depends on the state before the substep
-/// alone.
+/// May be called at any time, and any number of times in a substep: what it sets depends on the state before the
+/// substep alone.
 void ModalBody::correctPrediction() {
   const auto* solver = dynamic_cast<const btReducedDeformableBodySolver*>(getSoftBodySolver());
   if (!solver) return;
@@ -163,8 +165,7 @@ void ModalBody::vibrate(btScalar seconds, const btVector3& gravity) {
   const btVector3 pull = held_ ? gravity * frame_.getBasis() : btVector3(0, 0, 0);  // in the body's frame
   for (int r = 0; r < m_nReduced; ++r) {
     const btScalar force = m_reducedForceElastic[r] + momenta_[static_cast<std::size_t>(r)].dot(pull);
-    m_reducedVelocity[r] =
-        (m_reducedVelocityBuffer[r] + seconds * force) / (1 + seconds * damping_ * m_eigenvalues[r]);
+    m_reducedVelocity[r] = (m_reducedVelocityBuffer[r] + seconds * force) / (1 + seconds * damping_ * m_eigenvalues[r]);
   }
 }
 

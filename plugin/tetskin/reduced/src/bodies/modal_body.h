@@ -52,7 +52,7 @@ class ModalBody : public btReducedDeformableBody {
   btScalar damping_ = 0;
   btTransform frame_ = btTransform::getIdentity();  ///< where a held or sleeping body is
   std::vector<btVector3> momenta_;                  ///< by mode: over gravity, in the body's frame
-  btScalar sleepSpeed_, threshold_;  ///< as the application has it; with what gravity gives in a substep
+  btScalar sleepSpeed_, threshold_;                 ///< as the application has it; with what gravity gives in a substep
 };
 
 }  // namespace tetskin::reduced_detail

@@ -17,8 +17,11 @@ namespace {
 /// Weight of the cage's own bending beside the fine nodes' distances, which it must not spoil; it is there for nodes
 /// that carry next to nothing.
 constexpr double kBendingWeight = 1e-6;
-/// Least mass of a node over the mean: nodes that carry nothing, or whose weights are of nodes outside, would have none.
+/// Least mass of a node over the mean: nodes that carry nothing, or whose weights are of nodes outside, would have
+/// none.
 constexpr double kLeastMass = 1e-3;
+/// Of the cage's box: fine nodes farther outside of it than this share of its diagonal are of another place.
+constexpr double kFarOutside = 0.2;
 
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
@@ -39,6 +42,14 @@ Status checkNodeTets(const std::vector<int>& nodeTets, std::size_t nodes, const 
     }
   }
   return {};
+}
+
+Status checkPlace(const std::vector<Eigen::Vector3d>& nodes, const TetMesh& cage) {
+  Box3 around = boundingBox(cage.nodes);
+  const double far = kFarOutside * around.diagonal().norm();
+  around.extend((around.min().array() - far).matrix()).extend((around.max().array() + far).matrix());
+  if (around.contains(boundingBox(nodes))) return {};
+  return {StatusCode::OutsideCage, "the tets that the modes are of are not where the cage is"};
 }
 
 Result<Weights> weightsOf(const std::vector<Eigen::Vector3d>& nodes, const TetMesh& cage,
@@ -139,6 +150,7 @@ std::vector<double> massesOf(const Eigen::VectorXd& carried, double total) {
 Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, const TetMesh& cage,
                               const std::vector<int>& nodeTets) {
   assert(count > 0 && count <= modes.modeCount());
+  if (Status status = checkPlace(modes.nodes, cage); !status.ok()) return status;
   const Result<Weights> weights = weightsOf(modes.nodes, cage, nodeTets);
   if (!weights.ok()) return weights.status();
   const Sparse& carried = weights.value().matrix;

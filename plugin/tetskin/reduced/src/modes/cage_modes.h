@@ -28,7 +28,7 @@ struct CageModes {
 /// Where no fine node tells, the cage bends as little as it can.
 /// count     modes to take, softest first
 /// nodeTets  by fine node: its tet of the cage; empty: by its place
-/// Errors    those of `embed`; SizeMismatch, IndexOutOfRange of nodeTets
+/// Errors    those of `embed`; OutsideCage: the fine nodes are elsewhere; SizeMismatch, IndexOutOfRange of nodeTets
 Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, const TetMesh& cage,
                               const std::vector<int>& nodeTets);
 
