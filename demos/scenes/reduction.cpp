@@ -3,6 +3,7 @@
 #include "scenes/reduction.h"
 
 #include "scenes/input_error.h"
+#include "scenes/timer.h"
 
 namespace tetskin::scenes {
 
@@ -17,8 +18,10 @@ const VibrationModes& Reduction::modes(const std::function<bool(const Eigen::Vec
   for (const VibrationModes& one : found_) {
     if (one.pinned == options.pinned) return one;
   }
+  const CpuTimer timer;
   Result<VibrationModes> modes = vibrationModes(fine_, options);
   require(modes.status());
+  milliseconds_ = timer.milliseconds();
   return found_.emplace_back(std::move(modes).value());
 }
 

@@ -21,8 +21,8 @@ class Reduction {
   /// The modes of the fine tets, free or with the nodes held that a scene chooses: found when they are first asked for.
   /// Throws InputError.
   const VibrationModes& modes(const std::function<bool(const Eigen::Vector3d&)>& held);
-  /// That finding the last ones took.
-  double milliseconds() const { return found_.empty() ? 0.0 : found_.back().milliseconds; }
+  /// Of the processor, that finding the last ones took.
+  double milliseconds() const { return milliseconds_; }
 
   std::vector<int> nodeTets;  ///< see ReducedBodyOptions
 
@@ -30,6 +30,7 @@ class Reduction {
   Cage fine_;
   int most_;
   std::deque<VibrationModes> found_;
+  double milliseconds_ = 0.0;
 };
 
 }  // namespace tetskin::scenes

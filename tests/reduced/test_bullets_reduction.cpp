@@ -65,6 +65,45 @@ TEST(BulletsReduction, NeverSleeps) {
   world.world->removeSoftBody(body.get());
 }
 
+/// Of a few nodes, far to the left.
+std::unique_ptr<ReducedBody> smallBody(World& world) {
+  const TetMesh small = makeBox({3, 2, 2}, Eigen::Vector3d(0.6, 0.4, 0.4));
+  VibrationOptions few;
+  few.modes = 4;
+  ReducedBodyOptions options = barOptions(at(-9, 0.5, 0));
+  options.leaveOutFastModes = true;
+  auto body = ReducedBody::add(*world.world, vibrationModes(small, few).value(), small, options);
+  EXPECT_TRUE(body.ok()) << body.status().message;
+  return std::move(body).value();
+}
+
+double largestDistance(const btSoftBody& a, const btSoftBody& b) {
+  double largest = 0.0;
+  for (int n = 0; n < a.m_nodes.size(); ++n) largest = std::max(largest, (nodeOf(a, n) - nodeOf(b, n)).norm());
+  return largest;
+}
+
+TEST(BulletsReduction, TouchesOtherNodesOfABodyThatCameAfterASmallerOne) {
+  // Tilted, so that one edge lands first.
+  const btTransform tilted(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)), btVector3(0, btScalar(0.8), 0));
+  constexpr int kSubsteps = 120;
+  World alone, beside;
+  alone.addFloor();
+  beside.addFloor();
+  const auto other = smallBody(beside);
+  const auto first = bullets(alone, barModes(), fewModes(tilted)), second = bullets(beside, barModes(), fewModes(tilted));
+  alone.step(kSubsteps);
+  beside.step(kSubsteps);
+  EXPECT_GT(largestDistance(*first, *second), 0.01);
+  alone.world->removeSoftBody(first.get());
+  beside.world->removeSoftBody(second.get());
+
+  const auto oursAlone = added(alone, barModes(), fewModes(tilted)), ours = added(beside, barModes(), fewModes(tilted));
+  alone.step(kSubsteps);
+  beside.step(kSubsteps);
+  EXPECT_LT(largestDistance(oursAlone->body(), ours->body()), 1e-3);
+}
+
 TEST(BulletsReduction, ExplodesByItsDamping) {
   World world(btVector3(0, 0, 0));
   const auto body = bullets(world, barModes(), barOptions());
