@@ -54,7 +54,8 @@ TEST(Advice, SaysWhetherAReducedBodyGainsOverCagesThatCostNoMore) {
                            rowWith("linear", 0.05, 5, 0.02)};
   EXPECT_EQ(report::reductionAdvice(rows), "");
   rows.push_back(reducedWith(20, 6, 0.03));  // a cage is better and faster
-  EXPECT_EQ(report::reductionAdvice(rows).find("Take embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"), 0u);
+  EXPECT_EQ(report::reductionAdvice(rows).find("Take embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"),
+            0u);
   rows.push_back(reducedWith(5, 1.5, 0.04));  // the cage of its time is worse
   EXPECT_EQ(report::reductionAdvice(rows).find("Take a reduced body: 5 modes"), 0u) << report::reductionAdvice(rows);
   rows.push_back(reducedWith(1, 0.1, 0.5));  // nothing else is as fast

@@ -91,7 +91,8 @@ TEST(BulletsReduction, TouchesOtherNodesOfABodyThatCameAfterASmallerOne) {
   alone.addFloor();
   beside.addFloor();
   const auto other = smallBody(beside);
-  const auto first = bullets(alone, barModes(), fewModes(tilted)), second = bullets(beside, barModes(), fewModes(tilted));
+  const auto first = bullets(alone, barModes(), fewModes(tilted)),
+             second = bullets(beside, barModes(), fewModes(tilted));
   alone.step(kSubsteps);
   beside.step(kSubsteps);
   EXPECT_GT(largestDistance(*first, *second), 0.01);
