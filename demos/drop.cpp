@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include <tetskin/reduced/reduced_body.h>
+
 #include "scenes/input_error.h"
 #include "scenes/player.h"
 #include "scenes/summary.h"
@@ -20,9 +22,15 @@ struct DropOptions {
   ModelOptions model;
   Force force = Force::Elastic;
   Contact contact = Contact::Surface;
+  std::string body = "elastic";
+  std::size_t modes = 20;
   SkinOptions skin;
   OutputOptions output{"out/drop", "", 240, 1, false};
   bool writeCage = false;
+
+  bool reduced() const { return body == "reduced"; }
+  /// Bullet's reduced bodies are touched at their nodes alone.
+  bool touchesBySurface() const { return contact == Contact::Surface && !reduced(); }
 };
 
 /// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
@@ -32,6 +40,8 @@ SceneOptions howOf(const DropOptions& options) {
   SceneOptions how;
   how.force = options.force;
   if (options.force == Force::Elastic) how.body.damping = kDamping;
+  if (options.reduced()) how.force = Force::Reduced;
+  how.modes = static_cast<int>(options.modes);
   return how;
 }
 
@@ -60,7 +70,7 @@ class Drop {
         player_(options.model, "obstacles", howOf(options)),
         surface_(player_.carry(options.skin)),
         restExtent_(bounds().sizes().maxCoeff()) {
-    if (options.contact == Contact::Surface) player_.touchBySurface();
+    if (options.touchesBySurface()) player_.touchBySurface();
   }
 
   const ObjLayout& layout() const { return player_.model().layout; }
@@ -106,8 +116,13 @@ class Drop {
 nlohmann::ordered_json Drop::summarise(const Playback& run) {
   const double scale = player_.place().scale, margin = player_.scene().margin() / scale;
   nlohmann::ordered_json json = summaryOf(player_.model(), player_.fit());
+  json["body"] = options_.body;
+  if (const ReductionReport* reduction = player_.scene().world().reduction()) {
+    json["modes"] = reduction->projectionErrors.size();
+    json["modes_left_out"] = reduction->leftOut;
+  }
   json["force"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
-  json["contact"] = options_.contact == Contact::Surface ? "surface" : "cage";
+  json["contact"] = options_.touchesBySurface() ? "surface" : "cage";
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
@@ -144,6 +159,8 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   }
   row("attach", number("attach_ms", "%.2f ms"));
   row("rest error", number("rest_error_max", "%.1e box diagonals"));
+  row("body",
+      json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
   row("force", json.at("force").get<std::string>());
   row("contact", json.at("contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
@@ -189,6 +206,11 @@ int main(int argc, char** argv) {
   CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
   line.addModelOptions(options.model);
   line.addForceOption(options.force);
+  line.addWord(
+      "--body", options.body, {"elastic", "reduced"},
+      "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
+  line.addCount("--modes", options.modes, "Vibrations of a reduced body");
+  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of");
   line.addContactOption(options.contact);
   line.addInterpolationOption(options.skin);
   line.addSkinOptions(options.skin);

@@ -7,7 +7,7 @@ JSON file (or in the folder given).
 error_vs_time.py RESULTS.json [FOLDER] [--target-error X] [--tets N] [--no-surface] [--quiet]
 
 For every scene: a table, orders, the reference's own error, and the cheapest setting below an error of X;
-SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest
+SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_amplitude.png, of reduced bodies over the deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest
 to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
@@ -28,13 +28,14 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
-STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--"}
+STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--",
+          "reduced": (0, (1, 1.5))}
 # Kinds that are there to tell what makes the difference, with one surface: told apart by colour and marker as well.
-KIND_COLOURS = {"same_calibrated": "#56B4E9", "split": "#009E73", "filled": "#CC79A7"}
-KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v"}
+KIND_COLOURS = {"same_calibrated": "#56B4E9", "split": "#009E73", "filled": "#CC79A7", "reduced": "#000000"}
+KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*"}
 # What stands behind a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
-         "calibrated": ", calibrated"}
+         "calibrated": ", calibrated", "reduced": ", reduced"}
 plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
                      "svg.hashsalt": "tetskin"})
 
@@ -50,7 +51,11 @@ CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, a
 
 def setting(row):
     """The name of a row's surface."""
-    return row["interpolation"] + KINDS[row["material"]]
+    name = row["interpolation"] + KINDS[row["material"]]
+    if not row["modes"]:
+        return name
+    left_out = f" ({row['modes_left_out']:.0f} left out)" if row["modes_left_out"] else ""
+    return f"{name}, {row['modes']:.0f} modes{left_out}"
 
 
 def tets_of(row):
@@ -83,6 +88,10 @@ def table_line(row, reference_error, integrator, against):
             + (f" {row['error_against_bullet_rms']:.2e} | {row['speedup_against_bullet']:.4g} |" if against else "") + "\n")
 
 
+NOT_REDUCED = ("\nNo reduced bodies: the bar's ends are driven, and what moves by its vibrations alone has none that takes them "
+               "along; Bullet's constraint for a reduced body's nodes holds them where they began.\n")
+
+
 def orders_text(scene):
     text = "\nObserved orders (error over edge length; total / embedding alone):\n\n"
     for order in scene["orders"]:
@@ -93,6 +102,22 @@ def orders_text(scene):
             text += (f"- {order['interpolation']}: {overall['total']:.1f} / {overall['embedding']:.1f} over all;"
                      + ",".join(steps) + "\n")
     return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED)
+
+
+def reduction_text(scene):
+    """What of reduced bodies the table does not show, and whether to take one."""
+    rows = [row for row in scene["rows"] if row["modes"]]
+    if not rows:
+        return NOT_REDUCED if scene["scene"] == "twist" else ""
+    shown = max(row["tets"] for row in rows)
+    text = f"\nReduced bodies: modes of the reference's tets, found in {rows[0]['modes_ms'] / 1000:.3g} s; "
+    text += "the cage's nodes tell them to " + ", ".join(
+        f"{row['projection_error']:.1%} ({row['modes']:.0f} modes)" for row in rows if row["tets"] == shown) + ". "
+    limit = scene["reduction_limit"]
+    if scene["scene"] == "sag" and limit["amplitude"] > 0:
+        text += (f"Linear modes serve up to a deformation of {limit['amplitude']:.2g} (RMS): beyond, {limit['modes']:.0f} of "
+                 "them are wrong by more than a tenth of it. ")
+    return text + scene["reduction_advice"] + "\n"
 
 
 def cheapest_text(scene, target):
@@ -142,6 +167,7 @@ def tables(results, target):
         if scene["reference_error"] > 0:
             text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
                      "nothing, by the finest cages that are made as it is.\n")
+        text += reduction_text(scene)
         text += orders_text(scene)
         if target:
             text += cheapest_text(scene, target)
@@ -177,8 +203,22 @@ def draw_totals(axes, scene):
             if not rows:
                 continue
             bullet = interpolation == "bullet"
+            if material == "reduced":
+                draw_reduced(axes, rows, look_of(interpolation, material))
+                continue
             axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], linewidth=1.4,
                       linestyle="" if bullet else style, zorder=5 if bullet else 3, **look_of(interpolation, material))
+
+
+def draw_reduced(axes, rows, look):
+    """A line a cage, by the number of modes."""
+    for tets in sorted({row["tets"] for row in rows}):
+        line = sorted((row for row in rows if row["tets"] == tets), key=lambda row: row["modes"])
+        axes.plot([r["total_ms"] for r in line], [r["error_total_rms"] for r in line], linewidth=1.2, zorder=4,
+                  linestyle=STYLES["reduced"], **look)
+        for row in line:
+            axes.annotate(f"{row['modes']:.0f}", (row["total_ms"], row["error_total_rms"]), fontsize=7,
+                          textcoords="offset points", xytext=(3, -9))
 
 
 def draw_embedding(axes, scene):
@@ -225,7 +265,8 @@ def legend_of(axes, scene):
         if any_series(scene, (interpolation,)):
             for material, style in STYLES.items():
                 if series(scene, interpolation, material):
-                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material],
+                    modes = " (number: modes)" if material == "reduced" else ""
+                    entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material] + modes,
                                           **look_of(interpolation, material)))
             entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding alone",
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
@@ -277,6 +318,30 @@ def error_over_frames(scene, name, tets):
     axes.set_title(f"{title_of(scene)} ({name}, about {tets:,.0f} tets)", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
+    return figure
+
+
+def error_over_amplitude(scene, name, tets):
+    """Frame by frame: how wrong reduced bodies and a cage are, over how far the surface is from rest."""
+    figure, axes = plt.subplots(figsize=(6.4, 3.6))
+    rows = [r for r in scene["rows"] if r["modes"] and r["finite"]]
+    rows = [r for r in rows if r["tets"] == max(r["tets"] for r in rows)]
+    cages = [r for r in scene["rows"] if r["material"] == "calibrated" and r["interpolation"] == rows[0]["interpolation"]]
+    rows += sorted(cages, key=lambda r: abs(math.log(r["tets"] / tets)))[:1]
+    for k, row in enumerate(rows):
+        label = setting(row) if row["modes"] else f"{setting(row)}, {row['tets']:,.0f} tets"
+        axes.plot(row["amplitude_rms_by_frame"], row["error_total_rms_by_frame"], ".", markersize=4,
+                  color=str(0.75 - 0.75 * k / len(rows)) if row["modes"] else COLOURS[row["interpolation"]], label=label)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = axes.get_xlim()
+    axes.plot([low, high], [0.1 * low, 0.1 * high], color="#999999", linewidth=0.8, label="a tenth of the deformation")
+    axes.set_xlim(low, high)
+    axes.set_xlabel("deformation: distance from rest, RMS, box diagonals")
+    axes.set_ylabel("error, RMS")
+    axes.set_title(f"{title_of(scene)} ({name})", fontsize=11, loc="left")
+    axes.grid(True, color="#dddddd", linewidth=0.6)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9)
     return figure
 
 
@@ -335,6 +400,8 @@ def draw(scene, model, arguments, folder):
     yield save(error_against_time(scene, name), folder, base)
     if integrated and any(row["error_total_rms_by_frame"] for row in scene["rows"]):
         yield save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
+    if scene["scene"] == "sag" and any(row["modes"] for row in scene["rows"]):
+        yield save(error_over_amplitude(scene, name, arguments.tets), folder, f"{base}_amplitude")
     mesh = None if arguments.no_surface else coloured_mesh(f"error_{base}.ply", folder, arguments.results.parent)
     if mesh:
         try:

@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace tetskin::report {
 namespace {
 
+/// Of the deformation: a larger error shows.
+constexpr double kVisible = 0.1;
 constexpr double kLeastOrder = 1.0, kMostOrder = 3.0;
 
 /// The rows of one kind, coarsest first.
@@ -73,6 +76,61 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
   if (sorted.size() < 2) return {};
   return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorTotalRms),
           slope(sorted, &Row::errorEmbeddingRms)};
+}
+
+ReductionLimit reductionLimit(const std::vector<Row>& rows) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (row.isReduced() && (!best || row.modes > best->modes)) best = &row;
+  }
+  if (!best) return {};
+  double good = 0.0;
+  for (std::size_t k = 0; k < best->errorByFrame.size(); ++k) {
+    const double amplitude = best->amplitudeByFrame[k];
+    if (best->errorByFrame[k] <= kVisible * amplitude) good = std::max(good, amplitude);
+  }
+  return {best->modes, good};
+}
+
+namespace {
+
+/// The most accurate cage that costs no more; null if there is none.
+const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (!row.isChoice() || row.isReduced() || row.totalMs > reduced.totalMs) continue;
+    if (!best || row.errorTotalRms < best->errorTotalRms) best = &row;
+  }
+  return best;
+}
+
+std::string inWords(const Row& row) {
+  char text[128];
+  std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms a frame", row.errorTotalRms, row.totalMs);
+  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets";
+  return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
+}
+
+}  // namespace
+
+std::string reductionAdvice(const std::vector<Row>& rows) {
+  const Row *reduced = nullptr, *cage = nullptr;
+  double gain = 0.0;
+  for (const Row& row : rows) {
+    if (!row.isReduced() || !row.isChoice()) continue;
+    const Row* beside = cageBeside(row, rows);
+    const double quotient = beside ? beside->errorTotalRms / row.errorTotalRms : HUGE_VAL;
+    if (reduced && quotient <= gain) continue;
+    reduced = &row;
+    cage = beside;
+    gain = quotient;
+  }
+  if (!reduced) return {};
+  if (!cage)
+    return "Take a reduced body where nothing else is fast enough: " + inWords(*reduced) + ", and no cage is as fast.";
+  const char* winner = gain > 1.0 ? "Take a reduced body: " : "Take embedding: ";
+  const Row &better = gain > 1.0 ? *reduced : *cage, &worse = gain > 1.0 ? *cage : *reduced;
+  return winner + inWords(better) + ", " + inWords(worse) + ".";
 }
 
 double referenceError(const std::vector<Row>& rows) {

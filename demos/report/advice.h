@@ -4,6 +4,7 @@
 // What the rows of one scene say together.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "report/report_row.h"
@@ -31,5 +32,18 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
 /// the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1 and 3). 0 if
 /// there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
+
+/// A reduced body against cages, by the deformation.
+struct ReductionLimit {
+  double modes = 0;
+  double amplitude =
+      0;  ///< the largest at which the error is at most a tenth of it: RMS of the reference's surface from rest
+};
+/// Of the reduced row of most modes, over its frames; amplitude 0 if there is none, or none of its frames is so good.
+ReductionLimit reductionLimit(const std::vector<Row>& rows);
+
+/// What to take in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
+/// these. Empty without reduced rows.
+std::string reductionAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

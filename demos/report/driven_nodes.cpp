@@ -2,73 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/driven_nodes.h"
 
-#include <tetskin/core/embedding.h>
-
-#include <limits>
-
 #include "report/cage_skin.h"
 #include "scenes/input_error.h"
+#include "scenes/tets_of_nodes.h"
 
 namespace tetskin::report {
 namespace {
 
 constexpr std::array<std::array<int, 2>, 6> kEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-/// By node the nearest of the mesh's vertices that its tets hold. Nodes whose tets hold none take a neighbour's.
-class NearVertices {
- public:
-  NearVertices(const TriangleMesh& mesh, const Cage& cage)
-      : mesh_(mesh), cage_(cage), nearest_(cage.nodeCount(), -1), distances_(cage.nodeCount(), kFar) {
-    for (std::size_t v = 0; v < cage.vertexTets.size(); ++v) {
-      for (const int node : cage.tets[cage.vertexTets[v]]) offer(node, static_cast<int>(v));
-    }
-    const auto edges = uniqueEdges(cage);
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (const auto& [a, b] : edges) {
-        changed = offer(a, nearest_[b]) || changed;
-        changed = offer(b, nearest_[a]) || changed;
-      }
-    }
-  }
-  int operator[](std::size_t node) const { return nearest_[node]; }
-
- private:
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-
-  bool offer(int node, int vertex) {
-    if (vertex < 0) return false;
-    const double distance = (cage_.nodes[node] - mesh_.positions[vertex]).norm();
-    if (!(distance < distances_[node])) return false;
-    nearest_[node] = vertex;
-    distances_[node] = distance;
-    return true;
-  }
-
-  const TriangleMesh& mesh_;
-  const Cage& cage_;
-  std::vector<int> nearest_;
-  std::vector<double> distances_;
-};
-
-std::vector<int> tetsByPlace(const Cage& driver, const Cage& cage) {
-  const auto embedding = embed(static_cast<const TetMesh&>(driver), viewOf(cage.nodes));
-  scenes::require(embedding.status());
-  std::vector<int> tets;
-  for (const VertexBinding& binding : embedding.value().bindings()) tets.push_back(binding.tet);
-  return tets;
-}
-
-std::vector<int> tetsByMap(const TriangleMesh& mesh, const Cage& driver, const Cage& cage) {
-  const NearVertices vertices(mesh, cage);
-  const CageLocator locator(driver);
-  std::vector<int> tets;
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    const int vertex = vertices[n];
-    tets.push_back(locator.locate(cage.nodes[n], {vertex, vertex, vertex}));
-  }
-  return tets;
-}
 
 Eigen::Vector4d weightsIn(const TetMesh& cage, const Tet& tet, const Eigen::Vector3d& point) {
   Eigen::Matrix4d corners;
@@ -84,10 +25,7 @@ DrivenNodes::DrivenNodes(const TriangleMesh& mesh, const Cage& driver, const Cag
 }
 
 void DrivenNodes::placeNodes(const TriangleMesh& mesh, const Cage& cage) {
-  // Where neither is split, the nearest tet is the right one more often than the one that a search through faces ends
-  // in.
-  const bool byPlace = cage.vertexTets.empty() || !(cage.split() || driver_.split());
-  const std::vector<int> tets = byPlace ? tetsByPlace(driver_, cage) : tetsByMap(mesh, driver_, cage);
+  const std::vector<int> tets = scenes::tetsOfNodes(mesh, driver_, cage);
   for (std::size_t n = 0; n < tets.size(); ++n) {
     Place& place = places_.emplace_back();
     place.tet = tets[n];

@@ -72,6 +72,9 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
     one["integrator"] = scene.integrator;
     one["reference_error"] = scene.referenceError;
     one["orders"] = ordersOf(scene);
+    one["reduction_advice"] = reductionAdvice(scene.rows);
+    const ReductionLimit limit = reductionLimit(scene.rows);
+    one["reduction_limit"] = {{"modes", limit.modes}, {"amplitude", limit.amplitude}};
     for (const Row& row : scene.rows) one["rows"].push_back(toJson(row));
     json["scenes"].push_back(std::move(one));
   }

@@ -52,6 +52,8 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
                 "(bare, with tets of their own for parts of the mesh), filled (by the mesh, not split), calibrated "
                 "(split, filled and calibrated), all");
   line.addFlag("--no-calibration", noCalibration_, "No cages of calibrated stiffness");
+  line.addCounts("--modes", o.modes, "Modes of reduced bodies in sag and drop, with commas");
+  line.addFlag("--no-reduction", noReduction_, "No reduced bodies");
   line.addCount("--frames", o.frames, "Frames of 1/60 s (default: the scene's)", 100000);
   line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
   line.addPositive("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals");
@@ -83,11 +85,15 @@ const ReportOptions& ReportCommandLine::finish() {
     preset("--tets", o.tets, std::vector<std::size_t>{300, 1000, 3000});
     preset("--reference-tets", o.referenceTets, std::size_t{8000});
     preset("--frames", o.frames, 24);
+    preset("--modes", o.modes, std::vector<std::size_t>{5, 20});
   }
   o.scenes = inOrder(o.scenes);
   if (interpolation_ == "linear") o.surfaces = {SurfaceKind::Linear};
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
   chooseCages();
+  if (noReduction_) o.modes.clear();
+  std::sort(o.modes.begin(), o.modes.end());
+  o.modes.erase(std::unique(o.modes.begin(), o.modes.end()), o.modes.end());
   o.bullet = force_ == "bullet";
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit is about Bullet's forces: add --force bullet");
   std::sort(o.tets.begin(), o.tets.end());

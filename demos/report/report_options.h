@@ -21,12 +21,13 @@ struct ReportOptions {
   std::string reference;  ///< file of tets that count as right, in the mesh's space; empty: made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
-  bool bullet = false;           ///< bodies by Bullet's forces instead of the library's
-  bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
-  int frames = 0;                ///< 0: the scene's own
-  double stiffness = 0.0;        ///< over density x gravity x size; 0: the scene's own
-  std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
-  double targetError = 0.0;      ///< in box diagonals; 0: none
+  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; none: there are none
+  bool bullet = false;                               ///< bodies by Bullet's forces instead of the library's
+  bool implicit = false;                             ///< with Bullet's forces: implicit rows beside the explicit ones
+  int frames = 0;                                    ///< 0: the scene's own
+  double stiffness = 0.0;                            ///< over density x gravity x size; 0: the scene's own
+  std::size_t shownTets = 3000;                      ///< of the cage whose errors colour a mesh
+  double targetError = 0.0;                          ///< in box diagonals; 0: none
   std::string out = "out/error_vs_time", json;
   bool quiet = false;
 };
@@ -48,7 +49,7 @@ class ReportCommandLine {
 
   std::vector<std::string> cages_;
   std::string interpolation_, force_ = "tetskin";
-  bool quick_ = false, full_ = false, noCalibration_ = false;
+  bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };
 
 }  // namespace tetskin::report

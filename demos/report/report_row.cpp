@@ -25,6 +25,10 @@ const std::vector<Column>& columns() {
       {"total_ms", &Row::totalMs},
       {"attach_ms", &Row::attachMs},
       {"calibrate_ms", &Row::calibrateMs},
+      {"modes", &Row::modes},
+      {"modes_left_out", &Row::modesLeftOut},
+      {"modes_ms", &Row::modesMs},
+      {"projection_error", &Row::projectionError},
       {"speedup", &Row::speedup},
       {"speedup_against_bullet", &Row::speedupAgainstBullet},
       {"memory_bytes", &Row::memoryBytes},
@@ -44,6 +48,7 @@ nlohmann::ordered_json toJson(const Row& row) {
   for (const Column& column : columns()) json[column.name] = row.*column.value;
   json["pareto"] = row.pareto;
   json["error_total_rms_by_frame"] = row.errorByFrame;
+  json["amplitude_rms_by_frame"] = row.amplitudeByFrame;
   return json;
 }
 
@@ -56,6 +61,7 @@ Row rowFrom(const nlohmann::ordered_json& json) {
   for (const Column& column : columns()) row.*column.value = json.at(column.name);
   row.pareto = json.at("pareto");
   row.errorByFrame = json.at("error_total_rms_by_frame").get<std::vector<double>>();
+  row.amplitudeByFrame = json.at("amplitude_rms_by_frame").get<std::vector<double>>();
   return row;
 }
 

@@ -15,7 +15,8 @@ struct Row {
   std::string scene;
   std::string integrator;  ///< tetskin: by the library's force; by Bullet's: explicit, implicit; none where nothing is
                            ///< simulated
-  std::string material;    ///< kind of the cage: see CageKind; same for the reference, whatever it is
+  std::string material;    ///< kind of the cage: see CageKind; same for the reference, whatever it is;
+                           ///< reduced: a reduced body's
   std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
 
   double tets = 0, nodes = 0;
@@ -28,6 +29,10 @@ struct Row {
   double normalErrorMeanDeg = 0;
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< a frame
   double attachMs = 0, calibrateMs = 0;              ///< once
+  double modes = 0;                                  ///< in use by a reduced body; 0: it is simulated by its tets
+  double modesLeftOut = 0;                           ///< too fast for the substep
+  double modesMs = 0;                                ///< once: to find the modes
+  double projectionError = 0;                        ///< of the modes in use, the largest: see ReductionReport
   double speedup = 0;                                ///< against the reference's total; 0 where nothing is simulated
   double speedupAgainstBullet = 0;                   ///< the same against a reference by Bullet's forces; 0 without
   double memoryBytes = 0;
@@ -35,9 +40,11 @@ struct Row {
   double finite = 1;    ///< 0: it exploded; errors are those of the frames before
   double diagonal = 0;  ///< of the mesh's box, in the mesh's unit: the unit of errors and edge
 
-  std::vector<double> errorByFrame;  ///< total, RMS
-  bool pareto = false;               ///< nothing in its scene is both faster and more accurate
+  std::vector<double> errorByFrame;      ///< total, RMS
+  std::vector<double> amplitudeByFrame;  ///< how far the reference's surface is from rest, RMS
+  bool pareto = false;                   ///< nothing in its scene is both faster and more accurate
 
+  bool isReduced() const { return modes != 0; }
   bool isReference() const { return interpolation == "reference"; }
   /// A setting that a user of this library may choose.
   bool isChoice() const { return !isReference() && interpolation != "bullet" && finite != 0; }

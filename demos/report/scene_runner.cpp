@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +15,7 @@ namespace tetskin::report {
 namespace {
 
 /// Of what is stored: raise it when rows of before are no longer comparable.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 /// The finest cage that is compared, for the estimate of the reference's own error, has the reference's tets over this.
 constexpr std::size_t kCoarserLevel = 3;
 /// A cage this near to that level serves for it.
@@ -32,6 +33,12 @@ std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options,
   if (kind == CageKind::Same && bullet) return options.surfaces;
   if (kind == CageKind::Same || kind == CageKind::Calibrated) return ours(options.surfaces);
   return {options.surfaces.front()};
+}
+
+/// Where bodies move by vibrations, too. In the others nodes are moved by hand, which a body that has only its
+/// vibrations cannot follow.
+bool isReducible(const std::string& scene) {
+  return scene == "sag" || scene == "drop";
 }
 
 std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool both) {
@@ -66,6 +73,26 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   return jobs;
 }
 
+/// One surface of each, in the coarsest cage and in the one that is shown: a reduced body's step costs its modes times
+/// the cage's nodes, and what it gets wrong depends on the cage least.
+void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
+  const auto shown = std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return job.coloured; });
+  if (shown == jobs.end()) return;
+  for (const std::size_t tets : std::set<std::size_t>{options.tets.front(), shown->tets}) {
+    for (const std::size_t modes : options.modes) {
+      jobs.push_back(
+          {tets, CageKind::Calibrated, {ours(options.surfaces).front()}, false, false, static_cast<int>(modes)});
+    }
+  }
+}
+
+void addFindings(const Job& job, const Simulation& simulation, const scenes::Reduction& reduction, Row& row) {
+  row.modes = simulation.modes;
+  row.modesLeftOut = job.modes - simulation.modes;
+  row.modesMs = reduction.milliseconds();
+  row.projectionError = simulation.projectionError;
+}
+
 }  // namespace
 
 SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store,
@@ -76,8 +103,13 @@ SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const Resul
       options_(options),
       entry_(scenes::sceneNamed(scene)),
       frames_(options.frames > 0 && !isExact() ? options.frames : entry_.frames),
+      modes_(options.modes.empty() ? 1 : static_cast<int>(options.modes.back())),
       elasticity_(elasticity),
-      jobs_(jobsOf(isExact(), model, options, elasticity == Elasticity::Tetskin)) {}
+      jobs_(jobsOf(isExact(), model, options, elasticity == Elasticity::Tetskin)) {
+  if (isReducible(scene) && elasticity == Elasticity::Tetskin && !ours(options.surfaces).empty()) {
+    appendReduced(options, jobs_);
+  }
+}
 
 std::string SceneRunner::integrator() const {
   if (isExact()) return "none";
@@ -110,6 +142,7 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["cage"] = nameOf(job.kind);
   json["coloured"] = job.coloured;
   json["bullets"] = job.bullets;
+  json["modes"] = job.modes;
   json["surfaces"] = nlohmann::ordered_json::array();
   for (const SurfaceKind kind : job.surfaces) json["surfaces"].push_back(nameOf(kind));
   return json;
@@ -147,7 +180,7 @@ Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
   Row row;
   row.scene = scene();
   row.integrator = integrator();
-  row.material = nameOf(job.kind);
+  row.material = job.modes > 0 ? "reduced" : nameOf(job.kind);
   row.tets = static_cast<double>(cage.tetCount());
   row.nodes = static_cast<double>(cage.nodeCount());
   row.edge = meanEdge(cage) / model_.diagonal;
@@ -203,6 +236,15 @@ void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame)
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
 }
 
+scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage) {
+  scenes::SceneOptions options = material();
+  if (job.modes == 0) return options;
+  options.force = scenes::Force::Reduced;
+  options.reduction = modes_.of(model_.mesh, cages_.reference().cage, cage);
+  options.modes = job.modes;
+  return options;
+}
+
 SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved,
                                       const std::function<void(double)>& share) {
   const Cage& cage = shelved.cage;
@@ -214,13 +256,15 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved
     motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
   } else {
     int frame = 0;
-    Simulation simulation = simulate(entry_, cage, material(), model_.mesh, job.surfaces,
+    const scenes::SceneOptions options = optionsOf(job, cage);
+    Simulation simulation = simulate(entry_, cage, options, model_.mesh, job.surfaces,
                                      [&] { share(0.5 * static_cast<double>(++frame) / frames_); });
     motion.nodes = std::move(simulation.trajectory);
     motion.costs = simulation.surfaces;
     motion.row.simulationMs = simulation.milliseconds;
     motion.row.memoryBytes = static_cast<double>(simulation.bytes);
     motion.row.finite = simulation.finite;
+    if (job.modes > 0) addFindings(job, simulation, *options.reduction, motion.row);
   }
   // One of them may have exploded.
   const std::size_t frames = std::min(motion.nodes.size(), motion.driven.size());
@@ -247,6 +291,7 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
     row.errorTotalMax = total.max;
     row.normalErrorMeanDeg = total.normalMeanDeg;
     row.errorByFrame = total.rmsByFrame;
+    row.amplitudeByFrame = total.amplitudeByFrame;
     if (referenceJob(true)) {
       row.errorAgainstBullet = surfaceErrors(reference(true), model_.mesh, cage, kind, motion.nodes).rms;
     }

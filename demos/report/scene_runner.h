@@ -9,6 +9,7 @@
 
 #include "report/cage_shelf.h"
 #include "report/material.h"
+#include "report/mode_shelf.h"
 #include "report/reference.h"
 #include "report/reference_cage.h"
 #include "report/report_options.h"
@@ -26,6 +27,7 @@ struct Job {
   std::vector<SurfaceKind> surfaces;  ///< none: a reference
   bool coloured = false;              ///< also colour a mesh by the errors
   bool bullets = false;               ///< a reference by Bullet's forces, beside ours
+  int modes = 0;                      ///< not 0: a reduced body of so many of the reference's vibrations
 };
 
 /// The mesh of the report.
@@ -83,6 +85,7 @@ class SceneRunner {
   const Job* referenceJob(bool bullets) const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
+  scenes::SceneOptions optionsOf(const Job& job, const Cage& cage);
   Motion move(const Job& job, const ShelvedCage& shelved, const std::function<void(double)>& share);
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& share);
   Row rowOf(const Job& job, const ShelvedCage& shelved) const;
@@ -94,6 +97,7 @@ class SceneRunner {
   const ReportOptions& options_;
   const scenes::SceneEntry& entry_;
   int frames_;
+  ModeShelf modes_;
   Elasticity elasticity_;
   std::vector<Job> jobs_;
   Right right_[2];  ///< by the elasticity of the cages; by Bullet's, if that is another one

@@ -3,7 +3,9 @@
 #include "report/simulation.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/reduced/reduced_body.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "report/bullet_surface.h"
@@ -109,6 +111,10 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
   Simulation result;
   const std::size_t before = scenes::heapBytes();
   const std::unique_ptr<scenes::Scene> scene = entry.make(cage, options);
+  if (const ReductionReport* report = scene->world().reduction()) {
+    result.modes = static_cast<int>(report->projectionErrors.size());
+    result.projectionError = *std::max_element(report->projectionErrors.begin(), report->projectionErrors.end());
+  }
   TimedSurfaces surfaces(scene->body(), cage, mesh, kinds);
   std::vector<double> milliseconds;
   result.trajectory.push_back(nodesOf(scene->body()));

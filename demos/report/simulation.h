@@ -43,7 +43,9 @@ struct Simulation {
   double milliseconds = 0.0;  ///< a frame of Bullet's step, without any surface
   std::size_t bytes = 0;      ///< of the body in its world
   SurfaceCosts surfaces;
-  bool finite = true;  ///< and not exploded; the trajectory ends before the first frame that is not
+  int modes = 0;                 ///< of a reduced body
+  double projectionError = 0.0;  ///< of these, the largest
+  bool finite = true;            ///< and not exploded; the trajectory ends before the first frame that is not
 };
 
 /// Told of every frame that is done.

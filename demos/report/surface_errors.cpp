@@ -66,15 +66,17 @@ SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, cons
   for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
     const ReferenceSurface& right = reference.surfaceAt(static_cast<int>(frame));
     surface.update(nodes[frame]);
-    double squaredInFrame = 0.0;
+    double squaredInFrame = 0.0, moved = 0.0;
     for (std::size_t v = 0; v < count; ++v) {
       const double distance = (surface.position(v) - right.positions[v]).norm() / diagonal;
       squaredInFrame += distance * distance;
       squaredByVertex[v] += distance * distance;
+      moved += (right.positions[v] - mesh.positions[v]).squaredNorm() / (diagonal * diagonal);
       errors.max = std::max(errors.max, distance);
       degrees += angle(surface.normal(v), right.normals[v]);
     }
     squared += squaredInFrame;
+    errors.amplitudeByFrame.push_back(std::sqrt(moved / static_cast<double>(count)));
     errors.rmsByFrame.push_back(std::sqrt(squaredInFrame / static_cast<double>(count)));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(nodes.size(), 2) - 1);

@@ -15,7 +15,8 @@ struct SurfaceErrors {
   double rms = 0.0, max = 0.0;
   double normalMeanDeg = 0.0;
   std::vector<double> rmsByFrame;
-  std::vector<float> rmsByVertex;  ///< over the frames
+  std::vector<double> amplitudeByFrame;  ///< of the reference itself, from rest, RMS
+  std::vector<float> rmsByVertex;        ///< over the frames
 };
 
 /// Of the surface that the nodes of a cage carry.

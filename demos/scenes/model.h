@@ -37,6 +37,7 @@ struct ModelOptions {
   std::size_t triangles = 60000;  ///< of the built-in model
   bool whole = false;             ///< the cage is not split
   bool calibrate = false;         ///< see tetskin::calibrate
+  std::size_t fineTets = 30000;   ///< of which a reduced body has its vibrations
 };
 
 struct Surface {

@@ -7,15 +7,32 @@
 
 #include "scenes/input_error.h"
 #include "scenes/progress.h"
+#include "scenes/tets_of_nodes.h"
 #include "scenes/timer.h"
 
 namespace tetskin::scenes {
+
+namespace {
+
+/// With the vibrations of fine tets in the model, where its body is to have them.
+SceneOptions withReduction(const Model& model, const Placement& place, const ModelOptions& options, SceneOptions how) {
+  if (how.force != Force::Reduced) return how;
+  CageOptions fine;
+  fine.targetTets = options.fineTets;
+  fine.fit = false;
+  const Cage tets = cageFor(model, fine);
+  how.reduction = std::make_shared<Reduction>(place.toWorld(tets), how.modes);
+  if (!model.cage.vertexTets.empty()) how.reduction->nodeTets = tetsOfNodes(model.mesh, model.cage, tets);
+  return how;
+}
+
+}  // namespace
 
 Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
       place_(placementOf(boundingBox(model_.cage.nodes))),
-      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), how)) {
+      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), withReduction(model_, place_, options, how))) {
   place_.offset = scene_->offset;
 }
 

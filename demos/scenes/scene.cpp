@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/scene.h"
 
+#include <tetskin/reduced/reduced_body.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -76,14 +78,36 @@ void Scene::restore() {
   }
 }
 
-btSoftBody& Scene::add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
-                       const Eigen::Vector3d& shift) {
+btSoftBody& Scene::makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
+                            const Eigen::Vector3d& way) {
   SoftBodyOptions options = options_.body;
   options.pinned = held;
-  btSoftBody& body = world_.add(cage, options);
+  if (options_.force != Force::Reduced) {
+    btSoftBody& body = world_.add(cage, options);
+    if (way != Eigen::Vector3d::Zero()) body.translate(toBullet(way));
+    return body;
+  }
+  if (!options_.reduction) throw InputError("a reduced body needs fine tets, of which it has the vibrations");
+  ReducedBodyOptions reduced;
+  reduced.modes = options_.modes;
+  reduced.mass = options.mass;
+  reduced.density = options.density;
+  reduced.youngsModulus = options.youngsModulus;
+  reduced.relativeStiffness = options.relativeStiffness;
+  reduced.damping = options.damping;
+  reduced.timeStep = options_.substep();
+  reduced.leaveOutFastModes = true;
+  reduced.margin = options.margin;
+  reduced.friction = options.friction;
+  reduced.nodeTets = options_.reduction->nodeTets;
+  reduced.placement.setOrigin(toBullet(way));
+  return world_.add(cage, options_.reduction->modes(held), reduced);
+}
+
+btSoftBody& Scene::add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
+                       const Eigen::Vector3d& shift) {
+  btSoftBody& body = makeBody(cage, held, options_.offset + shift);
   body.setActivationState(DISABLE_DEACTIVATION);
-  const Eigen::Vector3d way = options_.offset + shift;
-  if (way != Eigen::Vector3d::Zero()) body.translate(toBullet(way));
   bodies_.push_back(&body);
   std::vector<btVector3>& start = start_.emplace_back();
   for (int n = 0; n < body.m_nodes.size(); ++n) start.push_back(body.m_nodes[n].m_x);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/reduction.h"
 #include "scenes/world.h"
 
 namespace tetskin::scenes {
@@ -24,7 +25,9 @@ constexpr double kFloorTolerance = 0.01;
 struct SceneOptions {
   SoftBodyOptions body;
   Force force = Force::Elastic;
-  int substeps = 4;  ///< of a frame
+  int substeps = 4;                      ///< of a frame
+  std::shared_ptr<Reduction> reduction;  ///< with Force::Reduced: whose vibrations
+  int modes = 20;                        ///< the same: of each body
   double frameSeconds = 1.0 / kFrameRate;
   int frames = 0;          ///< of the whole run, over which the scene spreads what happens; 0: its own
   std::size_t bodies = 1;  ///< in scenes of several
@@ -92,6 +95,9 @@ class Scene {
   std::function<void(double frame, double seconds)> beforeSubstep;
 
  private:
+  btSoftBody& makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
+                       const Eigen::Vector3d& way);
+
   SceneOptions options_;
   World world_;
   std::vector<btSoftBody*> bodies_;

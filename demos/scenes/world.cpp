@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/world.h"
 
+#include <BulletSoftBody/BulletReducedDeformableBody/btReducedDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableCorotatedForce.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>
@@ -14,6 +15,7 @@
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/reduced/reduced_body.h>
 
 #include <algorithm>
 
@@ -37,6 +39,7 @@ ForceModel modelOf(Force force) {
       return ForceModel::NeoHookean;
     case Force::Elastic:
     case Force::ElasticForceOnly:
+    case Force::Reduced:
       break;
   }
   return ForceModel::Corotated;
@@ -69,8 +72,13 @@ void World::makeClassic() {
 }
 
 void World::makeDeformable() {
-  bodySolver_ = force_ == Force::Elastic ? std::unique_ptr<btDeformableBodySolver>(std::make_unique<DeformableSolver>())
-                                         : std::make_unique<btDeformableBodySolver>();
+  if (force_ == Force::Elastic) {
+    bodySolver_ = std::make_unique<DeformableSolver>();
+  } else if (force_ == Force::Reduced) {
+    bodySolver_ = std::make_unique<btReducedDeformableBodySolver>();
+  } else {
+    bodySolver_ = std::make_unique<btDeformableBodySolver>();
+  }
   auto solver = std::make_unique<btDeformableMultiBodyConstraintSolver>();
   solver->setDeformableSolver(bodySolver_.get());
   auto world = std::make_unique<btDeformableMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver.get(),
@@ -85,6 +93,7 @@ World::~World() {
   softContacts_.reset();
   contacts_.clear();
   deformableBodies_.clear();
+  reducedBodies_.clear();
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
   world_.reset();
@@ -134,6 +143,13 @@ btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {
   return body;
 }
 
+btSoftBody& World::add(const Cage& cage, const VibrationModes& modes, const ReducedBodyOptions& options) {
+  auto made = ReducedBody::add(*deformable_, modes, cage, options);
+  require(made.status());
+  reducedBodies_.push_back(std::move(made).value());
+  return reducedBodies_.back()->body();
+}
+
 void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
   const double shear = options.youngsModulus / (2.0 * (1.0 + options.poissonRatio));
   auto elasticity = std::make_unique<btDeformableCorotatedForce>();
@@ -155,6 +171,10 @@ void World::setThreads(ParallelFor* threads) {
 
 int World::step(double seconds) {
   return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+}
+
+const ReductionReport* World::reduction() const {
+  return reducedBodies_.empty() ? nullptr : &reducedBodies_.back()->report();
 }
 
 double World::youngsModulus() const {

@@ -24,6 +24,10 @@ class btRigidBody;
 
 namespace tetskin {
 class DeformableBody;
+class ReducedBody;
+struct ReducedBodyOptions;
+struct ReductionReport;
+struct VibrationModes;
 class ParallelFor;
 class ContactShape;
 class SoftContacts;
@@ -46,6 +50,7 @@ enum class Force {
   BulletCorotated,   ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
   Elastic,           ///< the library's force and its solver
   ElasticForceOnly,  ///< the library's force with Bullet's solver
+  Reduced,           ///< no force: vibrations of fine tets, in Bullet's reduced solver
 };
 
 /// What solves the library's force: its solver, or Bullet's in explicit or implicit steps.
@@ -68,6 +73,9 @@ class World {
   /// Makes a soft body of a cage, where it is; it stays as long as the world. The force is the world's, whatever the
   /// options say: another solver would be chosen here. Throws InputError if Bullet cannot make a body of the cage.
   btSoftBody& add(const Cage& cage, SoftBodyOptions options);
+
+  /// The same of vibrations, for Force::Reduced.
+  btSoftBody& add(const Cage& cage, const VibrationModes& modes, const ReducedBodyOptions& options);
 
   /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; in the deformable world. Throws
   /// InputError if they do not fit.
@@ -98,6 +106,8 @@ class World {
   void setThreads(ParallelFor* threads);
 
   btDiscreteDynamicsWorld& bullet() { return *world_; }
+  /// Of the reduced body added last; null without one.
+  const ReductionReport* reduction() const;
   /// Of the body added last, in the deformable world by a force of the library's.
   double youngsModulus() const;
   /// All that is fixed, world space.
@@ -123,6 +133,7 @@ class World {
   std::vector<std::unique_ptr<btDeformableLagrangianForce>> forces_;
   std::vector<std::unique_ptr<btSoftBody>> bodies_;
   std::vector<std::unique_ptr<DeformableBody>> deformableBodies_;
+  std::vector<std::unique_ptr<ReducedBody>> reducedBodies_;
   std::vector<std::unique_ptr<SurfaceContact>> contacts_;
   std::unique_ptr<SoftContacts> softContacts_;
 };

@@ -22,6 +22,7 @@ void addMaterialCases(Cases& cases);  ///< first the stability maps, whose cells
 void addEventCases(Cases& cases);
 void addModelCases(Cases& cases);
 void addContactCases(Cases& cases);
+void addReducedCases(Cases& cases);
 
 /// "1e+06", "0.49".
 std::string text(double value);

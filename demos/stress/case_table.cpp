@@ -10,6 +10,7 @@ std::vector<StressCase> stressCases() {
   addEventCases(cases);
   addModelCases(cases);
   addContactCases(cases);
+  addReducedCases(cases);
   return cases;
 }
 

@@ -36,6 +36,11 @@ scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressMode
   options.harshness = stressCase.harshness;
   options.size = model.size;
   options.offset = model.offset;
+  constexpr int kModes = 10;
+  if (stressCase.force == scenes::Force::Reduced) {
+    options.reduction = std::make_shared<scenes::Reduction>(model.bodyCage, kModes);
+    options.modes = kModes;
+  }
   SoftBodyOptions& body = options.body;
   body.youngsModulus = stressCase.stiffness;
   if (stressCase.force == scenes::Force::MassSpring && stressCase.stiffness > 0.0) {

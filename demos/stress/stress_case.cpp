@@ -30,8 +30,8 @@ bool areTwins(const StressCase& ours, const StressCase& bullets) {
 }
 
 const char* toString(scenes::Force force) {
-  static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean",
-                                       "corotated",   "tetskin",           "tetskin_force_only"};
+  static const char* const kNames[] = {"mass_spring", "linear_elasticity",  "neo_hookean", "corotated",
+                                       "tetskin",     "tetskin_force_only", "reduced"};
   return nameIn(kNames, force);
 }
 

@@ -13,7 +13,7 @@ set(pc_libraries)
 set(pc_definitions -DEIGEN_MPL2_ONLY)
 set(pc_requires "eigen3 >= 3.4")
 set(pc_system_libraries)
-foreach(part touch contact bullet io elastic cage threads core)  # dependent before dependency
+foreach(part reduced touch contact bullet io elastic cage threads core)  # dependent before dependency
   if(NOT TARGET tetskin_${part})
     continue()
   endif()

@@ -40,12 +40,16 @@
 #ifdef TETSKIN_HAS_ELASTIC
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/elastic_body.h>
+#include <tetskin/elastic/vibration_modes.h>
 #endif
 #ifdef TETSKIN_HAS_IO
 #include <tetskin/io/embedding_file.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/obj_sequence.h>
 #include <tetskin/io/tet_files.h>
+#endif
+#ifdef TETSKIN_HAS_REDUCED
+#include <tetskin/reduced/reduced_body.h>
 #endif
 #ifdef TETSKIN_HAS_THREADS
 #include <tetskin/threads/thread_pool.h>

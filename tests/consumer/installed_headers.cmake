@@ -1,4 +1,4 @@
-# cmake -DSOURCE= -DPREFIX= -DSTAGED= -DCOMPILER= -DEIGEN= -P: what is installed is what is public, at most 31 headers; a
+# cmake -DSOURCE= -DPREFIX= -DSTAGED= -DCOMPILER= -DEIGEN= -P: what is installed is what is public, at most 33 headers; a
 # file that includes a private one does not compile, neither with what is installed nor in the build.
 file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*)
 file(GLOB public RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h ${SOURCE}/plugin/tetskin/*/*.h)
@@ -8,8 +8,8 @@ if(NOT installed STREQUAL public)
   message(FATAL_ERROR "Installed: ${installed}\nPublic: ${public}")
 endif()
 list(LENGTH installed count)
-if(count GREATER 31)
-  message(FATAL_ERROR "${count} public headers are more than 31")
+if(count GREATER 33)
+  message(FATAL_ERROR "${count} public headers are more than 33")
 endif()
 
 file(GLOB_RECURSE private RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h)
@@ -30,7 +30,7 @@ foreach(folder ${PREFIX}/include ${STAGED})
   execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I${folder} -isystem ${EIGEN} ${file}
     COMMAND_ERROR_IS_FATAL ANY)
   foreach(header ${public})
-    if(header MATCHES "/(bullet|contact|touch)/")
+    if(header MATCHES "/(bullet|contact|touch|reduced)/")
       continue()
     endif()
     file(WRITE ${file} "#include <${header}>\n")

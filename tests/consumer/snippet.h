@@ -13,7 +13,9 @@ struct Vertex {
 };
 
 inline btDeformableMultiBodyDynamicsWorld* world = nullptr;
+inline btDeformableMultiBodyDynamicsWorld* reducedWorld = nullptr;  // made with a btReducedDeformableBodySolver
 inline tetskin::TetMesh cage;
+inline tetskin::TetMesh fineTets;
 inline tetskin::TriangleMesh mesh;
 inline std::unique_ptr<tetskin::DeformableBody> body;
 inline btSoftBody* softBody = nullptr;  // the application's own

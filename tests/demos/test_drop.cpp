@@ -164,6 +164,21 @@ TEST_F(Drop, TouchesTheFloorAsDrawnOrByItsCage) {
   EXPECT_GT(above[0], 0.02);
 }
 
+TEST_F(Drop, AReducedBodyFallsStaysAboveTheFloorAndRests) {
+  const CommandResult result = drop({"--body", "reduced", "--modes", "8", "--fine-tets", "4000", "--tets", "300",
+                                     "--triangles", "2000", "--frames", "200", "--every", "100", "--out", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto summary = folder.json("out/summary.json");
+  EXPECT_EQ(summary.at("body"), "reduced");
+  EXPECT_EQ(summary.at("modes"), 8);
+  EXPECT_EQ(summary.at("contact"), "cage");
+  EXPECT_EQ(summary.at("finite"), true);
+  EXPECT_EQ(summary.at("above_floor"), true);
+  EXPECT_LT(summary.at("extent_max").get<double>(), 2.0);
+  EXPECT_LT(summary.at("rest_speed").get<double>(), 0.2);
+  EXPECT_NE(result.out.find("reduced, 8 modes"), std::string::npos) << result.out;
+}
+
 TEST_F(Drop, WritesEveryKthFrameAndTheCageBesideIt) {
   folder.write("box.obj", boxObj());
   ASSERT_EQ(

@@ -51,6 +51,14 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
     }
     EXPECT_EQ(rowsOf(scene, "bullet").size(), 3u);
     EXPECT_EQ(rowsOf(scene, "linear", "calibrated").size(), 3u);
+    const auto reduced = rowsOf(scene, "linear", "reduced");
+    ASSERT_EQ(reduced.size(), std::string(name) == "twist" ? 0u : 4u) << name;
+    for (const auto& row : reduced) {
+      EXPECT_GE(number(row, "modes"), 1.0);
+      EXPECT_GT(number(row, "modes_ms"), 0.0);
+      EXPECT_LT(number(row, "error_total_rms"), 0.1) << name;
+    }
+    EXPECT_EQ(scene.at("reduction_advice").get<std::string>().empty(), reduced.empty());
     for (const char* interpolation : {"linear", "quadratic"}) {
       const auto rows = rowsOf(scene, interpolation);
       ASSERT_EQ(rows.size(), 3u);

@@ -42,6 +42,37 @@ TEST(Advice, TheFrontHoldsWhatNothingBeatsInTimeAndError) {
   EXPECT_EQ(front, std::vector<bool>({false, true, true, false, true, false, false}));
 }
 
+Row reducedWith(double modes, double ms, double error) {
+  Row row = rowWith("linear", 0.1, ms, error);
+  row.material = "reduced";
+  row.modes = modes;
+  return row;
+}
+
+TEST(Advice, SaysWhetherAReducedBodyGainsOverCagesThatCostNoMore) {
+  std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0), rowWith("linear", 0.1, 1, 0.1),
+                           rowWith("linear", 0.05, 5, 0.02)};
+  EXPECT_EQ(report::reductionAdvice(rows), "");
+  rows.push_back(reducedWith(20, 6, 0.03));  // a cage is better and faster
+  EXPECT_EQ(report::reductionAdvice(rows).find("Take embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"),
+            0u);
+  rows.push_back(reducedWith(5, 1.5, 0.04));  // the cage of its time is worse
+  EXPECT_EQ(report::reductionAdvice(rows).find("Take a reduced body: 5 modes"), 0u) << report::reductionAdvice(rows);
+  rows.push_back(reducedWith(1, 0.1, 0.5));  // nothing else is as fast
+  EXPECT_NE(report::reductionAdvice(rows).find("no cage is as fast"), std::string::npos);
+}
+
+TEST(Advice, SaysUpToWhichDeformationLinearModesServe) {
+  std::vector<Row> rows = {rowWith("linear", 0.1, 1, 0.1)};
+  EXPECT_EQ(report::reductionLimit(rows).modes, 0.0);
+  rows.push_back(reducedWith(5, 1, 0.1));
+  rows.push_back(reducedWith(20, 1, 0.1));
+  rows[2].amplitudeByFrame = {0.001, 0.01, 0.02, 0.04, 0.03};
+  rows[2].errorByFrame = {0.0005, 0.0005, 0.0019, 0.02, 0.01};
+  EXPECT_EQ(report::reductionLimit(rows).modes, 20.0);
+  EXPECT_EQ(report::reductionLimit(rows).amplitude, 0.02);
+}
+
 TEST(Advice, FindsOrderAndTheReferencesOwnError) {
   // Errors against a truth fall as 3 edge^2; the reference is such a cage, too.
   std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0)};

@@ -1,12 +1,13 @@
-# Includes go one way: from a library to core, from bullet to elastic, contact and touch to bullet, and from a stage to
+# Includes go one way: from a library to core, from bullet to elastic, contact, touch and reduced to bullet, and from a stage to
 # those before it.
 set(core_stages base mesh kernels search embedding skinning normals)
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets)
-set(elastic_stages calibration kernels tets matrix dynamics)
+set(elastic_stages calibration modes kernels tets matrix dynamics)
 set(bullet_stages bodies skins forces solver)
 set(contact_stages rigid soft)
 set(touch_stages points forces joints tree)
+set(reduced_stages modes bodies)
 
 set(faults)
 set(seen 0)
@@ -24,7 +25,7 @@ foreach(file ${files})
     endif()
     set(other ${CMAKE_MATCH_1})
     math(EXPR seen "${seen} + 1")
-    if(NOT other STREQUAL library AND NOT other STREQUAL "core" AND NOT "${library} ${other}" MATCHES "^(bullet elastic|contact bullet|touch bullet)$")
+    if(NOT other STREQUAL library AND NOT other STREQUAL "core" AND NOT "${library} ${other}" MATCHES "^(bullet elastic|contact bullet|touch bullet|reduced bullet|reduced elastic)$")
       list(APPEND faults "${file} includes library ${other}: ${include}")
     elseif(CMAKE_MATCH_2 AND NOT private)
       list(APPEND faults "${file} is public, and includes a private header: ${include}")

@@ -26,6 +26,10 @@ std::unique_ptr<Scene> makeObstacles(const Cage& cage, const SceneOptions& optio
 
   const double height = kDomeHeight + kDropHeight + 0.5 * layoutBox(options, cage).sizes().y();
   scene->offset.y() += height;
+  if (options.force == Force::Reduced) {  // its vibrations are where the cage is
+    scene->add(cage, {}, {0.0, height, 0.0}).forceActivationState(ACTIVE_TAG);
+    return scene;
+  }
   TetMesh lifted = cage;  // before it is a body: one that is moved is not quite one that is made there
   for (Eigen::Vector3d& p : lifted.nodes) p.y() += height;
   scene->add(lifted).forceActivationState(ACTIVE_TAG);

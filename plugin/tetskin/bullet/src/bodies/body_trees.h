@@ -19,7 +19,7 @@ namespace tetskin {
 
 /// Builds all three trees by median splits, for any number of parts, with boxes that fit the nodes where they are.
 /// Whatever trees there were are deleted; the new ones are the body's. Cost O(n log n) for n faces and nodes.
-void buildTrees(btSoftBody& body);
+TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 
 /// What Bullet would do in the next step where m_bUpdateRtCst is set, but with our trees; of faces only where they were
 /// not left out, and anew only if nodes or faces have been added or moved in memory. Cost O(links + faces + nodes)

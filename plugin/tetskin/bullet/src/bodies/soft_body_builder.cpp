@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/bodies/body_elements.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
 #include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
@@ -49,15 +50,6 @@ Status checkOptions(const SoftBodyOptions& options) {
   return {};
 }
 
-Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
-  if (Status status = usable(cage, report); !status.ok()) return status;
-  const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
-  if (flat.count == 0) return {};
-  return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
-                                      " tets of the cage are flat, the first is tet " + std::to_string(flat.first) +
-                                      "; Bullet divides by their volume, so remove them"};
-}
-
 btSoftBody::TetraScratch restScratch() {
   btSoftBody::TetraScratch scratch;
   scratch.m_F.setIdentity();
@@ -66,17 +58,6 @@ btSoftBody::TetraScratch restScratch() {
   scratch.m_trace = 3;
   scratch.m_J = 1;
   return scratch;
-}
-
-void appendElements(const TetMesh& cage, btSoftBody& body) {
-  for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
-  // Bullet's own search for an existing link is linear; these are distinct already.
-  for (const auto& e : uniqueEdges(cage)) body.appendLink(e[0], e[1], nullptr, false);
-  for (const auto& f : boundaryFaces(cage)) body.appendFace(f[0], f[1], f[2]);
-  body.initializeDmInverse();
-  body.m_tetraScratches.resize(body.m_tetras.size(), restScratch());
-  body.m_tetraScratchesTn.resize(body.m_tetras.size(), restScratch());
-  for (int i = 0; i < body.m_nodes.size(); ++i) body.m_nodes[i].index = i;
 }
 
 void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
@@ -99,18 +80,11 @@ void scaleMeasures(const std::vector<double>& scale, btSoftBody& body) {
 }
 
 void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
-  const double size = boundingBox(cage.nodes).sizes().maxCoeff();
-  const double margin = options.margin >= 0.0 ? options.margin : kMarginFraction * size;
-  body.getCollisionShape()->setMargin(static_cast<btScalar>(margin));
-  body.m_cfg.kDF = static_cast<btScalar>(options.friction);
-  body.m_cfg.kCHR = 1;  // hard contacts with rigid and with kinematic bodies
-  body.m_cfg.kKHR = 1;
+  meetRigidBodies(cage, options.margin, options.friction, body);
   if (options.forceModel == ForceModel::MassSpring) {
     body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
     body.m_cfg.piterations = kMassSpringIterations;
     body.m_materials[0]->m_kLST = static_cast<btScalar>(options.linkStiffness);
-  } else {
-    body.m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
   }
 }
 
@@ -122,6 +96,35 @@ void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
 }
 
 }  // namespace
+
+Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
+  if (Status status = usable(cage, report); !status.ok()) return status;
+  const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
+  if (flat.count == 0) return {};
+  return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
+                                      " tets of the cage are flat, the first is tet " + std::to_string(flat.first) +
+                                      "; Bullet divides by their volume, so remove them"};
+}
+
+void appendElements(const TetMesh& cage, btSoftBody& body) {
+  for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
+  // Bullet's own search for an existing link is linear; these are distinct already.
+  for (const auto& e : uniqueEdges(cage)) body.appendLink(e[0], e[1], nullptr, false);
+  for (const auto& f : boundaryFaces(cage)) body.appendFace(f[0], f[1], f[2]);
+  body.initializeDmInverse();
+  body.m_tetraScratches.resize(body.m_tetras.size(), restScratch());
+  body.m_tetraScratchesTn.resize(body.m_tetras.size(), restScratch());
+  for (int i = 0; i < body.m_nodes.size(); ++i) body.m_nodes[i].index = i;
+}
+
+void meetRigidBodies(const TetMesh& cage, double wished, double friction, btSoftBody& body) {
+  const double size = boundingBox(cage.nodes).sizes().maxCoeff();
+  body.getCollisionShape()->setMargin(static_cast<btScalar>(wished >= 0.0 ? wished : kMarginFraction * size));
+  body.m_cfg.kDF = static_cast<btScalar>(friction);
+  body.m_cfg.kCHR = 1;  // hard contacts with rigid and with kinematic bodies
+  body.m_cfg.kKHR = 1;
+  body.m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+}
 
 void setMass(btSoftBody& body, int node, btScalar mass) {
   assert(node >= 0 && node < body.m_nodes.size());

@@ -13,11 +13,10 @@
 //   12 a vertex         by slot: weights of nodes 0, 1, 2, one plane after the other
 //   12 a vertex outside closest weights, likewise
 //   8                   hash of all that precedes
-#include <tetskin/core/src/base/hash.h>
+#include <tetskin/core/src/base/bytes.h>
 #include <tetskin/core/src/embedding/embedding_data.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace tetskin {
@@ -26,86 +25,6 @@ namespace {
 constexpr char kMagic[] = "tetskemb";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 9 * 8;
-constexpr std::size_t kHashBytes = 8;
-
-/// Of the nodes' places and the tets' nodes, in their order. 0 and -0 are the same place.
-std::uint64_t hashOf(const TetMesh& cage) {
-  Hash hash;
-  hash.add(std::uint64_t{cage.nodeCount()});
-  for (const Eigen::Vector3d& node : cage.nodes) {
-    for (const double x : {node.x(), node.y(), node.z()}) hash.add(x);
-  }
-  for (const Tet& tet : cage.tets) {
-    for (const int node : tet) hash.add(std::uint64_t{static_cast<std::uint32_t>(node)});
-  }
-  return hash.value();
-}
-
-std::uint64_t read(const unsigned char* from, std::size_t bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t k = 0; k < bytes; ++k) value |= static_cast<std::uint64_t>(from[k]) << (8 * k);
-  return value;
-}
-
-/// Of bytes, in words of eight; the last one is filled up with zeros.
-std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
-  Hash hash;
-  std::size_t k = 0;
-  for (; k + 8 <= count; k += 8) hash.add(read(bytes + k, 8));
-  if (k < count) hash.add(read(bytes + k, count - k));
-  hash.add(std::uint64_t{count});
-  return hash.value();
-}
-
-class Writer {
- public:
-  explicit Writer(std::size_t size) { bytes_.reserve(size); }
-
-  void u64(std::uint64_t value) { put(value, 8); }
-  void u32(std::uint32_t value) { put(value, 4); }
-  void plane(const float* values, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      std::uint32_t bits;
-      std::memcpy(&bits, values + k, sizeof bits);
-      u32(bits);
-    }
-  }
-  const std::vector<unsigned char>& bytes() const { return bytes_; }
-  std::vector<unsigned char> take() { return std::move(bytes_); }
-
- private:
-  void put(std::uint64_t value, int count) {
-    for (int k = 0; k < count; ++k) bytes_.push_back(static_cast<unsigned char>(value >> (8 * k)));
-  }
-  std::vector<unsigned char> bytes_;
-};
-
-/// Reads what is known to be there.
-class Reader {
- public:
-  explicit Reader(const unsigned char* at) : at_(at) {}
-
-  std::uint64_t u64() { return take(8); }
-  std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
-  /// Returns whether all values are finite.
-  bool plane(float* values, std::size_t count) {
-    bool finite = true;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t bits = u32();
-      std::memcpy(values + k, &bits, sizeof bits);
-      finite &= std::isfinite(values[k]);
-    }
-    return finite;
-  }
-
- private:
-  std::uint64_t take(std::size_t count) {
-    const unsigned char* from = at_;
-    at_ += count;
-    return read(from, count);
-  }
-  const unsigned char* at_;
-};
 
 struct Header {
   std::uint64_t cageHash = 0;
@@ -132,7 +51,7 @@ Status readHeader(const unsigned char* bytes, std::size_t count, Header& header)
     return {StatusCode::UnsupportedFormat, "these bytes are no embedding that tetskin has saved"};
   }
   if (count < kHeaderBytes + kHashBytes) return damaged("ends within its header");
-  Reader reader(bytes + tagBytes);
+  ByteReader reader(bytes + tagBytes);
   if (const std::uint64_t version = reader.u64(); version != kVersion) {
     return {StatusCode::UnsupportedFormat, "the saved embedding is of version " + std::to_string(version) +
                                                ", but this library reads version " + std::to_string(kVersion) +
@@ -147,7 +66,7 @@ Status readHeader(const unsigned char* bytes, std::size_t count, Header& header)
   if (header.bytes() != count) {
     return damaged("should have " + std::to_string(header.bytes()) + " bytes, but has " + std::to_string(count));
   }
-  if (Reader(bytes + count - kHashBytes).u64() != hashOf(bytes, count - kHashBytes)) return damaged("is damaged");
+  if (!hashIsRight(bytes, count)) return damaged("is damaged");
   return {};
 }
 
@@ -198,8 +117,8 @@ std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
   const std::size_t outside = vertexCount() - d.insideCount;
   const Header header{hashOf(cage),  d.nodeCount,       d.tetCount,      vertexCount(),
                       d.insideCount, d.runs.size() - 1, d.insideRunCount};
-  Writer writer(header.bytes());
-  writer.u64(read(reinterpret_cast<const unsigned char*>(kMagic), sizeof kMagic - 1));
+  ByteWriter writer(header.bytes());
+  writer.tag(kMagic);
   for (const std::uint64_t value : {kVersion, header.cageHash, header.nodeCount, header.tetCount, header.vertexCount,
                                     header.insideCount, header.runCount, header.insideRunCount}) {
     writer.u64(value);
@@ -211,7 +130,6 @@ std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
   for (const std::uint32_t vertex : d.slotVertices) writer.u32(vertex);
   for (int k = 0; k < 3; ++k) writer.plane(d.weights[static_cast<std::size_t>(k)].data(), vertexCount());
   for (int k = 0; k < 3; ++k) writer.plane(d.closestWeights[static_cast<std::size_t>(k)].data(), outside);
-  writer.u64(hashOf(writer.bytes().data(), writer.bytes().size()));
   return writer.take();
 }
 
@@ -224,7 +142,7 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
   e->tetCount = cage.tetCount();
   e->insideCount = header.insideCount;
   e->insideRunCount = header.insideRunCount;
-  Reader reader(bytes + kHeaderBytes);
+  ByteReader reader(bytes + kHeaderBytes);
   e->runs.resize(header.runCount + 1);
   for (std::size_t r = 0; r < header.runCount; ++r) {
     EmbeddingData::Run& run = e->runs[r];

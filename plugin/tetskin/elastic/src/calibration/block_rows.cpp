@@ -46,11 +46,31 @@ BlockRows::BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector
   }
 }
 
-BlockRows::Block& BlockRows::block(int row, int column) {
+std::size_t BlockRows::indexOf(int row, int column) const {
   const auto first = columns_.values.begin() + columns_.starts[row];
   const auto last = columns_.values.begin() + columns_.starts[row + 1];
   const auto found = std::lower_bound(first, last, static_cast<std::uint32_t>(column));
-  return blocks_[static_cast<std::size_t>(found - columns_.values.begin())];
+  return static_cast<std::size_t>(found - columns_.values.begin());
+}
+
+const BlockRows::Block& BlockRows::diagonalBlock(std::size_t node) const {
+  return blocks_[indexOf(static_cast<int>(node), static_cast<int>(node))];
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> BlockRows::sparse() const {
+  const auto nodes = static_cast<int>(columns_.starts.size() - 1);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(3 * nodes, 3 * nodes);
+  matrix.reserve(static_cast<Eigen::Index>(9 * blocks_.size()));
+  for (int row = 0; row < 3 * nodes; ++row) {
+    matrix.startVec(row);
+    for (std::uint32_t k = columns_.starts[row / 3]; k < columns_.starts[row / 3 + 1]; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        matrix.insertBack(row, 3 * static_cast<int>(columns_.values[k]) + j) = blocks_[k](row % 3, j);
+      }
+    }
+  }
+  matrix.finalize();
+  return matrix;
 }
 
 void BlockRows::multiply(const Fields& fields, Fields& product) const {
@@ -79,9 +99,7 @@ void BlockRows::multiplyColumns(Eigen::Index first, const Fields& fields, Fields
 Eigen::VectorXd BlockRows::diagonal() const {
   Eigen::VectorXd diagonal(static_cast<Eigen::Index>(3 * (columns_.starts.size() - 1)));
   for (std::size_t row = 0; row + 1 < columns_.starts.size(); ++row) {
-    for (std::uint32_t k = columns_.starts[row]; k < columns_.starts[row + 1]; ++k) {
-      if (columns_.values[k] == row) diagonal.segment<3>(static_cast<Eigen::Index>(3 * row)) = blocks_[k].diagonal();
-    }
+    diagonal.segment<3>(static_cast<Eigen::Index>(3 * row)) = diagonalBlock(row).diagonal();
   }
   return diagonal;
 }

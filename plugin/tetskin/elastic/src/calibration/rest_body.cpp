@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/elastic/src/calibration/rest_body.h>
+#include <tetskin/elastic/src/calibration/start_vectors.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -23,17 +24,6 @@ Eigen::SparseMatrix<double> shifted(const RestBody& body) {
   const double shift = kShift * body.stiffness.diagonal().sum() / body.masses.sum();
   matrix.diagonal() += shift * body.masses;
   return matrix;
-}
-
-/// Numbers that look random and are the same on every machine.
-Eigen::MatrixXd startVectors(Eigen::Index rows, Eigen::Index columns) {
-  Eigen::MatrixXd start(rows, columns);
-  std::uint32_t state = 1;
-  for (Eigen::Index k = 0; k < start.size(); ++k) {
-    state = 1664525u * state + 1013904223u;
-    start.data()[k] = static_cast<double>(state >> 8) / (1 << 24) - 0.5;
-  }
-  return start;
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Vibration modes as bytes, little-endian on every machine:
+//
+//   bytes              what
+//   8                  "tetskmod"
+//   8                  version
+//   8                  hash of the tets, see hashOf
+//   5 x 8              nodeCount, tetCount, modeCount, number of pinned nodes, Poisson's ratio
+//   8 a node           mass
+//   8 a pinned node    which node it is
+//   8 a mode           eigenvalue
+//   24 a mode and node displacement
+//   8                  hash of all that precedes
+#include <tetskin/core/src/base/bytes.h>
+#include <tetskin/elastic/vibration_modes.h>
+
+#include <algorithm>
+
+namespace tetskin {
+namespace {
+
+constexpr char kMagic[] = "tetskmod";
+constexpr std::uint64_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 8 * 8;
+
+Status damaged(const std::string& how) {
+  return {StatusCode::Malformed, "the saved modes " + how + "; find them again"};
+}
+
+struct Header {
+  std::uint64_t tetsHash = 0, nodeCount = 0, tetCount = 0, modeCount = 0, pinnedCount = 0;
+
+  /// False where the sum would overflow, too.
+  bool isOf(std::size_t bytes) const {
+    const std::uint64_t most = bytes / 8;
+    if (nodeCount > most || pinnedCount > nodeCount || modeCount > most) return false;
+    if (nodeCount > 0 && modeCount > most / (3 * nodeCount)) return false;
+    return kHeaderBytes + 8 * (nodeCount + pinnedCount + modeCount + 3 * modeCount * nodeCount) + kHashBytes == bytes;
+  }
+};
+
+Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
+  if (count < 8 || std::memcmp(bytes, kMagic, 8) != 0) {
+    return {StatusCode::UnsupportedFormat, "these bytes are no modes that tetskin has saved"};
+  }
+  if (count < kHeaderBytes + kHashBytes) return damaged("end within their header");
+  ByteReader reader(bytes + 8);
+  if (const std::uint64_t version = reader.u64(); version != kVersion) {
+    return {StatusCode::UnsupportedFormat, "the saved modes are of version " + std::to_string(version) +
+                                               ", but this library reads version " + std::to_string(kVersion) +
+                                               " alone; find them again"};
+  }
+  for (std::uint64_t* value :
+       {&header.tetsHash, &header.nodeCount, &header.tetCount, &header.modeCount, &header.pinnedCount}) {
+    *value = reader.u64();
+  }
+  if (!header.isOf(count)) return damaged("have another number of bytes than they tell");
+  if (!hashIsRight(bytes, count)) return damaged("are damaged");
+  return {};
+}
+
+/// What `vibrationModes` never returns.
+bool makeSense(const VibrationModes& modes) {
+  const auto isPositive = [](double value) { return value > 0.0; };
+  return std::all_of(modes.masses.begin(), modes.masses.end(), isPositive) &&
+         std::all_of(modes.eigenvalues.begin(), modes.eigenvalues.end(), isPositive) &&
+         std::is_sorted(modes.eigenvalues.begin(), modes.eigenvalues.end()) && modes.poissonRatio >= 0.0 &&
+         modes.poissonRatio < 0.5;
+}
+
+}  // namespace
+
+std::vector<unsigned char> VibrationModes::save(const TetMesh& tets) const {
+  assert(tets.nodeCount() == nodeCount() && shapes.size() == modeCount());
+  ByteWriter writer(kHeaderBytes + 8 * (masses.size() + pinned.size() + modeCount() * (1 + 3 * nodeCount())) +
+                    kHashBytes);
+  writer.tag(kMagic);
+  for (const std::uint64_t value : {kVersion, hashOf(tets), std::uint64_t{nodeCount()}, std::uint64_t{tets.tetCount()},
+                                    std::uint64_t{modeCount()}, std::uint64_t{pinned.size()}}) {
+    writer.u64(value);
+  }
+  writer.plane(&poissonRatio, 1);
+  writer.plane(masses.data(), masses.size());
+  for (const int node : pinned) writer.u64(static_cast<std::uint64_t>(node));
+  writer.plane(eigenvalues.data(), eigenvalues.size());
+  for (const std::vector<double>& shape : shapes) writer.plane(shape.data(), shape.size());
+  return writer.take();
+}
+
+Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::size_t count, const TetMesh& tets) {
+  Header header;
+  if (Status status = readHeader(bytes, count, header); !status.ok()) return status;
+  if (header.nodeCount != tets.nodeCount() || header.tetCount != tets.tetCount() || header.tetsHash != hashOf(tets)) {
+    return Status{StatusCode::CageMismatch,
+                  "the modes were saved with other tets: " + std::to_string(header.nodeCount) + " nodes and " +
+                      std::to_string(header.tetCount) + " tets, these are " + std::to_string(tets.nodeCount()) +
+                      " and " + std::to_string(tets.tetCount()) + ", or lie elsewhere; find the modes again"};
+  }
+  VibrationModes modes;
+  modes.nodes = tets.nodes;
+  modes.masses.resize(header.nodeCount);
+  modes.eigenvalues.resize(header.modeCount);
+  modes.shapes.assign(header.modeCount, std::vector<double>(3 * header.nodeCount));
+  ByteReader reader(bytes + kHeaderBytes - 8);
+  bool finite = reader.plane(&modes.poissonRatio, 1);
+  finite &= reader.plane(modes.masses.data(), modes.masses.size());
+  for (std::uint64_t k = 0; k < header.pinnedCount; ++k) {
+    const std::uint64_t node = reader.u64();
+    if (node >= header.nodeCount) return damaged("name a node that does not exist");
+    modes.pinned.push_back(static_cast<int>(node));
+  }
+  finite &= reader.plane(modes.eigenvalues.data(), modes.eigenvalues.size());
+  for (std::vector<double>& shape : modes.shapes) finite &= reader.plane(shape.data(), shape.size());
+  if (!finite) return damaged("have numbers that are not finite");
+  if (!makeSense(modes)) return damaged("hold masses, frequencies or a material that cannot be");
+  return modes;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Andrew Knyazev, "Toward the Optimal Preconditioned Eigensolver: Locally Optimal Block Preconditioned Conjugate
+//     Gradient Method", SIAM J. Sci. Comput. 23, 2001, doi 10.1137/S1064827500366124
+//   Ulrich Hetmaniuk, Rich Lehoucq, "Basis selection in LOBPCG", J. Comput. Phys. 218, 2006 (all bases orthonormal)
+//   Andreas Stathopoulos, Kesheng Wu, "A Block Orthogonalization Procedure with Constant Synchronization Requirements",
+//     SIAM J. Sci. Comput. 23, 2002 (by the eigenvectors of the products)
+#include <tetskin/elastic/src/calibration/start_vectors.h>
+#include <tetskin/elastic/src/modes/softest_vibrations.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// Error of a vector in the norm of energy, over its own, at which it counts as found: eigenvalues are then right to
+/// the square of that, as far as rounding lets them.
+constexpr double kVectorTolerance = 1e-8;
+constexpr int kMostModeIterations = 200;
+/// Vectors beyond those that are wanted: the more, the faster the wanted ones converge.
+constexpr int kGuards = 5;
+/// Freedoms a vector below which all are found at once: the iteration takes three subspaces.
+constexpr Eigen::Index kFewFreedoms = 5;
+/// Of the products of normalised vectors, an eigenvalue below which they depend on each other.
+constexpr double kDependent = 1e-13;
+
+struct Space {
+  Fields vectors, images;  ///< images: times the matrix
+};
+
+/// Orthonormal vectors of the same span, without what depends on the others.
+Fields orthonormal(Fields vectors) {
+  for (int pass = 0; pass < 2 && vectors.cols() > 0; ++pass) {
+    Eigen::MatrixXd products = vectors.transpose() * vectors;
+    const Eigen::VectorXd scale = products.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    products = scale.asDiagonal() * products * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(products);
+    const Eigen::Index dropped = (eigen.eigenvalues().array() < kDependent * eigen.eigenvalues().maxCoeff()).count();
+    const Eigen::Index kept = vectors.cols() - dropped;
+    vectors = (vectors * (scale.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
+                          eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal()))
+                  .eval();
+  }
+  return vectors;
+}
+
+Fields picked(const Fields& from, const std::vector<Eigen::Index>& columns) {
+  Fields result(from.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) result.col(static_cast<Eigen::Index>(k)) = from.col(columns[k]);
+  return result;
+}
+
+class Iteration {
+ public:
+  Iteration(const VibrationProblem& problem, int wanted)
+      : problem_(problem), wanted_(wanted), width_(widthFor(problem, wanted)) {
+    Fields start = problem.precondition(startVectors(problem.size(), width_));
+    space_.vectors = orthonormal(std::move(start));
+    space_.images = problem.times(space_.vectors);
+    rotate();
+  }
+
+  static Eigen::Index widthFor(const VibrationProblem& problem, int wanted) {
+    const Eigen::Index all = problem.freedoms() - problem.rigid().cols();
+    return std::min<Eigen::Index>(wanted + std::max(kGuards, wanted / 4), all);
+  }
+
+  /// Returns how far the wanted ones are from their tolerance, at most 1; 0: all are found.
+  double advance() {
+    const Fields residuals = space_.vectors.leftCols(width_) * (-values_).asDiagonal() + space_.images.leftCols(width_);
+    const Fields steps = problem_.precondition(residuals);
+    const Eigen::VectorXd errors =
+        (residuals.cwiseProduct(steps).colwise().sum().transpose().cwiseMax(0.0).cwiseQuotient(values_)).cwiseSqrt();
+    std::vector<Eigen::Index> active;
+    double left = 0.0;
+    for (Eigen::Index k = 0; k < width_; ++k) {
+      if (!(errors[k] > kVectorTolerance)) continue;
+      active.push_back(k);
+      if (k < wanted_)
+        left += std::clamp(std::log(errors[k] / kVectorTolerance) / std::log(1.0 / kVectorTolerance), 0.01, 1.0);
+    }
+    if (left > 0.0) extend(picked(steps, active), active);
+    return left / wanted_;
+  }
+
+  const Eigen::VectorXd& values() const { return values_; }
+  Fields vectors() const { return space_.vectors.leftCols(wanted_); }
+
+ private:
+  /// Rayleigh-Ritz in the first `width_` vectors.
+  void rotate() {
+    const Eigen::MatrixXd energies = space_.vectors.transpose() * space_.images;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (energies + energies.transpose()));
+    take(ritz, {});
+  }
+
+  /// To the best vectors in the span of the present ones, of the directions in which these came, and of the steps.
+  void extend(Fields steps, const std::vector<Eigen::Index>& active) {
+    for (int pass = 0; pass < 2; ++pass) {
+      steps = orthonormal(std::move(steps));
+      problem_.removeRigid(steps);
+      steps -= space_.vectors * (space_.vectors.transpose() * steps);
+    }
+    steps = orthonormal(std::move(steps));
+    const Fields images = problem_.times(steps);
+    const Eigen::Index before = space_.vectors.cols();
+    space_.vectors.conservativeResize(Eigen::NoChange, before + steps.cols());
+    space_.images.conservativeResize(Eigen::NoChange, before + steps.cols());
+    space_.vectors.rightCols(steps.cols()) = steps;
+    space_.images.rightCols(steps.cols()) = images;
+    const Eigen::MatrixXd energies = space_.vectors.transpose() * space_.images;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (energies + energies.transpose()));
+    take(ritz, active);
+  }
+
+  /// Makes the softest Ritz vectors the present ones, and for the active ones keeps what they have beyond the former.
+  void take(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& ritz, const std::vector<Eigen::Index>& active) {
+    const Eigen::Index all = space_.vectors.cols();
+    const Eigen::MatrixXd best = ritz.eigenvectors().leftCols(width_);
+    values_ = ritz.eigenvalues().head(width_);
+    Eigen::MatrixXd came(all, static_cast<Eigen::Index>(active.size()));
+    for (std::size_t k = 0; k < active.size(); ++k) came.col(static_cast<Eigen::Index>(k)) = best.col(active[k]);
+    came.topRows(std::min(width_, all)).setZero();
+    for (int pass = 0; pass < 2; ++pass) {
+      came -= best * (best.transpose() * came);
+      came = orthonormal(Fields(came));
+    }
+    Eigen::MatrixXd change(all, width_ + came.cols());
+    change << best, came;
+    space_.vectors = (space_.vectors * change).eval();
+    space_.images = (space_.images * change).eval();
+  }
+
+  const VibrationProblem& problem_;
+  Eigen::Index wanted_, width_;
+  Space space_;  ///< the present vectors, then the directions in which they came
+  Eigen::VectorXd values_;
+};
+
+Vibrations allAtOnce(const VibrationProblem& problem, int count) {
+  // Rigid motions and pinned nodes, of which the matrix has only zeros, become the stiffest.
+  Eigen::MatrixXd matrix = problem.dense();
+  const double most = matrix.norm();
+  matrix += 2.0 * most * problem.rigid() * problem.rigid().transpose();
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
+    if (matrix(k, k) == 0.0) matrix(k, k) = 2.0 * most;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+  return {eigen.eigenvalues().head(count), eigen.eigenvectors().leftCols(count), 0, true};
+}
+
+}  // namespace
+
+Vibrations softestVibrations(const VibrationProblem& problem, int count, const std::function<void(double)>& progress) {
+  assert(problem.ok() && count > 0 && count <= problem.freedoms() - problem.rigid().cols());
+  const auto tell = [&](double share) {
+    if (progress) progress(share);
+  };
+  if (problem.freedoms() < kFewFreedoms * Iteration::widthFor(problem, count)) {
+    Vibrations result = allAtOnce(problem, count);
+    tell(1.0);
+    return result;
+  }
+  Iteration iteration(problem, count);
+  Vibrations result;
+  double told = 0.0;
+  while (!result.converged && result.iterations < kMostModeIterations) {
+    const double left = iteration.advance();
+    result.converged = left == 0.0;
+    ++result.iterations;
+    told = std::max(told, 1.0 - left);
+    tell(told);
+  }
+  result.eigenvalues = iteration.values().head(count);
+  result.vectors = iteration.vectors();
+  return result;
+}
+
+}  // namespace tetskin::elastic_detail

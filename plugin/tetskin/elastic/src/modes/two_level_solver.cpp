@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Petr Vanek, Jan Mandel, Marian Brezina, "Algebraic Multigrid by Smoothed Aggregation for Second and Fourth Order
+//     Elliptic Problems", Computing 56, 1996, doi 10.1007/BF02238511 (rigid motions of groups, smoothed)
+//   Mark Adams, Marian Brezina, Jonathan Hu, Ray Tuminaro, "Parallel multigrid smoothing: polynomial versus
+//     Gauss-Seidel", J. Comput. Phys. 188, 2003 (Chebyshev smoothing)
+#include <tetskin/elastic/src/calibration/start_vectors.h>
+#include <tetskin/elastic/src/modes/aggregates.h>
+#include <tetskin/elastic/src/modes/two_level_solver.h>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cassert>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// Of groups: six motions each are as many unknowns as a dense factorisation takes a few seconds for.
+constexpr int kMostGroups = 400;
+/// Nodes to a group, at least.
+constexpr std::size_t kNodesOfGroup = 8;
+/// A group's motion that is this small beside its largest is none: of nodes in a line, or of one.
+constexpr double kNoMotion = 1e-6;
+/// Degree of the polynomial that smooths, and the part of the spectrum that it damps: all above 1 over this of it.
+constexpr int kDegree = 3;
+constexpr double kDampedRange = 12.0;
+constexpr int kPowerIterations = 15;
+/// Margin over an estimated largest eigenvalue, which comes from below.
+constexpr double kLargestMargin = 1.1;
+/// Stiffness added to the groups', in proportion to mass, over the largest: without it a free body's rigid motions have
+/// none.
+constexpr double kGroupShift = 1e-10;
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Orthonormal bases of the rigid motions of each group's free nodes.
+SparseRows motionsOf(const Aggregates& groups, const std::vector<Eigen::Vector3d>& nodes,
+                     const std::vector<char>& free) {
+  const Lists<> members = packLists(static_cast<std::size_t>(groups.count), [&](auto&& add) {
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (free[n]) add(static_cast<std::size_t>(groups.of[n]), static_cast<std::uint32_t>(n));
+    }
+  });
+  std::vector<Eigen::Triplet<double>> entries;
+  int columns = 0;
+  for (std::size_t g = 0; g + 1 < members.starts.size(); ++g) {
+    const Eigen::Index count = members.starts[g + 1] - members.starts[g];
+    if (count == 0) continue;
+    const std::uint32_t* member = &members.values[members.starts[g]];
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < count; ++k) centre += nodes[member[k]] / static_cast<double>(count);
+    double radius = 0.0;
+    for (Eigen::Index k = 0; k < count; ++k) radius = std::max(radius, (nodes[member[k]] - centre).norm());
+    Eigen::Matrix<double, Eigen::Dynamic, 6> motions(3 * count, 6);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::Vector3d arm = (nodes[member[k]] - centre) / (radius > 0.0 ? radius : 1.0);
+      motions.block<3, 3>(3 * k, 0).setIdentity();
+      motions.block<3, 3>(3 * k, 3) << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+    }
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(motions, Eigen::ComputeThinU);
+    for (Eigen::Index c = 0; c < svd.singularValues().size(); ++c) {
+      if (svd.singularValues()[c] <= kNoMotion * svd.singularValues()[0]) break;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        for (int i = 0; i < 3; ++i) {
+          entries.emplace_back(3 * static_cast<int>(member[k]) + i, columns, svd.matrixU()(3 * k + i, c));
+        }
+      }
+      ++columns;
+    }
+  }
+  SparseRows motions(static_cast<Eigen::Index>(3 * nodes.size()), columns);
+  motions.setFromTriplets(entries.begin(), entries.end());
+  return motions;
+}
+
+}  // namespace
+
+TwoLevelSolver::TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eigen::Vector3d>& nodes,
+                               const std::vector<double>& masses, const std::vector<char>& free)
+    : stiffness_(stiffness), inverseDiagonal_(nodes.size(), Block::Zero()) {
+  assert(nodes.size() == masses.size() && nodes.size() == free.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (free[n]) inverseDiagonal_[n] = stiffness.diagonalBlock(n).inverse();
+  }
+  estimateLargest(masses);
+  const int wished = static_cast<int>(std::min<std::size_t>(kMostGroups, 1 + nodes.size() / kNodesOfGroup));
+  const SparseRows motions = motionsOf(aggregate(stiffness.neighbours(), wished), nodes, free);
+  const SparseRows sparse = stiffness.sparse();
+
+  // Once over by Jacobi's method: motions of neighbouring groups then go over into each other, which is what makes them
+  // soft. P = (1 - 4/3 D^-1 K / largest) P0
+  SparseRows inverse(sparse.rows(), sparse.rows());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const int at = 3 * static_cast<int>(n);
+        entries.emplace_back(at + i, at + j, 4.0 / 3.0 / largest_ * inverseDiagonal_[n](i, j));
+      }
+    }
+  }
+  inverse.setFromTriplets(entries.begin(), entries.end());
+  const SparseRows forces = sparse * motions;
+  interpolation_ = motions - SparseRows(inverse * forces);
+  const SparseRows ofGroups = sparse * interpolation_;
+  Eigen::MatrixXd coarse = Eigen::MatrixXd(SparseRows(interpolation_.transpose() * ofGroups));
+  coarse.diagonal().array() += kGroupShift * coarse.diagonal().maxCoeff();
+  coarse_.compute(coarse);
+}
+
+void TwoLevelSolver::estimateLargest(const std::vector<double>& masses) {
+  const auto rows = static_cast<Eigen::Index>(3 * inverseDiagonal_.size());
+  Fields field = startVectors(rows, 1), forces(rows, 1);
+  for (int k = 0; k < kPowerIterations; ++k) {
+    stiffness_.multiply(field, forces);
+    field = timesInverseDiagonal(forces);
+    largest_ = kLargestMargin * field.norm();
+    field /= field.norm();
+  }
+  // A node's stiffness over its mass times `largest` bounds all frequencies.
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    if (inverseDiagonal_[n].isZero(0.0)) continue;
+    const double stiffest = stiffness_.diagonalBlock(n).trace();
+    largestFrequency_ = std::max(largestFrequency_, largest_ * stiffest / masses[n]);
+  }
+}
+
+Fields TwoLevelSolver::timesInverseDiagonal(const Fields& loads) const {
+  Fields result(loads.rows(), loads.cols());
+  for (std::size_t n = 0; n < inverseDiagonal_.size(); ++n) {
+    const auto at = static_cast<Eigen::Index>(3 * n);
+    for (int i = 0; i < 3; ++i) {
+      result.row(at + i) = inverseDiagonal_[n](i, 0) * loads.row(at) + inverseDiagonal_[n](i, 1) * loads.row(at + 1) +
+                           inverseDiagonal_[n](i, 2) * loads.row(at + 2);
+    }
+  }
+  return result;
+}
+
+/// Chebyshev's iteration for the upper part of the spectrum.
+void TwoLevelSolver::smooth(const Fields& loads, Fields& displacements, bool fromZero) const {
+  const double high = largest_, low = largest_ / kDampedRange;
+  const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
+  Fields residual = loads, forces(loads.rows(), loads.cols());
+  if (!fromZero) {
+    stiffness_.multiply(displacements, forces);
+    residual -= forces;
+  }
+  double rho = radius / centre;
+  Fields step = timesInverseDiagonal(residual) / centre;
+  for (int k = 1;; ++k) {
+    displacements += step;
+    if (k == kDegree) return;
+    stiffness_.multiply(step, forces);
+    residual -= forces;
+    const double next = 1.0 / (2.0 * centre / radius - rho);
+    step = next * rho * step + (2.0 * next / radius) * timesInverseDiagonal(residual);
+    rho = next;
+  }
+}
+
+Fields TwoLevelSolver::solve(const Fields& loads) const {
+  assert(ok() && loads.rows() == interpolation_.rows());
+  Fields displacements = Fields::Zero(loads.rows(), loads.cols()), forces(loads.rows(), loads.cols());
+  smooth(loads, displacements, true);
+  stiffness_.multiply(displacements, forces);
+  const Eigen::MatrixXd ofGroups = interpolation_.transpose() * (loads - forces);
+  displacements += interpolation_ * coarse_.solve(ofGroups);
+  smooth(loads, displacements, false);
+  return displacements;
+}
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Displacements under loads, roughly: smoothing on the nodes, and an exact solve for what groups of nodes do as a
+// whole.
+#pragma once
+
+#include <tetskin/elastic/src/calibration/block_rows.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// A stiffness matrix approximately inverted: linear, symmetric and positive, as preconditioners must be.
+class TwoLevelSolver {
+ public:
+  /// stiffness  must outlive this
+  /// nodes      rest positions of all nodes
+  /// masses     by node
+  /// free       by node: not pinned
+  TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eigen::Vector3d>& nodes,
+                 const std::vector<double>& masses, const std::vector<char>& free);
+
+  /// False if what groups do as a whole has no positive stiffness.
+  bool ok() const { return coarse_.info() == Eigen::Success; }
+  /// Of each load; 0 at pinned nodes.
+  Fields solve(const Fields& loads) const;
+  /// An upper bound of stiffness over mass, as squared frequencies are: what is small has to be small beside it.
+  double largestFrequency() const { return largestFrequency_; }
+
+ private:
+  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+  Fields timesInverseDiagonal(const Fields& loads) const;
+  void smooth(const Fields& loads, Fields& displacements, bool fromZero) const;
+  void estimateLargest(const std::vector<double>& masses);
+
+  const BlockRows& stiffness_;
+  std::vector<Block> inverseDiagonal_;  ///< by node; 0 where it is pinned
+  double largest_ = 0.0;                ///< eigenvalue of the inverse diagonal times the stiffness
+  double largestFrequency_ = 0.0;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation_;  ///< 3 nodes x motions of groups
+  Eigen::LLT<Eigen::MatrixXd> coarse_;
+};
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/positive_values.h>
+#include <tetskin/elastic/src/calibration/linear_elasticity.h>
+#include <tetskin/elastic/src/modes/softest_vibrations.h>
+#include <tetskin/elastic/vibration_modes.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using elastic_detail::BlockRows;
+using elastic_detail::Fields;
+using elastic_detail::VibrationProblem;
+using elastic_detail::Vibrations;
+
+/// Of a body's largest eigenvalue: a smaller one is that of a motion that nothing resists.
+constexpr double kNoStiffness = 1e-13;
+
+Status invalid(std::string message) {
+  return {StatusCode::InvalidOption, std::move(message)};
+}
+
+/// Nodes of one part, all of them in tets.
+Status checkParts(const TetMesh& tets) {
+  DisjointSets sets(tets.nodeCount());
+  std::vector<char> used(tets.nodeCount(), 0);
+  for (const Tet& tet : tets.tets) {
+    for (const int node : tet) {
+      used[node] = 1;
+      sets.unite(tet[0], node);
+    }
+  }
+  std::size_t parts = 0, unused = 0;
+  for (std::size_t n = 0; n < tets.nodeCount(); ++n) {
+    if (!used[n]) ++unused;
+    if (used[n] && sets.find(static_cast<int>(n)) == static_cast<int>(n)) ++parts;
+  }
+  if (unused > 0) {
+    return {StatusCode::Degenerate,
+            std::to_string(unused) + " nodes are in no tet, and would have no mass; remove them"};
+  }
+  if (parts == 1) return {};
+  return {StatusCode::Degenerate,
+          "the tets are " + std::to_string(parts) +
+              " parts that nothing holds together; a reduced body has to be one: find the modes of "
+              "each part by itself"};
+}
+
+Status checkTets(const TetMesh& tets) {
+  const TetMeshReport report = checkForUse(tets);
+  if (Status status = usable(tets, report); !status.ok()) return status;
+  const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
+  if (flat.count > 0) {
+    return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
+                                        " tets are flat and have no stiffness, the first is tet " +
+                                        std::to_string(flat.first) + "; remove them"};
+  }
+  return checkParts(tets);
+}
+
+/// free  by node, set where the options are sound
+Status checkVibrationOptions(const TetMesh& tets, const VibrationOptions& options, std::vector<char>& free) {
+  if (options.modes < 1) return invalid("there must be one mode at least");
+  if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
+    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+  }
+  for (Status status : {checkPositive<double>(options.stiffnessScale, tets.tetCount(), "stiffnessScale", "tet"),
+                        checkPositive<double>(options.nodeMasses, tets.nodeCount(), "nodeMasses", "node")}) {
+    if (!status.ok()) return status;
+  }
+  free.assign(tets.nodeCount(), 1);
+  for (const int node : options.pinned) {
+    if (node < 0 || static_cast<std::size_t>(node) >= tets.nodeCount()) {
+      return {StatusCode::IndexOutOfRange, "pinned node " + std::to_string(node) + " does not exist"};
+    }
+    free[node] = 0;
+  }
+  const auto freeNodes = static_cast<std::size_t>(std::count(free.begin(), free.end(), 1));
+  if (freeNodes == 0) return invalid("all nodes are pinned: nothing can vibrate");
+  if (static_cast<std::size_t>(options.modes) > freeNodes) {
+    return invalid(std::to_string(options.modes) + " modes are more than the " + std::to_string(freeNodes) +
+                   " nodes that are free; ask for fewer, or give more tets");
+  }
+  return {};
+}
+
+std::vector<double> massesOf(const TetMesh& tets, const VibrationOptions& options) {
+  if (!options.nodeMasses.empty()) return options.nodeMasses;
+  const Eigen::VectorXd lumped = elastic_detail::lumpedVolumes(tets, std::vector<double>(tets.tetCount(), 1.0));
+  std::vector<double> masses(tets.nodeCount());
+  for (std::size_t n = 0; n < masses.size(); ++n) masses[n] = lumped[static_cast<Eigen::Index>(3 * n)];
+  return masses;
+}
+
+/// The largest component of each is positive, so that they do not depend on how they were found.
+std::vector<double> shapeOf(const Fields& displacements, Eigen::Index mode) {
+  const Eigen::VectorXd shape = displacements.col(mode);
+  Eigen::Index largest = 0;
+  shape.cwiseAbs().maxCoeff(&largest);
+  const double sign = shape[largest] < 0.0 ? -1.0 : 1.0;
+  std::vector<double> result(static_cast<std::size_t>(shape.size()));
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = sign * shape[static_cast<Eigen::Index>(k)];
+  return result;
+}
+
+}  // namespace
+
+Result<VibrationModes> vibrationModes(const TetMesh& tets, const VibrationOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<char> free;
+  if (Status status = checkTets(tets); !status.ok()) return status;
+  if (Status status = checkVibrationOptions(tets, options, free); !status.ok()) return status;
+  VibrationModes modes;
+  modes.nodes = tets.nodes;
+  modes.masses = massesOf(tets, options);
+  modes.poissonRatio = options.poissonRatio;
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    if (!free[n]) modes.pinned.push_back(static_cast<int>(n));
+  }
+  const std::vector<double> ones(options.stiffnessScale.empty() ? tets.tetCount() : 0, 1.0);
+  const VibrationProblem problem(BlockRows(tets, options.poissonRatio, ones.empty() ? options.stiffnessScale : ones),
+                                 tets.nodes, modes.masses, free);
+  const Status hinged = {
+      StatusCode::Degenerate,
+      "the body can bend without resistance: parts of it hang together by a node or an edge alone, or "
+      "too few nodes are pinned to hold it"};
+  if (!problem.ok()) return hinged;
+  const Vibrations found = softestVibrations(problem, options.modes, options.progress);
+  if (!(found.eigenvalues[0] > kNoStiffness * problem.largestFrequency())) return hinged;
+  if (!found.converged) {
+    return Status{StatusCode::Degenerate, "the modes were not found in " + std::to_string(found.iterations) +
+                                              " iterations: the tets are too bad, or their stiffnesses too different"};
+  }
+  modes.eigenvalues.assign(found.eigenvalues.data(), found.eigenvalues.data() + found.eigenvalues.size());
+  const Fields displacements = problem.displacements(found.vectors);
+  for (Eigen::Index k = 0; k < displacements.cols(); ++k) modes.shapes.push_back(shapeOf(displacements, k));
+  modes.iterations = found.iterations;
+  modes.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return modes;
+}
+
+std::vector<double> VibrationModes::frequencies(double youngsModulus, double density) const {
+  std::vector<double> result;
+  for (const double value : eigenvalues) result.push_back(std::sqrt(value * youngsModulus / density));
+  return result;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Stephen Timoshenko, "On the correction for shear of the differential equation for transverse vibrations of
+//   prismatic
+//     bars", Phil. Mag. 41, 1921; George Cowper, "The Shear Coefficient in Timoshenko's Beam Theory", J. Appl. Mech.
+//     33, 1966 (10 (1 + nu) / (12 + 11 nu) of a rectangle)
+#include <gtest/gtest.h>
+#include <support/bars.h>
+#include <tetskin/elastic/src/calibration/linear_elasticity.h>
+#include <tetskin/elastic/vibration_modes.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cmath>
+#include <random>
+
+namespace tetskin {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using elastic_detail::stiffnessMatrix;
+using test::makeBox;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Nodes at x = 0.
+std::vector<int> end(const TetMesh& bar) {
+  std::vector<int> nodes;
+  for (std::size_t n = 0; n < bar.nodeCount(); ++n) {
+    if (bar.nodes[n].x() < 1e-9) nodes.push_back(static_cast<int>(n));
+  }
+  return nodes;
+}
+
+/// About 500 tets of all shapes, in a box of three different sides.
+TetMesh makeJagged() {
+  TetMesh mesh = makeBox({7, 5, 3}, Vector3d(1.7, 1.1, 0.6));
+  std::mt19937 generator(5);
+  const auto random = [&] { return static_cast<double>(generator()) / 4294967296.0 - 0.5; };
+  for (Vector3d& node : mesh.nodes) {
+    const double x = random(), y = random();
+    node += 0.06 * Vector3d(x, y, random());
+  }
+  return mesh;
+}
+
+VectorXd massesOf(const VibrationModes& modes) {
+  VectorXd masses(static_cast<Eigen::Index>(3 * modes.nodeCount()));
+  for (Eigen::Index k = 0; k < masses.size(); ++k) masses[k] = modes.masses[static_cast<std::size_t>(k / 3)];
+  return masses;
+}
+
+MatrixXd shapesOf(const VibrationModes& modes) {
+  MatrixXd shapes(static_cast<Eigen::Index>(3 * modes.nodeCount()), static_cast<Eigen::Index>(modes.modeCount()));
+  for (Eigen::Index k = 0; k < shapes.cols(); ++k) {
+    shapes.col(k) = Eigen::Map<const VectorXd>(modes.shapes[static_cast<std::size_t>(k)].data(), shapes.rows());
+  }
+  return shapes;
+}
+
+MatrixXd stiffnessOf(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale) {
+  const MatrixXd lower = stiffnessMatrix(mesh, poissonRatio, scale);
+  return lower.selfadjointView<Eigen::Lower>();
+}
+
+/// Three translations and three rotations.
+MatrixXd rigidMotionsOf(const TetMesh& mesh) {
+  MatrixXd motions = MatrixXd::Zero(static_cast<Eigen::Index>(3 * mesh.nodeCount()), 6);
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    for (int k = 0; k < 3; ++k) {
+      motions.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = Vector3d::Unit(k);
+      motions.block<3, 1>(static_cast<Eigen::Index>(3 * n), 3 + k) = Vector3d::Unit(k).cross(mesh.nodes[n]);
+    }
+  }
+  return motions;
+}
+
+VibrationModes modesOf(const TetMesh& mesh, const VibrationOptions& options) {
+  Result<VibrationModes> modes = vibrationModes(mesh, options);
+  EXPECT_TRUE(modes.ok()) << modes.status().message;
+  return std::move(modes).value();
+}
+
+void expectOrthonormal(const VibrationModes& modes) {
+  const MatrixXd shapes = shapesOf(modes);
+  const MatrixXd products = shapes.transpose() * massesOf(modes).asDiagonal() * shapes;
+  EXPECT_LT((products - MatrixXd::Identity(products.rows(), products.cols())).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+/// Every cluster of eigenvalues nearer than 1e-4 spans what the dense solver's does.
+void expectAsDense(const TetMesh& mesh, const VibrationModes& modes, const MatrixXd& dense, const VectorXd& values,
+                   Eigen::Index skipped) {
+  const VectorXd masses = massesOf(modes).cwiseSqrt();
+  const MatrixXd ours = masses.asDiagonal() * shapesOf(modes), theirs = masses.asDiagonal() * dense;
+  const auto count = static_cast<Eigen::Index>(modes.modeCount());
+  ASSERT_GT(mesh.tetCount(), 0u);
+  for (Eigen::Index first = 0, last = 0; first < count; first = last) {
+    do ++last;
+    while (last < count && values[skipped + last] - values[skipped + last - 1] < 1e-4 * values[skipped + last]);
+    for (Eigen::Index k = first; k < last; ++k) {
+      EXPECT_NEAR(modes.eigenvalues[static_cast<std::size_t>(k)] / values[skipped + k], 1.0, 1e-6);
+    }
+    const MatrixXd span = ours.middleCols(first, last - first),
+                   right = theirs.middleCols(skipped + first, last - first);
+    // The sine of the largest principal angle: what of the one is not in the other.
+    const MatrixXd left = span - right * (right.transpose() * span);
+    EXPECT_LT(Eigen::JacobiSVD<MatrixXd>(left).singularValues()[0], 1e-6) << "modes " << first << " to " << last - 1;
+  }
+}
+
+/// Angular frequency of a cantilever of a square section of side 1, unit stiffness and density.
+double timoshenko(double length, double poissonRatio, int which) {
+  const double area = 1.0, inertia = 1.0 / 12.0, shear = 0.5 / (1.0 + poissonRatio);
+  const double coefficient = 10.0 * (1.0 + poissonRatio) / (12.0 + 11.0 * poissonRatio);
+  // Deflection, turn, moment and force along the bar, from a clamped end to one with neither moment nor force.
+  const auto atEnd = [&](double omega) {
+    Eigen::Matrix4d rates;
+    rates << 0, 1, 0, 1 / (coefficient * shear * area), 0, 0, 1 / inertia, 0, 0, -inertia * omega * omega, 0, -1,
+        -area * omega * omega, 0, 0, 0;
+    // The exponential, by its series for a small piece, and that squared ten times.
+    const Eigen::Matrix4d piece = rates * length / 1024.0;
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Identity(), term = sum;
+    for (int k = 1; k < 12; ++k) sum += term = term * piece / k;
+    for (int k = 0; k < 10; ++k) sum = (sum * sum).eval();
+    return sum.block<2, 2>(2, 2).determinant();
+  };
+  double low = 1e-4;
+  for (const double step = 1e-4;; low += step) {
+    if (atEnd(low) * atEnd(low + step) < 0.0 && --which < 0) break;
+  }
+  double high = low + 1e-4;
+  for (int k = 0; k < 50; ++k) (atEnd(low) * atEnd(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+TEST(VibrationModes, OfAFreeBarHaveItsLongitudinalFrequencies) {
+  const double length = 3.0;
+  const TetMesh bar = makeBox({48, 4, 4}, Vector3d(length, 0.8, 0.8));
+  VibrationOptions options;
+  options.poissonRatio = 0.0;  // then the sides do not move
+  options.modes = 30;
+  const VibrationModes modes = modesOf(bar, options);
+  const VectorXd masses = massesOf(modes);
+  int found = 0;
+  for (std::size_t k = 0; k < modes.modeCount() && found < 3; ++k) {
+    double along = 0.0;
+    for (std::size_t n = 0; n < modes.nodeCount(); ++n) {
+      along += modes.masses[n] * modes.shapes[k][3 * n] * modes.shapes[k][3 * n];
+    }
+    if (along < 0.99) continue;
+    ++found;
+    EXPECT_NEAR(modes.frequencies(1.0, 1.0)[k] / (found * kPi / length), 1.0, 0.005) << found;
+  }
+  EXPECT_EQ(found, 3);
+}
+
+TEST(VibrationModes, OfACantileverApproachTimoshenkosWithOrderTwo) {
+  const double length = 20.0;
+  double errors[3][2];
+  const int across[3] = {2, 3, 5};
+  for (int size = 0; size < 3; ++size) {
+    const TetMesh bar = makeBox({32 * across[size], across[size], across[size]}, Vector3d(length, 1, 1));
+    VibrationOptions options;
+    options.modes = 4;
+    options.pinned = end(bar);
+    const VibrationModes modes = modesOf(bar, options);
+    for (int pair = 0; pair < 2; ++pair) {
+      const double right = timoshenko(length, options.poissonRatio, pair);
+      errors[size][pair] = std::sqrt(modes.eigenvalues[static_cast<std::size_t>(2 * pair)]) / right - 1.0;
+      const double other = std::sqrt(modes.eigenvalues[static_cast<std::size_t>(2 * pair + 1)]) / right - 1.0;
+      EXPECT_NEAR(other, errors[size][pair], 1e-3);
+      if (size < 2) continue;
+      EXPECT_EQ(bar.tetCount(), 20000u);
+      EXPECT_LT(std::max(other, errors[size][pair]), 0.03);
+    }
+  }
+  for (int pair = 0; pair < 2; ++pair) {
+    for (int size = 1; size < 3; ++size) {
+      const double order = std::log(errors[size - 1][pair] / errors[size][pair]) /
+                           std::log(static_cast<double>(across[size]) / across[size - 1]);
+      EXPECT_GT(order, 1.7) << "pair " << pair << ", size " << size;
+    }
+  }
+}
+
+TEST(VibrationModes, AreThoseOfADenseSolver) {
+  const TetMesh mesh = makeJagged();
+  ASSERT_NEAR(static_cast<double>(mesh.tetCount()), 500, 30);
+  VibrationOptions options;
+  options.modes = 10;
+  const VibrationModes modes = modesOf(mesh, options);
+  EXPECT_GT(modes.iterations, 0);
+  const MatrixXd stiffness = stiffnessOf(mesh, options.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
+  const MatrixXd mass = massesOf(modes).asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(stiffness, mass);
+  expectAsDense(mesh, modes, dense.eigenvectors(), dense.eigenvalues(), 6);
+}
+
+TEST(VibrationModes, WithPinnedNodesAndStiffnessesAndMassesOfTheirOwnAreThoseOfADenseSolver) {
+  const TetMesh mesh = makeJagged();
+  VibrationOptions options;
+  options.modes = 10;
+  options.poissonRatio = 0.4;
+  for (std::size_t t = 0; t < mesh.tetCount(); ++t) options.stiffnessScale.push_back(0.2 + 0.8 * (t % 7) / 6.0);
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) options.nodeMasses.push_back(0.002 + 0.001 * (n % 5));
+  options.pinned = {3, 40, 41, 90, 3};
+  const VibrationModes modes = modesOf(mesh, options);
+  EXPECT_EQ(modes.pinned, (std::vector<int>{3, 40, 41, 90}));
+  MatrixXd stiffness = stiffnessOf(mesh, options.poissonRatio, options.stiffnessScale);
+  for (const int node : modes.pinned) {
+    for (int k = 3 * node; k < 3 * node + 3; ++k) {
+      stiffness.row(k).setZero();
+      stiffness.col(k).setZero();
+      stiffness(k, k) = 1e3;
+      for (const std::vector<double>& shape : modes.shapes) EXPECT_EQ(shape[static_cast<std::size_t>(k)], 0.0);
+    }
+  }
+  const MatrixXd mass = massesOf(modes).asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(stiffness, mass);
+  expectAsDense(mesh, modes, dense.eigenvectors(), dense.eigenvalues(), 0);
+}
+
+TEST(VibrationModes, OfTheSmallestMeshesAreFoundAtOnce) {
+  const TetMesh mesh = makeBox({1, 1, 1}, Vector3d(1, 2, 3));
+  VibrationOptions options;
+  options.modes = 8;
+  const VibrationModes modes = modesOf(mesh, options);
+  EXPECT_EQ(modes.iterations, 0);
+  const MatrixXd stiffness = stiffnessOf(mesh, options.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
+  const MatrixXd mass = massesOf(modes).asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(stiffness, mass);
+  expectAsDense(mesh, modes, dense.eigenvectors(), dense.eigenvalues(), 6);
+}
+
+TEST(VibrationModes, AreOrthonormalAndWithoutTheRigidOnesWhichAreAtZero) {
+  const TetMesh mesh = makeBox({24, 3, 2}, Vector3d(12, 1.2, 1));
+  VibrationOptions options;
+  options.modes = 20;
+  const VibrationModes modes = modesOf(mesh, options);
+  expectOrthonormal(modes);
+  const MatrixXd stiffness = stiffnessOf(mesh, options.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
+  const VectorXd masses = massesOf(modes);
+  MatrixXd rigid = rigidMotionsOf(mesh);
+  for (Eigen::Index k = 0; k < 6; ++k) rigid.col(k) /= std::sqrt(rigid.col(k).dot(masses.cwiseProduct(rigid.col(k))));
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    EXPECT_LT(std::abs(rigid.col(k).dot(stiffness * rigid.col(k))), 1e-8 * modes.eigenvalues[0]);
+  }
+  EXPECT_LT((rigid.transpose() * masses.asDiagonal() * shapesOf(modes)).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(VibrationModes, OfARoundSectionComeInPairsThatAreBothFound) {
+  const TetMesh bar = makeBox({8, 4, 4}, Vector3d(2, 1, 1));  // the same across both ways
+  VibrationOptions options;
+  options.modes = 14;
+  const VibrationModes modes = modesOf(bar, options);
+  const MatrixXd stiffness = stiffnessOf(bar, options.poissonRatio, std::vector<double>(bar.tetCount(), 1.0));
+  const MatrixXd mass = massesOf(modes).asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(stiffness, mass,
+                                                                 Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
+  for (std::size_t k = 0; k < modes.modeCount(); ++k) {
+    EXPECT_NEAR(modes.eigenvalues[k] / dense.eigenvalues()[static_cast<Eigen::Index>(6 + k)], 1.0, 1e-8) << k;
+  }
+}
+
+TEST(VibrationModes, ScaleWithTheUnitOfLength) {
+  const TetMesh mesh = makeJagged();
+  TetMesh small = mesh;
+  for (Vector3d& node : small.nodes) node *= 1e-3;
+  VibrationOptions options;
+  options.modes = 6;
+  const VibrationModes of = modesOf(mesh, options), ofSmall = modesOf(small, options);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(ofSmall.eigenvalues[k] / (1e6 * of.eigenvalues[k]), 1.0, 1e-9);
+  EXPECT_NEAR(of.frequencies(400.0, 4.0)[2], 10.0 * std::sqrt(of.eigenvalues[2]), 1e-12);
+}
+
+TEST(VibrationModes, TellTheirProgress) {
+  std::vector<double> shares;
+  VibrationOptions options;
+  options.modes = 5;
+  options.progress = [&](double share) { shares.push_back(share); };
+  (void)modesOf(makeJagged(), options);
+  ASSERT_GT(shares.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_GE(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+}
+
+}  // namespace
+}  // namespace tetskin

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "reduced_test.h"
+
+#include <tetskin/bullet/deformable_solver.h>
+
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+using namespace test;
+
+void expectError(World& world, const VibrationModes& modes, const Cage& cage, const ReducedBodyOptions& options,
+                 StatusCode code, const char* says) {
+  const int before = world.world->getSoftBodyArray().size();
+  const auto body = ReducedBody::add(*world.world, modes, cage, options);
+  ASSERT_FALSE(body.ok()) << says;
+  EXPECT_EQ(body.status().code, code) << body.status().message;
+  EXPECT_NE(body.status().message.find(says), std::string::npos) << body.status().message;
+  EXPECT_EQ(world.world->getSoftBodyArray().size(), before);
+}
+
+TEST(BadReducedBodies, NeedTheReducedSolver) {
+  World bullets(btVector3(0, -10, 0), std::make_unique<btDeformableBodySolver>());
+  expectError(bullets, barModes(), barCage(), barOptions(), StatusCode::InvalidOption, "btReducedDeformableBodySolver");
+  World ours(btVector3(0, -10, 0), std::make_unique<DeformableSolver>());
+  expectError(ours, barModes(), barCage(), barOptions(), StatusCode::InvalidOption, "btReducedDeformableBodySolver");
+}
+
+TEST(BadReducedBodies, DoNotShareAWorldWithOthers) {
+  World world;
+  const auto plain = std::move(makeSoftBody(barCage(), world.world->getWorldInfo())).value();
+  world.world->addSoftBody(plain.get());
+  expectError(world, barModes(), barCage(), barOptions(), StatusCode::InvalidOption, "soft body 0");
+  world.world->removeSoftBody(plain.get());
+  const auto first = added(world, barModes());
+  EXPECT_NE(added(world, barModes()), nullptr);
+}
+
+TEST(BadReducedBodies, AreRefusedWithModesThatAreTooFastOrGoWithoutThem) {
+  World world;
+  ReducedBodyOptions options = barOptions();
+  const std::vector<double> all = barModes().frequencies(options.youngsModulus, options.density);
+  // The tenth is just too fast.
+  options.timeStep = 1.6 / all[9] * 1.0001;
+  expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, "11 of 20 modes are too fast");
+  options.leaveOutFastModes = true;
+  const auto body = added(world, barModes(), options);
+  EXPECT_EQ(body->modeCount(), 9u);
+  EXPECT_EQ(body->report().leftOut, 11u);
+  EXPECT_NEAR(body->report().fastest, all[8], 1e-9);
+  EXPECT_NE(body->report().describe().find("11 were left out"), std::string::npos);
+  options.leaveOutFastModes = false;
+  options.modes = 9;
+  EXPECT_EQ(added(world, barModes(), options)->modeCount(), 9u);
+  options.modes = 0;
+  options.leaveOutFastModes = true;
+  options.timeStep = 10.0;
+  expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, "20 of 20");
+}
+
+TEST(BadReducedBodies, AtTheLimitAreStable) {
+  World world(btVector3(0, 0, 0));
+  ReducedBodyOptions options = barOptions();
+  options.damping = 0.0;
+  options.timeStep = kMostOmegaDt / barModes().frequencies(options.youngsModulus, options.density).back();
+  const auto body = added(world, barModes(), options);
+  for (int r = 0; r < body->body().m_nReduced; ++r) body->body().m_reducedVelocityBuffer[r] = btScalar(0.1);
+  world.step(2000, options.timeStep);
+  for (int r = 0; r < body->body().m_nReduced; ++r) EXPECT_LT(std::abs(body->body().m_reducedVelocity[r]), 0.25) << r;
+}
+
+TEST(BadReducedBodies, Options) {
+  World world;
+  const auto expectInvalid = [&](auto&& change, const char* says) {
+    ReducedBodyOptions options = barOptions();
+    change(options);
+    expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, says);
+  };
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
+  expectInvalid([](auto& o) { o.modes = -1; }, "modes");
+  expectInvalid([](auto& o) { o.density = o.mass = 0.0; }, "mass");
+  expectInvalid([](auto& o) { o.density = kNaN; }, "mass");
+  expectInvalid([](auto& o) { o.damping = -1.0; }, "damping");
+  expectInvalid([](auto& o) { o.youngsModulus = kInfinity; }, "stiffness");
+  expectInvalid([](auto& o) { o.timeStep = 0.0; }, "time step");
+  expectInvalid([](auto& o) { o.friction = -1.0; }, "friction");
+  expectInvalid([](auto& o) { o.margin = kNaN; }, "margin");
+}
+
+TEST(BadReducedBodies, ModesAndCages) {
+  World world;
+  expectError(world, {}, barCage(), barOptions(), StatusCode::Empty, "no modes");
+  VibrationModes torn = barModes();
+  torn.shapes[3].pop_back();
+  expectError(world, torn, barCage(), barOptions(), StatusCode::SizeMismatch, "shapes");
+  expectError(world, barModes(), {}, barOptions(), StatusCode::Empty, "");
+  Cage away = barCage();
+  for (Eigen::Vector3d& node : away.nodes) node.y() += 2.0;
+  expectError(world, barModes(), away, barOptions(), StatusCode::OutsideCage, "not where the cage is");
+  Cage flat = barCage();
+  flat.tets.push_back({0, 1, 2, 3});
+  expectError(world, barModes(), flat, barOptions(), StatusCode::Degenerate, "flat");
+}
+
+}  // namespace
+}  // namespace tetskin
