@@ -12,11 +12,17 @@ namespace {
 /// Constant forces on nodes, for some steps.
 class Load : public Acting {
  public:
-  Load(btSoftBody& body, NodePushes forces, int steps) : body_(&body), forces_(std::move(forces)), left_(steps) {}
+  Load(btSoftBody& body, NodePushes forces, int steps) : body_(&body), forces_(std::move(forces)), left_(steps) {
+    if (const BodyWithTrees* made = bodyWithTrees(body)) {
+      life_ = made->lifetime();
+      watched_ = true;
+    }
+  }
 
-  btSoftBody* body() const override { return body_; }
+  /// One whose world has gone before it does not tell that it goes, too.
+  btSoftBody* body() const override { return watched_ && life_.expired() ? nullptr : body_; }
   void drop() override { body_ = nullptr; }
-  bool spent() const override { return !body_ || left_ == 0; }
+  bool spent() const override { return !body() || left_ == 0; }
   void begin(btScalar dt, int) override {
     dt_ = static_cast<double>(dt);
     --left_;
@@ -40,6 +46,8 @@ class Load : public Acting {
 
  private:
   btSoftBody* body_;
+  bool watched_ = false;
+  std::weak_ptr<const void> life_;
   NodePushes forces_;
   int left_;
   double dt_ = 0;
