@@ -93,7 +93,8 @@ TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
 
 TEST_F(TouchSearchTest, StopsANodeByBothSidesOfAnEdge) {
   const btBoxShape box(btVector3(1, 1, 1));
-  const btTransform edge = placeAt(btVector3(0, -btSqrt(btScalar(2)), 0), btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4));
+  const btTransform edge =
+      placeAt(btVector3(0, -btSqrt(btScalar(2)), 0), btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4));
   moveBy(btVector3(0, btScalar(0.4), 0), btVector3(0, btScalar(-0.15), 0));
   for (const bool several : {true, false}) {
     TouchSearch search = makeSearch();

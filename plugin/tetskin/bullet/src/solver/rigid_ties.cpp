@@ -174,9 +174,8 @@ void RigidTies::listNodes(const btDeformableContactProjection& projection, const
     const int number = contact.m_node->index;
     const SolvedBody& of = bodies.bodies()[b];
     const auto place = places_.find(objectOf(contact));
-    if (place == places_.end() || !(of.dynamics->matrix().mass(of.placeOf(number)) > 0)) {
-      others.insert(number);
-    } else if (numbers_.emplace(number, Place{place->second, 0}).first->second.rigid != place->second) {
+    const bool known = place != places_.end() && of.dynamics->matrix().mass(of.placeOf(number)) > 0;
+    if (!known || numbers_.emplace(number, Place{place->second, 0}).first->second.rigid != place->second) {
       others.insert(number);
     }
   });

@@ -24,8 +24,7 @@ Sliding slidingOf(const SolvedBody& of, const btDeformableNodeRigidContactConstr
   const btVector3 dv = contact.getDv(&bullets), normal = contact.m_contact->m_cti.m_normal;
   if (bullets.m_im == 0 || dv.isZero() || isNoNumber(dv) || contact.m_static) return {};
   const std::size_t node = of.placeOf(bullets.index);
-  const btScalar impulse =
-      contact.m_contact->m_c3 * normalImpulse(of, node, normal, dv.dot(normal), 1 / bullets.m_im);
+  const btScalar impulse = contact.m_contact->m_c3 * normalImpulse(of, node, normal, dv.dot(normal), 1 / bullets.m_im);
   if (!(impulse > 0)) return {};
   const btVector3 relative = fromPoint(of.dynamics->velocity(node)) - contact.getVa();
   const btVector3 sliding = relative - relative.dot(normal) * normal;

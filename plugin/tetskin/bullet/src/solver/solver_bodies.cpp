@@ -196,9 +196,8 @@ void SolverBodies::makeSystems(const ForceList& forces) {
 
 SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
   const auto holds = [&](const SolvedSystem& system) {
-    return std::any_of(system.bodies.begin(), system.bodies.end(), [&](std::size_t body) {
-      return std::find(places.begin(), places.end(), body) != places.end();
-    });
+    return std::any_of(system.bodies.begin(), system.bodies.end(),
+                       [&](std::size_t body) { return std::find(places.begin(), places.end(), body) != places.end(); });
   };
   const auto first = std::find_if(systems_.begin(), systems_.end(), holds);
   const auto others = std::stable_partition(std::next(first), systems_.end(),

@@ -121,7 +121,8 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
   }
   if (allClear) rememberAllClear();
   for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
-  std::stable_sort(touches_.begin(), touches_.end(), [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
+  std::stable_sort(touches_.begin(), touches_.end(),
+                   [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
   return touches_;
 }
 

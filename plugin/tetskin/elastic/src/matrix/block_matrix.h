@@ -62,8 +62,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void fix(std::size_t node);
   void fixAlong(std::size_t node, const S normal[3]);
   void fixAllBut(std::size_t node, const S direction[3]);
-  /// Adds to a node's diagonal block what resists its motion, xx xy xz yy yz zz: no negative eigenvalue. Before the node
-  /// is fixed.
+  /// Adds to a node's diagonal block what resists its motion, xx xy xz yy yz zz: no negative eigenvalue. Before the
+  /// node is fixed.
   void resist(std::size_t node, const S block[6]);
   /// All but the held ones are free again, and meet no resistance.
   void free();
