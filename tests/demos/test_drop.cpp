@@ -166,7 +166,7 @@ TEST_F(Drop, TouchesTheFloorAsDrawnOrByItsCage) {
 
 TEST_F(Drop, AReducedBodyFallsStaysAboveTheFloorAndRests) {
   const CommandResult result = drop({"--body", "reduced", "--modes", "8", "--fine-tets", "8000", "--tets", "300",
-                                     "--triangles", "2000", "--frames", "200", "--every", "100", "--out", "out"});
+                                     "--triangles", "6000", "--frames", "240", "--every", "100", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto summary = folder.json("out/summary.json");
   EXPECT_EQ(summary.at("body"), "reduced");

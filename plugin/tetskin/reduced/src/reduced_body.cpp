@@ -103,6 +103,8 @@ Status checkSelection(const Selection& selection, const std::vector<double>& fre
 }  // namespace
 
 struct ReducedBody::Parts {
+  explicit Parts(btDeformableMultiBodyDynamicsWorld& ofWorld) : world(ofWorld) {}
+
   btDeformableMultiBodyDynamicsWorld& world;
   std::unique_ptr<ModalBody> body;
   ReductionReport report;
@@ -149,7 +151,10 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
   ReductionReport report{ofCage.value().projectionErrors, selection.wanted - selection.slow, ofCage.value().outside,
                          frequencies[selection.slow - 1], 0.0};
   report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  auto parts = std::unique_ptr<Parts>(new Parts{world, std::move(body), std::move(report), material.youngsModulus});
+  auto parts = std::make_unique<Parts>(world);
+  parts->body = std::move(body);
+  parts->report = std::move(report);
+  parts->youngsModulus = material.youngsModulus;
   return std::unique_ptr<ReducedBody>(new ReducedBody(std::move(parts)));
 }
 
