@@ -5,7 +5,7 @@
 #pragma once
 
 #define TETSKIN_VERSION_MAJOR 0
-#define TETSKIN_VERSION_MINOR 5
+#define TETSKIN_VERSION_MINOR 6
 #define TETSKIN_VERSION_PATCH 0
 #define TETSKIN_TEXT_(x) #x
 #define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)
