@@ -154,5 +154,45 @@ TEST(ContactShape, SaysWhatIsWrong) {
   EXPECT_EQ(codeOf(model.cage, bad), StatusCode::Degenerate) << "encloses nothing";
 }
 
+/// A U of cubes, its legs nearer to each other than two edges.
+TEST(OtherParts, AreNearButFarAlongTheBody) {
+  const TetMesh block = latticeCage(3, 6, 1, 0.2);
+  TetMesh cage = block;
+  cage.tets.clear();
+  const auto middleOf = [&](const Tet& t) -> Eigen::Vector3d {
+    return (block.nodes[t[0]] + block.nodes[t[1]] + block.nodes[t[2]] + block.nodes[t[3]]) / 4.0;
+  };
+  for (const Tet& t : block.tets) {
+    const Eigen::Vector3d at = middleOf(t);
+    if (at.y() < 0.2 || std::abs(at.x() - 0.3) > 0.1) cage.tets.push_back(t);
+  }
+  TriangleMesh mesh;
+  mesh.positions = cage.nodes;
+  mesh.triangles = boundaryFaces(cage);
+  const auto made = makeContactShape(cage, mesh);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  const contact_detail::ShapeData& data = made.value()->data();
+  std::size_t listed = 0;
+  for (std::size_t r = 0; r < data.runs.size(); ++r) {
+    const Eigen::Vector3d from = middleOf(cage.tets[static_cast<std::size_t>(data.runs[r].tet)]);
+    for (const int tet : data.otherParts[r]) {
+      const Eigen::Vector3d to = middleOf(cage.tets[static_cast<std::size_t>(tet)]);
+      EXPECT_GT(std::abs(from.x() - to.x()), 0.2);  // the other leg
+      EXPECT_GT(from.y() + to.y(), 0.4);
+      ++listed;
+    }
+    // What is not listed is of the same leg, or far, or near the bottom.
+    const std::set<int> others(data.otherParts[r].begin(), data.otherParts[r].end());
+    for (std::size_t t = 0; t < cage.tets.size(); ++t) {
+      const Eigen::Vector3d to = middleOf(cage.tets[t]);
+      const bool near = (to - from).norm() < 1.9 * static_cast<double>(data.edge);
+      if (near && std::abs(to.x() - from.x()) > 0.2 && std::min(from.y(), to.y()) > 0.8) {
+        EXPECT_EQ(others.count(static_cast<int>(t)), 1u);
+      }
+    }
+  }
+  EXPECT_GT(listed, 0u);
+}
+
 }  // namespace
 }  // namespace tetskin::test

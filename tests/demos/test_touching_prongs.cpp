@@ -76,21 +76,12 @@ class TouchingProngs : public testing::TestWithParam<Setting> {
   }
   /// Turns each prong outwards about where the slot ends.
   void openProngs() {
-    const Models& m = models();
-    const std::vector<int> part = test::partsBeyond(m.cage, test::Plane(m.along, kRoot * m.along));
-    std::vector<double> side(m.cage.nodeCount(), 0.0);
-    for (const VertexBinding& b : m.bindings) {
-      Vector3d p = Vector3d::Zero();
-      for (int k = 0; k < 4; ++k) p += static_cast<double>(b.weights[k]) * m.cage.nodes[m.cage.tets[b.tet][k]];
-      for (const int n : m.cage.tets[b.tet]) side[n] += p.dot(m.across);
-    }
-    const Vector3d root = kRoot * m.along;
-    for (std::size_t n = 0; n < side.size(); ++n) {
-      const Vector3d arm = m.cage.nodes[n] - root;
-      if (arm.dot(m.along) < 0.0) continue;
-      const Eigen::AngleAxisd turn(side[n] > 0.0 ? kOpened : -kOpened, Vector3d::UnitZ());
+    const Vector3d root = kRoot * models().along;
+    for (std::size_t n = 0; n < sides().size(); ++n) {
+      if (sides()[n] == 0.0) continue;
+      const Eigen::AngleAxisd turn(sides()[n] > 0.0 ? kOpened : -kOpened, Vector3d::UnitZ());
       btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
-      node.m_x = node.m_q = toBullet(root + turn * arm);
+      node.m_x = node.m_q = toBullet(root + turn * (models().cage.nodes[n] - root));
     }
   }
   void step(int frames) {
@@ -121,6 +112,49 @@ class TouchingProngs : public testing::TestWithParam<Setting> {
       }
     }
     return deepest;
+  }
+
+  /// By node: on which side of the slot, beyond its end; 0 elsewhere.
+  static const std::vector<double>& sides() {
+    static const std::vector<double> made = [] {
+      const Models& m = models();
+      std::vector<double> side(m.cage.nodeCount(), 0.0);
+      for (const VertexBinding& b : m.bindings) {
+        Vector3d p = Vector3d::Zero();
+        for (int k = 0; k < 4; ++k) p += static_cast<double>(b.weights[k]) * m.cage.nodes[m.cage.tets[b.tet][k]];
+        for (const int n : m.cage.tets[b.tet]) side[n] += p.dot(m.across);
+      }
+      for (std::size_t n = 0; n < side.size(); ++n) {
+        if ((m.cage.nodes[n] - kRoot * m.along).dot(m.along) < 0.0) side[n] = 0.0;
+      }
+      return side;
+    }();
+    return made;
+  }
+  /// Towards each other, the faster the farther out.
+  void restAndThrow() {
+    for (std::size_t n = 0; n < sides().size(); ++n) {
+      btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
+      const Vector3d& at = models().cage.nodes[n];
+      const double way = std::max(0.0, (at - kRoot * models().along).dot(models().along));
+      const double side = sides()[n] > 0.0 ? 1.0 : sides()[n] < 0.0 ? -1.0 : 0.0;
+      node.m_x = node.m_q = toBullet(at);
+      node.m_v = node.m_vn = toBullet(-3.0 * side * way * models().across);
+    }
+  }
+  /// Between the prongs' inner faces near their ends; 0.04 at rest, below 0 where they have passed through.
+  double gapAtTheTips() const {
+    const Models& m = models();
+    double gap[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+    for (std::size_t v = 0; v < m.mesh.vertexCount(); ++v) {
+      const Vector3d& rest = m.mesh.positions[v];
+      const double across = rest.dot(m.across);
+      if (rest.dot(m.along) < 1.5 || std::abs(across) > 0.03) continue;
+      gap[across > 0.0] += surfacePoint(v).dot(m.across);
+      count[across > 0.0] += 1.0;
+    }
+    EXPECT_GT(std::min(count[0], count[1]), 0.0);
+    return gap[1] / count[1] - gap[0] / count[0];
   }
 
   /// Opened, and let go.
@@ -161,8 +195,26 @@ TEST_P(TouchingProngs, PassThroughABallThatWasNotIncluded) {
   EXPECT_GT(deepestWhileTheyClose(), 0.4 * kBall);
 }
 
-/// Though each is, all along, in copies of the other's tets. They do not meet at all: a body meets itself where parts
-/// were more than two cage edges apart.
+/// The prongs are 0.04 apart.
+TEST_P(TouchingProngs, MeetEachOther) {
+  double crossed[2];
+  for (const bool meets : {false, true}) {
+    if (meets) {
+      ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
+    }
+    restAndThrow();
+    double least = HUGE_VAL;
+    for (int k = 0; k < 40; ++k) {
+      step(1);
+      least = std::min(least, gapAtTheTips());
+    }
+    crossed[meets] = -least;
+  }
+  EXPECT_GT(crossed[false], 0.25);
+  EXPECT_LT(crossed[true], 0.12);
+}
+
+/// Though each is, all along, in copies of the other's tets.
 TEST_P(TouchingProngs, DoNotTouchEachOtherAtRest) {
   ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
   step(10);

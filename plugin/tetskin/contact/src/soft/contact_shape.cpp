@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/soft/shape_data.h>
+#include <tetskin/contact/src/soft/other_parts.h>
 #include <tetskin/contact/src/soft/surface_samples.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
@@ -257,6 +257,7 @@ Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, c
   makeRuns(cage, samples, tets, *data);
   makeTrees(cage, *data);
   findCopies(cage, mesh, surface, *data);
+  data->otherParts = tetsOfOtherParts(*data);
   return std::shared_ptr<const ContactShape>(std::make_shared<ContactShape>(std::move(data)));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/other_parts.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
 
 #include <algorithm>
@@ -7,10 +8,13 @@
 namespace tetskin::contact_detail {
 namespace {
 
+/// And by way of the body.
 bool nearAtRest(const ShapeData& data, int run, int tet) {
   const btVector3& a = data.middles[static_cast<std::size_t>(data.runs[static_cast<std::size_t>(run)].tet)];
   const btScalar apart = kEdgesApart * data.edge;
-  return (a - data.middles[static_cast<std::size_t>(tet)]).length2() < apart * apart;
+  if (!((a - data.middles[static_cast<std::size_t>(tet)]).length2() < apart * apart)) return false;
+  const std::vector<int>& others = data.otherParts[static_cast<std::size_t>(run)];
+  return !std::binary_search(others.begin(), others.end(), tet);
 }
 
 }  // namespace

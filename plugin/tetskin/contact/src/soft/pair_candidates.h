@@ -10,10 +10,6 @@
 
 namespace tetskin::contact_detail {
 
-/// Tets are no neighbours of a body's sample, in contact with itself, if their middles are farther apart at rest than
-/// so many mean edges.
-constexpr btScalar kEdgesApart = 2;
-
 /// By run of samples of the first body: tets of the second whose box meets the run's.
 class PairCandidates {
  public:

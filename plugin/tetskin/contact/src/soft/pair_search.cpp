@@ -12,6 +12,9 @@ namespace {
 constexpr btScalar kLeastWeight = btScalar(-0.02);
 /// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
 constexpr btScalar kOnePlace = btScalar(0.3);
+/// In cubes of the grid: what of a body has moved no farther in its rest space than this is where it was, in the tets
+/// of another part that are at one place with its own.
+constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 /// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
 constexpr btScalar kSlackCubes = btScalar(0.5);
 /// Cosine between normals from which two contacts of a node are one.
@@ -28,6 +31,16 @@ btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& def
     carried += gradient.dot(data.nodes[static_cast<std::size_t>(n[k])] - origin) * deformed.rows[k];
   }
   return carried;
+}
+
+/// By one of the tet's sides.
+bool isOutside(const ContactBox& box, const DeformedTet& tet) {
+  const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+  const btVector3 middle = (low + high) / 2 - tet.origin, half = (high - low) / 2;
+  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
+  const auto most = [&](const btVector3& row) { return row.dot(middle) + row.absolute().dot(half); };
+  return most(tet.rows[0]) < kLeastWeight || most(tet.rows[1]) < kLeastWeight || most(tet.rows[2]) < kLeastWeight ||
+         1 + most(fourth) < kLeastWeight;
 }
 
 btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
@@ -69,7 +82,7 @@ void PairSearch::placeRun(int run) {
 void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around) {
   if (!around.meets(now_.second->around(tet))) return;
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat) return;
+  if (of.flat || isOutside(around, of)) return;
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],
@@ -94,6 +107,10 @@ void PairSearch::offer(int tet, int sample, int k) {
   now_.second->deformed(tet).weightsAt(now_.first->sampleAt(sample), place.weights);
   if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
   place.rest = restPoint(data, tet, place.weights);
+  if (now_.first == now_.second) {
+    const btScalar own = kOwnPlaceCubes * data.grid.spacing();
+    if ((place.rest - data.samples[static_cast<std::size_t>(sample)].rest).length2() < own * own) return;
+  }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
   for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {

@@ -54,11 +54,12 @@ struct ShapeData {
   DistanceGrid grid;
   std::vector<SampleRun> runs;  ///< ascending by tet
   std::vector<CarriedSample> samples;
-  std::vector<btScalar> weights[4];   ///< of the samples, once more: one after the other
-  std::vector<CarriedCells> carried;  ///< by tet; empty unless the cage is split
-  std::vector<FilledPart> filled;     ///< by tet
-  BoxTree runTree;                    ///< of numbers of runs
-  BoxTree tetTree;                    ///< of numbers of tets that hold, or are near, something inside
+  std::vector<btScalar> weights[4];          ///< of the samples, once more: one after the other
+  std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
+  std::vector<FilledPart> filled;            ///< by tet
+  std::vector<std::vector<int>> otherParts;  ///< by run: see tetsOfOtherParts
+  BoxTree runTree;                           ///< of numbers of runs
+  BoxTree tetTree;                           ///< of numbers of tets that hold, or are near, something inside
 };
 
 }  // namespace tetskin::contact_detail
