@@ -145,6 +145,23 @@ TEST(SolverWithRigidBodies, LockedFactorsStayLocked) {
   EXPECT_GT(momentumOf(of.body()).y(), 0);  // as from a wall
 }
 
+/// Of which the solve knows nothing: the joint's answer would be lost.
+TEST(SolverWithRigidBodies, HangOnTheirJoints) {
+  FlyingBlock of;
+  Rigid rigid(of.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
+  btPoint2PointConstraint joint(*rigid.body, btVector3(0, 0, 0));
+  of.world.deformable().addConstraint(&joint);
+  of.body().setVelocity(btVector3(0, -2, 0));
+  double farthest = 0.0;
+  forEachSubstep(of.world, 120, [&] {
+    const btVector3 away = rigid.body->getWorldTransform().getOrigin() - btVector3(0, 4, 0);
+    farthest = std::max(farthest, static_cast<double>(away.length()));
+  });
+  EXPECT_GT(momentumOf(of.body()).y(), -1.8);  // it was met
+  EXPECT_LT(farthest, 0.02);
+  of.world.deformable().removeConstraint(&joint);
+}
+
 TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
   for (const double mass : {0.1, 1.0, 3.0}) {
     FlyingBlock of(0.05);

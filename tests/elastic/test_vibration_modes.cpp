@@ -290,5 +290,31 @@ TEST(VibrationModes, TellTheirProgress) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
+TEST(VibrationModes, OfASlenderBarAreFound) {
+  const TetMesh bar = makeBox({100, 1, 1}, Vector3d(100, 1, 1));
+  VibrationOptions options;
+  options.modes = 50;
+  options.pinned = end(bar);
+  const auto modes = vibrationModes(bar, options);
+  ASSERT_TRUE(modes.ok()) << modes.status().message;
+  const MatrixXd shapes = shapesOf(modes.value());
+  const MatrixXd products = shapes.transpose() * massesOf(modes.value()).asDiagonal() * shapes;
+  EXPECT_LT((products - MatrixXd::Identity(50, 50)).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+/// What is solved for at once is what is free.
+TEST(VibrationModes, OfALargeBodyOfWhichNearlyAllIsPinned) {
+  const TetMesh bar = makeBox({24, 20, 20}, Vector3d(1.2, 1, 1));
+  VibrationOptions options;
+  options.modes = 10;
+  for (std::size_t n = 20; n < bar.nodeCount(); ++n) options.pinned.push_back(static_cast<int>(n));
+  const auto modes = vibrationModes(bar, options);
+  ASSERT_TRUE(modes.ok()) << modes.status().message;
+  const MatrixXd shapes = shapesOf(modes.value());
+  EXPECT_EQ(shapes.bottomRows(shapes.rows() - 60).cwiseAbs().maxCoeff(), 0.0);
+  const MatrixXd products = shapes.transpose() * massesOf(modes.value()).asDiagonal() * shapes;
+  EXPECT_LT((products - MatrixXd::Identity(10, 10)).cwiseAbs().maxCoeff(), 1e-8);
+}
+
 }  // namespace
 }  // namespace tetskin

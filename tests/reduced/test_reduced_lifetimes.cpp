@@ -99,5 +99,26 @@ TEST(ReducedBodies, AreMetByRays) {
   EXPECT_EQ(hit.m_collisionObject, &body->body());
 }
 
+TEST(ReducedLifetimes, LeavesABodyToTheWorldThatItWasMovedTo) {
+  auto first = std::make_unique<World>();
+  World second;
+  auto body = added(*first, barModes());
+  btReducedDeformableBody* moved = &body->body();
+  first->world->removeSoftBody(moved);
+  second.world->addSoftBody(moved);
+  first.reset();
+  body.reset();
+  EXPECT_EQ(second.world->getSoftBodyArray().size(), 1);
+  second.world->removeSoftBody(moved);
+  delete moved;
+}
+
+TEST(ReducedLifetimes, RefusesAWorldThatDoesNotAskSleepersForTheirBoxes) {
+  World world;
+  world.world->setForceUpdateAllAabbs(false);
+  EXPECT_EQ(ReducedBody::add(*world.world, barModes(), barCage(), barOptions()).status().code,
+            StatusCode::InvalidOption);
+}
+
 }  // namespace
 }  // namespace tetskin

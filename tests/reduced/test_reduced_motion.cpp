@@ -228,5 +228,37 @@ TEST(ReducedMotion, PlacesABodyElsewhereAsItIsBent) {
   EXPECT_NEAR(lowest(body->body()), y, 1e-2);
 }
 
+/// In its first half second.
+double farthestOf(World& world, ReducedBody& body) {
+  double farthest = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    world.step(4);
+    for (int n = 0; n < body.body().m_nodes.size(); ++n) farthest = std::max(farthest, nodeOf(body.body(), n).norm());
+  }
+  return farthest;
+}
+
+/// Flush with it, and in it: contacts of what cannot move push nothing.
+TEST(ReducedMotion, OfABarThatIsHeldInAWallIsThatOfOneInTheAir) {
+  for (const int modes : {5, 20}) {
+    ReducedBodyOptions options = barOptions();
+    options.modes = modes;
+    World air;
+    const auto alone = added(air, barModes(true), options);
+    const double expected = farthestOf(air, *alone);
+    for (const double depth : {0.0, 0.03}) {
+      World world;
+      btBoxShape shape(btVector3(btScalar(0.5), 1, 1));
+      btRigidBody wall(0, nullptr, &shape);
+      wall.setWorldTransform(at(-1.52 + depth, 0, 0));
+      wall.setInterpolationWorldTransform(wall.getWorldTransform());
+      world.world->addRigidBody(&wall);
+      const auto body = added(world, barModes(true), options);
+      EXPECT_NEAR(farthestOf(world, *body), expected, 1e-3) << modes << " " << depth;
+      world.world->removeRigidBody(&wall);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

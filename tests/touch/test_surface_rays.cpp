@@ -190,6 +190,7 @@ TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
   EXPECT_EQ(of.tree.pointOfVertex(of.body(), 1 << 30).status().code, StatusCode::IndexOutOfRange);
   EXPECT_EQ(of.tree.pointAt(of.body(), {}).status().code, StatusCode::InvalidOption);
   EXPECT_EQ(of.tree.pointAtRest(of.body(), {NAN, 0, 0}).status().code, StatusCode::NonFinite);
+  EXPECT_EQ(of.tree.pointAtRest(of.body(), {1e200, 0, 0}).status().code, StatusCode::NonFinite);
   const auto small = added(*world, smallCageAbove(5));
   EXPECT_EQ(of.tree.pointOfVertex(small->body(), 0).status().code, StatusCode::SizeMismatch);
 }

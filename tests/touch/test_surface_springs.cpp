@@ -192,18 +192,46 @@ TEST(SurfaceSpring, LeavesCollisionsAsTheyWere) {
   TouchedBody of(*world);
   RigidBox box(*world, 1, btVector3(3, 3, 3));
   const auto& hidden = of.body().m_collisionDisabledObjects;
-  auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0)).value();
-  EXPECT_EQ(hidden.size(), 1);
-  auto second = SurfaceSpring::add(world->deformable(), of.vertex(9), *box, btVector3(0, 0, 0)).value();
-  EXPECT_EQ(hidden.size(), 1);
-  second.reset();
-  EXPECT_EQ(hidden.size(), 1);
-  spring.reset();
-  EXPECT_EQ(hidden.size(), 0);
+  // Whichever of two goes first.
+  for (const bool firstGoesFirst : {true, false}) {
+    auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0)).value();
+    EXPECT_GT(hidden.size(), 0);
+    auto second = SurfaceSpring::add(world->deformable(), of.vertex(9), *box, btVector3(0, 0, 0)).value();
+    (firstGoesFirst ? spring : second).reset();
+    EXPECT_GT(hidden.size(), 0);
+    (firstGoesFirst ? second : spring).reset();
+    EXPECT_EQ(hidden.size(), 0);
+  }
   SurfaceSpringOptions both;
   both.collide = true;
-  spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0), both).value();
+  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0), both).value();
   EXPECT_EQ(hidden.size(), 0);
+}
+
+TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
+  auto world = deformableWorld(Solving::Tetskin);
+  world->deformable().setGravity(btVector3(0, 0, 0));
+  TouchedBody of(*world);
+  RigidBox platform(*world, 0, btVector3(0, 3, 0));
+  (*platform).setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *platform, btVector3(0, 0, 0)).value();
+  step(*world, 1);
+  of.body().forceActivationState(ISLAND_SLEEPING);
+  step(*world, 2);
+  EXPECT_FALSE(of.body().isActive());
+  btTransform moved = (*platform).getWorldTransform();
+  moved.getOrigin() += btVector3(0, btScalar(0.1), 0);
+  (*platform).setWorldTransform(moved);
+  step(*world, 2);
+  EXPECT_TRUE(of.body().isActive());
+}
+
+TEST(SurfaceSpring, RefusesPivotsThatAreNoPlaces) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  RigidBox box(*world, 1, btVector3(3, 3, 3));
+  const btVector3 bad(0, std::numeric_limits<btScalar>::quiet_NaN(), 0);
+  EXPECT_EQ(SurfaceSpring::add(world->deformable(), of.vertex(0), *box, bad).status().code, StatusCode::NonFinite);
 }
 
 }  // namespace

@@ -107,7 +107,8 @@ class TETSKIN_CONTACT_API SoftContacts {
   /// The body meets all others that were included, from the next step on; included again, it gets this shape.
   /// body    of this world, made of the shape's cage: the same nodes and tets in the same order, wherever they are
   /// self    it meets itself too, where parts touch that are more than two cage edges apart at rest, or some more along
-  ///         the body: fingers that the cage keeps apart meet, from 1.5 cells of the shape's grid deep if they are nearer
+  ///         the body: fingers that the cage keeps apart meet, from 1.5 cells of the shape's grid deep if they are
+  ///         nearer
   /// Errors  Empty without a shape; SizeMismatch; InvalidOption for a body of another world
   Status include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self = false);
   /// No longer; the body stays in the world.

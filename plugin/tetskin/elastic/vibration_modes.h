@@ -43,11 +43,10 @@ struct TETSKIN_ELASTIC_API VibrationModes {
   /// All of it as bytes, the same on every machine: 24 bytes a node and mode, and 8 a node.
   /// tets  those that the modes are of: their hash goes with the bytes
   std::vector<unsigned char> save(const TetMesh& tets) const;
-  /// What `save` wrote, equal to the bit. Never crashes, whatever the bytes.
+  /// What `save` wrote, equal to the bit; iterations and time are 0. Never crashes, whatever the bytes.
   /// bytes   `count` of them
   /// Errors  UnsupportedFormat: bytes of something else, or of another version; Malformed: too few, too many or
-  /// damaged;
-  ///         CageMismatch: of other tets
+  ///         damaged; CageMismatch: of other tets
   static Result<VibrationModes> load(const unsigned char* bytes, std::size_t count, const TetMesh& tets);
 };
 
@@ -56,9 +55,9 @@ struct TETSKIN_ELASTIC_API VibrationModes {
 ///
 /// tets    usable (see `usable`), one part, without flat ones; rest space, any unit and size. At least as many free
 ///         nodes as modes
-/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB a tet and 60 bytes a tet and
-/// mode Errors  those of `usable`; InvalidOption: options out of range, more modes than free nodes, or all nodes
-/// pinned;
+/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB a tet, and 60 bytes a tet and
+///         mode
+/// Errors  those of `usable`; InvalidOption: options out of range, more modes than free nodes, or all nodes pinned;
 ///         SizeMismatch; IndexOutOfRange: a pinned node does not exist; Degenerate: flat tets, nodes in no tet, several
 ///         parts, parts that hang together by a node or an edge alone, so that nothing resists their turning, or no
 ///         convergence

@@ -66,6 +66,8 @@ struct TETSKIN_REDUCED_API ReductionReport {
 /// since the solver was made, not worldInfo.
 ///
 /// It should go before its world does; if not, or if the application has taken the body out, it only frees its memory.
+/// It belongs to that world alone. Bullet must ask for all boxes (`setForceUpdateAllAabbs`, as it does by default): by
+/// them sleeping bodies know that they are to stay.
 class TETSKIN_REDUCED_API ReducedBody {
  public:
   /// world   made with a btReducedDeformableBodySolver, and without soft bodies of other kinds; its gravity now serves
@@ -74,8 +76,10 @@ class TETSKIN_REDUCED_API ReducedBody {
   /// cage    usable, without flat tets, around the tets. Its fill, factor and masses do not matter: the modes have them
   /// Cost    that of `embed` of the fine nodes, and a factorisation of a matrix of the cage's nodes
   /// Errors  InvalidOption: options out of range, modes too fast for the time step (or all of them, where they may be
-  ///         left out), another solver, a soft body in the world that is not reduced; Empty: no modes; SizeMismatch;
-  ///         OutsideCage: modes and cage are not at one place; those of `makeSoftBody` about the cage, and of `embed`
+  ///         left out), another solver, a world that does not ask for all boxes, a soft body in it that is not reduced;
+  ///         Empty: no modes; SizeMismatch; IndexOutOfRange: of nodeTets, or a pinned node; Degenerate: the modes do
+  ///         not tell where the cage's nodes go; OutsideCage: modes and cage are not at one place; those of
+  ///         `makeSoftBody` about the cage, and of `embed`
   static Result<std::unique_ptr<ReducedBody>> add(btDeformableMultiBodyDynamicsWorld& world,
                                                   const VibrationModes& modes, const Cage& cage,
                                                   const ReducedBodyOptions& options = {});
@@ -90,7 +94,8 @@ class TETSKIN_REDUCED_API ReducedBody {
   std::size_t modeCount() const;
 
   /// Puts the body elsewhere, as it is bent and without any motion; it wakes. Bullet's own `transform` would take the
-  /// bent shape for the rest shape. placement  as in the options
+  /// bent shape for the rest shape.
+  /// placement  as in the options
   void placeAt(const btTransform& placement);
 
  private:

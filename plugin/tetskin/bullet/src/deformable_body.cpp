@@ -188,7 +188,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   }
   addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
   if (corotated) {
-    status = static_cast<ElasticForce&>(*parts->elasticity).setStiffnessScale(*parts->body, options.stiffnessScale);
+    status = static_cast<ElasticForce&>(*parts->elasticity).addTo(world, *parts->body, options.stiffnessScale);
     assert(status.ok());
   }
   parts->apply(material);

@@ -32,6 +32,11 @@ Status checkOthers(btDeformableMultiBodyDynamicsWorld& world) {
   return {};
 }
 
+Status checkWorld(btDeformableMultiBodyDynamicsWorld& world) {
+  if (world.getForceUpdateAllAabbs()) return {};
+  return invalid("a sleeping reduced body falls where Bullet does not ask for its box: setForceUpdateAllAabbs(true)");
+}
+
 Status checkOptions(const ReducedBodyOptions& options) {
   const auto isSize = [](double value) { return value >= 0.0 && std::isfinite(value); };
   if (options.modes < 0) return invalid("a reduced body cannot have less than no modes; 0 takes all");
@@ -54,6 +59,9 @@ Status checkModes(const VibrationModes& modes) {
   const bool fits = modes.shapes.size() == modes.modeCount() && modes.masses.size() == modes.nodeCount() &&
                     std::all_of(modes.shapes.begin(), modes.shapes.end(),
                                 [&](const auto& shape) { return shape.size() == 3 * modes.nodeCount(); });
+  const int nodes = static_cast<int>(modes.nodeCount());
+  const bool exist = std::all_of(modes.pinned.begin(), modes.pinned.end(), [&](int n) { return n >= 0 && n < nodes; });
+  if (!exist) return {StatusCode::IndexOutOfRange, "the modes name a pinned node that they do not have"};
   if (fits) return {};
   return {StatusCode::SizeMismatch, "the modes' shapes, eigenvalues and masses are not as many as they must be"};
 }
@@ -106,6 +114,7 @@ struct ReducedBody::Parts {
   explicit Parts(btDeformableMultiBodyDynamicsWorld& ofWorld) : world(ofWorld) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
+  btSoftBodySolver* solver = nullptr;  ///< the world's: another one, and the body is in another world
   std::unique_ptr<ModalBody> body;
   ReductionReport report;
   double youngsModulus = 0.0;
@@ -117,7 +126,8 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
                                                       const VibrationModes& modes, const Cage& cage,
                                                       const ReducedBodyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  for (Status status : {checkOthers(world), checkOptions(options), checkModes(modes), cage.check()}) {
+  for (Status status :
+       {checkWorld(world), checkOthers(world), checkOptions(options), checkModes(modes), cage.check()}) {
     if (!status.ok()) return status;
   }
   TetMesh positive = cage;
@@ -152,6 +162,7 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
                          frequencies[selection.slow - 1], 0.0};
   report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   auto parts = std::make_unique<Parts>(world);
+  parts->solver = body->getSoftBodySolver();
   parts->body = std::move(body);
   parts->report = std::move(report);
   parts->youngsModulus = material.youngsModulus;
@@ -161,7 +172,11 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
 ReducedBody::~ReducedBody() {
   // Taken out of the world, by the application or by the world's own end: nothing there may be left to be told.
   if (!parts_->body->getBroadphaseHandle()) return;
-  parts_->world.removeSoftBody(parts_->body.get());
+  if (parts_->body->getSoftBodySolver() == parts_->solver) {
+    parts_->world.removeSoftBody(parts_->body.get());
+  } else {
+    (void)parts_->body.release();  // in another world, which has it still
+  }
 }
 
 btReducedDeformableBody& ReducedBody::body() {
@@ -187,6 +202,7 @@ std::string ReductionReport::describe() const {
   std::ostringstream text;
   text << projectionErrors.size() << " modes, up to " << fastest << " radians a second";
   if (leftOut > 0) text << "; " << leftOut << " were left out, too fast for the time step";
+  if (projectionErrors.empty()) return text.str();
   text << "\nthe cage's nodes tell them to " << *std::max_element(projectionErrors.begin(), projectionErrors.end())
        << " of themselves, or better";
   if (outside > 0) text << "\n" << outside << " nodes of the fine tets lie outside of the cage";

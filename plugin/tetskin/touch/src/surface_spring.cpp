@@ -34,6 +34,10 @@ Status checkSpring(const SurfaceSpringOptions& options) {
   return {};
 }
 
+Status badPivot() {
+  return {StatusCode::NonFinite, "the pivot of a spring is not finite"};
+}
+
 JointSettings settingsOf(const SurfaceSpringOptions& options, double stiffness) {
   JointSettings settings;
   settings.stiffness = options.stiffness > 0.0 ? options.stiffness : stiffness;
@@ -81,6 +85,7 @@ Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorl
                                                           btRigidBody& rigid, const btVector3& pivot,
                                                           const Options& options) {
   if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  if (!touch_detail::isFiniteVector(pivot)) return badPivot();
   return Parts::make(world, point, touch_detail::rigidPartner(rigid, at(pivot)), options);
 }
 
@@ -88,6 +93,7 @@ Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorl
                                                           btMultiBodyLinkCollider& link, const btVector3& pivot,
                                                           const Options& options) {
   if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  if (!touch_detail::isFiniteVector(pivot)) return badPivot();
   return Parts::make(world, point, touch_detail::linkPartner(link, at(pivot)), options);
 }
 

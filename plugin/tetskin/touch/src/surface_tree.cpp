@@ -123,7 +123,8 @@ Result<SurfacePoint> SurfaceTree::pointOfVertex(btSoftBody& body, int vertex) co
 
 Result<SurfacePoint> SurfaceTree::pointAtRest(btSoftBody& body, const Eigen::Vector3d& rest) const {
   if (Status status = parts_->checkBody(body); !status.ok()) return status;
-  if (!rest.allFinite()) return Status{StatusCode::NonFinite, "the rest position is not finite"};
+  if (!std::isfinite(rest.squaredNorm()))
+    return Status{StatusCode::NonFinite, "the rest position is not finite, or too far for a distance from it to be"};
   const touch_detail::NearestTriangle found = touch_detail::nearestTriangle(parts_->mesh, rest);
   const auto& w = found.weights;
   return parts_->pointOf(body, static_cast<std::size_t>(found.triangle),

@@ -7,6 +7,10 @@ namespace tetskin {
 
 CouplingForce::~CouplingForce() = default;
 
+bool CouplingForce::moves(const btCollisionObject&) const {
+  return false;
+}
+
 btDeformableLagrangianForceType CouplingForce::getForceType() {
   return kOwnForceType;
 }

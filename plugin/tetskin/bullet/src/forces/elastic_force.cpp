@@ -75,6 +75,7 @@ Status ElasticForce::addTo(btDeformableMultiBodyDynamicsWorld& world, btSoftBody
   if (list.findLinearSearch(this) == list.size()) list.push_back(this);
   setIndices(solver->getIndices());
   addSoftBody(&body);
+  if (ForcedBody* of = parts_->find(&body)) of->know(world);
   return setStiffnessScale(body, std::move(stiffnessScale));
 }
 

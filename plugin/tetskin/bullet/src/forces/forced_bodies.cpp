@@ -100,6 +100,11 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   dynamics->setDamping(material.damping);
 }
 
+void ForcedBody::know(btDeformableMultiBodyDynamicsWorld& in) {
+  world = &in;
+  worldInfo = &in.getWorldInfo();
+}
+
 bool ForcedBody::hasItsCounts() const {
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
          dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());

@@ -27,13 +27,17 @@ struct ForcedBody {
   std::vector<double> stiffnessScale;  ///< by tet, or empty
   std::unique_ptr<Dynamics> dynamics;
   btScalar restMeasure = 0;  ///< of some tets: another one has been scaled
-  bool solved = false;       ///< by a DeformableSolver: the force keeps out of it
-  bool alone = false;        ///< no other force needs Bullet's own deformation gradients
-  int hiddenTets = -1;       ///< how many are kept from Bullet; -1: none
+  /// That it was added in, and what the body would have another of in another world; null: not known.
+  btDeformableMultiBodyDynamicsWorld* world = nullptr;
+  const btSoftBodyWorldInfo* worldInfo = nullptr;
+  bool solved = false;  ///< by a DeformableSolver: the force keeps out of it
+  bool alone = false;   ///< no other force needs Bullet's own deformation gradients
+  int hiddenTets = -1;  ///< how many are kept from Bullet; -1: none
 
   /// Makes, or makes anew, what is derived from the body's tets.
   void build(const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
+  void know(btDeformableMultiBodyDynamicsWorld& in);
   /// Whether that was derived from as many nodes and tets as there are, and from the same rest shapes.
   bool hasItsCounts() const;
   bool hasItsRestShapes() const;

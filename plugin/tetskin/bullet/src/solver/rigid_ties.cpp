@@ -4,6 +4,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/rigid_ties.h>
 #include <tetskin/bullet/src/solver/sliding.h>
@@ -84,6 +86,12 @@ const btCollisionObject* objectOf(const btDeformableRigidContactConstraint& cont
   return contact.m_contact->m_cti.m_colObj;
 }
 
+/// Null where it is not known: a body whose force was not added by `ElasticForce::addTo`, or that has been moved since.
+btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
+  if (!of.elastic || !of.elastic->world) return nullptr;
+  return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
+}
+
 /// Whether the contact has a part in where its node goes.
 bool acts(const NodeContact& contact) {
   return contact.m_binding || !contact.getDv(contact.m_node).isZero();
@@ -121,13 +129,16 @@ RigidVector velocityChange(const TiedRigid& of, const SolverBodies& bodies) {
 
 }  // namespace
 
-void RigidTies::collect(const btDeformableContactProjection& projection, SolverBodies& bodies) {
+void RigidTies::collect(const btDeformableContactProjection& projection, const ForceList& forces,
+                        SolverBodies& bodies) {
   rigids_.clear();
   places_.clear();
   numbers_.clear();
   listRigids(projection, bodies);
   if (places_.empty()) return;
   dropOthers(projection, bodies);
+  dropMoved(forces);
+  dropOfWorlds(bodies);
   listNodes(projection, bodies);
   makeTies(projection, bodies);
   addWeights(bodies);
@@ -136,8 +147,9 @@ void RigidTies::collect(const btDeformableContactProjection& projection, SolverB
 void RigidTies::listRigids(const btDeformableContactProjection& projection, const SolverBodies& bodies) {
   forNodeContacts(projection, bodies, [&](std::size_t b, const NodeContact& contact) {
     const btRigidBody* rigid = btRigidBody::upcast(objectOf(contact));
-    if (!bodies.bodies()[b].elastic || !rigid || rigid->isStaticOrKinematicObject() || !acts(contact)) return;
-    if (rigid->getNumConstraintRefs() > 0 || !(rigid->getInvMass() > 0)) return;
+    const SolvedBody& of = bodies.bodies()[b];
+    if (!of.elastic || !rigid || rigid->isStaticOrKinematicObject() || !acts(contact)) return;
+    if (!worldOf(of) || !(rigid->getInvMass() > 0)) return;
     if (!places_.emplace(rigid, rigids_.size()).second) return;
     rigids_.emplace_back();
     rigids_.back().rigid = const_cast<btRigidBody*>(rigid);
@@ -157,12 +169,35 @@ void RigidTies::dropOthers(const btDeformableContactProjection& projection, cons
     const auto& nodes = projection.m_nodeRigidConstraints[at];
     for (int k = 0; k < nodes.size(); ++k) drop(objectOf(nodes[k]));
   }
-  btDispatcher* dispatcher = bodies.bodies().front().body->getWorldInfo()->m_dispatcher;
-  for (int m = 0; dispatcher && m < dispatcher->getNumManifolds(); ++m) {
-    const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
-    if (manifold.getNumContacts() == 0) continue;
-    drop(manifold.getBody0());
-    drop(manifold.getBody1());
+}
+
+void RigidTies::dropMoved(const ForceList& forces) {
+  for (int f = 0; f < forces.size(); ++f) {
+    const auto* coupling = dynamic_cast<const CouplingForce*>(forces[f]);
+    for (auto at = places_.begin(); coupling && at != places_.end();) {
+      at = coupling->moves(*at->first) ? places_.erase(at) : std::next(at);
+    }
+  }
+}
+
+void RigidTies::dropOfWorlds(const SolverBodies& bodies) {
+  std::set<btDiscreteDynamicsWorld*> worlds;
+  for (const SolvedBody& of : bodies.bodies()) worlds.insert(worldOf(of));
+  worlds.erase(nullptr);
+  for (btDiscreteDynamicsWorld* world : worlds) {
+    for (int c = 0; c < world->getNumConstraints(); ++c) {
+      const btTypedConstraint& joint = *world->getConstraint(c);
+      if (!joint.isEnabled()) continue;
+      places_.erase(&joint.getRigidBodyA());
+      places_.erase(&joint.getRigidBodyB());
+    }
+    btDispatcher& dispatcher = *world->getDispatcher();
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+      if (manifold.getNumContacts() == 0) continue;
+      places_.erase(manifold.getBody0());
+      places_.erase(manifold.getBody1());
+    }
   }
 }
 

@@ -47,12 +47,13 @@ struct TiedRigid {
 };
 
 /// Those of a step. A rigid body is tied if it is free to move, and nothing but nodes of bodies that are solved for has
-/// a part in where it goes: no joint, no anchor and no other contact, for which the solve cannot speak.
+/// a part in where it goes: no joint of the world, no anchor, no point or weld of tetskin::touch and no other contact,
+/// for which the solve cannot speak.
 class RigidTies {
  public:
   /// Finds them, and adds their weights to the matrices. After velocities have been read, and before anything is added
   /// to matrices.
-  void collect(const btDeformableContactProjection& projection, SolverBodies& bodies);
+  void collect(const btDeformableContactProjection& projection, const ForceList& forces, SolverBodies& bodies);
   bool ties(int number) const { return numbers_.count(number) != 0; }
   const std::vector<TiedRigid>& rigids() const { return rigids_; }
 
@@ -69,6 +70,8 @@ class RigidTies {
  private:
   void listRigids(const btDeformableContactProjection& projection, const SolverBodies& bodies);
   void dropOthers(const btDeformableContactProjection& projection, const SolverBodies& bodies);
+  void dropMoved(const ForceList& forces);
+  void dropOfWorlds(const SolverBodies& bodies);
   void listNodes(const btDeformableContactProjection& projection, const SolverBodies& bodies);
   void makeTies(const btDeformableContactProjection& projection, SolverBodies& bodies);
   void addWeights(SolverBodies& bodies);

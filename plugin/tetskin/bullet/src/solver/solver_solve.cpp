@@ -53,7 +53,7 @@ void DeformableSolver::Parts::addOthers() {
 }
 
 void DeformableSolver::Parts::tieRigids() {
-  ties.collect(solver.m_objective->m_projection, bodies);
+  ties.collect(solver.m_objective->m_projection, forces(), bodies);
   for (std::size_t r = 0; r < ties.rigids().size(); ++r) {
     std::vector<std::size_t> places;
     for (const RigidTie& tie : ties.rigids()[r].ties) {
@@ -63,14 +63,14 @@ void DeformableSolver::Parts::tieRigids() {
   }
 }
 
-/// What Bullet's forces have a part in is solved here, one after the other; the rest side by side.
+/// What Bullet's forces have a part in is solved here, one after the other, each by all threads; the rest side by side.
 void DeformableSolver::Parts::solveSystems() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
   image.resize(solver.m_numNodes, btVector3(0, 0, 0));
   extras.resize(bodies.bodies().size());
   std::vector<const SolvedSystem*> own;
   for (const SolvedSystem& system : bodies.systems()) {
-    system.forces.empty() ? own.push_back(&system) : solve(system, nullptr);
+    system.forces.empty() ? own.push_back(&system) : solve(system, threads);
   }
   ParallelFor* inner = own.size() == 1 ? threads : nullptr;
   runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solve(*own[k], inner); });

@@ -128,7 +128,7 @@ ShapeMemory& BodyContacts::memoryOf(const btCollisionShape& shape, const btColli
     known.high = high;
     return known.memory;
   }
-  if (known_.size() >= kMostKnown) known_.clear();
+  if (known_.size() >= kMostKnown) return overflow_ = {};
   known_.push_back({&object, shapeNumber_, &shape, low, high, {}});
   return known_.back().memory;
 }

@@ -60,7 +60,8 @@ class BodyContacts {
   ConvexProbe convex_;
   MeshProbe mesh_;
   std::vector<KnownShape> known_;
-  int shapeNumber_ = 0;  ///< in this call
+  ShapeMemory overflow_;  ///< of a shape too many: nothing is remembered of it
+  int shapeNumber_ = 0;   ///< in this call
   std::vector<NodeTouch> touches_;
 };
 

@@ -45,7 +45,7 @@ Meeting firstMet(const ShapeProbe& probe, const NodePath& path, btScalar margin)
   const btVector3 way = path.predicted - path.now;
   const btScalar length = way.length();
   btScalar gone = 0;
-  Meeting met;
+  Meeting met, last;
   met.where = path.now;
   for (int k = 0; k < kMostSteps; ++k) {
     const ShapeDistance here = probe.at(met.where);
@@ -53,6 +53,7 @@ Meeting firstMet(const ShapeProbe& probe, const NodePath& path, btScalar margin)
     if (k == 0) met.clear = btMax(free, btScalar(0));
     if (free <= kMet * margin && (gone > 0 || free <= 0)) return {here, met.where, 0};
     if (free >= length - gone) return met;
+    last = {here, met.where, 0};
     gone += std::max(free, kMet * margin);
     if (gone >= length) break;
     met.where = path.now + (gone / length) * way;
@@ -61,7 +62,7 @@ Meeting firstMet(const ShapeProbe& probe, const NodePath& path, btScalar margin)
   met.where = path.predicted;
   const ShapeDistance there = probe.at(met.where);
   if (there.distance < margin) met.distance = there;
-  return met;
+  return there.distance < margin || gone >= length ? met : last;
 }
 
 /// Largest change of a unit vector between two rotations, or more.
@@ -136,7 +137,8 @@ void TouchSearch::prepare(ShapeMemory& memory) const {
 /// No point has moved by half the slack since all was clear by as much.
 bool TouchSearch::isAllClear() const {
   const bool forgotten = memory_->steps >= memory_->clearUntil && !probe_->isKnownByItsBox();
-  if (forgotten || memory_->nodes.empty() || !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
+  if (forgotten || memory_->nodes.size() != nodes_->size() ||
+      !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
     return false;
   }
   const btScalar most = btScalar(0.25) * slack_ * slack_ / (spread_ * spread_);

@@ -17,6 +17,7 @@
 #include <tetskin/elastic/vibration_modes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tetskin {
 namespace {
@@ -64,7 +65,13 @@ Status readHeader(const unsigned char* bytes, std::size_t count, Header& header)
 /// What `vibrationModes` never returns.
 bool makeSense(const VibrationModes& modes) {
   const auto isPositive = [](double value) { return value > 0.0; };
-  return std::all_of(modes.masses.begin(), modes.masses.end(), isPositive) &&
+  const auto isNormal = [&](const std::vector<double>& shape) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < shape.size(); ++k) sum += modes.masses[k / 3] * shape[k] * shape[k];
+    return std::abs(sum - 1.0) < 1e-6;
+  };
+  return !modes.eigenvalues.empty() && std::all_of(modes.shapes.begin(), modes.shapes.end(), isNormal) &&
+         std::all_of(modes.masses.begin(), modes.masses.end(), isPositive) &&
          std::all_of(modes.eigenvalues.begin(), modes.eigenvalues.end(), isPositive) &&
          std::is_sorted(modes.eigenvalues.begin(), modes.eigenvalues.end()) && modes.poissonRatio >= 0.0 &&
          modes.poissonRatio < 0.5;

@@ -60,8 +60,9 @@ class Iteration {
  public:
   Iteration(const VibrationProblem& problem, int wanted)
       : problem_(problem), wanted_(wanted), width_(widthFor(problem, wanted)) {
-    Fields start = problem.precondition(startVectors(problem.size(), width_));
-    space_.vectors = orthonormal(std::move(start));
+    // By reflections, which keep all columns: those of slender bodies all but depend on each other.
+    const Eigen::HouseholderQR<Eigen::MatrixXd> start(problem.precondition(startVectors(problem.size(), width_)));
+    space_.vectors = start.householderQ() * Eigen::MatrixXd::Identity(problem.size(), width_);
     space_.images = problem.times(space_.vectors);
     rotate();
   }
@@ -144,15 +145,16 @@ class Iteration {
 };
 
 Vibrations allAtOnce(const VibrationProblem& problem, int count) {
-  // Rigid motions and pinned nodes, of which the matrix has only zeros, become the stiffest.
+  // Rigid motions, which only a body has of which all is free, become the stiffest.
   Eigen::MatrixXd matrix = problem.dense();
-  const double most = matrix.norm();
-  matrix += 2.0 * most * problem.rigid() * problem.rigid().transpose();
-  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
-    if (matrix(k, k) == 0.0) matrix(k, k) = 2.0 * most;
-  }
+  if (problem.rigid().cols() > 0) matrix += 2.0 * matrix.norm() * problem.rigid() * problem.rigid().transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
-  return {eigen.eigenvalues().head(count), eigen.eigenvectors().leftCols(count), 0, true};
+  Fields vectors = Fields::Zero(problem.size(), count);
+  const std::vector<Eigen::Index> rows = problem.freeRows();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    vectors.row(rows[k]) = eigen.eigenvectors().row(static_cast<Eigen::Index>(k)).head(count);
+  }
+  return {eigen.eigenvalues().head(count), std::move(vectors), 0, true};
 }
 
 }  // namespace

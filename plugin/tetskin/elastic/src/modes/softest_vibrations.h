@@ -30,7 +30,9 @@ class VibrationProblem {
   /// Orthonormal, of a body that nothing holds: 6 of them; otherwise none.
   const Eigen::MatrixXd& rigid() const { return rigid_; }
   void removeRigid(Fields& vectors) const { vectors -= rigid_ * (rigid_.transpose() * vectors); }
-  /// For bodies of a few nodes.
+  /// Ascending, as many as freedoms.
+  std::vector<Eigen::Index> freeRows() const;
+  /// Of the free rows, for bodies of which few are.
   Eigen::MatrixXd dense() const;
   Fields displacements(const Fields& vectors) const { return inverseRoots_.asDiagonal() * vectors; }
 

@@ -29,8 +29,8 @@ constexpr double kDampedRange = 12.0;
 constexpr int kPowerIterations = 15;
 /// Margin over an estimated largest eigenvalue, which comes from below.
 constexpr double kLargestMargin = 1.1;
-/// Stiffness added to the groups', in proportion to mass, over the largest: without it a free body's rigid motions have
-/// none.
+/// Stiffness added to the groups', the same for each motion, over the largest: without it a free body's rigid motions
+/// have none.
 constexpr double kGroupShift = 1e-10;
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;

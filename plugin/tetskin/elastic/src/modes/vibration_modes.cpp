@@ -100,9 +100,11 @@ std::vector<double> massesOf(const TetMesh& tets, const VibrationOptions& option
 /// The largest component of each is positive, so that they do not depend on how they were found.
 std::vector<double> shapeOf(const Fields& displacements, Eigen::Index mode) {
   const Eigen::VectorXd shape = displacements.col(mode);
-  Eigen::Index largest = 0;
-  shape.cwiseAbs().maxCoeff(&largest);
-  const double sign = shape[largest] < 0.0 ? -1.0 : 1.0;
+  // Of the first that is as large as any: in symmetric bodies there are several, of either sign.
+  const double most = shape.cwiseAbs().maxCoeff();
+  Eigen::Index first = 0;
+  while (std::abs(shape[first]) < 0.999 * most) ++first;
+  const double sign = shape[first] < 0.0 ? -1.0 : 1.0;
   std::vector<double> result(static_cast<std::size_t>(shape.size()));
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = sign * shape[static_cast<Eigen::Index>(k)];
   return result;

@@ -75,6 +75,11 @@ void ModalBody::begin(const CageModes& modes, const std::vector<double>& eigenva
   if (held_) m_mass = kHeldMass;
   internalInitialization();
   m_mass = mass;
+  // Bullet passes over contacts of nodes without inverse mass: what does not move must not be pushed, as all modes
+  // would be, by as much as it takes.
+  for (int n = 0; n < m_nFull; ++n) {
+    if (held_ && modes.held[static_cast<std::size_t>(n)]) m_nodes[n].m_im = 0;
+  }
 }
 
 /// The fine body's own mass, centre and inertia, instead of those of the cage's nodes, which lie farther out.
@@ -116,9 +121,11 @@ void ModalBody::placeAt(const btTransform& placement) {
 }
 
 btMatrix3x3 ModalBody::getImpulseFactor(int node) {
-  btMatrix3x3 factor = btReducedDeformableBody::getImpulseFactor(node);
-  // The frame's share, which a held body's frame does not have.
-  if (held_) factor -= btMatrix3x3::getIdentity() * (1 / m_mass);
+  // Without the frame's share, which a held body's frame does not have.
+  const btScalar mass = m_mass;
+  if (held_) m_mass = kHeldMass;
+  const btMatrix3x3 factor = btReducedDeformableBody::getImpulseFactor(node);
+  m_mass = mass;
   return factor;
 }
 
@@ -138,11 +145,12 @@ void ModalBody::stay() {
   rest();
 }
 
-/// May be called at any time, and any number of times in a substep: what it sets depends on the state before the
-/// substep alone.
+/// Any number of times in a substep, before contacts are solved for: what it sets depends on the state before the
+/// substep alone. Between steps it sets velocities of nodes alone, which the next one sets anew.
 void ModalBody::correctPrediction() {
   const auto* solver = dynamic_cast<const btReducedDeformableBodySolver*>(getSoftBodySolver());
-  if (!solver) return;
+  // While the world is being told of it, its solver may know of no step.
+  if (!solver || !getBroadphaseHandle()) return;
   for (int n = 0; n < m_nodes.size(); ++n) m_nodes[n].index = n;
   if (!isActive()) return stay();
   slept_ = false;

@@ -145,6 +145,17 @@ std::vector<double> massesOf(const Eigen::VectorXd& carried, double total) {
   return masses;
 }
 
+/// Which nodes of the cage carry more of what is pinned than of what is not.
+std::vector<char> heldNodes(const VibrationModes& modes, const Sparse& carried) {
+  Eigen::VectorXd pinned = Eigen::VectorXd::Zero(carried.rows());
+  for (const int n : modes.pinned) pinned[n] = modes.masses[static_cast<std::size_t>(n)];
+  const Eigen::Map<const Eigen::VectorXd> masses(modes.masses.data(), carried.rows());
+  const Eigen::VectorXd ofPinned = carried.transpose() * pinned, all = carried.transpose() * masses;
+  std::vector<char> held;
+  for (Eigen::Index n = 0; n < all.size(); ++n) held.push_back(ofPinned[n] > 0.5 * all[n]);
+  return held;
+}
+
 }  // namespace
 
 Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, const TetMesh& cage,
@@ -172,6 +183,7 @@ Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, co
   const Eigen::MatrixXd coarse = factors.solve(byMass.transpose() * fine);
   const Eigen::MatrixXd errors = carried * coarse - fine;
 
+  result.held = heldNodes(modes, carried);
   result.masses = massesOf(byMass.transpose() * Eigen::VectorXd::Ones(carried.rows()), result.mass);
   for (std::size_t r = 0; r < count; ++r) {
     const auto first = static_cast<Eigen::Index>(3 * r);

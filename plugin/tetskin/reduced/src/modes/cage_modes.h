@@ -16,6 +16,7 @@ struct CageModes {
   std::vector<double> masses;               ///< nodeCount of the cage, above 0
   std::vector<double> projectionErrors;     ///< by mode, see ReductionReport
   std::size_t outside = 0;                  ///< fine nodes in no tet
+  std::vector<char> held;                   ///< nodeCount of the cage: carries pinned fine nodes more than others
 
   // Of the fine tets, not of the cage, whose nodes lie farther out.
   double mass = 0.0;

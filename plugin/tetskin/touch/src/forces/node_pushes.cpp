@@ -27,8 +27,8 @@ class Load : public Acting {
     dt_ = static_cast<double>(dt);
     --left_;
   }
-  void addPrediction(VectorStack& impulses) override { addTo(impulses); }
-  void addTo(VectorStack& impulses) override {
+  void addPrediction(VectorStack& impulses) override { addTo(impulses, true); }
+  void addTo(VectorStack& impulses, bool) override {
     if (!body_->isActive()) return;
     for (const NodePush& of : forces_) {
       const btSoftBody::Node& node = body_->m_nodes[of.node];

@@ -12,8 +12,9 @@ namespace tetskin::touch_detail {
 
 TouchForce::~TouchForce() {
   // What is left are forces on bodies that are still there: by them it is known whether the list is, too.
-  const bool inWorld = std::any_of(parts_.begin(), parts_.end(), [](const auto& part) {
-    return part->body() && part->body()->getBroadphaseHandle();
+  const bool inWorld = std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) {
+    const btSoftBody* body = part->body();
+    return body && body->getBroadphaseHandle() && body->getSoftBodySolver() == &solver_;
   });
   if (inWorld) leave();
 }
@@ -90,11 +91,15 @@ void TouchForce::beginAll(btScalar dt) {
 }
 
 void TouchForce::addScaledDampingForce(btScalar, TVStack& force) {
-  for (const auto& part : parts_) part->addTo(force);
+  for (const auto& part : parts_) part->addTo(force, false);
+}
+
+bool TouchForce::moves(const btCollisionObject& object) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part->moves(object); });
 }
 
 void TouchForce::addScaledForces(btScalar, TVStack& force) {
-  for (const auto& part : parts_) predicted_ ? part->addTo(force) : part->addPrediction(force);
+  for (const auto& part : parts_) predicted_ ? part->addTo(force, true) : part->addPrediction(force);
   predicted_ = true;
 }
 

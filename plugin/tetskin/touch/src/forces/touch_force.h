@@ -37,13 +37,15 @@ class Acting {
   virtual bool spent() const = 0;
   /// What shares its mass with all others of the same: null for none.
   virtual const void* partner() const { return nullptr; }
+  virtual bool moves(const btCollisionObject&) const { return false; }
 
   /// Before a step of dt seconds. sharers: of the same partner
   virtual void begin(btScalar dt, int sharers) = 0;
   /// What it does to the nodes in the step if nothing but their masses held them back: impulses.
   virtual void addPrediction(VectorStack& impulses) = 0;
   /// What it does at the velocities that nodes have now.
-  virtual void addTo(VectorStack& impulses) = 0;
+  /// split  with those by which contacts push bodies apart; else the solve has them already
+  virtual void addTo(VectorStack& impulses, bool split) = 0;
   /// By how much less, for a change of these.
   virtual void addResistance(const VectorStack& change, VectorStack& impulses) const = 0;
   virtual void addDiagonal(VectorStack& diagonal) const = 0;
@@ -73,6 +75,7 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
 
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
   double tolerance() const override { return 5e-4; }
+  bool moves(const btCollisionObject& object) const override;
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
   void reinitialize(bool nodeUpdated) override;

@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 constexpr double kUnitRate = 240.0;
 /// Of the force allowed, what a spring gives at least that was too strong before.
 constexpr double kLeastShare = 0.01;
+/// Stiffer, or more damped, than this nothing is, in any precision.
+constexpr double kStiffest = 1e9;
 /// What moves faster, in lengths a second, wakes what sleeps at the other end; Bullet's own threshold of sleep.
 constexpr double kWakingSpeed = 0.04;
 
@@ -56,12 +58,13 @@ Joint::Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const 
       nodeMass_(meanNodeMass(*point.body())),
       lever_(leverOf(point.data(), *point.body())),
       places_(placesOf(lever_, *point.body())),
-      turned_(partner_->anchor().getBasis()) {
+      turned_(partner_->anchor().getBasis()),
+      anchorBefore_(partner_->anchor()) {
   btCollisionObject* other = partner_->object();
   if (settings.collide || !other) return;
-  auto& hidden = point_.body()->m_collisionDisabledObjects;
-  hidden_ = hidden.findLinearSearch(other) == hidden.size();
-  if (hidden_) hidden.push_back(other);
+  // An entry for each joint: another one may go before this one does.
+  point_.body()->m_collisionDisabledObjects.push_back(other);
+  hidden_ = true;
 }
 
 Joint::~Joint() {
@@ -102,8 +105,16 @@ bool Joint::softMoves() const {
 
 /// What has come to rest stays so: each of the two may sleep while the other holds still.
 void Joint::wake() {
+  const btTransform anchor = partner_->anchor();
+  const bool moved = !(anchor == anchorBefore_);
+  anchorBefore_ = anchor;
   btCollisionObject* other = partner_->object();
-  if (!other || other->isStaticOrKinematicObject() || softMoves() == other->isActive()) return;
+  if (!other) return;
+  if (other->isStaticOrKinematicObject()) {
+    if (moved && !softMoves()) point_.body()->activate();
+    return;
+  }
+  if (softMoves() == other->isActive()) return;
   const double speed = softMoves() ? pointVelocity().head<3>().norm() : partner_->speed();
   if (speed > kWakingSpeed) softMoves() ? other->activate() : point_.body()->activate();
 }
@@ -120,20 +131,20 @@ void Joint::begin(btScalar dt, int sharers) {
   wake();
 }
 
-Vector6 Joint::pointVelocity() const {
+Vector6 Joint::pointVelocity(bool split) const {
   Vector6 v = Vector6::Zero();
   if (!softMoves()) return v;
-  v.head<3>() = velocityOf(lever_, *point_.body());
-  if (settings_.turns) v.tail<3>() = spinOf(lever_, *point_.body());
+  v.head<3>() = velocityOf(lever_, *point_.body(), split);
+  if (settings_.turns) v.tail<3>() = spinOf(lever_, *point_.body(), split);
   return v;
 }
 
 void Joint::measure() {
   partner_->begin();
   response_ = sharers_ * partner_->response();
-  const double mass = 4.0 * nodeMass_, rate = settings_.stiffness * kUnitRate * kUnitRate;
+  const double mass = 4.0 * nodeMass_, rate = std::min(settings_.stiffness, kStiffest) * kUnitRate * kUnitRate;
   const double k = rate * mass;
-  const double d = 2.0 * settings_.damping * std::sqrt(k * mass);
+  const double d = 2.0 * std::min(settings_.damping, kStiffest) * std::sqrt(k * mass);
   double c = dt_ * (k * dt_ + d);
   wanted_ = partner_->velocity();
   wanted_.head<3>() += k * dt_ / (k * dt_ + d) * offset_.head<3>() / dt_;
@@ -181,10 +192,10 @@ void Joint::addPrediction(VectorStack& impulses) {
   spread(inverse(all) * (wanted_ - pointVelocity()), impulses);
 }
 
-void Joint::addTo(VectorStack& impulses) {
+void Joint::addTo(VectorStack& impulses, bool split) {
   if (!active_) return;
   measure();
-  spread(impulse(), impulses);
+  spread(impulse(split), impulses);
 }
 
 void Joint::addResistance(const VectorStack& change, VectorStack& impulses) const {

@@ -50,9 +50,10 @@ class Joint : public Acting {
   void drop() override;
   bool spent() const override { return !body(); }
   const void* partner() const override { return partner_->mass(); }
+  bool moves(const btCollisionObject& object) const override { return !spent() && partner_->object() == &object; }
   void begin(btScalar dt, int sharers) override;
   void addPrediction(VectorStack& impulses) override;
-  void addTo(VectorStack& impulses) override;
+  void addTo(VectorStack& impulses, bool split) override;
   void addResistance(const VectorStack& change, VectorStack& impulses) const override;
   void addDiagonal(VectorStack& diagonal) const override;
   double energy() const override;
@@ -63,12 +64,12 @@ class Joint : public Acting {
   bool readable() const;
   bool softMoves() const;
   Vector6 offsetOf(const Lever& lever) const;
-  Vector6 pointVelocity() const;
+  Vector6 pointVelocity(bool split = true) const;
   /// Of the partner as it is now: what the impulse is made of.
   void measure();
   /// What gives the impulse for an error in velocity, if all of this gives way to it.
   Matrix6 inverse(const Matrix6& response) const;
-  Vector6 impulse() const { return matrix_ * (wanted_ - pointVelocity()); }
+  Vector6 impulse(bool split = true) const { return matrix_ * (wanted_ - pointVelocity(split)); }
   void spread(const Vector6& impulse, VectorStack& impulses) const;
 
   SurfacePoint point_;
@@ -81,6 +82,7 @@ class Joint : public Acting {
   Lever lever_;
   std::vector<Eigen::Vector3d> places_;  ///< of its nodes when the joint was made; welds only
   btMatrix3x3 turned_;                   ///< the partner then
+  btTransform anchorBefore_;             ///< the partner's, when last looked at
   Vector6 load_ = Vector6::Zero();
   double excess_ = 0;  ///< of impulses over what is allowed, not yet made good
 

@@ -43,7 +43,9 @@ class RigidPartner : public Partner {
     inverseInertia_ = toMatrix(body_.getInvInertiaTensorWorld());
     for (int k = 0; k < 3; ++k) {
       inverseMass_[k] = static_cast<double>(body_.getInvMass() * body_.getLinearFactor()[k]);
+      // Of both sides: symmetric, as what is solved for must be.
       inverseInertia_.row(k) *= static_cast<double>(body_.getAngularFactor()[k]);
+      inverseInertia_.col(k) *= static_cast<double>(body_.getAngularFactor()[k]);
     }
   }
   Vector6 velocity() const override {
@@ -72,6 +74,7 @@ class RigidPartner : public Partner {
     const btVector3 spinning = toBullet(inverseInertia_ * (arm_.cross(along) + about));
     body_.setLinearVelocity(body_.getLinearVelocity() + faster);
     body_.setAngularVelocity(body_.getAngularVelocity() + spinning);
+    if (body_.getHitFraction() < 1) return;  // stopped on its way by what it would have passed through
     btTransform moved;
     btTransformUtil::integrateTransform(body_.getWorldTransform(), faster, spinning, static_cast<btScalar>(dt), moved);
     const btVector3 due = start_ + toBullet(dt * velocity().head<3>());

@@ -71,8 +71,9 @@ void addCorner(const Corner& corner, double share, const btSoftBody& body, Lever
   }
 }
 
-Vector3d currentVelocity(const btSoftBody& body, int node) {
-  return toEigen(body.m_nodes[node].m_v + body.m_nodes[node].m_splitv);
+Vector3d currentVelocity(const btSoftBody& body, int node, bool split) {
+  const btSoftBody::Node& of = body.m_nodes[node];
+  return toEigen(split ? of.m_v + of.m_splitv : of.m_v);
 }
 
 }  // namespace
@@ -93,15 +94,15 @@ std::vector<Vector3d> placesOf(const Lever& lever, const btSoftBody& body) {
   return places;
 }
 
-Vector3d velocityOf(const Lever& lever, const btSoftBody& body) {
+Vector3d velocityOf(const Lever& lever, const btSoftBody& body, bool split) {
   Vector3d sum = Vector3d::Zero();
-  for (const LeverNode& of : lever) sum += of.linear * currentVelocity(body, of.node);
+  for (const LeverNode& of : lever) sum += of.linear * currentVelocity(body, of.node, split);
   return sum;
 }
 
-Vector3d spinOf(const Lever& lever, const btSoftBody& body) {
+Vector3d spinOf(const Lever& lever, const btSoftBody& body, bool split) {
   Vector3d sum = Vector3d::Zero();
-  for (const LeverNode& of : lever) sum += of.angular * currentVelocity(body, of.node);
+  for (const LeverNode& of : lever) sum += of.angular * currentVelocity(body, of.node, split);
   return sum;
 }
 

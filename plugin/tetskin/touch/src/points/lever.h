@@ -25,8 +25,9 @@ using Lever = std::vector<LeverNode>;  ///< 4 to 12, each node once
 Lever leverOf(const PointData& point, const btSoftBody& body);
 
 /// Of the nodes now, with what contacts have added for this step.
-Eigen::Vector3d velocityOf(const Lever& lever, const btSoftBody& body);
-Eigen::Vector3d spinOf(const Lever& lever, const btSoftBody& body);
+/// split  also of that by which they push apart what is too near
+Eigen::Vector3d velocityOf(const Lever& lever, const btSoftBody& body, bool split = true);
+Eigen::Vector3d spinOf(const Lever& lever, const btSoftBody& body, bool split = true);
 
 /// Inverse masses: how fast the point moves, or the nodes turn, by a unit impulse or moment on them.
 Eigen::Matrix3d linearResponse(const Lever& lever, const btSoftBody& body);
