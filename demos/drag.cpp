@@ -269,7 +269,7 @@ void Drag::tell(nlohmann::ordered_json& json) const {
   json["tets"] = model_.cage.tetCount();
   json["triangles"] = model_.mesh.triangleCount();
   json["stiffness"] = options_.stiffness;
-  json["ray_us"] = rayMicroseconds_;
+  json["first_ray_us"] = rayMicroseconds_;
   json["lag_swinging"] = lag_;
   json["stretch_hanging"] = hangs_;
   json["pushed_vertices"] = pushed_.vertices;

@@ -38,7 +38,7 @@ tetskin_test_configuration(double_precision TARGET tests_of_precision TESTS "^(b
   -DCMAKE_BUILD_TYPE=Release -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF
   -DTETSKIN_DEMOS=OFF)
 # Without the demos, which take longer to build so than all the rest of it; and without the fuzzers, which have a
-# configuration of their own; and without the largest models, as smaller ones go the same ways.
+# configuration of their own; and without the largest models and the longest runs, as smaller ones go the same ways.
 tetskin_test_configuration(sanitized TARGET unit_tests TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced)"
   LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertexOutside|NeverTearWhatHangsTogether|AreStableAtAny|LongitudinalFrequencies|Timoshenkos" OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
