@@ -20,7 +20,7 @@ struct KnownShape {
   const btCollisionObject* object = nullptr;
   int number = 0;  ///< of the shapes of the object: a compound may have one twice
   const btCollisionShape* shape = nullptr;
-  btVector3 low, high;  ///< its box: another one is of another shape
+  btVector3 low = {0, 0, 0}, high = {0, 0, 0};  ///< its box: another one is of another shape
   ShapeMemory memory;
 };
 

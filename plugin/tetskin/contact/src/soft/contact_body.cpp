@@ -146,4 +146,13 @@ btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
   return v;
 }
 
+bool isOutside(const ContactBox& box, const DeformedTet& tet) {
+  const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+  const btVector3 middle = (low + high) / 2 - tet.origin, half = (high - low) / 2;
+  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
+  const auto most = [&](const btVector3& row) { return row.dot(middle) + row.absolute().dot(half); };
+  return most(tet.rows[0]) < kLeastWeight || most(tet.rows[1]) < kLeastWeight || most(tet.rows[2]) < kLeastWeight ||
+         1 + most(fourth) < kLeastWeight;
+}
+
 }  // namespace tetskin::contact_detail

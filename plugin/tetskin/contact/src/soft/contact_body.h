@@ -20,6 +20,12 @@ struct DeformedTet {
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
 };
 
+/// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
+/// the surface is near.
+constexpr btScalar kLeastWeight = btScalar(-0.02);
+/// By one of the tet's sides. The tet is not flat.
+bool isOutside(const ContactBox& box, const DeformedTet& tet);
+
 class ContactBody {
  public:
   ContactBody(btSoftBody& of, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)

@@ -68,6 +68,9 @@ void PairCandidates::meetLeaves(const Pair& pair, const BoxTree::Node& a, const 
     for (int j = b.first; j < b.last; ++j) {
       if (!around.meets(tets.itemBox(j))) continue;
       const int tet = tets.tree().items()[static_cast<std::size_t>(j)];
+      // Whatever nodes move by until candidates are found anew is in the box's slack.
+      const DeformedTet& deformed = pair.second->deformed(tet);
+      if (!deformed.flat && isOutside(around, deformed)) continue;
       if (!same || !nearAtRest(pair.first->data(), run, tet)) add(run, tet);
     }
   }

@@ -36,7 +36,7 @@ class PairCandidates {
   };
   struct Pair {
     const ContactBody* first;
-    const ContactBody* second;
+    ContactBody* second;
     ContactBox overlap;
     btScalar slack;
   };

@@ -7,9 +7,6 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
-/// the surface is near.
-constexpr btScalar kLeastWeight = btScalar(-0.02);
 /// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
 constexpr btScalar kOnePlace = btScalar(0.3);
 /// In cubes of the grid: what of a body has moved no farther in its rest space than this is where it was, in the tets
@@ -31,16 +28,6 @@ btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& def
     carried += gradient.dot(data.nodes[static_cast<std::size_t>(n[k])] - origin) * deformed.rows[k];
   }
   return carried;
-}
-
-/// By one of the tet's sides.
-bool isOutside(const ContactBox& box, const DeformedTet& tet) {
-  const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
-  const btVector3 middle = (low + high) / 2 - tet.origin, half = (high - low) / 2;
-  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
-  const auto most = [&](const btVector3& row) { return row.dot(middle) + row.absolute().dot(half); };
-  return most(tet.rows[0]) < kLeastWeight || most(tet.rows[1]) < kLeastWeight || most(tet.rows[2]) < kLeastWeight ||
-         1 + most(fourth) < kLeastWeight;
 }
 
 btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
