@@ -12,6 +12,7 @@
 
 #include "bench/xpbd.h"
 #include "scenes/input_error.h"
+#include "scenes/model.h"
 #include "scenes/placement.h"
 #include "scenes/serpent.h"
 #include "scenes/table.h"
@@ -109,33 +110,60 @@ void crowd(State& state, Force force) {
   state.counters["asleep"] = static_cast<double>(asleep);
 }
 
-/// Two bodies of 4,000 samples each that lie on each other, or far apart: a frame, with their contact or without.
-void softPair(State& state, std::size_t tets, double apart, bool touch) {
-  CageOptions cageOptions;
-  cageOptions.targetTets = tets;
-  TriangleMesh mesh = scenes::makeSerpent();
-  Cage cage = buildCage(mesh, cageOptions).value();
-  const scenes::Placement place = scenes::placementOf(boundingBox(cage.nodes));
-  cage = place.toWorld(cage);
-  place.toWorld(mesh.positions);
-  ContactShapeOptions shapeOptions;
-  shapeOptions.samples = 4000;
-  const auto shape = makeContactShape(cage, mesh, shapeOptions).value();
-  scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
-  world.addBox({0, -2.0, 0}, {10, 1, 10});
-  for (int k = 0; k < 2; ++k) {
-    Cage placed = cage;
-    const Eigen::AngleAxisd turn(1.1 * k, Eigen::Vector3d(0.3, 1.0, 0.2).normalized());
-    for (Eigen::Vector3d& p : placed.nodes) p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
-    btSoftBody& body = world.add(placed, {});
-    body.setActivationState(DISABLE_DEACTIVATION);
-    if (touch) world.touchEachOther(body, shape);
+/// The serpent in the world's size, and its shape of 4,000 samples.
+struct TouchingModel {
+  explicit TouchingModel(std::size_t tets) {
+    scenes::ModelOptions options;
+    options.tets = tets;
+    scenes::Model model = scenes::loadModel(options);
+    const scenes::Placement place = scenes::placementOf(boundingBox(model.cage.nodes));
+    cage = place.toWorld(model.cage);
+    place.toWorld(model.mesh.positions);
+    ContactShapeOptions shapeOptions;
+    shapeOptions.samples = 4000;
+    shape = makeContactShape(cage, model.mesh, shapeOptions).value();
   }
+
+  Cage cage;
+  std::shared_ptr<const ContactShape> shape;
+};
+
+/// Steps of a world in which everything has come to lie.
+void timeSettled(State& state, scenes::World& world, const Cage& cage) {
   constexpr int kSettled = 480;
   for (int s = 0; s < kSettled; ++s) world.step(1.0 / 240.0);
   for (auto _ : state) world.step(1.0 / 240.0);
   state.counters["contacts"] = static_cast<double>(world.softContacts().size());
   state.counters["tets"] = static_cast<double>(cage.tetCount());
+}
+
+/// Two bodies that lie on each other, or far apart: a step, with their contact or without.
+void softPair(State& state, std::size_t tets, double apart, bool touch) {
+  const TouchingModel model(tets);
+  scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
+  world.addBox({0, -2.0, 0}, {10, 1, 10});
+  for (int k = 0; k < 2; ++k) {
+    Cage placed = model.cage;
+    const Eigen::AngleAxisd turn(1.1 * k, Eigen::Vector3d(0.3, 1.0, 0.2).normalized());
+    for (Eigen::Vector3d& p : placed.nodes) p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
+    btSoftBody& body = world.add(placed, {});
+    body.setActivationState(DISABLE_DEACTIVATION);
+    if (touch) world.touchEachOther(body, model.shape);
+  }
+  timeSettled(state, world, model.cage);
+}
+
+/// A serpent on the floor that meets itself, or not: so soft that its coils sink onto each other, or firm.
+void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
+  const TouchingModel model(tets);
+  scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
+  world.addBox({0, -2.0, 0}, {10, 1, 10});
+  SoftBodyOptions how;
+  how.relativeStiffness = sinks ? 5.0 : 100.0;
+  btSoftBody& body = world.add(model.cage, how);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  if (itself) world.touchEachOther(body, model.shape, true);
+  timeSettled(state, world, model.cage);
 }
 
 void registerSoftPairs() {
@@ -152,10 +180,25 @@ void registerSoftPairs() {
   }
 }
 
+void registerSoftSelves() {
+  for (const std::size_t tets : {503, 1004}) {
+    for (const bool sinks : {true, false}) {
+      for (const bool itself : {false, true}) {
+        const std::string name = "Step/soft_self/" + std::string(sinks ? "touching" : "apart") +
+                                 (itself ? "/contact" : "/none") + "/tets:" + std::to_string(tets);
+        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
+          softSelf(state, tets, sinks, itself);
+        })->Unit(benchmark::kMicrosecond);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void registerStepCases() {
   registerSoftPairs();
+  registerSoftSelves();
   const std::pair<const char*, Force> forces[] = {{"bullet_neo_hookean", Force::NeoHookean},
                                                   {"bullet_linear", Force::LinearElasticity},
                                                   {"tetskin_force", Force::ElasticForceOnly},

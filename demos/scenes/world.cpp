@@ -109,14 +109,14 @@ void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, con
   contacts_.push_back(std::move(made).value());
 }
 
-void World::touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape) {
+void World::touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself) {
   if (!deformable_) throw InputError("contact of soft bodies at their surfaces needs the deformable world");
   if (!softContacts_) {
     auto made = SoftContacts::add(*deformable_);
     require(made.status());
     softContacts_ = std::move(made).value();
   }
-  require(softContacts_->include(body, std::move(shape)));
+  require(softContacts_->include(body, std::move(shape), itself));
 }
 
 std::vector<SoftContact> World::softContacts() const {

@@ -81,9 +81,9 @@ class World {
   /// InputError if they do not fit.
   void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
 
-  /// Soft bodies for which this was called meet each other at their visual surfaces, in the deformable world. Throws
-  /// InputError if body and shape do not fit.
-  void touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape);
+  /// Soft bodies for which this was called meet each other at their visual surfaces, in the deformable world; and
+  /// perhaps themselves. Throws InputError if body and shape do not fit.
+  void touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself = false);
   /// Of the last substep; none where nothing was to touch.
   std::vector<SoftContact> softContacts() const;
 
