@@ -26,6 +26,10 @@ if(NOT CLANG_TIDY)
   tetskin_lacks("clang-tidy 14" "test with clang-tidy")
 endif()
 
+if(NOT TARGET docs)
+  tetskin_lacks("doxygen" "test of the public headers' pages")
+endif()
+
 # clang with the runtime of its fuzzer; otherwise fuzzers are driven at random.
 find_program(CLANG_CXX NAMES clang++-14 clang++)
 set(has_fuzzer_runtime FALSE)
