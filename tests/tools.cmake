@@ -66,7 +66,7 @@ foreach(python IN ITEMS ${PYTHON_IN_PATH} ${PYTHON_OF_SYSTEM})
   endif()
 endforeach()
 if(NOT python_with_matplotlib)
-  tetskin_lacks("Python with matplotlib" "test of the plots")
+  tetskin_lacks("Python with matplotlib" "test of the plots, of links and of what pages show")
 endif()
 
 if(TETSKIN_TEST_EVERYTHING AND missing_tools)
