@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Looks for what pages name and there is not: programs, and options in `code`; for blocks that would not be tested; and
+"""Looks for what pages name and there is not: programs, options and tests in `code`; for blocks that would not be tested; and
 for what commands.txt lists and no page has.
 
 check_names.py --build BUILD --programs PROGRAM [PROGRAM ...] --pages PAGE [PAGE ...]
@@ -52,6 +52,23 @@ def program_faults(passage, programs):
                 yield f"no program {name}: `{code}`"
 
 
+def test_faults(text, tests):
+    """Tests are named as `Suite.Name`, and the next of the same suite as `.Name`. tests: all that there are"""
+    suite = ""
+    for code in page.code(" ".join(page.passages(text))):
+        name = re.fullmatch(r"([A-Z][A-Za-z]*)?\.([A-Z][A-Za-z0-9]+)", code)
+        if not name:
+            continue
+        suite = name.group(1) or suite
+        if (suite, name.group(2)) not in tests:
+            yield f"no test {suite}.{name.group(2)}"
+
+
+def all_tests():
+    sources = "".join(source.read_text() for source in (REPOSITORY / "tests").rglob("*.cpp"))
+    return set(re.findall(r"^TEST(?:_[FP])?\(\s*(\w+),\s*(\w+)", sources, re.MULTILINE))
+
+
 def block_faults(text):
     blocks = page.blocks(text)
     if text.count("```") != 2 * len(blocks):
@@ -73,11 +90,12 @@ def main():
     handling = Handling()
     known = {program: options(arguments.build, program) for program in arguments.programs}
     commands = [line for program in arguments.programs for line in examples(arguments.build, program)]
+    tests = all_tests()
     faults = []
     for name in arguments.pages:
         text = (REPOSITORY / name).read_text()
         commands += page.commands(text)
-        faults += [f"{name}: {fault}" for fault in block_faults(text)]
+        faults += [f"{name}: {fault}" for fault in [*block_faults(text), *test_faults(text, tests)]]
         for passage in page.passages(text):
             faults += [f"{name}: {fault}" for fault in option_faults(passage, known, handling)]
             faults += [f"{name}: {fault}" for fault in program_faults(passage, arguments.programs)]
