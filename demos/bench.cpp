@@ -343,7 +343,12 @@ int main(int argc, char** argv) {
   ModelOptions options;
   CommandLine line(
       "Benchmarks of attaching, updating, building and writing, each beside Bullet's own. Takes Google "
-      "Benchmark's flags, too: --benchmark_filter=REGEX, --benchmark_out=FILE, ...");
+      "Benchmark's flags, too: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
+      {{{"tetskin_bench --benchmark_filter=^Update/linear$ --benchmark_out=update.json",
+         "one case, and a file of its times"},
+        {"tetskin_bench --mesh yours.obj --tets 1000 --benchmark_filter=^Attach/",
+         "attaching a mesh of yours, three ways"}},
+       ""});
   line.addModelOptions(options);
   return line.run(argc, argv, [&] {
     registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);

@@ -79,7 +79,11 @@ int run(CageCommand command) {
 
 int main(int argc, char** argv) {
   CageCommand command;
-  CommandLine line("Builds a cage of tetrahedra for any triangle mesh, watertight or not.");
+  CommandLine line("Builds a cage of tetrahedra for any triangle mesh, watertight or not.",
+                   {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "some 3,000 tets around a mesh of yours"},
+                     {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
+                      "some 300, as soft as the mesh, and how well they fit"}},
+                    "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
   line.addFile("-o,--output", command.output,
                "Cage to write: .vtk, with all that is known of it; tets alone: .msh, .ele with .node",

@@ -158,7 +158,13 @@ int run(const DeformCommand& command) {
 int main(int argc, char** argv) {
   DeformCommand command;
   constexpr auto kRequired = CommandLine::Need::Required;
-  CommandLine line("Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.");
+  CommandLine line(
+      "Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.",
+      {{{"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj",
+         "the mesh as the cage has it now"},
+        {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj --normals transformed",
+         "the same with its normals"}},
+       ""});
   line.addFile("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads", kRequired);
   line.addFile("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh", kRequired);
   line.addFile("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order",

@@ -309,7 +309,10 @@ int run(const DragOptions& options) {
 int main(int argc, char** argv) {
   DragOptions options;
   CommandLine line(
-      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.");
+      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.",
+      {{{"tetskin_drag", "out/drag/frame_0000.obj, ..., and summary.json with the lag"},
+        {"tetskin_drag --stiffness 1 --out soft", "a soft spring: the serpent lags behind the pointer"}},
+       "the simulation exploded"});
   line.addCount("--tets", options.tets, "Tets of the cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
   line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");

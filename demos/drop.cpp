@@ -203,7 +203,12 @@ int run(const DropOptions& options) {
 
 int main(int argc, char** argv) {
   DropOptions options;
-  CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.");
+  CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.",
+                   {{{"tetskin_drop", "the built-in serpent: out/drop/frame_0000.obj, ..., and summary.json"},
+                     {"tetskin_drop --mesh yours.obj --tets 1000 --calibrate", "a mesh of yours in a softer cage"},
+                     {"tetskin_drop --interpolation quadratic --normals transformed --write-cage",
+                      "a smoother surface, its normals, and the cage beside it"}},
+                    "the simulation exploded, or the surface passed the floor"});
   line.addModelOptions(options.model);
   line.addForceOption(options.force);
   line.addWord(

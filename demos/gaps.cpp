@@ -104,7 +104,10 @@ int run(const GapOptions& options) {
 int main(int argc, char** argv) {
   GapOptions options;
   CommandLine line(
-      "Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.");
+      "Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.",
+      {{{"tetskin_gaps --markdown gaps.md", "all bodies on all obstacles: minutes"},
+        {"tetskin_gaps --bodies serpent --obstacles floor --settings solver --tets 300", "one body on the floor"}},
+       "a surface rests farther from what it lies on than it may"});
   line.addWords("--bodies", options.bodies, "serpent, round, legs (default: all)");
   line.addWords("--obstacles", options.obstacles, "floor, edge, sphere, pole, hull, mesh, ball (default: all)");
   line.addWords("--settings", options.settings,

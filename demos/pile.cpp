@@ -203,7 +203,10 @@ int run(const PileOptions& options) {
 
 int main(int argc, char** argv) {
   PileOptions options;
-  CommandLine line("Soft bodies of three models fall into a bowl, some across thin poles, and lie on each other.");
+  CommandLine line("Soft bodies of three models fall into a bowl, some across thin poles, and lie on each other.",
+                   {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
+                     {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
+                    "the simulation exploded"});
   line.addCount("--bodies", options.bodies, "How many bodies", 100);
   line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);

@@ -5,7 +5,7 @@
 build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev
   libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
-check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils)
+check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
 require_packages() {

@@ -72,7 +72,11 @@ int run(const StressOptions& options) {
 
 int main(int argc, char** argv) {
   StressOptions options;
-  CommandLine line("Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.");
+  CommandLine line(
+      "Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.",
+      {{{"tetskin_stress --quick", "a part of the cases, as a table"},
+        {"tetskin_stress --only cage/ --markdown stress.md", "the cases of odd cages, and a file of them"}},
+       "a case did not hold"});
   line.addFlag("--quick", options.quick, "A part of the cases, in some 20 s");
   line.addFlag("--long", options.lasting,
                "Instead of all others the cases of a minute of simulated time, in some minutes");

@@ -26,6 +26,10 @@ if(NOT CLANG_TIDY)
   tetskin_lacks("clang-tidy 14" "test with clang-tidy")
 endif()
 
+if(NOT TARGET docs)
+  tetskin_lacks("doxygen" "test of the public headers' pages")
+endif()
+
 # clang with the runtime of its fuzzer; otherwise fuzzers are driven at random.
 find_program(CLANG_CXX NAMES clang++-14 clang++)
 set(has_fuzzer_runtime FALSE)
@@ -62,7 +66,7 @@ foreach(python IN ITEMS ${PYTHON_IN_PATH} ${PYTHON_OF_SYSTEM})
   endif()
 endforeach()
 if(NOT python_with_matplotlib)
-  tetskin_lacks("Python with matplotlib" "test of the plots")
+  tetskin_lacks("Python with matplotlib" "test of the plots, of links and of what pages show")
 endif()
 
 if(TETSKIN_TEST_EVERYTHING AND missing_tools)

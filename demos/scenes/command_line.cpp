@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/command_line.h"
 
+#include <LinearMath/btScalar.h>
+#include <tetskin/tetskin.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -50,13 +53,33 @@ void addChoice(CLI::App& app, const std::string& name, Choice& choice,
   app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
 }
 
+std::string textOf(const HelpEnd& end) {
+  std::string text = "Examples:\n";
+  for (const Example& example : end.examples) text += "  " + example.line + "\n      " + example.does + "\n";
+  text += "\nExit status:\n  0  done\n";
+  if (!end.failure.empty()) text += "  1  " + end.failure + "\n";
+  return text + "  2  wrong arguments, unreadable input, or files that do not fit each other";
+}
+
+std::string versionOf(const std::string& program) {
+  char bullet[16];
+  std::snprintf(bullet, sizeof bullet, "%d.%02d", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100);
+  return program + " " TETSKIN_VERSION "\nBullet " + bullet + ", " + (sizeof(btScalar) == 8 ? "double" : "float") +
+         "\n";
+}
+
 }  // namespace
 
 struct CommandLine::Parser {
   CLI::App app;
 };
 
-CommandLine::CommandLine(const std::string& description) : parser_(new Parser{CLI::App(description)}) {}
+CommandLine::CommandLine(const std::string& description, const HelpEnd& end)
+    : parser_(new Parser{CLI::App(description)}) {
+  parser_->app.footer(textOf(end));
+  parser_->app.set_version_flag("--version", "", "Print the version, and Bullet's, and exit");
+  parser_->app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
 
 CommandLine::~CommandLine() = default;
 
@@ -192,6 +215,9 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
     return demo();
   } catch (const CLI::CallForHelp&) {
     std::fputs(parser_->app.help().c_str(), stdout);
+    return kDone;
+  } catch (const CLI::CallForVersion&) {
+    std::fputs(versionOf(name).c_str(), stdout);
     return kDone;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: out of memory; ask for fewer tets or triangles\n", name.c_str());

@@ -31,13 +31,26 @@ struct OutputOptions {
   bool quiet = false;
 };
 
+/// A whole command line, and what it does.
+struct Example {
+  std::string line;
+  std::string does;
+};
+
+/// How a program's --help ends.
+struct HelpEnd {
+  std::vector<Example> examples;
+  std::string failure;  ///< what exit status 1 means; empty: there is none
+};
+
 /// Options and what they set, which keeps its value where one is not given, and must outlive this object. What a value
 /// may not be is refused in one line.
 class CommandLine {
  public:
   enum class Need { Optional, Required };
 
-  explicit CommandLine(const std::string& description);
+  /// With --help and --version. Of an option given twice the last counts; a list takes both.
+  CommandLine(const std::string& description, const HelpEnd& end);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
@@ -86,7 +99,8 @@ class CommandLine {
 
   /// Whether an option was on the line that was parsed.
   bool given(const std::string& name) const;
-  /// Parses the line and runs the demo; turns errors into one line on standard error and an exit status.
+  /// Parses the line, and runs the demo unless that asks for help or the version; turns errors into one line on
+  /// standard error and an exit status.
   int run(int argc, char** argv, const std::function<int()>& demo);
 
  private:

@@ -4,11 +4,11 @@
 // All of tetskin that you link, and its version. Each library's target, and tetskin.pc, define TETSKIN_HAS_<LIBRARY>.
 #pragma once
 
-#define TETSKIN_VERSION_MAJOR 0
-#define TETSKIN_VERSION_MINOR 6
-#define TETSKIN_VERSION_PATCH 0
-#define TETSKIN_TEXT_(x) #x
-#define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)
+#define TETSKIN_VERSION_MAJOR 0           ///< rises when what was there changes
+#define TETSKIN_VERSION_MINOR 6           ///< rises when something is added, or while major is zero, changed
+#define TETSKIN_VERSION_PATCH 0           ///< rises when something is mended
+#define TETSKIN_TEXT_(x) #x               ///< for the next one
+#define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)  ///< what x stands for, in quotes
 /// "major.minor.patch"
 #define TETSKIN_VERSION \
   TETSKIN_TEXT(TETSKIN_VERSION_MAJOR) "." TETSKIN_TEXT(TETSKIN_VERSION_MINOR) "." TETSKIN_TEXT(TETSKIN_VERSION_PATCH)

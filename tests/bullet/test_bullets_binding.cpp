@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet binds a render mesh to tets or faces, beside how we do: where both agree, and the defects of its own path
-// that can be reproduced with the installed Bullet. The README's table names these tests.
+// that can be reproduced with the installed Bullet. The table in tests/README.md names these tests.
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // When and what Bullet updates of a render mesh, beside what we do: the defects of its own path that can be reproduced
-// with the installed Bullet. The README's table names these tests.
+// with the installed Bullet. The table in tests/README.md names these tests.
 #include <algorithm>
 #include <cmath>
 

@@ -14,15 +14,15 @@ macro(next_fence fence)
   endif()
 endmacro()
 
-# Writes the blocks of a page to folder/<page>_<line>.<language>, and appends the files to these lists:
+# Writes the blocks of repository/page to folder/<page>_<line>.<language>, where a slash is a _, and appends the files to these lists:
 #   programs      C++ with a main(), as it is
-#   fragments     other C++, as the body of a function; what it speaks of, snippet.h declares
+#   fragments     other C++, as the body of a function, but for what it includes; what it speaks of, snippet.h declares
 #   cmake_blocks
 # Compilers name the page and its line in their messages.
-function(extract_snippets page folder)
-  cmake_path(GET page STEM stem)
+function(extract_snippets repository page folder)
+  string(REGEX REPLACE "[^A-Za-z0-9]" "_" name ${page})
   foreach(language cpp cmake)
-    file(READ ${page} rest)
+    file(READ ${repository}/${page} rest)
     set(line 1)
     next_fence("```${language}\n")
     while(NOT rest STREQUAL "")
@@ -35,12 +35,16 @@ function(extract_snippets page folder)
         set(kind cmake_blocks)
       elseif(block MATCHES "int main\\(")
         set(kind programs)
-        string(PREPEND block "#line ${line} \"${page}\"\n")
+        string(PREPEND block "#line ${line} \"${repository}/${page}\"\n")
       else()
         set(kind fragments)
-        set(block "#include \"snippet.h\"\nvoid ${stem}_${line}() {\n#line ${line} \"${page}\"\n${block}}\n")
+        string(REGEX MATCHALL "#include [^\n]*\n" includes "${block}")
+        string(REPLACE "#include " "// " block "${block}")
+        list(JOIN includes "" includes)
+        string(CONCAT block "#include \"snippet.h\"\n${includes}void ${name}_${line}() {\n"
+          "#line ${line} \"${repository}/${page}\"\n${block}}\n")
       endif()
-      set(file ${folder}/${stem}_${line}.${language})
+      set(file ${folder}/${name}_${line}.${language})
       file(CONFIGURE OUTPUT ${file} CONTENT "@block@" @ONLY)
       list(APPEND ${kind} ${file})
       next_fence("```${language}\n")

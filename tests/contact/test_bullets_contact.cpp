@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet's own contact of soft and rigid bodies fails, as far as it can be reproduced with the installed Bullet,
-// with SurfaceContact beside it doing it right. The README's table names these tests.
+// with SurfaceContact beside it doing it right. The table in tests/README.md names these tests.
 #include "bullets_figure.h"
 #include "contact_test.h"
 

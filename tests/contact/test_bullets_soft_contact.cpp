@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet's own contact among soft bodies of a deformable world fails, and what else of such a world stands in the
-// way, as far as it can be reproduced with the installed Bullet. The README's table names these tests.
+// way, as far as it can be reproduced with the installed Bullet. The table in tests/README.md names these tests.
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 
 #include "bullets_figure.h"

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What the programs' command lines have in common: each is asked.
+#include <LinearMath/btScalar.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -26,6 +27,14 @@ struct Program {
 const Program kDrop{TETSKIN_DROP}, kTwist{TETSKIN_TWIST}, kCrowd{TETSKIN_CROWD}, kBench{TETSKIN_BENCH},
     kErrorVsTime{TETSKIN_ERROR_VS_TIME}, kStress{TETSKIN_STRESS}, kCage{TETSKIN_CAGE, {"-o", "o.vtk"}},
     kDeform{TETSKIN_DEFORM, {"--deformed", "d.vtk", "-o", "o.obj"}};
+
+const char* const kAllPrograms[] = {TETSKIN_DROP,   TETSKIN_PILE,   TETSKIN_DRAG,         TETSKIN_TWIST,
+                                    TETSKIN_CROWD,  TETSKIN_STRESS, TETSKIN_GAPS,         TETSKIN_CAGE,
+                                    TETSKIN_DEFORM, TETSKIN_BENCH,  TETSKIN_ERROR_VS_TIME};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 class Options : public testing::Test {
  protected:
@@ -156,6 +165,43 @@ TEST_F(Options, HelpOfEveryProgramListsTheSharedOnes) {
   for (const char* option : {"--cage", "--tets", "--model", "--triangles", "--benchmark_filter"}) {
     EXPECT_NE(bench.out.find(option), std::string::npos) << bench.out;
   }
+}
+
+// The examples themselves run in the tests of the pages.
+TEST_F(Options, HelpOfEveryProgramEndsWithExamplesAndExitStatuses) {
+  for (const std::string path : kAllPrograms) {
+    const CommandResult result = folder.run(path, {"--help"});
+    const std::string name = std::filesystem::path(path).filename().string();
+    EXPECT_EQ(result.status, 0) << name;
+    EXPECT_EQ(result.err, "") << name;
+    const std::size_t end = result.out.find("\nExamples:\n  " + name);
+    ASSERT_NE(end, std::string::npos) << result.out;
+    EXPECT_LT(result.out.rfind("  --"), end) << "options behind the examples: " << result.out;
+    for (const char* status : {"\nExit status:\n  0  done\n", "\n  2  wrong arguments"}) {
+      EXPECT_TRUE(contains(result.out.substr(end), status)) << result.out;
+    }
+    const bool neverFails = path == TETSKIN_DEFORM || path == TETSKIN_BENCH;
+    EXPECT_NE(contains(result.out.substr(end), "\n  1  "), neverFails) << result.out;
+  }
+}
+
+TEST_F(Options, VersionOfEveryProgramIsTheProjectsAndTellsOfBullet) {
+  const std::string number = std::to_string(BT_BULLET_VERSION);  // 324
+  const std::string bullet = "Bullet " + number.substr(0, 1) + "." + number.substr(1) + ", " +
+                             (sizeof(btScalar) == 8 ? "double" : "float") + "\n";
+  for (const std::string path : kAllPrograms) {
+    const CommandResult result = folder.run(path, {"--version"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, std::filesystem::path(path).filename().string() + " " TETSKIN_PROJECT_VERSION "\n" + bullet);
+  }
+}
+
+TEST_F(Options, OfAnOptionGivenTwiceTheLastCounts) {
+  const CommandResult result = folder.run(TETSKIN_CAGE, {"--triangles", "2000", "--tets", "1000", "--tets", "100", "-o",
+                                                         "a.vtk", "-o", "b.vtk", "--json", "s.json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(folder.json("s.json").at("target_tets"), 100);
+  EXPECT_TRUE(folder.exists("b.vtk") && !folder.exists("a.vtk"));
 }
 
 }  // namespace

@@ -43,33 +43,35 @@ class TETSKIN_BULLET_API DeformableBody {
   DeformableBody(const DeformableBody&) = delete;
   DeformableBody& operator=(const DeformableBody&) = delete;
 
-  btSoftBody& body();
-  const btSoftBody& body() const;
+  btSoftBody& body();              ///< Bullet's own, of which this is the owner
+  const btSoftBody& body() const;  ///< the same
 
-  ForceModel forceModel() const;
+  ForceModel forceModel() const;  ///< what holds it together
   /// By the world's solver, and its settings in the last step: see `DeformableSolver::solves`.
   SolverPath solverPath() const;
 
   /// The stiffness in use, in pressure units: the last one set, or that of the options, or the default for this cage,
   /// the world's gravity and `options.timeStep`.
   double youngsModulus() const;
-  double poissonRatio() const;
-  double damping() const;  ///< seconds
+  double poissonRatio() const;  ///< 0 to below 0.5
+  double damping() const;       ///< seconds
 
   /// The body's material from the next step on; it wakes. As in SoftBodyOptions, but the stiffness must be above 0, and
   /// is not bounded by the time step. Errors: InvalidOption, and nothing is changed.
   Status setYoungsModulus(double pressure);
-  Status setPoissonRatio(double ratio);
-  Status setDamping(double seconds);
+  Status setPoissonRatio(double ratio);  ///< likewise
+  Status setDamping(double seconds);     ///< likewise
 
   /// Gravity follows the world's, also when that changes, until it is set here. The body wakes.
   void setGravity(const btVector3& gravity);
-  void followWorldGravity();
+  void followWorldGravity();  ///< again, as at first
 
-  /// Holds a node where it is, or lets it go again, with the mass that it had. To move a pinned node, set the m_x of
-  /// `body().m_nodes[node]`. The body wakes. Errors: IndexOutOfRange; a node that is pinned, or not, already is none.
+  /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]`. The body wakes. Errors:
+  /// IndexOutOfRange; that it is pinned already is none.
   Status pin(int node);
+  /// Lets it go again, with the mass that it had; likewise.
   Status unpin(int node);
+  /// The node exists.
   bool isPinned(int node) const;
 
  private:

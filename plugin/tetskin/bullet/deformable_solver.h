@@ -23,6 +23,7 @@ namespace tetskin {
 /// callback alone.
 class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  public:
+  /// Of no bodies, which Bullet tells it of in each step.
   DeformableSolver();
   ~DeformableSolver() override;
   DeformableSolver(const DeformableSolver&) = delete;

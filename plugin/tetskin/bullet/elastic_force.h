@@ -42,6 +42,7 @@ struct SolverLimits {
 /// Cost       of a step, by itself: O(T) for T tets; memory about 700 bytes a tet in float
 class TETSKIN_BULLET_API ElasticForce : public btDeformableLagrangianForce {
  public:
+  /// Of no body: see `addTo`.
   /// material  what makes no sense is found by `addTo`
   explicit ElasticForce(const ElasticMaterial& material);
   ~ElasticForce() override;
@@ -60,14 +61,14 @@ class TETSKIN_BULLET_API ElasticForce : public btDeformableLagrangianForce {
   /// type, which may be another one.
   void removeFrom(btSoftBody& body);
 
-  const ElasticMaterial& material() const;
+  const ElasticMaterial& material() const;  ///< of all bodies
   /// Of all bodies, from the next step on; they are not woken. Error: InvalidOption
   Status setMaterial(const ElasticMaterial& material);
   /// By tet, above 0, for a body that the force has; empty: 1. Errors: SizeMismatch, InvalidOption, IndexOutOfRange
   Status setStiffnessScale(btSoftBody& body, std::vector<double> stiffnessScale);
   /// Used by `DeformableSolver` alone. Error: InvalidOption
   Status setLimits(const SolverLimits& limits);
-  const SolverLimits& limits() const;
+  const SolverLimits& limits() const;  ///< in use
 
   // What Bullet calls.
   btDeformableLagrangianForceType getForceType() override;

@@ -37,9 +37,11 @@ TETSKIN_BULLET_API Status checkDangling(const TetMesh& read);
 /// The positions of a Bullet vertex buffer, as a target for skinning: vertexCount points, owned by the buffer's owner.
 TETSKIN_BULLET_API PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount);
 
+/// A vector of Bullet's, in double.
 inline Eigen::Vector3d toEigen(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
+/// A vector for Bullet, rounded to its precision.
 inline btVector3 toBullet(const Eigen::Vector3d& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
@@ -122,9 +124,10 @@ TETSKIN_BULLET_API SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions op
 TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
                                                                     const SoftBodyOptions& options = {});
 
-/// As the body's own `setMass` (0 pins the node) and `setTotalMass`, but Bullet is left nothing to build: the trees
-/// stay. For bodies made by `makeSoftBody` that are in no `DeformableBody`. Cost O(links + faces).
+/// As the body's own `setMass` (0 pins the node), but Bullet is left nothing to build: the trees stay. For bodies made
+/// by `makeSoftBody` that are in no `DeformableBody`. Cost O(links + faces).
 TETSKIN_BULLET_API void setMass(btSoftBody& body, int node, btScalar mass);
+/// As `btSoftBody::setTotalMass`, likewise.
 TETSKIN_BULLET_API void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces = false);
 
 /// Node masses as `makeSoftBody` gives them, nodeCount, adding up to totalMass.

@@ -34,6 +34,7 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 ///     status = skin.update(alpha);                                                // each frame
 class TETSKIN_BULLET_API SoftBodySkin {
  public:
+  /// Bound to nothing.
   SoftBodySkin() = default;
   SoftBodySkin(SoftBodySkin&&) = default;
   SoftBodySkin& operator=(SoftBodySkin&&) = default;
@@ -97,6 +98,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   void markTeleported();
   /// A skin that is not visible is not updated; shown again, it is at once. Visible to begin with.
   void setVisible(bool visible);
+  /// As it was set.
   bool visible() const { return visible_; }
 
   /// vertexCount current positions, world space minus origin, in the binding's order: the skin's own array. Empty where
@@ -106,8 +108,9 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// update that was skipped (a sleeping body has no motion), after the one that follows a teleport, and when shown
   /// again; on frames without a call of `update`, nothing has moved either.
   PointView<const btScalar> previousPositions() const { return skin_.previousPositions(); }
-  /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
+  /// vertexCount current unit normals, likewise; empty if not asked for.
   PointView<const float> normals() const { return skin_.normals(); }
+  /// vertexCount current unit tangents, likewise.
   PointView<const float> tangents() const { return skin_.tangents(); }
   /// Box of the positions, for culling. An extrapolated vertex may lie outside the soft body's own box.
   const Box3& bounds() const { return skin_.bounds(); }

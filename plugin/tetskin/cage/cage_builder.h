@@ -13,6 +13,7 @@ namespace tetskin {
 /// Largest number of tets that may be asked for; takes some 6 GB and four minutes.
 constexpr std::size_t kLargestTargetTets = 20'000'000;
 
+/// What cage to build.
 struct CageOptions {
   /// How many tets the cage should have. Met within 10 % but for very small numbers, see `CageReport::targetMet`.
   std::size_t targetTets = 3000;
@@ -25,23 +26,23 @@ struct CageOptions {
 
 /// What was built, and how well it fits. Lengths and volumes are in rest space, the mesh's unit.
 struct TETSKIN_CAGE_API CageReport {
-  std::size_t targetTets = 0;
-  std::size_t tets = 0;
-  std::size_t nodes = 0;
+  std::size_t targetTets = 0;   ///< how many were asked for
+  std::size_t tets = 0;         ///< how many there are, copies included
+  std::size_t nodes = 0;        ///< of the cage
   std::size_t joiningTets = 0;  ///< tets that neither touch the surface nor lie inside, but join parts that would hang
                                 ///< together by one node or edge; included in `tets`
   double spacing = 0.0;         ///< side of the lattice's cubes, which is a tet's longest edge before fitting
   std::size_t lattices = 0;     ///< how many were tried
 
   std::size_t verticesOutside = 0;  ///< distinct positions of the mesh's vertices in no tet: 0
-  double minDihedralDeg = 0.0;
-  double maxDihedralDeg = 0.0;
-  std::size_t copies = 0;          ///< tets beyond the first at their place: splitting made them
-  std::size_t parts = 0;           ///< of the cage, connected by nodes
-  std::size_t fusedParts = 0;      ///< components and loose vertices of the mesh, less the cage's parts
-  std::size_t meshComponents = 0;  ///< sets of triangles connected by coincident vertices
-  std::size_t looseVertices = 0;   ///< distinct positions that no triangle uses; inside the cage as well
-  std::size_t openEdges = 0;       ///< edges of the mesh without a partner triangle on the other side: holes
+  double minDihedralDeg = 0.0;      ///< smallest angle between two faces of a tet, degrees
+  double maxDihedralDeg = 0.0;      ///< largest one
+  std::size_t copies = 0;           ///< tets beyond the first at their place: splitting made them
+  std::size_t parts = 0;            ///< of the cage, connected by nodes
+  std::size_t fusedParts = 0;       ///< components and loose vertices of the mesh, less the cage's parts
+  std::size_t meshComponents = 0;   ///< sets of triangles connected by coincident vertices
+  std::size_t looseVertices = 0;    ///< distinct positions that no triangle uses; inside the cage as well
+  std::size_t openEdges = 0;        ///< edges of the mesh without a partner triangle on the other side: holes
 
   double meshVolume = 0.0;           ///< 0 for a sheet; a hole is closed by a cone from the box's centre
   double cageVolume = 0.0;           ///< sum of the tets' volumes

@@ -16,6 +16,7 @@ class btDeformableMultiBodyDynamicsWorld;
 
 namespace tetskin {
 
+/// How finely a surface is felt.
 struct ContactShapeOptions {
   /// Points of the surface that are looked for in other bodies; met within a third. Coarse meshes get points on their
   /// triangles, of fine ones some vertices are left out.
@@ -33,12 +34,13 @@ struct ShapeData;
 /// that carry them. Made once for a model, immutable, shared by all bodies of it.
 class TETSKIN_CONTACT_API ContactShape {
  public:
+  /// For the library's own use: see `makeContactShape`.
   explicit ContactShape(std::unique_ptr<const contact_detail::ShapeData> data);
   ~ContactShape();
 
-  std::size_t nodeCount() const;
-  std::size_t tetCount() const;
-  std::size_t sampleCount() const;
+  std::size_t nodeCount() const;    ///< of the cage that it was made in
+  std::size_t tetCount() const;     ///< likewise
+  std::size_t sampleCount() const;  ///< points that are looked for in other bodies
   /// For the library's own use.
   const contact_detail::ShapeData& data() const { return *data_; }
 
@@ -46,16 +48,17 @@ class TETSKIN_CONTACT_API ContactShape {
   std::unique_ptr<const contact_detail::ShapeData> data_;
 };
 
+/// Makes the shape of a model's surface.
 /// cage    as the body was made of it, or moved or turned: rest space. Split cages need their `vertexTets`
 /// mesh    in the cage's rest space, triangles counter-clockwise from outside. Holes are closed where they are small;
-/// surfaces of parts that lie within other
-///         parts are left out
+///         surfaces of parts that lie within other parts are left out
 /// Cost    a second for 20,000 triangles and the default grid
 /// Errors  those of `usable`, `Cage::check`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses
 ///         nothing; InvalidOption
 TETSKIN_CONTACT_API Result<std::shared_ptr<const ContactShape>> makeContactShape(
     const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {});
 
+/// How soft bodies meet.
 struct SoftContactOptions {
   /// Coulomb's; below 0: the geometric mean of the bodies' m_cfg.kDF.
   double friction = -1.0;
@@ -113,6 +116,7 @@ class TETSKIN_CONTACT_API SoftContacts {
   Status include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self = false);
   /// No longer; the body stays in the world.
   void exclude(const btSoftBody& body);
+  /// What a body is to these contacts.
   IncludedBody statusOf(const btSoftBody& body) const;
 
   /// Of the last step.

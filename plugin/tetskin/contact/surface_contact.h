@@ -13,6 +13,7 @@
 
 namespace tetskin {
 
+/// How a surface touches.
 struct SurfaceContactOptions {
   /// Distance that is kept between the surface and rigid bodies, world units; below 0: 0.2 % of the body's size, the
   /// largest side of its box.

@@ -27,7 +27,9 @@ constexpr double kLeastFill = 0.1;
 ///
 /// To move or turn a cage, change `nodes`; to scale it, use `scaleBy`, as masses are volumes.
 struct TETSKIN_CORE_API Cage : TetMesh {
+  /// Of no tets.
   Cage() = default;
+  /// Of tets alone: nothing is known of a mesh in them.
   Cage(TetMesh mesh) : TetMesh(std::move(mesh)) {}  // NOLINT(google-explicit-constructor): nothing is lost
 
   std::vector<int> vertexTets;         ///< vertexCount of the mesh: the tet that holds the vertex
@@ -62,7 +64,8 @@ TETSKIN_CORE_API std::uint64_t positionsHash(const std::vector<Eigen::Vector3d>&
 /// of a second mesh.
 class TETSKIN_CORE_API CageLocator {
  public:
-  /// cage  usable (see `usable`), and must outlive this. Cost O(T log T)
+  /// Looks at the whole cage once. Cost O(T log T)
+  /// cage  usable (see `usable`), and must outlive this
   explicit CageLocator(const Cage& cage);
   ~CageLocator();
   CageLocator(CageLocator&&) noexcept;

@@ -16,8 +16,9 @@
 
 namespace tetskin {
 
+/// What becomes of vertices outside the cage.
 struct EmbedOptions {
-  OutsideRule outside = OutsideRule::Nearest;
+  OutsideRule outside = OutsideRule::Nearest;  ///< which tet carries them
   /// In rest units, 0 or more: a vertex farther than this from every tet (under Barycentric, from its own) is refused,
   /// with a message, and nothing is embedded.
   double maxDistance = std::numeric_limits<double>::infinity();
@@ -67,9 +68,9 @@ constexpr double kLargestBarycentric = 1e15;
 
 /// Tet and weights of one vertex.
 struct VertexBinding {
-  int tet = -1;
+  int tet = -1;                    ///< index of the tet in the cage
   std::array<float, 4> weights{};  ///< of the tet's nodes in its order; the fourth is 1 minus the others
-  bool inside = false;
+  bool inside = false;             ///< the vertex lies in the tet; if not, the weights extrapolate
 };
 
 /// The order in which vertices are written.
@@ -94,11 +95,11 @@ class TETSKIN_CORE_API Embedding {
   Embedding(const Embedding&) = default;
   Embedding& operator=(const Embedding&) = default;
 
-  std::size_t vertexCount() const { return slotVertices().size(); }
-  std::size_t insideCount() const;
-  std::size_t nodeCount() const;
-  std::size_t tetCount() const;
-  bool empty() const { return slotVertices().empty(); }
+  std::size_t vertexCount() const { return slotVertices().size(); }  ///< of the mesh
+  std::size_t insideCount() const;                                   ///< vertices in some tet
+  std::size_t nodeCount() const;                                     ///< of the cage
+  std::size_t tetCount() const;                                      ///< of the cage
+  bool empty() const { return slotVertices().empty(); }              ///< of no vertices
 
   /// vertexCount, by slot: which vertex it is; ascending within a tet
   const std::vector<std::uint32_t>& slotVertices() const;
@@ -121,6 +122,7 @@ class TETSKIN_CORE_API Embedding {
   ///         damaged; CageMismatch: of another cage
   static Result<Embedding> load(const unsigned char* bytes, std::size_t count, const TetMesh& cage);
 
+  /// For the library's own use.
   const EmbeddingData& data() const { return *data_; }
 
  private:
@@ -147,6 +149,7 @@ class TETSKIN_CORE_API Embedding {
 ///            kLargestCoordinate, a maxDistance below 0 or NaN, a vertex beyond it
 TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const double> vertices,
                                          const EmbedOptions& options = {}, EmbedReport* report = nullptr);
+/// The same.
 TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices,
                                          const EmbedOptions& options = {}, EmbedReport* report = nullptr);
 /// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of

@@ -35,9 +35,9 @@ constexpr double kHardEdgeDegrees = 5.0;
 /// What shapes the surface: told once, when the binding is made. What is not asked for is neither allocated nor
 /// computed.
 struct BindingOptions {
-  Interpolation interpolation = Interpolation::Linear;
-  Normals normals = Normals::None;
-  OutsideRule outside = OutsideRule::Nearest;
+  Interpolation interpolation = Interpolation::Linear;  ///< how the surface follows the nodes
+  Normals normals = Normals::None;                      ///< which normals there are
+  OutsideRule outside = OutsideRule::Nearest;           ///< which tet carries a vertex outside the cage
   /// A vertex farther than this from every tet is refused: nothing is bound, and the message says which one, and where.
   double maxDistance = std::numeric_limits<double>::infinity();
   /// Of positions, normals and tangents.
@@ -58,13 +58,14 @@ struct InstanceOptions {
   bool bounds = true;
   /// Keep the positions of the update before, for motion vectors. Of the skin's own array only: not with `target`.
   bool previousPositions = false;
+  /// Instead of the skin's own array.
   SkinTarget target;
-  /// Instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a vertex;
-  /// the sign that belongs to them (TriangleMesh::tangents) does not change. No target is ever read. `bind` fills these
-  /// two with unit vectors, and where a direction collapses to nothing, an update may leave what it last wrote there.
-  /// The target of what there is not, as of normals that the binding lacks, is left alone.
+  /// These two instead of the skin's own arrays; each must hold vertexCount points. `tangentTarget` gets three floats a
+  /// vertex; the sign that belongs to them (TriangleMesh::tangents) does not change. No target is ever read. `bind`
+  /// fills these two with unit vectors, and where a direction collapses to nothing, an update may leave what it last
+  /// wrote there. The target of what there is not, as of normals that the binding lacks, is left alone.
   PointView<float> normalTarget;
-  PointView<float> tangentTarget;
+  PointView<float> tangentTarget;  ///< see `normalTarget`
   /// World space, within kLargestCoordinate; subtracted from every position. Near the body, it keeps float positions
   /// exact far from the origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -78,12 +79,12 @@ struct SkinOptions : BindingOptions, InstanceOptions {};
 /// How well the cage supports a quadratic surface. Where the neighbourhood of a node does not tell some second
 /// derivatives apart (a cage one cell thick, a fin, a single tet), the surface is linear in those directions.
 struct TETSKIN_CORE_API QuadraticReport {
-  std::size_t nodes = 0;       ///< nodes that need a gradient: those of the tets that carry vertices
-  std::size_t thinNodes = 0;   ///< of these, with a neighbourhood too thin for all second derivatives
-  std::size_t plainNodes = 0;  ///< of these, without even a linear fit: the mean of the tets' gradients instead
-  std::size_t edges = 0;       ///< cage edges that carry a vector
-  double meanNeighbours = 0.0;
-  double milliseconds = 0.0;  ///< wall time of the build
+  std::size_t nodes = 0;        ///< nodes that need a gradient: those of the tets that carry vertices
+  std::size_t thinNodes = 0;    ///< of these, with a neighbourhood too thin for all second derivatives
+  std::size_t plainNodes = 0;   ///< of these, without even a linear fit: the mean of the tets' gradients instead
+  std::size_t edges = 0;        ///< cage edges that carry a vector
+  double meanNeighbours = 0.0;  ///< others that a node's gradient is fitted to
+  double milliseconds = 0.0;    ///< wall time of the build
 
   /// One line for people.
   std::string describe() const;
@@ -96,7 +97,7 @@ struct SkinParts;
 template <class Scalar>
 class TETSKIN_CORE_API SkinBinding {
  public:
-  using Pointer = std::shared_ptr<const SkinBinding>;
+  using Pointer = std::shared_ptr<const SkinBinding>;  ///< shared by all skins that have it
 
   /// Embeds the mesh in the cage at rest, with all that the options need.
   /// report  of the fit, written if not null, on failure too
@@ -113,7 +114,7 @@ class TETSKIN_CORE_API SkinBinding {
 
   /// As they were given; what an embedding made before was made with, it does not tell.
   const BindingOptions& options() const;
-  const Embedding& embedding() const;
+  const Embedding& embedding() const;  ///< which tet carries which vertex, and how
   /// How well the cage supports a quadratic surface; all 0 for a linear one.
   const QuadraticReport& quadraticReport() const;
   /// For the library's own use.
@@ -134,6 +135,7 @@ enum class [[nodiscard]] UpdateStatus{
     Unbound,          ///< skipped: no successful bind yet
 };
 
+/// Name of a status, for messages and logs. Never null.
 TETSKIN_CORE_API const char* toString(UpdateStatus status);
 
 /// The nodes of a body after its last two steps, for an application that draws frames between them. No memory until a
@@ -149,8 +151,8 @@ class TETSKIN_CORE_API KeptSteps {
   /// The next step does not begin where the last one ended: after a teleport, say.
   void forget() { usable_ = between_ = false; }
 
-  std::size_t size() const { return last_.size(); }
-  bool empty() const { return last_.empty(); }
+  std::size_t size() const { return last_.size(); }  ///< nodes that are kept
+  bool empty() const { return last_.empty(); }       ///< no step was kept
   /// Writes the step before plus alpha times the way to the last one; the last one where there is none before.
   /// alpha  from 0 to 1, where the result is the last step's to the bit; counts as the nearer of the two beyond them,
   ///        and as 1 if it is not a number
@@ -170,8 +172,9 @@ class TETSKIN_CORE_API KeptSteps {
 template <class Scalar>
 class TETSKIN_CORE_API MeshSkin {
  public:
-  using Binding = typename SkinBinding<Scalar>::Pointer;
+  using Binding = typename SkinBinding<Scalar>::Pointer;  ///< to share
 
+  /// Bound to nothing.
   MeshSkin();
   ~MeshSkin();
   MeshSkin(MeshSkin&& other) noexcept;
@@ -199,8 +202,8 @@ class TETSKIN_CORE_API MeshSkin {
   /// Of the last update that returned NonFinite: the first node that is not finite, or beyond kLargestCoordinate.
   std::size_t firstBadNode() const;
 
-  bool bound() const { return parts_ != nullptr; }
-  std::size_t nodeCount() const;
+  bool bound() const { return parts_ != nullptr; }  ///< since a `bind` that succeeded
+  std::size_t nodeCount() const;                    ///< that an update takes; 0 before
   /// What is drawn: Linear also where the quadratic surface was left out, and before a successful bind.
   Interpolation interpolation() const;
   /// vertexCount current positions, minus the origin, in the binding's order: the skin's own array, empty where the
@@ -213,8 +216,9 @@ class TETSKIN_CORE_API MeshSkin {
   /// Nothing has moved since the last update, or is to count as motion: the previous positions are the current ones
   /// until the next update. Free.
   void hold() { held_ = true; }
-  /// vertexCount current unit normals, and tangents, likewise; empty if not asked for.
+  /// vertexCount current unit normals, likewise; empty if not asked for.
   PointView<const float> normals() const;
+  /// vertexCount current unit tangents, likewise.
   PointView<const float> tangents() const;
   /// Box of the positions, for culling. An extrapolated vertex may lie outside the cage's own box.
   const Box3& bounds() const;

@@ -21,6 +21,7 @@ class TETSKIN_CORE_API ParallelFor {
     template <class Callable, class = std::enable_if_t<!std::is_same_v<std::remove_cv_t<Callable>, Task>>>
     explicit Task(Callable& callable)
         : callable_(&callable), call_([](void* c, std::size_t k) { (*static_cast<Callable*>(c))(k); }) {}
+    /// Calls it.
     void operator()(std::size_t k) const { call_(callable_, k); }
 
    private:

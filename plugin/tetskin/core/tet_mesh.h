@@ -25,16 +25,17 @@ struct TetMesh {
   std::vector<Eigen::Vector3d> nodes;  ///< nodeCount x 3, rest space
   std::vector<Tet> tets;               ///< tetCount x 4 node indices
 
-  std::size_t nodeCount() const { return nodes.size(); }
-  std::size_t tetCount() const { return tets.size(); }
+  std::size_t nodeCount() const { return nodes.size(); }  ///< of `nodes`
+  std::size_t tetCount() const { return tets.size(); }    ///< of `tets`
 };
 
 /// What is wrong with a tet mesh: how many of each, and where the first one is (undefined where the count is 0).
 /// The first two make a mesh unusable. The others are survivable and reported, as long as not every tet repeats a node
 /// or has no volume.
 struct TETSKIN_CORE_API TetMeshReport {
+  /// One kind of fault.
   struct Fault {
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< how many tets (or nodes) have it
     std::size_t first = 0;  ///< index of the first tet (or node) concerned
   };
   Fault indexOutOfRange;    ///< tets that name a node that does not exist

@@ -13,10 +13,10 @@ namespace tetskin {
 
 /// A run of consecutive triangles that share a name and a material.
 struct TriangleGroup {
-  std::string name;
-  std::string material;
-  std::size_t firstTriangle = 0;
-  std::size_t triangleCount = 0;
+  std::string name;               ///< may be empty
+  std::string material;           ///< the same
+  std::size_t firstTriangle = 0;  ///< index of its first triangle
+  std::size_t triangleCount = 0;  ///< how many follow from there
 };
 
 /// A unit tangent, and in w the sign of the bitangent. Four floats that no compiler flag aligns otherwise.
@@ -31,13 +31,14 @@ struct TriangleMesh {
   std::vector<Eigen::Vector2f> texcoords;     ///< texture coordinates, one a vertex; or empty
   std::vector<TriangleGroup> groups;          ///< cover all triangles in order; or empty: one group without a name
 
-  std::size_t vertexCount() const { return positions.size(); }
-  std::size_t triangleCount() const { return triangles.size(); }
+  std::size_t vertexCount() const { return positions.size(); }    ///< of `positions`
+  std::size_t triangleCount() const { return triangles.size(); }  ///< of `triangles`
 };
 
-/// Most vertices: their indices are ints. Most triangles: the paths around vertices along which normals are computed
-/// take nine numbers a triangle at worst, which are counted by 32 bits.
+/// Most vertices: their indices are ints.
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;
+/// Most triangles: the paths around vertices along which normals are computed take nine numbers a triangle at worst,
+/// which are counted by 32 bits.
 constexpr std::size_t kMostTriangles = 0xFFFFFFFFu / 9;
 
 /// Ok if a mesh may have so many. Error: TooLarge

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+/// All that is public. The folder of a header has the name of the library that it belongs to.
 namespace tetskin {
 
 /// Axis-aligned box, empty until extended. Units and space are those of the points it was made from.
@@ -43,10 +44,10 @@ TETSKIN_CORE_API const char* toString(StatusCode code);
 /// Outcome of an operation on data that may be bad. The message says what is wrong, where, and what to do about it; it
 /// is empty on success.
 struct [[nodiscard]] Status {
-  StatusCode code = StatusCode::Ok;
-  std::string message;
+  StatusCode code = StatusCode::Ok;  ///< for programs
+  std::string message;               ///< for people
 
-  bool ok() const { return code == StatusCode::Ok; }
+  bool ok() const { return code == StatusCode::Ok; }  ///< success
 };
 
 /// A value, or the status that says why there is none. Ask `ok()` first: the value of a failed result is T{} (an empty
@@ -54,14 +55,16 @@ struct [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}                                  // NOLINT: implicit by design
+  /// Success.
+  Result(T value) : value_(std::move(value)) {}  // NOLINT: implicit by design
+  /// Failure: the status is not Ok.
   Result(Status status) : status_(std::move(status)) { assert(!status_.ok()); }  // NOLINT: implicit by design
 
-  bool ok() const { return status_.ok(); }
-  const Status& status() const { return status_; }
-  const T& value() const& { return value_; }
-  T& value() & { return value_; }
-  T&& value() && { return std::move(value_); }
+  bool ok() const { return status_.ok(); }          ///< there is a value
+  const Status& status() const { return status_; }  ///< Ok, or why there is none
+  const T& value() const& { return value_; }        ///< T{} where there is none, as of the next two
+  T& value() & { return value_; }                   ///< to be changed in place
+  T&& value() && { return std::move(value_); }      ///< to be moved out of a result that goes
 
  private:
   T value_{};
@@ -74,9 +77,12 @@ template <class Scalar>
 class PointView {
  public:
   static_assert(std::is_floating_point_v<Scalar>, "points are of float or double");
+  /// Strides are counted in these.
   using Byte = std::conditional_t<std::is_const_v<Scalar>, const unsigned char, unsigned char>;
 
+  /// Of no points.
   PointView() = default;
+  /// Views points that outlive it.
   /// data         first scalar of the first point; may be null when count is 0
   /// strideBytes  from one point to the next; at least 3 scalars, a multiple of the scalar's size
   PointView(Scalar* data, std::size_t count, std::size_t strideBytes = 3 * sizeof(Scalar))
@@ -89,10 +95,10 @@ class PointView {
   PointView(const PointView<Other>& other)  // NOLINT: implicit by design
       : PointView(other.data(), other.size(), other.strideBytes()) {}
 
-  std::size_t size() const { return count_; }
-  bool empty() const { return count_ == 0; }
-  Scalar* data() const { return data_; }
-  std::size_t strideBytes() const { return stride_; }
+  std::size_t size() const { return count_; }          ///< points
+  bool empty() const { return count_ == 0; }           ///< of no points
+  Scalar* data() const { return data_; }               ///< first scalar of the first point
+  std::size_t strideBytes() const { return stride_; }  ///< from one point to the next
   /// The 3 scalars of point i.
   Scalar* operator[](std::size_t i) const {
     assert(i < count_);
@@ -110,6 +116,7 @@ template <class Scalar>
 PointView<const Scalar> viewOf(const std::vector<Eigen::Matrix<Scalar, 3, 1>>& points) {
   return {points.empty() ? nullptr : points.front().data(), points.size()};
 }
+/// The same, to be written.
 template <class Scalar>
 PointView<Scalar> viewOf(std::vector<Eigen::Matrix<Scalar, 3, 1>>& points) {
   return {points.empty() ? nullptr : points.front().data(), points.size()};
@@ -122,6 +129,7 @@ Box3 boundingBox(PointView<const Scalar> points) {
   for (std::size_t i = 0; i < points.size(); ++i) box.extend(Eigen::Vector3d(points[i][0], points[i][1], points[i][2]));
   return box;
 }
+/// The same.
 inline Box3 boundingBox(const std::vector<Eigen::Vector3d>& points) {
   return boundingBox(viewOf(points));
 }

@@ -13,6 +13,7 @@
 
 namespace tetskin {
 
+/// What to calibrate a cage for.
 struct CalibrationOptions {
   double poissonRatio = 0.3;  ///< 0 to below 0.5, of the material that will be simulated
   int modes = 6;              ///< softest vibrations to compare, at least 1

@@ -46,10 +46,10 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch, InvalidOption
   static Result<ElasticBody> make(const TetMesh& cage, const ElasticOptions& options);
 
-  std::size_t nodeCount() const;
+  std::size_t nodeCount() const;  ///< of the cage; 0 if empty
   /// World space, nodeCount, in the order of the cage; to be read and written between steps.
   PointView<Scalar> positions();
-  PointView<Scalar> velocities();  ///< a second
+  PointView<Scalar> velocities();  ///< likewise, a second
 
   /// Holds a node, which then moves with the velocity that it is given and by no force; or lets it go. The node exists.
   void hold(std::size_t node, bool held = true);

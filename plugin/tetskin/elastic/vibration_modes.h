@@ -13,6 +13,7 @@
 
 namespace tetskin {
 
+/// Which vibrations to find, of what body.
 struct VibrationOptions {
   int modes = 20;                      ///< at least 1
   double poissonRatio = 0.3;           ///< 0 to below 0.5
@@ -35,8 +36,8 @@ struct TETSKIN_ELASTIC_API VibrationModes {
   int iterations = 0;                       ///< that it took; 0: all at once
   double milliseconds = 0.0;                ///< wall time
 
-  std::size_t nodeCount() const { return nodes.size(); }
-  std::size_t modeCount() const { return eigenvalues.size(); }
+  std::size_t nodeCount() const { return nodes.size(); }        ///< of the tets
+  std::size_t modeCount() const { return eigenvalues.size(); }  ///< of `shapes`
   /// modeCount angular frequencies of a body of this stiffness and density, radians a second; both above 0.
   std::vector<double> frequencies(double youngsModulus, double density) const;
 

@@ -33,6 +33,7 @@ class TETSKIN_IO_API ObjLayout {
   /// groups. Blanks in names become underscores, as OBJ separates names by blanks. Indices must be in range.
   static ObjLayout fromMesh(const TriangleMesh& mesh);
 
+  /// `v` lines of a written file.
   std::size_t vertexCount() const { return gaps_.size(); }
   /// Whether files of this layout have normals.
   bool hasNormals() const { return !normalGaps_.empty(); }
@@ -58,6 +59,7 @@ class TETSKIN_IO_API ObjLayout {
   /// Cost: formats about 30 million numbers a second.
   /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
   Status writeTo(const std::string& path, PointView<const float> positions, PointView<const float> normals = {}) const;
+  /// The same.
   Status writeTo(const std::string& path, PointView<const double> positions, PointView<const float> normals = {}) const;
 
   /// Ok if these can be written at `path`: the first two errors above.
@@ -94,6 +96,7 @@ TETSKIN_IO_API Result<ObjLayout> objLayoutFor(const std::string& meshPath, const
 /// (about twice as long): no frame loses a digit of what the caller has.
 class TETSKIN_IO_API ObjSequenceWriter {
  public:
+  /// Writes nothing; use `create`.
   ObjSequenceWriter() = default;
 
   /// Makes the folder, with those above it, and tries to write there. Files already in it stay, unless overwritten.
@@ -106,6 +109,7 @@ class TETSKIN_IO_API ObjSequenceWriter {
   /// Cost: the buffer for the text, about the size of a file, is allocated by the first frame only.
   /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
   Status write(int frame, PointView<const float> positions, PointView<const float> normals = {});
+  /// The same.
   Status write(int frame, PointView<const double> positions, PointView<const float> normals = {});
 
   /// Where a frame goes.

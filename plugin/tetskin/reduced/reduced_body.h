@@ -18,15 +18,16 @@ namespace tetskin {
 /// A mode is stable up to 2, and by no more than this its frequency is off by a fifth at most.
 constexpr double kMostOmegaDt = 1.6;
 
+/// What a reduced body is made of, beside its modes. Lengths are world lengths.
 struct ReducedBodyOptions {
   int modes = 0;         ///< softest ones to take; 0: all that there are
   double mass = 1.0;     ///< total, in kg; ignored where density is given
   double density = 0.0;  ///< mass per volume of the tets that the modes are of; 0: from mass
   /// As in SoftBodyOptions, and never bounded: modes that are too fast for timeStep are refused, or left out.
   double youngsModulus = 0.0;
-  double relativeStiffness = 50.0;
-  double damping = 0.02;          ///< seconds, as in SoftBodyOptions
-  double timeStep = 1.0 / 240.0;  ///< seconds: the longest substep that the world is stepped by
+  double relativeStiffness = 50.0;  ///< the same
+  double damping = 0.02;            ///< seconds, as in SoftBodyOptions
+  double timeStep = 1.0 / 240.0;    ///< seconds: the longest substep that the world is stepped by
   /// Modes of an angular frequency times timeStep above kMostOmegaDt are left out, instead of the body being refused.
   bool leaveOutFastModes = false;
   double margin = -1.0;   ///< as in SoftBodyOptions
@@ -87,11 +88,11 @@ class TETSKIN_REDUCED_API ReducedBody {
   ReducedBody(const ReducedBody&) = delete;
   ReducedBody& operator=(const ReducedBody&) = delete;
 
-  btReducedDeformableBody& body();
-  const btReducedDeformableBody& body() const;
-  const ReductionReport& report() const;
-  double youngsModulus() const;
-  std::size_t modeCount() const;
+  btReducedDeformableBody& body();              ///< Bullet's own, of which this is the owner
+  const btReducedDeformableBody& body() const;  ///< the same
+  const ReductionReport& report() const;        ///< how well the cage tells the modes
+  double youngsModulus() const;                 ///< in use, in pressure units
+  std::size_t modeCount() const;                ///< in use
 
   /// Puts the body elsewhere, as it is bent and without any motion; it wakes. Bullet's own `transform` would take the
   /// bent shape for the rest shape.

@@ -27,11 +27,12 @@ enum class [[nodiscard]] TouchStatus{
     InvalidOption,    ///< nothing for this kind of world or body: see the function
 };
 
+/// Name of a status, for messages and logs. Never null.
 TETSKIN_TOUCH_API const char* toString(TouchStatus status);
 
 /// A point of a surface with its axes, of unit length and right-handed: for what rides on it. World space.
 struct SurfaceFrame {
-  btVector3 position{0, 0, 0};
+  btVector3 position{0, 0, 0};   ///< of the point
   btVector3 normal{0, 1, 0};     ///< out of the surface
   btVector3 tangent{1, 0, 0};    ///< along a line of the surface that moves with it: it turns with it, never by itself
   btVector3 bitangent{0, 0, 1};  ///< tangent x bitangent = normal
@@ -91,6 +92,7 @@ class TETSKIN_TOUCH_API SurfacePoint {
   std::optional<btVector3> velocity() const;
   /// The point and its axes, likewise.
   std::optional<SurfaceFrame> frame() const;
+  /// As this skin draws them.
   std::optional<SurfaceFrame> frame(const SoftBodySkin& skin, btScalar alpha = 1) const;
 
   /// Mass that a push feels at the first moment, by the nodes around it alone; 0 if the status is not Ok, infinite
@@ -104,10 +106,10 @@ class TETSKIN_TOUCH_API SurfacePoint {
   TouchStatus applyImpulse(const btVector3& impulse);
   /// The same as a force through the next of Bullet's steps, as part of what they solve for. Wakes the body. For a body
   /// that `makeSoftBody` has not made, the point must live until then.
-  /// force  world space; forces add up
-  /// steps  of Bullet's, that is substeps, 1 or more
-  /// Errors OutOfWorld; InvalidOption outside the deformable world, and for reduced bodies; those of `status`;
-  /// NonFinite
+  /// force   world space; forces add up
+  /// steps   of Bullet's, that is substeps, 1 or more
+  /// Errors  OutOfWorld; InvalidOption outside the deformable world, and for reduced bodies; those of `status`;
+  ///         NonFinite
   TouchStatus applyForce(const btVector3& force, int steps = 1);
 
   /// Null if it is gone, or released.

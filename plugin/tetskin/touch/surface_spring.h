@@ -12,6 +12,7 @@ class btMultiBodyLinkCollider;
 
 namespace tetskin {
 
+/// How a spring pulls.
 struct SurfaceSpringOptions {
   /// Over the mass of a point, in units of 1 / (1/240 s)^2: so the same spring in steps of any length. The mass is that
   /// of a tet's four nodes, as they are on the mean: no less at tips of light nodes, on which the body hangs as
@@ -38,17 +39,19 @@ struct SurfaceSpringOptions {
 /// must be released before.
 class TETSKIN_TOUCH_API SurfaceSpring {
  public:
-  using Options = SurfaceSpringOptions;
+  using Options = SurfaceSpringOptions;  ///< how it pulls
 
   /// To where the point is now.
   /// Errors  InvalidOption for options out of range, for other worlds than the deformable one, for reduced bodies, and
   ///         for points that are not Ok
   static Result<std::unique_ptr<SurfaceSpring>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                     const Options& options = {});
-  /// To a point of a rigid body, or of a link. pivot: in its own space
+  /// To a point of a rigid body, or of a link.
+  /// pivot  in its own space
   static Result<std::unique_ptr<SurfaceSpring>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                     btRigidBody& rigid, const btVector3& pivot,
                                                     const Options& options = {});
+  /// The same.
   static Result<std::unique_ptr<SurfaceSpring>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                     btMultiBodyLinkCollider& link, const btVector3& pivot,
                                                     const Options& options = {});
@@ -61,6 +64,7 @@ class TETSKIN_TOUCH_API SurfaceSpring {
   TouchStatus setTarget(const btVector3& target);
   /// As in the options. Errors: InvalidOption, and nothing is changed
   TouchStatus setStiffness(double stiffness);
+  /// Likewise.
   TouchStatus setMaxForce(double force);
 
   /// That of the point; OutOfWorld once the body was taken out of the world, for good.

@@ -13,14 +13,15 @@ namespace tetskin {
 
 /// Where a ray meets a surface first. True if it does.
 struct SurfaceHit {
-  TouchStatus status = TouchStatus::Miss;
-  const btSoftBody* body = nullptr;
-  int triangle = -1;                ///< of the mesh
-  btScalar weights[3] = {0, 0, 0};  ///< of its corners, adding up to 1
-  btVector3 point{0, 0, 0};         ///< world space, on the drawn triangle
-  btVector3 normal{0, 1, 0};        ///< of the drawn triangle, of unit length, whichever side was hit
-  btScalar distance = 0;            ///< from where the ray begins, world units
+  TouchStatus status = TouchStatus::Miss;  ///< Ok for a hit; else why there is none
+  const btSoftBody* body = nullptr;        ///< the skin's
+  int triangle = -1;                       ///< of the mesh
+  btScalar weights[3] = {0, 0, 0};         ///< of its corners, adding up to 1
+  btVector3 point{0, 0, 0};                ///< world space, on the drawn triangle
+  btVector3 normal{0, 1, 0};               ///< of the drawn triangle, of unit length, whichever side was hit
+  btScalar distance = 0;                   ///< from where the ray begins, world units
 
+  /// A hit.
   explicit operator bool() const { return status == TouchStatus::Ok; }
 };
 
@@ -38,8 +39,9 @@ struct SurfaceBlast {
 /// What it came to: the sum of all pushes, and of their moments about the world's origin.
 struct SurfacePush {
   TouchStatus status = TouchStatus::Ok;  ///< Miss: nothing of the surface is that near
-  btVector3 linear{0, 0, 0}, angular{0, 0, 0};
-  std::size_t vertices = 0;
+  btVector3 linear{0, 0, 0};             ///< impulse, or force
+  btVector3 angular{0, 0, 0};            ///< its moment about the world's origin
+  std::size_t vertices = 0;              ///< that were pushed
 };
 
 /// A tree of a mesh's triangles, for rays against any body that carries it.
@@ -52,6 +54,7 @@ struct SurfacePush {
 /// hidden, written elsewhere, or in another order, is all one. Cast all rays for one body, then for the next.
 class TETSKIN_TOUCH_API SurfaceTree {
  public:
+  /// Not fitted yet: the first ray does that.
   /// binding  not null, of this mesh
   /// mesh     copied as far as it is needed; its triangles name existing vertices: see `check`
   /// Cost     O(n log n) for n triangles
@@ -65,11 +68,11 @@ class TETSKIN_TOUCH_API SurfaceTree {
   const Status& check() const;
 
   /// The nearest triangle between two points, from either side.
-  /// skin    bound, by the tree's binding; its body must be there, unlike that of an update it may have lost the skin
+  /// skin      bound, by the tree's binding; its body must be there, unlike that of an update it may have lost the skin
   /// from, to  world space
-  /// Cost    some microseconds; and if the nodes have moved, a skin's update and a fit, less than a millisecond for
-  ///         60,000 triangles
-  /// Errors  in the hit: Miss, Unbound, OtherBody, TopologyChanged, NonFinite
+  /// Cost      some microseconds; and if the nodes have moved, a skin's update and a fit, less than a millisecond for
+  ///           60,000 triangles
+  /// Errors    in the hit: Miss, Unbound, OtherBody, TopologyChanged, NonFinite
   SurfaceHit raycast(const SoftBodySkin& skin, const btVector3& from, const btVector3& to,
                      const TriangleFilter& filter = {}) const;
 

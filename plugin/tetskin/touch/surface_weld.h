@@ -17,6 +17,7 @@ class TETSKIN_TOUCH_API SurfaceWeld {
   /// Errors   those of `SurfaceSpring::add`
   static Result<std::unique_ptr<SurfaceWeld>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                   btRigidBody& rigid, bool collide = false);
+  /// The same.
   static Result<std::unique_ptr<SurfaceWeld>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                   btMultiBodyLinkCollider& link, bool collide = false);
   ~SurfaceWeld();
@@ -25,11 +26,13 @@ class TETSKIN_TOUCH_API SurfaceWeld {
 
   /// As `SurfaceSpring::status`.
   TouchStatus status() const;
-  /// Of the last step, on the body, world space; torque about the point.
+  /// Of the last step, on the body, world space.
   btVector3 force() const;
+  /// Likewise, about the point.
   btVector3 torque() const;
-  /// How far apart they are, world units, and by which angle, in radians; 0 unless the status is Ok.
+  /// How far apart they are, world units; 0 unless the status is Ok.
   btScalar separation() const;
+  /// By which angle they have turned to each other, in radians; likewise.
   btScalar turn() const;
 
   /// Lets go, for good.

@@ -1,0 +1,9 @@
+# The pages of which every command, snippet and link is tested, by their paths in the repository; those that exist.
+# In:   a variable `repository`
+# Out:  a list `pages`
+set(pages README.md plugin/README.md demos/README.md tests/README.md)
+foreach(page ${pages})
+  if(NOT EXISTS ${repository}/${page})
+    list(REMOVE_ITEM pages ${page})
+  endif()
+endforeach()
