@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   CommandLine line(
       "Stiff and extreme cases in Bullet, each with a verdict on the simulation and on the skin.",
       {{{"tetskin_stress --quick", "a part of the cases, as a table"},
-        {"tetskin_stress --only cage/ --markdown stress.md", "the cases of odd cages, and a file of them"}},
+        {"tetskin_stress --only event/ --markdown stress.md", "what may happen to a body, and a file of it"}},
        "a case did not hold"});
   line.addFlag("--quick", options.quick, "A part of the cases, in some 20 s");
   line.addFlag("--long", options.lasting,
