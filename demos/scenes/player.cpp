@@ -3,7 +3,6 @@
 #include "scenes/player.h"
 
 #include <cassert>
-#include <cstdio>
 
 #include "scenes/input_error.h"
 #include "scenes/progress.h"
@@ -75,8 +74,13 @@ bool Player::step(int frame, Playback& run) {
   return followed;
 }
 
-Playback Player::play(const char* doing, const OutputOptions& output, const FrameWriter& writer, const OfFrame& measure,
-                      const OfFrame& write) {
+std::vector<Eigen::Vector3d> Player::nodes() const {
+  std::vector<Eigen::Vector3d> nodes = nodesOf(scene_->body());
+  place_.toModel(nodes);
+  return nodes;
+}
+
+Playback Player::play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write) {
   Playback run;
   Progress progress(doing, output.frames, output.quiet);
   for (int frame = 0; frame < output.frames; ++frame) {
@@ -92,7 +96,7 @@ Playback Player::play(const char* doing, const OutputOptions& output, const Fram
       const WallTimer timer;
       write(frame);
       run.writeMs += timer.milliseconds();
-      if (run.written++ == 0 && !output.quiet) std::printf("%s\n", writer.announcement().c_str());
+      ++run.written;
     }
     run.frames = frame + 1;
     progress.show(frame + 1);
