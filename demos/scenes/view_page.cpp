@@ -20,6 +20,9 @@ constexpr const char* kOrbitControls = TETSKIN_ORBIT_CONTROLS;
 /// In the order in which the page runs them.
 constexpr const char* kScripts[] = {"data.js", "skin.js", "shading.js", "stage.js", "player.js"};
 
+/// The first view leaves out so much of a run: bodies that fall begin high above all that follows.
+constexpr std::size_t kLookFrom = 20;
+
 std::string partOf(const std::string& path) {
   std::optional<std::string> text = contentsOf(path);
   if (!text) throw InputError(path + ": cannot be read; a page is made of it");
@@ -143,7 +146,7 @@ void ViewPage::addProp(const TriangleMesh& mesh) {
 Box3 ViewPage::focus() const {
   if (!focus_.isEmpty()) return Box3(focus_.min() - frames_.origin(), focus_.max() - frames_.origin());
   Box3 box;
-  for (std::size_t k = 0; k < frames_.size(); ++k) box.extend(frames_.box(k));
+  for (std::size_t k = frames_.size() / kLookFrom; k < frames_.size(); ++k) box.extend(frames_.box(k));
   return box;
 }
 

@@ -50,7 +50,7 @@ class ViewPage {
   void addProp(const TriangleMesh& mesh);
   /// Fixed, in the space of the nodes.
   void setObstacles(const TriangleMesh& mesh) { obstacles_ = mesh; }
-  /// What the first view shows; without it, all places where bodies are.
+  /// What the first view shows; without it, the places where bodies are once they have begun to fall.
   void setFocus(const Box3& focus) { focus_ = focus; }
 
   /// The next frame: bodies and props in the order in which they were added.

@@ -149,10 +149,20 @@ function hasWebGl() {
   return Boolean(canvas.getContext('webgl2') || canvas.getContext('webgl'));
 }
 
+/** Plays, or shows one frame: view.html#frame=100. */
+function start() {
+  const player = new Player(readData()), frame = /^#frame=(\d+)$/.exec(location.hash);
+  if (frame) {
+    player.seek(Math.min(player.data.moments - 1, Number(frame[1]) / player.data.stride));
+  } else {
+    player.play(player.data.moments > 1);
+  }
+  player.run();
+  return player;
+}
+
 if (hasWebGl()) {
-  window.player = new Player(readData());
-  window.player.play(window.player.data.moments > 1 && location.hash !== '#paused');
-  window.player.run();
+  window.player = start();
 } else {
   element('trouble').textContent = 'This browser shows no WebGL, which this page draws with.';
   element('trouble').hidden = false;

@@ -4,7 +4,7 @@
 // Normals of what is drawn: smooth, also across vertices that coincide, but for hard edges.
 
 /** Cosine of the angle between two faces from which their edge is hard. */
-const HARD_EDGE = Math.cos(42 * Math.PI / 180);
+const HARD_EDGE = Math.cos(80 * Math.PI / 180);
 
 /** By vertex: a number that vertices at one place share. */
 function placesOf(positions) {

@@ -7,6 +7,7 @@ const BACKGROUND = 0xf4f2ee;
 /** For materials that the demos do not know, in turn. */
 const PLAIN_COLOURS = [[0.42, 0.55, 0.68], [0.72, 0.58, 0.42], [0.50, 0.62, 0.45], [0.66, 0.48, 0.55], [0.62, 0.62, 0.60]];
 const FIRST_DIRECTION = [-0.30, 0.36, 1.0];  // from what is looked at to the camera
+const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
 
 // Newer revisions of three.js have other names, and other defaults.
@@ -17,13 +18,15 @@ function setAttribute(geometry, name, array) {
   return attribute;
 }
 
+/** Boxes are seldom full to their corners. */
+const FILL = 0.88;
+
 /** Colours as they are given, and lights whose intensities are shares. */
 function makeRenderer(canvas) {
   if (THREE.ColorManagement) THREE.ColorManagement.enabled = false;
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
   if ('outputColorSpace' in renderer) renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
   if ('useLegacyLights' in renderer) renderer.useLegacyLights = true;
-  renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = THREE.PCFSoftShadowMap;
   return renderer;
 }
@@ -44,8 +47,8 @@ class Materials {
     const plain = {colour: PLAIN_COLOURS[this.made.size % PLAIN_COLOURS.length], shine: 0.1, opacity: 1};
     const {colour, shine, opacity} = this.known[name] || plain;
     return new THREE.MeshPhongMaterial({
-      color: new THREE.Color(...colour), specular: new THREE.Color(shine, shine, shine), shininess: 40,
-      transparent: opacity < 1, opacity, depthWrite: opacity === 1, side: THREE.DoubleSide, shadowSide: THREE.DoubleSide,
+      color: new THREE.Color(...colour), specular: new THREE.Color(SHINE * shine, SHINE * shine, SHINE * shine), shininess: 30,
+      transparent: opacity < 1, opacity, depthWrite: opacity === 1, shadowSide: THREE.DoubleSide,
     });
   }
 }
@@ -67,7 +70,7 @@ function rigidMesh(data, materials) {
   const drawn = new DrawnMesh(data.triangles, data.positions);
   drawn.update(data.positions);
   const mesh = meshOf(drawn, data.groups, materials);
-  mesh.castShadow = !data.groups.some(group => materials.named(group.material).transparent);
+  mesh.castShadow = mesh.receiveShadow = !mesh.material.some(material => material.transparent);
   return mesh;
 }
 
@@ -84,6 +87,7 @@ class Body {
     this.skin(false);
     this.drawn = new DrawnMesh(model.triangles, this.positions);
     this.mesh = meshOf(this.drawn, model.groups, materials);
+    for (const material of this.mesh.material) material.side = THREE.DoubleSide;  // surfaces may be open
     this.cage = model.cage ? this.makeCage(model.cage.edges) : null;
   }
 
@@ -163,7 +167,7 @@ class Stage {
     this.props = data.props.map(prop => new Prop(prop, materials));
     for (const thing of [...this.bodies, ...this.props]) this.scene.add(thing.mesh);
     for (const body of this.bodies) if (body.cage) this.scene.add(body.cage);
-    if (data.obstacles) this.scene.add(rigidMesh(data.obstacles, materials));
+    if (data.obstacles) this.addObstacles(data.obstacles, materials);
     this.addLights();
     this.camera = new THREE.PerspectiveCamera(28, 1, 0.01 * this.radius, 100 * this.radius);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
@@ -175,9 +179,9 @@ class Stage {
   }
 
   addLights() {
-    this.scene.fog = new THREE.Fog(BACKGROUND, 6 * this.radius, 16 * this.radius);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8aa98, 0.72));
-    const sun = new THREE.DirectionalLight(0xfff6e8, 0.5);
+    this.scene.fog = new THREE.Fog(BACKGROUND, 5 * this.radius, 13 * this.radius);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8aa98, 0.6));
+    const sun = new THREE.DirectionalLight(0xffffff, 0.48);
     sun.position.set(...SUN_DIRECTION).setLength(4 * this.radius).add(this.centre);
     sun.target.position.copy(this.centre);
     sun.castShadow = true;
@@ -187,6 +191,17 @@ class Stage {
     Object.assign(sun.shadow.camera, {left: -reach, right: reach, bottom: -reach, top: reach,
       near: 0.5 * this.radius, far: 8 * this.radius});
     this.scene.add(sun, sun.target);
+  }
+
+  /** A mesh each, so that those that are seen through are drawn from the farthest to the nearest; only with them are
+      there shadows, which would fall from one body on another that is not really beside it. */
+  addObstacles(data, materials) {
+    this.renderer.shadowMap.enabled = true;
+    for (const group of data.groups) {
+      const triangles = data.triangles.subarray(3 * group.first, 3 * (group.first + group.count));
+      const whole = {first: 0, count: group.count, material: group.material};
+      this.scene.add(rigidMesh({triangles, positions: data.positions, groups: [whole]}, materials));
+    }
   }
 
   resetView() {
@@ -206,8 +221,8 @@ class Stage {
     for (let k = 0; k < 8; ++k) {
       const corner = new THREE.Vector3(...['x', 'y', 'z'].map((axis, i) => this.focus[k >> i & 1 ? 'max' : 'min'][axis]));
       corner.sub(this.centre);
-      const across = Math.abs(corner.dot(right)) / (high * aspect * free.width);
-      const along = Math.abs(corner.dot(up)) / (high * free.height);
+      const across = FILL * Math.abs(corner.dot(right)) / (high * aspect * free.width);
+      const along = FILL * Math.abs(corner.dot(up)) / (high * free.height);
       distance = Math.max(distance, corner.dot(back) + Math.max(across, along));
     }
     return distance;
