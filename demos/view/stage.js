@@ -6,7 +6,7 @@
 const BACKGROUND = 0xf4f2ee;
 /** For materials that the demos do not know, in turn. */
 const PLAIN_COLOURS = [[0.42, 0.55, 0.68], [0.72, 0.58, 0.42], [0.50, 0.62, 0.45], [0.66, 0.48, 0.55], [0.62, 0.62, 0.60]];
-const FIRST_DIRECTION = [-0.30, 0.36, 1.0];  // from what is looked at to the camera
+const FIRST_DIRECTION = [-0.20, 0.36, 1.0];  // from what is looked at to the camera
 const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
 
