@@ -58,6 +58,7 @@ class Player {
   std::vector<Eigen::Vector3d> nodes() const;
 
  private:
+  SoftBodyBinding::Pointer bind(const SkinOptions& options);
   bool step(int frame, Playback& run);
 
   ModelOptions options_;
