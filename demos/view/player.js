@@ -46,6 +46,11 @@ class Player {
       this.seek(Number(event.target.value));
     };
     for (const id of ['surface', 'cage', 'skin']) element(id).onchange = () => this.select();
+    for (const list of document.querySelectorAll('select')) list.addEventListener('change', () => list.blur());
+    // What the mouse has clicked leaves the space bar to the player.
+    document.querySelector('footer').addEventListener('click', event => {
+      if (event.detail > 0 && event.target.tagName !== 'SELECT') event.target.blur();
+    });
     element('reset').onclick = () => this.resetView();
     window.addEventListener('resize', () => this.resize());
     window.addEventListener('keydown', event => this.key(event));
@@ -66,8 +71,8 @@ class Player {
       r: () => this.resetView(), c: () => next(cage), q: () => next(skin),
       s: () => element('surface').click(),
     };
-    const action = actions[event.key];
-    if (!action) return;
+    const action = actions[event.key], pressed = ['BUTTON', 'INPUT'].includes(event.target.tagName);
+    if (!action || (event.key === ' ' && pressed && event.target.type !== 'range')) return;
     event.preventDefault();
     action();
   }
