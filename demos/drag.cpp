@@ -8,19 +8,22 @@
 #include <tetskin/touch/surface_tree.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "drag/props.h"
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
+#include "scenes/view_page.h"
 
 namespace {
 
@@ -117,14 +120,17 @@ class Drag {
   std::vector<Vector3d> surface() const;
   const TriangleMesh& floor() const { return world_.obstacles(); }
   void tell(nlohmann::ordered_json& json) const;
+  /// Of the run to come.
+  ViewPage page() const;
+  ViewMoment moment() const;
 
  private:
   void pick();
   void hang();
   void push();
   void measure(double t);
-  void place(std::size_t first, const TriangleMesh& part, const btTransform& where,
-             std::vector<Vector3d>& points) const;
+  /// Where the hat, the ring and the pointer are.
+  std::array<btTransform, 3> propPlaces() const;
 
   DragOptions options_;
   Model model_;
@@ -136,9 +142,9 @@ class Drag {
   SurfacePoint horn_, crown_;
   std::unique_ptr<SurfaceSpring> spring_;
   std::unique_ptr<Ring> ring_;
-  TriangleMesh hat_ = makeHat(kHat), hoop_ = makeRing(kRing, 0.02 * kSize), pointer_ = makePointer(0.02 * kSize),
-               drawn_;
-  std::size_t hatFirst_, hoopFirst_, pointerFirst_;
+  std::array<TriangleMesh, 3> props_ = {makeHat(kHat), makeRing(kRing, 0.02 * kSize), makePointer(0.02 * kSize)};
+  TriangleMesh drawn_;                    ///< the serpent and these
+  std::array<std::size_t, 3> propFirst_;  ///< their first vertices there
   btVector3 picked_{0, 0, 0};
   double lag_ = 0, hangs_ = 0;
   SurfacePush pushed_;
@@ -172,11 +178,8 @@ Drag::Drag(const DragOptions& options)
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);
   ring_ = std::make_unique<Ring>(world_.bullet(), ringAt);
-  drawn_.positions = model_.mesh.positions;
-  drawn_.triangles = model_.mesh.triangles;
-  hatFirst_ = append(hat_, drawn_);
-  hoopFirst_ = append(hoop_, drawn_);
-  pointerFirst_ = append(pointer_, drawn_);
+  (void)append(model_.mesh, drawn_);
+  for (std::size_t k = 0; k < props_.size(); ++k) propFirst_[k] = append(props_[k], drawn_);
   pointerNow_ = tip;
 }
 
@@ -248,9 +251,10 @@ void Drag::measure(double t) {
   if (t > kThere + 0.5) hangs_ = std::max(hangs_, stretch);
 }
 
-void Drag::place(std::size_t first, const TriangleMesh& part, const btTransform& where,
-                 std::vector<Vector3d>& points) const {
-  for (std::size_t v = 0; v < part.vertexCount(); ++v) points[first + v] = toEigen(where * toBullet(part.positions[v]));
+std::array<btTransform, 3> Drag::propPlaces() const {
+  const auto hat = crown_.frame(skin_);
+  return {hat ? hat->transform() : btTransform::getIdentity(), ring_->body().getWorldTransform(),
+          btTransform(btMatrix3x3::getIdentity(), toBullet(pointerNow_))};
 }
 
 std::vector<Vector3d> Drag::surface() const {
@@ -259,10 +263,37 @@ std::vector<Vector3d> Drag::surface() const {
     const btScalar* p = skin_.positions()[v];
     points[v] = Vector3d(p[0], p[1], p[2]);
   }
-  if (const auto frame = crown_.frame(skin_)) place(hatFirst_, hat_, frame->transform(), points);
-  place(hoopFirst_, hoop_, ring_->body().getWorldTransform(), points);
-  place(pointerFirst_, pointer_, btTransform(btMatrix3x3::getIdentity(), toBullet(pointerNow_)), points);
+  const std::array<btTransform, 3> places = propPlaces();
+  for (std::size_t k = 0; k < props_.size(); ++k) {
+    for (std::size_t v = 0; v < props_[k].vertexCount(); ++v) {
+      points[propFirst_[k] + v] = toEigen(places[k] * toBullet(props_[k].positions[v]));
+    }
+  }
   return points;
+}
+
+Eigen::Affine3d affine(const btTransform& transform) {
+  Eigen::Affine3d result = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row) result.linear().row(row) = toEigen(transform.getBasis()[row]);
+  result.translation() = toEigen(transform.getOrigin());
+  return result;
+}
+
+ViewPage Drag::page() const {
+  std::vector<std::string> facts = factsOf(model_);
+  facts.emplace_back("picked by a horn, swung, hung on a ring, pushed");
+  ViewPage page(model_.name, facts, Interpolation::Linear);
+  page.addBody({page.addModel(model_.cage, model_.mesh, binding_->embedding()), "", ""});
+  for (const TriangleMesh& prop : props_) page.addProp(prop);
+  page.setObstacles(floor());
+  return page;
+}
+
+ViewMoment Drag::moment() const {
+  ViewMoment moment;
+  moment.bodies = {nodesOf(body_)};
+  for (const btTransform& place : propPlaces()) moment.props.push_back(affine(place));
+  return moment;
 }
 
 void Drag::tell(nlohmann::ordered_json& json) const {
@@ -279,9 +310,13 @@ void Drag::tell(nlohmann::ordered_json& json) const {
 int run(const DragOptions& options) {
   Drag drag(options);
   const OutputOptions& output = options.output;
-  FrameWriter writer({output.out, output.frames, output.every, false}, ObjLayout::fromMesh(drag.drawn()));
-  const std::string floor = (std::filesystem::path(output.out) / "obstacles.obj").string();
-  require(ObjLayout::fromMesh(drag.floor()).writeTo(floor, viewOf(drag.floor().positions)));
+  FramePlan plan = framePlanOf(output);
+  plan.materials = materialLibrary(drag.drawn());
+  plan.obstacles = drag.floor();
+  FrameWriter writer(plan, ObjLayout::fromMesh(drag.drawn()));
+  const std::string summary = summaryPath(output), view = viewPath(output);
+  std::optional<ViewPage> page;
+  if (!view.empty()) page = drag.page();
   Progress progress("simulating", output.frames, output.quiet);
   double milliseconds = 0.0;
   bool finite = true;
@@ -291,14 +326,16 @@ int run(const DragOptions& options) {
     milliseconds += timer.milliseconds();
     const std::vector<Vector3d> surface = drag.surface();
     if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
+    if (finite && page) page->keep(drag.moment());
     progress.show(frame + 1);
   }
   nlohmann::ordered_json json;
   drag.tell(json);
   json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
   json["finite"] = finite;
-  writeJson(json, summaryPath(output));
+  writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (page) page->write(view, output.quiet);
   if (finite) return kDone;
   std::fprintf(stderr, "tetskin_drag: the simulation exploded\n");
   return kRunFailed;

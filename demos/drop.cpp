@@ -4,14 +4,17 @@
 // The main job: a mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage.
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include <tetskin/reduced/reduced_body.h>
 
+#include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
 #include "scenes/player.h"
 #include "scenes/summary.h"
+#include "scenes/view_page.h"
 
 namespace {
 
@@ -25,7 +28,7 @@ struct DropOptions {
   std::string body = "elastic";
   std::size_t modes = 20;
   SkinOptions skin;
-  OutputOptions output{"out/drop", "", 240, 1, false};
+  OutputOptions output{"out/drop", "", 240, 1, false, {}, true};
   bool writeCage = false;
 
   bool reduced() const { return body == "reduced"; }
@@ -74,6 +77,7 @@ class Drop {
   }
 
   const ObjLayout& layout() const { return player_.model().layout; }
+  const TriangleMesh& mesh() const { return player_.model().mesh; }
   TriangleMesh obstacles() {
     TriangleMesh mesh = player_.scene().world().obstacles();
     player_.place().toModel(mesh.positions);
@@ -82,9 +86,11 @@ class Drop {
   double floorY() { return player_.place().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
   const Totals& totals() const { return totals_; }
 
+  /// Of the run to come.
+  ViewPage& addPage();
   Playback simulate(FrameWriter& writer) {
     return player_.play(
-        "simulating", options_.output, writer, [&](int) { measure(); }, [&](int frame) { write(frame, writer); });
+        "simulating", options_.output, [&](int) { measure(); }, [&](int frame) { write(frame, writer); });
   }
   nlohmann::ordered_json summarise(const Playback& run);
 
@@ -97,13 +103,15 @@ class Drop {
     totals_.extentMax = std::max(totals_.extentMax, bounds().sizes().maxCoeff() / restExtent_);
     totals_.lowest = std::min(totals_.lowest, bounds().min().y());
     totals_.speeds.push_back(player_.scene().nodeSpeed());
+    if (page_) page_->keep({{player_.nodes()}, {}});
   }
   void write(int frame, FrameWriter& writer) {
-    writer.write(frame, surface_.surface, bounds(), surface_.skin.normals());
-    if (!options_.writeCage) return;
-    TetMesh cage = tetMeshOf(player_.scene().body());
-    player_.place().toModel(cage.nodes);
-    writer.writeCage(frame, cage);
+    TetMesh cage;
+    if (options_.writeCage) {
+      cage = tetMeshOf(player_.scene().body());
+      player_.place().toModel(cage.nodes);
+    }
+    writer.write(frame, surface_.surface, bounds(), surface_.skin.normals(), options_.writeCage ? &cage : nullptr);
   }
 
   const DropOptions& options_;
@@ -111,7 +119,18 @@ class Drop {
   const Carried& surface_;
   double restExtent_;
   Totals totals_;
+  std::optional<ViewPage> page_;
 };
+
+ViewPage& Drop::addPage() {
+  const Model& model = player_.model();
+  std::vector<std::string> facts = factsOf(model);
+  if (options_.touchesBySurface()) facts.emplace_back("touches as drawn");
+  page_.emplace(model.name, facts, options_.skin.interpolation);
+  page_->addBody({page_->addModel(model.cage, model.mesh, surface_.skin.binding()->embedding()), "", ""});
+  page_->setObstacles(obstacles());
+  return *page_;
+}
 
 nlohmann::ordered_json Drop::summarise(const Playback& run) {
   const double scale = player_.place().scale, margin = player_.scene().margin() / scale;
@@ -176,17 +195,19 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 int run(const DropOptions& options) {
   Drop drop(options);
   const OutputOptions& output = options.output;
-  FrameWriter writer({output.out, output.frames, output.every, options.writeCage},
-                     layoutWith(options.skin.normals, drop.layout()));
-  const std::string path = summaryPath(output);
-  const TriangleMesh obstacles = drop.obstacles();
-  const std::string obstaclesPath = (std::filesystem::path(output.out) / "obstacles.obj").string();
-  require(ObjLayout::fromMesh(obstacles).writeTo(obstaclesPath, viewOf(obstacles.positions)));
+  FramePlan plan = framePlanOf(output);
+  plan.cages = options.writeCage;
+  plan.obstacles = drop.obstacles();
+  if (options.model.mesh.empty()) plan.materials = materialLibrary(drop.mesh());
+  FrameWriter writer(plan, layoutWith(options.skin.normals, drop.layout()));
+  const std::string path = summaryPath(output), view = viewPath(output);
+  const ViewPage* page = view.empty() ? nullptr : &drop.addPage();
 
   const Playback run = drop.simulate(writer);
   const nlohmann::ordered_json json = drop.summarise(run);
   writeJson(json, path);
   if (!output.quiet) printTable(json, path);
+  if (page) page->write(view, output.quiet);
   if (!run.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", run.frames - 1);
     return kRunFailed;

@@ -10,16 +10,18 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
-#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
+#include "scenes/view_page.h"
 
 namespace {
 
@@ -67,8 +69,11 @@ void addBowl(World& world) {
   world.addBox({0, kFloorY - thick, 0}, {4 * kSide, thick, 4 * kSide});
   for (const double side : {-1.0, 1.0}) {
     world.addBox({side * (kSide + thick + 0.35 * height), 0.5 * height, 0}, {thick, height, kSide}, -side * 0.45);
+    world.paint("wall");
     world.addBox({0, 0.5 * height, side * (kSide + thick)}, {2 * kSide, height, thick});
+    world.paint("wall");
     world.addBox({side * 0.45 * kSize, 1.6 * kSize, 0}, {kPole, kPole, kSide});
+    world.paint("pole");
   }
 }
 
@@ -105,12 +110,17 @@ class Pile {
   /// Root of the mean square over all nodes, in sizes a second.
   double nodeSpeed() const;
 
+  /// Of the run to come: bodies of one model share it.
+  ViewPage page() const;
+  ViewMoment moment() const;
+
  private:
   void add(const PileModel& of, int k, const PileOptions& options);
 
   World world_;
   std::deque<PileModel> models_;
   std::vector<btSoftBody*> bodies_;
+  std::size_t bodyTets_ = 0;
   std::deque<SoftBodySkin> skins_;
   TriangleMesh mesh_;
 };
@@ -124,7 +134,11 @@ void Pile::add(const PileModel& of, int k, const PileOptions& options) {
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
   const int first = static_cast<int>(mesh_.vertexCount());
-  mesh_.groups.push_back({of.model.name, "", mesh_.triangleCount(), of.model.mesh.triangleCount()});
+  bodyTets_ += of.model.cage.tetCount();
+  for (const TriangleGroup& group : of.model.mesh.groups) {
+    mesh_.groups.push_back(
+        {of.model.name, group.material, mesh_.triangleCount() + group.firstTriangle, group.triangleCount});
+  }
   mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
   for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
 }
@@ -165,12 +179,34 @@ double Pile::nodeSpeed() const {
   return std::sqrt(squared / count) / kSize;
 }
 
+ViewPage Pile::page() const {
+  ViewPage page("pile",
+                {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
+                 withCommas(bodyTets_) + " tets", "each touches the others as drawn"},
+                Interpolation::Linear);
+  for (const PileModel& of : models_) page.addModel(of.model.cage, of.model.mesh, of.binding->embedding());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
+  page.setObstacles(obstacles());
+  page.setFocus({Vector3d(-1.5 * kSide, kFloorY, -kSide), Vector3d(1.5 * kSide, kFloorY + 2.0 * kSize, kSide)});
+  return page;
+}
+
+ViewMoment Pile::moment() const {
+  ViewMoment moment;
+  for (const btSoftBody* body : bodies_) moment.bodies.push_back(nodesOf(*body));
+  return moment;
+}
+
 int run(const PileOptions& options) {
   Pile pile(options);
   const OutputOptions& output = options.output;
-  FrameWriter writer({output.out, output.frames, output.every, false}, ObjLayout::fromMesh(pile.mesh()));
-  const std::string obstacles = (std::filesystem::path(output.out) / "obstacles.obj").string();
-  require(ObjLayout::fromMesh(pile.obstacles()).writeTo(obstacles, viewOf(pile.obstacles().positions)));
+  FramePlan plan = framePlanOf(output);
+  plan.materials = materialLibrary(pile.mesh());
+  plan.obstacles = pile.obstacles();
+  FrameWriter writer(plan, ObjLayout::fromMesh(pile.mesh()));
+  const std::string summary = summaryPath(output), view = viewPath(output);
+  std::optional<ViewPage> page;
+  if (!view.empty()) page = pile.page();
   Progress progress("simulating", output.frames, output.quiet);
   double milliseconds = 0.0, deepest = 0.0;
   bool finite = true;
@@ -181,6 +217,7 @@ int run(const PileOptions& options) {
     deepest = std::min(deepest, pile.deepest());
     const std::vector<Vector3d> surface = pile.surface();
     if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
+    if (finite && page) page->keep(pile.moment());
     progress.show(frame + 1);
   }
   nlohmann::ordered_json json;
@@ -192,8 +229,9 @@ int run(const PileOptions& options) {
   json["contacts_at_end"] = pile.contactCount();
   json["node_speed_at_end"] = pile.nodeSpeed();
   json["finite"] = finite;
-  writeJson(json, summaryPath(output));
+  writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (page) page->write(view, output.quiet);
   if (finite) return kDone;
   std::fprintf(stderr, "tetskin_pile: the simulation exploded\n");
   return kRunFailed;

@@ -3,9 +3,9 @@
 # What the library and the demos need; what the unit tests need beyond that; what all tests need beyond that. Debian 12,
 # Ubuntu 24.04 and later.
 build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev
-  libbenchmark-dev python3-matplotlib)
+  libbenchmark-dev python3-matplotlib libjs-three)
 test_packages=(libgtest-dev)
-check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen)
+check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium)
 
 # Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
 require_packages() {
@@ -15,7 +15,7 @@ require_packages() {
     for tool in cmake c++; do
       if ! command -v "$tool" >/dev/null; then
         echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
-          "assimp, CLI11, nlohmann-json, Google Benchmark and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
+          "assimp, CLI11, nlohmann-json, Google Benchmark, three.js (for pages) and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
         exit 1
       fi
     done

@@ -7,10 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
 #include "scenes/player.h"
 #include "scenes/summary.h"
+#include "scenes/view_page.h"
 #include "scenes/wring.h"
 
 namespace {
@@ -74,11 +78,18 @@ class SideBySide {
     for (const char* name : {"linear", "quadratic"}) append(mesh, name);
   }
 
+  const TriangleMesh& mesh() const { return mesh_; }
   ObjLayout layout() const { return ObjLayout::fromMesh(mesh_); }
+  /// Points of the second one, beside the first.
+  std::vector<Eigen::Vector3d> beside(std::vector<Eigen::Vector3d> points) const {
+    for (Eigen::Vector3d& p : points) p += offset_;
+    return points;
+  }
 
   void write(const Carried& linear, const Carried& quadratic, int frame, FrameWriter& writer) {
     surface_ = linear.surface;
-    for (const Eigen::Vector3d& p : quadratic.surface) surface_.push_back(p + offset_);
+    const std::vector<Eigen::Vector3d> second = beside(quadratic.surface);
+    surface_.insert(surface_.end(), second.begin(), second.end());
     normals_.clear();
     for (const PointView<const float>& half : {linear.skin.normals(), quadratic.skin.normals()}) {
       for (std::size_t v = 0; v < half.size(); ++v) normals_.emplace_back(half[v]);
@@ -91,7 +102,10 @@ class SideBySide {
 
   void append(const TriangleMesh& mesh, const char* name) {
     const int first = static_cast<int>(mesh_.vertexCount());
-    mesh_.groups.push_back({name, "", mesh_.triangleCount(), mesh.triangleCount()});
+    for (const TriangleGroup& group : mesh.groups) {
+      mesh_.groups.push_back({name, group.material, mesh_.triangleCount() + group.firstTriangle, group.triangleCount});
+    }
+    if (mesh.groups.empty()) mesh_.groups.push_back({name, "", mesh_.triangleCount(), mesh.triangleCount()});
     mesh_.positions.insert(mesh_.positions.end(), mesh.positions.begin(), mesh.positions.end());
     mesh_.texcoords.insert(mesh_.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
     for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -196,6 +210,14 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   std::printf("  %s/frame_0000.obj ... %s\n", json.at("out").get<std::string>().c_str(), summaryPath.c_str());
 }
 
+/// Both surfaces on one cage, as the frames have them.
+ViewPage pageOf(const Model& model, const Embedding& embedding) {
+  ViewPage page(model.name + ", a full turn", factsOf(model), Interpolation::Quadratic);
+  const std::size_t shared = page.addModel(model.cage, model.mesh, embedding);
+  for (const char* name : {"linear", "quadratic"}) page.addBody({shared, name, name});
+  return page;
+}
+
 int run(const TwistOptions& options) {
   Player player(options.model, "wring");
   const auto carry = [&](Interpolation interpolation) -> const Carried& {
@@ -206,16 +228,24 @@ int run(const TwistOptions& options) {
   const Carried& quadratic = carry(Interpolation::Quadratic);
   const Carried& linear = carry(Interpolation::Linear);
   SideBySide pair(player.model().mesh);
-  FrameWriter writer({options.output.out, options.output.frames, options.output.every},
-                     layoutWith(options.skin.normals, pair.layout()));
-  const std::string path = summaryPath(options.output);
+  FramePlan plan = framePlanOf(options.output);
+  if (options.model.mesh.empty()) plan.materials = materialLibrary(pair.mesh());
+  FrameWriter writer(plan, layoutWith(options.skin.normals, pair.layout()));
+  const std::string path = summaryPath(options.output), view = viewPath(options.output);
+  std::optional<ViewPage> page;
+  if (!view.empty()) page = pageOf(player.model(), quadratic.skin.binding()->embedding());
   Totals totals;
   const Playback run = player.play(
-      "twisting", options.output, writer, [&](int frame) { measure(player, linear, quadratic, frame, totals); },
+      "twisting", options.output,
+      [&](int frame) {
+        measure(player, linear, quadratic, frame, totals);
+        if (page) page->keep({{player.nodes(), pair.beside(player.nodes())}, {}});
+      },
       [&](int frame) { pair.write(linear, quadratic, frame, writer); });
   const nlohmann::ordered_json json = summarise(player, options, totals, run, linear, quadratic);
   writeJson(json, path);
   if (!options.output.quiet) printTable(json, path);
+  if (page) page->write(view, options.output.quiet);
   if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;

@@ -69,6 +69,14 @@ if(NOT python_with_matplotlib)
   tetskin_lacks("Python with matplotlib" "test of the plots, of links and of what pages show")
 endif()
 
+find_program(CHROMIUM NAMES chromium chromium-browser google-chrome)
+if(NOT CHROMIUM)
+  tetskin_lacks("chromium" "test of pages in a browser")
+endif()
+if(TETSKIN_DEMOS AND NOT (TETSKIN_THREE AND TETSKIN_ORBIT_CONTROLS))
+  tetskin_lacks("three.js (libjs-three)" "test of pages")
+endif()
+
 if(TETSKIN_TEST_EVERYTHING AND missing_tools)
   list(JOIN missing_tools ", " missing_tools)
   message(FATAL_ERROR "Missing for all tests: ${missing_tools}. Install it, or leave out what needs it: "

@@ -30,15 +30,22 @@ TriangleMesh turned(const std::vector<std::pair<double, double>>& line) {
   return mesh;
 }
 
+/// As one group, which is the name of its material, too.
+TriangleMesh named(const char* name, TriangleMesh mesh) {
+  mesh.groups = {{name, name, 0, mesh.triangleCount()}};
+  return mesh;
+}
+
 }  // namespace
 
 TriangleMesh makeHat(double radius) {
   const double r = radius;
-  return turned({{0, 0}, {1.7 * r, 0}, {1.7 * r, 0.1 * r}, {r, 0.15 * r}, {0.85 * r, 1.5 * r}, {0, 1.5 * r}});
+  return named("hat",
+               turned({{0, 0}, {1.7 * r, 0}, {1.7 * r, 0.1 * r}, {r, 0.15 * r}, {0.85 * r, 1.5 * r}, {0, 1.5 * r}}));
 }
 
 TriangleMesh makePointer(double radius) {
-  return turned({{0, -radius}, {radius, 0}, {0, radius}});
+  return named("pointer", turned({{0, -radius}, {radius, 0}, {0, radius}}));
 }
 
 TriangleMesh makeRing(double radius, double thickness) {
@@ -55,11 +62,15 @@ TriangleMesh makeRing(double radius, double thickness) {
       mesh.triangles.push_back({b, c, d});
     }
   }
-  return mesh;
+  return named("ring", std::move(mesh));
 }
 
 std::size_t append(const TriangleMesh& part, TriangleMesh& whole) {
   const std::size_t first = whole.vertexCount();
+  for (TriangleGroup group : part.groups) {
+    group.firstTriangle += whole.triangleCount();
+    whole.groups.push_back(std::move(group));
+  }
   whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
   for (const auto& [a, b, c] : part.triangles) {
     const int shift = static_cast<int>(first);

@@ -7,9 +7,11 @@
 
 #include "report/advice.h"
 #include "report/report_files.h"
+#include "report/report_view.h"
 #include "scenes/files.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
+#include "scenes/view_page.h"
 
 namespace tetskin::report {
 namespace {
@@ -73,6 +75,13 @@ SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobPro
   return result;
 }
 
+using Runners = std::vector<std::unique_ptr<SceneRunner>>;
+
+const SceneRunner* runnerOf(const std::string& scene, const Runners& runners) {
+  return std::find_if(runners.begin(), runners.end(), [&](const auto& runner) { return runner->scene() == scene; })
+      ->get();
+}
+
 }  // namespace
 
 ReportResult makeReport(const ReportOptions& wished) {
@@ -81,12 +90,13 @@ ReportResult makeReport(const ReportOptions& wished) {
   options.referenceTets = model.reference.tets;
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
+  if (!options.view.empty()) scenes::requireViewable(options.view);
   CageShelf cages(model.mesh, model.reference.tets);
   // A file's tets are right as they are.
   const bool calibrated = model.reference.from == kFormula;
   if (model.reference.cage) cages.putReference(std::move(*model.reference.cage), calibrated);
   model.reference.cage.reset();
-  std::vector<std::unique_ptr<SceneRunner>> runners;
+  Runners runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
     for (const Elasticity elasticity :
@@ -96,6 +106,7 @@ ReportResult makeReport(const ReportOptions& wished) {
       for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
     }
   }
+  const SceneRunner* shown = options.view.empty() ? nullptr : runnerOf(shownScene(options), runners);
   ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
@@ -103,6 +114,7 @@ ReportResult makeReport(const ReportOptions& wished) {
     const Row& first = result.scenes.back().rows.front();
     if (first.isReference()) result.reference.factor = first.stiffnessFactor;
     writeReport(result, options, runner->colouredMesh());
+    if (runner.get() == shown) writeView(*runner, model, options);
     runner.reset();  // with its reference, which may be large
   }
   return result;

@@ -24,6 +24,14 @@ std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
 
 }  // namespace
 
+std::string shownScene(const ReportOptions& options) {
+  const std::vector<std::string>& scenes = options.scenes;
+  if (std::count(scenes.begin(), scenes.end(), "sag") > 0) return "sag";
+  const auto first =
+      std::find_if(scenes.begin(), scenes.end(), [](const std::string& scene) { return scene != "exact"; });
+  return first == scenes.end() ? std::string() : *first;
+}
+
 void requireFiner(const ReportOptions& options, std::size_t referenceTets) {
   if (options.tets.back() < referenceTets) return;
   throw scenes::InputError("--tets: cages must have fewer tets than the reference, which has " +
@@ -58,6 +66,9 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
   line.addPositive("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals");
   line.addCount("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors");
+  line.addFile(
+      "--view", o.view,
+      "Write a page that plays, in a browser, that cage beside the reference, in sag or the first other scene");
   line.addFile("--out", o.out, "Folder of the report, and of what an interrupted run had finished");
   line.addSummaryOption(o.json, "File of the results (default: error_vs_time.json in the folder)");
   line.addQuietOption(o.quiet);
@@ -92,6 +103,7 @@ const ReportOptions& ReportCommandLine::finish() {
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
   chooseCages();
   if (noReduction_) o.modes.clear();
+  if (!o.view.empty() && shownScene(o).empty()) throw scenes::InputError("--view: no scene of --scene is simulated");
   std::sort(o.modes.begin(), o.modes.end());
   o.modes.erase(std::unique(o.modes.begin(), o.modes.end()), o.modes.end());
   o.bullet = force_ == "bullet";

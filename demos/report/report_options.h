@@ -29,8 +29,12 @@ struct ReportOptions {
   std::size_t shownTets = 3000;                      ///< of the cage whose errors colour a mesh
   double targetError = 0.0;                          ///< in box diagonals; 0: none
   std::string out = "out/error_vs_time", json;
+  std::string view;  ///< file of a page that plays that cage beside the reference; empty: none
   bool quiet = false;
 };
+
+/// Of the scenes, the one that a page plays: sag, or the first that is simulated; empty if none is.
+std::string shownScene(const ReportOptions& options);
 
 /// Throws InputError unless a reference of so many tets has more than all cages.
 void requireFiner(const ReportOptions& options, std::size_t referenceTets);

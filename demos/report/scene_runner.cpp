@@ -3,6 +3,7 @@
 #include "report/scene_runner.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <set>
 
@@ -153,9 +154,24 @@ std::optional<std::vector<Row>> SceneRunner::stored(const Job& job) const {
   return store_.rows(settings(job));
 }
 
-std::optional<std::string> SceneRunner::colouredMesh() const {
+const Job* SceneRunner::colouredJob() const {
   const auto job = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& j) { return j.coloured; });
-  return job == jobs_.end() ? std::nullopt : store_.text(settings(*job));
+  return job == jobs_.end() ? nullptr : &*job;
+}
+
+std::optional<std::string> SceneRunner::colouredMesh() const {
+  const Job* job = colouredJob();
+  return job ? store_.text(settings(*job)) : std::nullopt;
+}
+
+ShownMotion SceneRunner::shownMotion() {
+  assert(!isExact() && colouredJob());
+  const Job& job = *colouredJob();
+  const Cage& cage = cages_.at(job.tets, job.kind).cage;
+  Simulation simulation = simulate(entry_, cage, optionsOf(job, cage), model_.mesh, {}, [] {});
+  (void)reference();
+  return {cage, std::move(simulation.trajectory), cages_.reference().cage, right_[false].trajectory,
+          std::move(simulation.obstacles)};
 }
 
 const Job* SceneRunner::referenceJob(bool bullets) const {

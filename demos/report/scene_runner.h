@@ -40,6 +40,15 @@ struct ReportModel {
   ReferenceCage reference;
 };
 
+/// How a coarse cage moves, and how the reference does: node positions by frame.
+struct ShownMotion {
+  const Cage& cage;
+  Trajectory nodes;
+  const Cage& right;
+  const Trajectory& rightNodes;
+  TriangleMesh obstacles;
+};
+
 /// The control, in which nothing is simulated.
 constexpr const char* kExact = "exact";
 
@@ -63,6 +72,10 @@ class SceneRunner {
   std::vector<Row> run(const Job& job, const std::function<void(double)>& share);
   /// The coloured mesh of the job that makes one; after its rows.
   std::optional<std::string> colouredMesh() const;
+  /// Of the same job, simulated again; not of the exact scene. Valid as long as this object.
+  ShownMotion shownMotion();
+  /// The mesh in the reference.
+  const Points& rightSurface(int frame) { return reference().surfaceAt(frame).positions; }
 
  private:
   /// Of a cage, as it is and as the reference would take it, with what is known of it before surfaces are compared.
@@ -83,6 +96,7 @@ class SceneRunner {
   };
 
   const Job* referenceJob(bool bullets) const;
+  const Job* colouredJob() const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
   scenes::SceneOptions optionsOf(const Job& job, const Cage& cage);

@@ -45,6 +45,7 @@ struct Simulation {
   SurfaceCosts surfaces;
   int modes = 0;                 ///< of a reduced body
   double projectionError = 0.0;  ///< of these, the largest
+  TriangleMesh obstacles;        ///< of the scene, in its world
   bool finite = true;            ///< and not exploded; the trajectory ends before the first frame that is not
 };
 

@@ -44,7 +44,7 @@ TriangleMesh makeBar(std::size_t triangles) {
         kHalfWidth * std::sin(0.5 * kPi * end) * outline(theta) * (1.0 + ridge * std::cos(kRidges * theta));
     return {x, radius * std::cos(theta), radius * std::sin(theta)};
   });
-  mesh.groups.push_back({"bar", "", 0, mesh.triangleCount()});
+  mesh.groups.push_back({"bar", "bar", 0, mesh.triangleCount()});
   return mesh;
 }
 

@@ -200,6 +200,10 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
   addCount("--frames", options.frames, "Frames of 1/60 s", kMostFrames);
   addCount("--every", options.every, "Write every so many frames", kMostFrames);
   addFile("--out", options.out, "Folder of the OBJ sequence");
+  addFile("--view", options.view,
+          std::string("Write a page that plays the run in a browser") +
+              (options.viewByDefault ? " (default: view.html in the folder)" : ""));
+  if (options.viewByDefault) addFlag("--no-view", options.noView, "Write no such page");
   addSummaryOption(options.json, "File of the summary (default: summary.json in the folder)");
   addQuietOption(options.quiet);
 }

@@ -29,6 +29,9 @@ struct OutputOptions {
   int frames = 0;
   int every = 1;  ///< write every so many frames
   bool quiet = false;
+  std::string view = {};       ///< file of a page that plays the run; empty: none, unless by default
+  bool viewByDefault = false;  ///< view.html in the folder, where a page can be made
+  bool noView = false;         ///< none by default either
 };
 
 /// A whole command line, and what it does.
@@ -94,7 +97,8 @@ class CommandLine {
   void addSummaryOption(std::string& path, const std::string& description);
   /// --quiet.
   void addQuietOption(bool& quiet);
-  /// --frames, --every, --out, --json, --quiet. The defaults of `options` are the demo's.
+  /// --frames, --every, --out, --view, --json, --quiet; --no-view where there is a view by default. The defaults of
+  /// `options` are the demo's.
   void addOutputOptions(OutputOptions& options);
 
   /// Whether an option was on the line that was parsed.

@@ -4,13 +4,14 @@
 
 #include <tetskin/io/tet_files.h>
 
+#include <cassert>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include "scenes/files.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
 
 namespace tetskin::scenes {
 
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kListName = ".tetskin_frames";
+/// Of all frames.
+constexpr const char* kLibraryName = "tetskin_frames.mtl";
 
 std::string cageName(int frame) {
   char name[32];
@@ -26,14 +29,38 @@ std::string cageName(int frame) {
   return name;
 }
 
+bool isNumbered(const std::string& name, const std::string& base, const std::string& extension) {
+  const std::size_t first = base.size(), end = name.find('.');
+  if (end == std::string::npos || end <= first) return false;
+  return name.compare(0, first, base) == 0 && name.compare(end, std::string::npos, extension) == 0 &&
+         name.find_first_not_of("0123456789", first) == end;
+}
+
 /// Whether a line of the list is a name that a run here gives: the list may have been edited.
 bool isOurs(const std::string& name) {
-  const std::size_t first = name.find('_') + 1, end = name.find('.');
-  const auto is = [&](const char* base, const char* extension) {
-    return name.compare(0, first, base) == 0 && name.compare(end, std::string::npos, extension) == 0;
-  };
-  if (end == std::string::npos || end <= first || !(is("frame_", ".obj") || is("cage_", ".vtk"))) return false;
-  return name.find_first_not_of("0123456789", first) == end;
+  for (const char* known : {kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
+    if (name == known) return true;
+  }
+  return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
+}
+
+/// What `saveTetMesh` makes of it as .vtk.
+std::size_t vtkBytes(const TetMesh& cage) {
+  constexpr std::size_t kHead = 120, kOfTet = sizeof "4 \n10\n" - 1;
+  std::string numbers;
+  for (const Eigen::Vector3d& p : cage.nodes) {
+    for (const double x : p) appendNumber(numbers += ' ', x);
+  }
+  for (const Tet& tet : cage.tets) {
+    for (const int node : tet) appendNumber(numbers += ' ', node);
+  }
+  return kHead + numbers.size() + kOfTet * cage.tetCount();
+}
+
+std::string megabytes(double bytes) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f MB", bytes < 1e7 ? 1 : 0, 1e-6 * bytes);
+  return text;
 }
 
 }  // namespace
@@ -43,59 +70,137 @@ bool fitsFloat(const Box3& box) {
   return box.center().norm() <= kFarOut * box.sizes().maxCoeff();
 }
 
-FrameWriter::FrameWriter(const FramePlan& plan, const ObjLayout& layout) : plan_(plan) {
-  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(plan.folder, layout);
+FramePlan framePlanOf(const OutputOptions& options) {
+  FramePlan plan;
+  plan.folder = options.out;
+  plan.frames = options.frames;
+  plan.every = options.every;
+  plan.quiet = options.quiet;
+  return plan;
+}
+
+FrameWriter::FrameWriter(const FramePlan& plan, const ObjLayout& layout)
+    : plan_(plan), layout_(plan.materials.empty() ? layout : layout.withLibrary(kLibraryName)) {
+  assert(plan.frames > 0 && plan.every > 0);
+  Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(plan.folder, layout_);
   require(writer.status());
   writer_ = std::move(writer).value();
+  refuseFramesOfOthers();
 }
 
 void FrameWriter::write(int frame, const std::vector<Eigen::Vector3d>& surface, const Box3& bounds,
-                        PointView<const float> normals) {
-  if (frame == 0) replaceEarlierRun();
-  if (!fitsFloat(bounds)) return require(writer_.write(frame, viewOf(surface), normals));
+                        PointView<const float> normals, const TetMesh* cage) {
+  assert((cage != nullptr) == plan_.cages);
+  if (!fitsFloat(bounds)) return writeFrame(frame, viewOf(surface), normals, cage);
   rounded_.resize(surface.size());
   for (std::size_t v = 0; v < surface.size(); ++v) rounded_[v] = surface[v].cast<float>();
-  require(writer_.write(frame, viewOf(std::as_const(rounded_)), normals));
+  writeFrame(frame, viewOf(std::as_const(rounded_)), normals, cage);
 }
 
-void FrameWriter::writeCage(int frame, const TetMesh& cage) {
-  require(saveTetMesh(cage, (fs::path(plan_.folder) / cageName(frame)).string()));
-}
-
-std::string FrameWriter::announcement() const {
-  const int count = (plan_.frames - 1) / plan_.every + 1;
-  double megabytes = 0.0;
-  for (const std::string& name : filesOf(0)) {
-    megabytes += 1e-6 * count * static_cast<double>(fs::file_size(fs::path(plan_.folder) / name));
+template <class Scalar>
+void FrameWriter::writeFrame(int frame, PointView<const Scalar> surface, PointView<const float> normals,
+                             const TetMesh* cage) {
+  if (frame == 0) {
+    std::vector<char> buffer;
+    const std::size_t bytes = layout_.format(surface, buffer, normals).size() + plan_.materials.size();
+    begin(static_cast<double>(bytes + (cage ? vtkBytes(*cage) : 0)));
+    layout_ = {};
   }
-  char text[96];
-  std::snprintf(text, sizeof text, "writing %d frames, about %.*f MB, to ", count, megabytes < 10.0 ? 1 : 0, megabytes);
-  return text + plan_.folder;
+  require(writer_.write(frame, surface, normals));
+  writeMaterials(fs::path(writer_.framePath(frame)).stem().string() + ".mtl", plan_.materials);
+  if (cage) require(saveTetMesh(*cage, pathOf(cageName(frame))));
+}
+
+/// All frames have about as many bytes as the first.
+void FrameWriter::begin(double frameBytes) {
+  const double bytes = frameCount() * frameBytes;
+  requireRoom(bytes);
+  if (!plan_.quiet) std::printf("%s\n", announcement(bytes).c_str());
+  replaceEarlierRun();
+  writeMaterials(kLibraryName, plan_.materials);
+  if (plan_.obstacles.positions.empty()) return;
+  const ObjLayout layout = ObjLayout::fromMesh(plan_.obstacles).withLibrary("obstacles.mtl");
+  require(layout.writeTo(pathOf("obstacles.obj"), viewOf(plan_.obstacles.positions)));
+  writeMaterials("obstacles.mtl", materialLibrary(plan_.obstacles));
+}
+
+void FrameWriter::requireRoom(double bytes) const {
+  std::error_code error;
+  auto room = static_cast<double>(fs::space(plan_.folder, error).available);
+  if (error) return;  // a file system that does not tell
+  for (const std::string& name : filesOfEarlierRun()) {
+    const auto size = fs::file_size(pathOf(name), error);
+    if (!error) room += static_cast<double>(size);
+  }
+  if (bytes <= room) return;
+  throw InputError(plan_.folder + ": " + std::to_string(frameCount()) + " frames take about " + megabytes(bytes) +
+                   ", and the disk has room for " + megabytes(room) +
+                   "; write fewer by --every or --frames, or elsewhere by --out");
+}
+
+std::string FrameWriter::announcement(double bytes) const {
+  return "writing " + std::to_string(frameCount()) + " frames, about " + megabytes(bytes) + ", to " + plan_.folder;
 }
 
 std::vector<std::string> FrameWriter::filesOf(int frame) const {
-  std::vector<std::string> names = {fs::path(writer_.framePath(frame)).filename().string()};
+  const fs::path path = fs::path(writer_.framePath(frame)).filename();
+  std::vector<std::string> names = {path.string()};
+  if (!plan_.materials.empty()) names.push_back(path.stem().string() + ".mtl");
   if (plan_.cages) names.push_back(cageName(frame));
   return names;
 }
 
-void FrameWriter::replaceEarlierRun() const {
-  std::set<std::string> names;
-  std::string list;
-  for (int frame = 0; frame < plan_.frames; frame += plan_.every) {
-    for (const std::string& name : filesOf(frame)) {
-      names.insert(name);
-      list += name + "\n";
-    }
+std::vector<std::string> FrameWriter::filesOfAllFrames() const {
+  std::vector<std::string> names;
+  if (!plan_.materials.empty()) names.emplace_back(kLibraryName);
+  if (!plan_.obstacles.positions.empty()) names.insert(names.end(), {"obstacles.obj", "obstacles.mtl"});
+  for (int count = 0; count < frameCount(); ++count) {
+    for (std::string& name : filesOf(count * plan_.every)) names.push_back(std::move(name));
   }
-  const fs::path listPath = fs::path(plan_.folder) / kListName;
-  std::ifstream earlier(listPath);
-  for (std::string name; std::getline(earlier, name);) {
+  return names;
+}
+
+std::set<std::string> FrameWriter::filesOfEarlierRun() const {
+  std::set<std::string> names;
+  std::ifstream list(pathOf(kListName));
+  for (std::string name; std::getline(list, name);) {
+    if (isOurs(name)) names.insert(name);
+  }
+  return names;
+}
+
+/// Two sequences in one folder would be taken for one.
+void FrameWriter::refuseFramesOfOthers() const {
+  const std::set<std::string> known = filesOfEarlierRun();
+  for (const fs::directory_entry& entry : fs::directory_iterator(plan_.folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame_", 0) != 0 || entry.path().extension() != ".obj" || known.count(name) > 0) continue;
+    throw InputError(plan_.folder + ": " + name +
+                     " is of no earlier run that is known here, and would mix with the frames of this one; move it, or "
+                     "choose another folder by --out");
+  }
+}
+
+void FrameWriter::replaceEarlierRun() const {
+  const std::vector<std::string> names = filesOfAllFrames();
+  const std::set<std::string> kept(names.begin(), names.end());
+  for (const std::string& name : filesOfEarlierRun()) {
+    if (kept.count(name) > 0) continue;
     std::error_code error;
-    if (isOurs(name) && names.count(name) == 0) fs::remove(fs::path(plan_.folder) / name, error);
+    fs::remove(pathOf(name), error);
     if (error) throw InputError(plan_.folder + ": " + name + " of an earlier run cannot be removed");
   }
-  writeFile(listPath.string(), list);
+  std::string list;
+  for (const std::string& name : names) list += name + "\n";
+  writeFile(pathOf(kListName), list);
+}
+
+void FrameWriter::writeMaterials(const std::string& name, const std::string& library) const {
+  if (!library.empty()) writeFile(pathOf(name), library);
+}
+
+std::string FrameWriter::pathOf(const std::string& name) const {
+  return (fs::path(plan_.folder) / name).string();
 }
 
 }  // namespace tetskin::scenes

@@ -116,7 +116,7 @@ auto meshOf(std::size_t wish, double power, const Make& make) {
 
 TriangleMesh makeHand(std::size_t triangles) {
   TriangleMesh mesh = meshOf(std::clamp(triangles, kMinHandTriangles, kMaxHandTriangles), 2.0, surfaceOf);
-  mesh.groups.push_back({"hand", "", 0, mesh.triangleCount()});
+  mesh.groups.push_back({"hand", "hand", 0, mesh.triangleCount()});
   return mesh;
 }
 

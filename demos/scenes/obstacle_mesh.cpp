@@ -9,10 +9,10 @@
 namespace tetskin::scenes {
 namespace {
 
-void append(TriangleMesh& mesh, const char* name, const std::vector<Eigen::Vector3d>& positions,
+void append(TriangleMesh& mesh, const char* name, const char* material, const std::vector<Eigen::Vector3d>& positions,
             const std::vector<std::array<int, 3>>& triangles) {
   const int first = static_cast<int>(mesh.vertexCount());
-  mesh.groups.push_back({name, "", mesh.triangleCount(), triangles.size()});
+  mesh.groups.push_back({name, material, mesh.triangleCount(), triangles.size()});
   mesh.positions.insert(mesh.positions.end(), positions.begin(), positions.end());
   for (const auto& t : triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
@@ -26,7 +26,7 @@ void appendBox(TriangleMesh& mesh, const Eigen::Vector3d& centre, const Eigen::V
     const Eigen::Vector3d sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
     corners.push_back(centre + rotation * sign.cwiseProduct(halfExtents));
   }
-  append(mesh, "box", corners,
+  append(mesh, "box", "floor", corners,
          {{0, 2, 3},
           {0, 3, 1},
           {4, 5, 7},
@@ -55,7 +55,7 @@ void appendSphere(TriangleMesh& mesh, const Eigen::Vector3d& centre, double radi
       if (r > 0) triangles.push_back({row - kAround + next, row + next, row + a});
     }
   }
-  append(mesh, "sphere", points, triangles);
+  append(mesh, "sphere", "dome", points, triangles);
 }
 
 }  // namespace tetskin::scenes

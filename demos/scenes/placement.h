@@ -27,6 +27,9 @@ struct Placement {
   void readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3d>& surface) const;
 };
 
+/// A body's nodes as they are now, world space.
+std::vector<Eigen::Vector3d> nodesOf(const btSoftBody& body);
+
 /// Scales a box to kSize, and puts its centre at the origin.
 Placement placementOf(const Box3& box);
 

@@ -3,7 +3,6 @@
 #include "scenes/player.h"
 
 #include <cassert>
-#include <cstdio>
 
 #include "scenes/input_error.h"
 #include "scenes/progress.h"
@@ -36,14 +35,24 @@ Player::Player(const ModelOptions& options, const std::string& scene, const Scen
   place_.offset = scene_->offset;
 }
 
+/// Embeds the mesh in the model's space, in whose unit the options and the report are. Quadratic skinning measures what
+/// it adds by the cage at rest, and so needs that in the size of the body.
+SoftBodyBinding::Pointer Player::bind(const SkinOptions& options) {
+  const Result<Embedding> embedding = embed(model_.cage, model_.mesh, {options.outside, options.maxDistance}, &fit_);
+  requireFit(embedding.status(), fit_, options_);
+  TriangleMesh mesh = model_.mesh;
+  place_.toWorld(mesh.positions);
+  const auto binding = SoftBodyBinding::make(place_.toWorld(model_.cage), mesh, options, embedding.value());
+  require(binding.status());
+  return binding.value();
+}
+
 Carried& Player::carry(const SkinOptions& options) {
   InstanceOptions instance = options;
   instance.leaveOutQuadratic = options.interpolation == Interpolation::Linear;
   Carried& added = carried_.emplace_back();
   if (carried_.size() == 1) {
-    const Result<EmbedReport> fit = added.skin.bind(scene_->body(), model_.cage, model_.mesh, options);
-    requireFit(fit.status(), fit.value(), options_);
-    fit_ = fit.value();
+    require(added.skin.bind(scene_->body(), bind(options), instance));
   } else {
     [[maybe_unused]] const BindingOptions& bound = carried_.front().skin.binding()->options();
     assert(options.interpolation == Interpolation::Linear || options.interpolation == bound.interpolation);
@@ -75,8 +84,13 @@ bool Player::step(int frame, Playback& run) {
   return followed;
 }
 
-Playback Player::play(const char* doing, const OutputOptions& output, const FrameWriter& writer, const OfFrame& measure,
-                      const OfFrame& write) {
+std::vector<Eigen::Vector3d> Player::nodes() const {
+  std::vector<Eigen::Vector3d> nodes = nodesOf(scene_->body());
+  place_.toModel(nodes);
+  return nodes;
+}
+
+Playback Player::play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write) {
   Playback run;
   Progress progress(doing, output.frames, output.quiet);
   for (int frame = 0; frame < output.frames; ++frame) {
@@ -92,7 +106,7 @@ Playback Player::play(const char* doing, const OutputOptions& output, const Fram
       const WallTimer timer;
       write(frame);
       run.writeMs += timer.milliseconds();
-      if (run.written++ == 0 && !output.quiet) std::printf("%s\n", writer.announcement().c_str());
+      ++run.written;
     }
     run.frames = frame + 1;
     progress.show(frame + 1);

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 
 #include "scenes/command_line.h"
-#include "scenes/frame_writer.h"
 #include "scenes/placement.h"
 #include "scenes/table.h"
 
@@ -51,11 +51,14 @@ class Player {
   const EmbedReport& fit() const { return fit_; }
 
   /// Simulates the frames that the options say, and tells how far it has come.
-  /// measure  after every frame; write  after those that are to be written, to this writer
-  Playback play(const char* doing, const OutputOptions& output, const FrameWriter& writer, const OfFrame& measure,
-                const OfFrame& write);
+  /// measure  after every frame; write  after those that are to be written
+  Playback play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write);
+
+  /// The cage's nodes as they are now, in the model's space.
+  std::vector<Eigen::Vector3d> nodes() const;
 
  private:
+  SoftBodyBinding::Pointer bind(const SkinOptions& options);
   bool step(int frame, Playback& run);
 
   ModelOptions options_;

@@ -129,7 +129,7 @@ TriangleMesh makeSlottedBeam(std::size_t triangles) {
       mesh.triangles.push_back({quad[0], quad[2], quad[3]});
     }
   });
-  mesh.groups.push_back({"slotted_beam", "", 0, mesh.triangleCount()});
+  mesh.groups.push_back({"slotted_beam", "slotted_beam", 0, mesh.triangleCount()});
   return mesh;
 }
 

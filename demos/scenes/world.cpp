@@ -18,6 +18,7 @@
 #include <tetskin/reduced/reduced_body.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
@@ -199,6 +200,12 @@ void World::addPole(const Eigen::Vector3d& centre, double radius, double halfLen
   addRigid(std::make_unique<btCapsuleShapeZ>(static_cast<btScalar>(radius), static_cast<btScalar>(2.0 * halfLength)),
            btTransform(btQuaternion::getIdentity(), toBullet(centre)), 0.0);
   appendBox(obstacles_, centre, {radius, radius, halfLength}, 0.0);
+  paint("pole");
+}
+
+void World::paint(const std::string& material) {
+  assert(!obstacles_.groups.empty());
+  obstacles_.groups.back().material = material;
 }
 
 void World::addSphere(const Eigen::Vector3d& centre, double radius) {

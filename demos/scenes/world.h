@@ -95,6 +95,8 @@ class World {
   /// Along z, half as long as it says beyond its round ends.
   void addPole(const Eigen::Vector3d& centre, double radius, double halfLength);
   void addSphere(const Eigen::Vector3d& centre, double radius);
+  /// Draws the obstacle added last with another material: see scenes/materials.h.
+  void paint(const std::string& material);
   /// Anything else, which is not drawn as an obstacle. mass  0: fixed
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
   /// Deletes it. Between steps, or from an action.

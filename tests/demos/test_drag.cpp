@@ -29,6 +29,21 @@ TEST(Drag, TheSerpentIsPickedSwungHungAndPushed) {
   EXPECT_TRUE(loadMesh(folder.path("out/drag/obstacles.obj")).ok());
 }
 
+TEST(Drag, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
+  const CommandFolder folder;
+  const auto run = [&](const char* frames) {
+    return folder.run(TETSKIN_DRAG, {"--tets", "100", "--triangles", "3000", "--frames", frames});
+  };
+  const CommandResult result = run("3");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_LT(result.out.find("writing 3 frames, about "), result.out.find("simulating")) << result.out;
+  EXPECT_NE(folder.read("out/drag/frame_0002.mtl").find("newmtl hat\n"), std::string::npos);
+  ASSERT_EQ(run("2").status, 0);
+  EXPECT_EQ(folder.count("out/drag", ".obj"), 2u + 1u);
+  folder.write("out/drag/frame_0009.obj", "mine");
+  test::expectRefused(run("2"), "frame_0009.obj");
+}
+
 TEST(Drag, RefusesWhatMakesNoSense) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_DRAG, {"--stiffness", "0"}), "--stiffness");

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "command.h"
 
@@ -199,10 +200,15 @@ TEST_F(Drop, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
     return drop(more);
   };
   ASSERT_EQ(run({"8", "--write-cage"}).status, 0);
-  const std::vector<std::string> others = {"o/frame_0100.obj", "o/frame_7.obj", "o/cage_old.vtk", "o/notes.txt"};
+  const std::vector<std::string> others = {"o/cage_0100.vtk", "o/cage_old.vtk", "o/frames.obj", "o/notes.txt"};
   for (const std::string& name : others) folder.write(name, "mine");
   folder.write("kept.obj", "mine");
   folder.write("o/.tetskin_frames", folder.read("o/.tetskin_frames") + "../kept.obj\nnotes.txt\ncage_old.vtk\n\n.\n");
+  folder.write("o/frame_0100.obj", "mine");
+  test::expectRefused(run({"5", "--every", "2"}), "frame_0100.obj");
+  EXPECT_EQ(folder.read("o/frame_0100.obj"), "mine");
+  EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what is refused replaces nothing";
+  std::filesystem::remove(folder.path("o/frame_0100.obj"));
 
   EXPECT_EQ(run({"3", "--json", "no/where.json"}).status, 2);
   EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what does not run replaces nothing";
@@ -210,8 +216,8 @@ TEST_F(Drop, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
   for (const char* name : {"o/frame_0000.obj", "o/frame_0002.obj", "o/frame_0004.obj"}) {
     EXPECT_TRUE(folder.exists(name)) << name;
   }
-  EXPECT_EQ(folder.count("o", ".obj"), 3u + 2u + 1u) << "ours, those that are not, and the obstacles";
-  EXPECT_EQ(folder.count("o", ".vtk"), 1u);
+  EXPECT_EQ(folder.count("o", ".obj"), 3u + 1u + 1u) << "ours, the one that is not, and the obstacles";
+  EXPECT_EQ(folder.count("o", ".vtk"), 2u);
   for (const std::string& name : others) EXPECT_EQ(folder.read(name), "mine") << name;
   EXPECT_EQ(folder.read("kept.obj"), "mine");
 }
@@ -229,6 +235,32 @@ TEST_F(Drop, SaysHowMuchItWritesBeforeItDoes) {
                           folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size());
   EXPECT_NEAR(std::stod(result.out.substr(place + 24)), 1e-6 * written, 0.051 + 0.1e-6 * written) << result.out;
   EXPECT_NE(result.out.find("MB, to o\n"), std::string::npos) << result.out;
+}
+
+TEST_F(Drop, RefusesMoreThanTheDiskHasRoomFor) {
+  const CommandResult result = drop({"--tets", "60", "--triangles", "300000", "--frames", "1000000", "--out", "o"});
+  test::expectRefused(result, "--every");
+  EXPECT_NE(result.err.find("o: 1000000 frames take about "), std::string::npos) << result.err;
+  EXPECT_EQ(folder.count("o", ".obj"), 0u);
+  EXPECT_FALSE(folder.exists("o/.tetskin_frames"));
+}
+
+TEST_F(Drop, ColoursItsOwnModelsAndLeavesOthersTheirMaterials) {
+  ASSERT_EQ(drop({"--tets", "60", "--triangles", "3000", "--frames", "1", "--out", "o"}).status, 0);
+  EXPECT_EQ(folder.read("o/frame_0000.obj").rfind("mtllib tetskin_frames.mtl\nv ", 0), 0u);
+  const std::string library = folder.read("o/tetskin_frames.mtl");
+  for (const char* name : {"newmtl scales\n", "newmtl horn\n", "newmtl ivory\n", "newmtl eye\n", "newmtl pupil\n"}) {
+    EXPECT_NE(library.find(name), std::string::npos) << name;
+  }
+  EXPECT_EQ(folder.read("o/frame_0000.mtl"), library) << "f3d looks for the frame's name";
+  EXPECT_NE(folder.read("o/obstacles.mtl").find("newmtl ramp\n"), std::string::npos);
+  EXPECT_EQ(loadMesh(folder.path("o/frame_0000.obj")).value().groups.front().material, "horn");
+
+  folder.write("box.obj", boxObj());
+  ASSERT_EQ(drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--out", "o"}).status, 0);
+  EXPECT_EQ(folder.read("o/frame_0000.obj").rfind("# a box\nmtllib box.mtl\n", 0), 0u);
+  EXPECT_FALSE(folder.exists("o/tetskin_frames.mtl")) << "of the run before";
+  EXPECT_FALSE(folder.exists("o/frame_0000.mtl"));
 }
 
 TEST_F(Drop, NamesTheFarthestVertexOutside) {
@@ -279,8 +311,9 @@ TEST_F(Drop, QuietPrintsNothing) {
 TEST_F(Drop, HelpListsTheOptions) {
   const CommandResult result = drop({"--help"});
   EXPECT_EQ(result.status, 0);
-  for (const char* option : {"--mesh", "--cage", "--tets", "--outside", "--interpolation", "--normals",
-                             "--max-distance", "--frames", "--every", "--out", "--json", "--quiet", "--write-cage"}) {
+  for (const char* option :
+       {"--mesh", "--cage", "--tets", "--outside", "--interpolation", "--normals", "--max-distance", "--frames",
+        "--every", "--out", "--json", "--quiet", "--write-cage", "--view", "--no-view"}) {
     EXPECT_NE(result.out.find(option), std::string::npos) << option;
   }
 }

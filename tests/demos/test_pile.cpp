@@ -33,6 +33,22 @@ TEST_P(PileIn, BodiesFallIntoTheBowlAndLieOnEachOther) {
   EXPECT_TRUE(loadMesh(folder.path("out/pile/obstacles.obj")).ok());
 }
 
+TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
+  const CommandFolder folder;
+  const auto run = [&](const char* frames) {
+    return folder.run(TETSKIN_PILE, {"--bodies", "1", "--tets", "60", "--triangles", "3000", "--frames", frames});
+  };
+  const CommandResult result = run("3");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_LT(result.out.find("writing 3 frames, about "), result.out.find("simulating")) << result.out;
+  EXPECT_EQ(folder.count("out/pile", ".obj"), 3u + 1u);
+  ASSERT_EQ(run("2").status, 0);
+  EXPECT_EQ(folder.count("out/pile", ".obj"), 2u + 1u);
+  EXPECT_EQ(folder.count("out/pile", ".mtl"), 2u + 2u);
+  folder.write("out/pile/frame_0009.obj", "mine");
+  test::expectRefused(run("2"), "frame_0009.obj");
+}
+
 TEST(Pile, RefusesWhatMakesNoSense) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");

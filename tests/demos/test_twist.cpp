@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <sstream>
 
 #include "command.h"
 #include "scenes/bar.h"
@@ -199,6 +200,37 @@ TEST_F(TwistCommand, RefusesBadInput) {
   expectRefused({"--tets", "none"}, "--tets");
   folder.write("file", "in the way");
   expectRefused({"--triangles", "2000", "--tets", "100", "--frames", "2", "--out", "file/o"}, "file/o");
+}
+
+/// An OBJ file's vertices times a factor.
+std::string scaled(const std::string& obj, double factor) {
+  std::string text;
+  std::istringstream lines(obj);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("v ", 0) == 0) {
+      std::istringstream numbers(line.substr(2));
+      line = "v";
+      for (double x; numbers >> x;) line += " " + std::to_string(x * factor);
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+TEST(Twist, TheQuadraticSurfaceOfATinyModelIsThatOfALargeOne) {
+  const CommandFolder folder;
+  ASSERT_EQ(folder.run(TETSKIN_DROP, {"--model", "bar", "--triangles", "2000", "--frames", "1", "--out", "m"}).status,
+            0);
+  std::vector<double> apart;
+  for (const double factor : {1.0, 0.01, 100.0}) {
+    folder.write("bar.obj", scaled(folder.read("m/frame_0000.obj"), factor));
+    const CommandResult result = folder.run(
+        TETSKIN_TWIST, {"--mesh", "bar.obj", "--tets", "600", "--frames", "120", "--every", "120", "--out", "o"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    apart.push_back(folder.json("o/summary.json")["difference_rms"]);
+  }
+  EXPECT_GT(apart[0], 1e-3);
+  for (const double other : apart) EXPECT_NEAR(other, apart[0], 0.05 * apart[0]);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ std::unique_ptr<Scene> makeObstacles(const Cage& cage, const SceneOptions& optio
   scene->floorY = 0.0;
   world.addBox({0.0, -1.0, 0.0}, {kGroundHalfSide, 1.0, kGroundHalfSide});
   world.addBox({-1.4, -0.35, 0.0}, {1.2, 0.5, 2.0}, -kRampSlope);  // its upper side leads down to the right
+  world.paint("ramp");
   world.addSphere({0.6, kDomeHeight - kDomeRadius, 0.0}, kDomeRadius);
 
   const double height = kDomeHeight + kDropHeight + 0.5 * layoutBox(options, cage).sizes().y();

@@ -43,6 +43,9 @@ class TETSKIN_IO_API ObjLayout {
   /// one vertex, as at an edge whose vertices are not doubled, the corners share the current one.
   ObjLayout withNormals() const;
 
+  /// The same layout with a first line that names a material library, to lie beside the files that are written.
+  ObjLayout withLibrary(const std::string& name) const;
+
   /// The same layout for a file in `folder`: material libraries (`mtllib`) that lie beside the source file are named by
   /// their path from that folder, others are kept as they are.
   ObjLayout inFolder(const std::string& folder) const;

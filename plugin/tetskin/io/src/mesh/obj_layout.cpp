@@ -206,6 +206,16 @@ void ObjLayout::addFaceWithNormals(const io::ObjStatement& statement) {
   text_.append(copied, text.data() + text.size());
 }
 
+ObjLayout ObjLayout::withLibrary(const std::string& name) const {
+  ObjLayout result = *this;
+  const std::string line = "mtllib " + objName(name) + "\n";
+  result.text_.insert(0, line);
+  for (std::size_t& gap : result.gaps_) gap += line.size();
+  for (std::size_t& gap : result.normalGaps_) gap += line.size();
+  for (Library& library : result.libraries_) library.offset += line.size();
+  return result;
+}
+
 ObjLayout ObjLayout::inFolder(const std::string& folder) const {
   ObjLayout result = *this;
   std::error_code error;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/view_data.h"
+
+#include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/skin_binding.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <set>
+
+#include "scenes/input_error.h"
+
+namespace tetskin::scenes {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+template <class Word>
+void appendLittleEndian(Word word, std::string& bytes) {
+  for (std::size_t k = 0; k < sizeof word; ++k) bytes += static_cast<char>(word >> (8 * k) & 0xFF);
+}
+
+Indices flat(const std::vector<std::array<int, 2>>& edges) {
+  Indices ends;
+  for (const auto& edge : edges) {
+    for (const int node : edge) ends.push_back(static_cast<std::uint32_t>(node));
+  }
+  return ends;
+}
+
+/// Those of the boundary first.
+Json edgesOf(const TetMesh& cage) {
+  std::set<std::array<int, 2>> outer;
+  for (const auto& [a, b, c] : boundaryFaces(cage)) {
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      outer.insert({std::min(p, q), std::max(p, q)});
+    }
+  }
+  std::vector<std::array<int, 2>> edges = uniqueEdges(cage);
+  const auto inner = std::stable_partition(edges.begin(), edges.end(), [&](const std::array<int, 2>& edge) {
+    return outer.count({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])}) > 0;
+  });
+  return {{"ends", packed(flat(edges))}, {"outer", inner - edges.begin()}};
+}
+
+/// By slot, three weights each, of planes.
+Json weightsOf(const std::array<std::vector<float>, 3>& planes, std::size_t count) {
+  std::vector<float> weights;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    for (const std::vector<float>& plane : planes) weights.push_back(plane[slot]);
+  }
+  return packed(weights);
+}
+
+Json embeddingOf(const EmbeddingData& data) {
+  Indices nodes, starts;
+  for (const EmbeddingData::Run& run : data.runs) {
+    starts.push_back(run.firstSlot);
+    for (const int node : run.nodes) nodes.push_back(static_cast<std::uint32_t>(node));
+  }
+  nodes.resize(nodes.size() - 4);  // the last run closes the list
+  return {{"runNodes", packed(nodes)},
+          {"runStarts", packed(starts)},
+          {"insideRuns", data.insideRunCount},
+          {"slotVertices", packed(data.slotVertices)},
+          {"weights", weightsOf(data.weights, data.vertexCount())},
+          {"closest", weightsOf(data.closestWeights, data.vertexCount() - data.insideCount)}};
+}
+
+Json stencilsOf(const QuadraticStencils<float>& stencils) {
+  std::vector<float> factors = stencils.entryFactors();
+  factors.resize(3 * stencils.entryNodes().size());
+  std::vector<float> halves;
+  for (std::size_t edge = 0; edge < stencils.edgeCount(); ++edge) {
+    const float* half = &stencils.halfRest()[4 * edge];
+    halves.insert(halves.end(), half, half + 3);
+  }
+  return {{"starts", packed(stencils.starts())}, {"entryNodes", packed(stencils.entryNodes())},
+          {"entryFactors", packed(factors)},     {"edgeGradients", packed(stencils.edgeGradients())},
+          {"halfRest", packed(halves)},          {"runEdges", packed(stencils.runEdges())}};
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? static_cast<unsigned char>(bytes[at + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+Json packed(const std::vector<std::uint16_t>& words) {
+  std::string bytes;
+  bytes.reserve(2 * words.size());
+  for (const std::uint16_t word : words) appendLittleEndian(word, bytes);
+  return {{"u16", base64(bytes)}};
+}
+
+Json packed(const std::vector<std::uint32_t>& indices) {
+  if (std::all_of(indices.begin(), indices.end(), [](std::uint32_t index) { return index <= 0xFFFF; })) {
+    return packed(std::vector<std::uint16_t>(indices.begin(), indices.end()));
+  }
+  std::string bytes;
+  bytes.reserve(4 * indices.size());
+  for (const std::uint32_t index : indices) appendLittleEndian(index, bytes);
+  return {{"u32", base64(bytes)}};
+}
+
+Json packed(const std::vector<float>& numbers) {
+  std::string bytes;
+  bytes.reserve(4 * numbers.size());
+  for (const float number : numbers) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &number, sizeof bits);
+    appendLittleEndian(bits, bytes);
+  }
+  return {{"f32", base64(bytes)}};
+}
+
+Json trianglesOf(const TriangleMesh& mesh) {
+  Indices corners;
+  for (const auto& triangle : mesh.triangles) {
+    for (const int v : triangle) corners.push_back(static_cast<std::uint32_t>(v));
+  }
+  Json groups = Json::array();
+  for (const TriangleGroup& group : mesh.groups) {
+    groups.push_back({{"first", group.firstTriangle}, {"count", group.triangleCount}, {"material", group.material}});
+  }
+  if (groups.empty()) groups.push_back({{"first", 0}, {"count", mesh.triangleCount()}, {"material", ""}});
+  return {{"triangles", packed(corners)}, {"groups", std::move(groups)}, {"vertices", mesh.vertexCount()}};
+}
+
+Json rigidMeshOf(const TriangleMesh& mesh, const Eigen::Vector3d& origin) {
+  Json json = trianglesOf(mesh);
+  std::vector<float> positions;
+  for (const Eigen::Vector3d& p : mesh.positions) {
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - origin[k]));
+  }
+  json["positions"] = packed(positions);
+  return json;
+}
+
+Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding) {
+  assert(embedding.vertexCount() == mesh.vertexCount());
+  BindingOptions options;
+  options.interpolation = Interpolation::Quadratic;
+  const auto binding = SkinBinding<float>::make(cage, mesh, options, embedding);
+  require(binding.status());
+  const SkinParts<float>& parts = binding.value()->parts();
+  return {{"nodes", cage.nodeCount()},
+          {"tets", cage.tetCount()},
+          {"edges", edgesOf(cage)},
+          {"embedding", embeddingOf(parts.embedding.data())},
+          {"stencils", stencilsOf(*parts.quadratic)}};
+}
+
+}  // namespace tetskin::scenes

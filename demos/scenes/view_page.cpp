@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/view_page.h"
+
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/materials.h"
+
+namespace tetskin::scenes {
+namespace {
+
+constexpr const char* kFolder = TETSKIN_VIEW;
+constexpr const char* kThree = TETSKIN_THREE;
+constexpr const char* kOrbitControls = TETSKIN_ORBIT_CONTROLS;
+/// In the order in which the page runs them.
+constexpr const char* kScripts[] = {"data.js", "skin.js", "shading.js", "stage.js", "player.js"};
+
+/// The first view leaves out so much of a run: bodies that fall begin high above all that follows.
+constexpr std::size_t kLookFrom = 20;
+
+std::string partOf(const std::string& path) {
+  std::optional<std::string> text = contentsOf(path);
+  if (!text) throw InputError(path + ": cannot be read; a page is made of it");
+  return std::move(*text);
+}
+
+std::string inFolder(const char* name) {
+  return std::string(kFolder) + "/" + name;
+}
+
+/// In a script element nothing may look like its end.
+std::string escaped(std::string script) {
+  for (std::size_t at = script.find("</"); at != std::string::npos; at = script.find("</", at)) {
+    script.replace(at, 2, "<\\/");
+  }
+  return script;
+}
+
+std::string scripts() {
+  std::string text;
+  for (const char* name : kScripts) text += partOf(inFolder(name));
+  return text;
+}
+
+/// The template with each word of the form @NAME@ replaced, once, by a text.
+std::string filled(const std::string& text, const std::vector<std::pair<std::string, std::string>>& words) {
+  std::string result;
+  std::size_t copied = 0;
+  for (const auto& [word, instead] : words) {  // in the order of the template
+    const std::size_t at = text.find(word, copied);
+    if (at == std::string::npos) throw InputError(inFolder("view.html") + ": has no " + word);
+    result.append(text, copied, at - copied);
+    result += instead;
+    copied = at + word.size();
+  }
+  return result.append(text, copied);
+}
+
+Json toJson(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
+Json toJson(const Box3& box) {
+  return {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
+}
+
+/// A coordinate in a box by 16 bits.
+std::uint16_t quantised(float x, double low, double size) {
+  constexpr double kMost = 65535.0;
+  if (size == 0.0) return 0;
+  return static_cast<std::uint16_t>(std::lround(std::min(kMost, kMost * (static_cast<double>(x) - low) / size)));
+}
+
+void appendMaterials(const TriangleMesh& mesh, Json& json) {
+  for (const TriangleGroup& group : mesh.groups) {
+    const Material* material = materialNamed(group.material);
+    if (!material) continue;
+    json[group.material] = {{"colour", material->colour}, {"shine", material->shine}, {"opacity", material->opacity}};
+  }
+}
+
+}  // namespace
+
+std::string whyNoView() {
+  const std::string cure =
+      "; install it (Debian: libjs-three) and configure again, or point TETSKIN_THREE and "
+      "TETSKIN_ORBIT_CONTROLS to three.min.js and OrbitControls.js";
+  if (std::string(kThree).empty() || std::string(kOrbitControls).empty()) return "three.js was not found" + cure;
+  for (const char* path : {kThree, kOrbitControls}) {
+    if (!std::filesystem::is_regular_file(path)) return std::string(path) + " is no longer there" + cure;
+  }
+  return {};
+}
+
+void requireViewable(const std::string& path) {
+  const std::string reason = whyNoView();
+  if (!reason.empty()) throw InputError("--view: " + reason);
+  requireWritable(path);
+}
+
+std::string viewPath(const OutputOptions& options) {
+  if (options.noView && !options.view.empty()) throw InputError("--view and --no-view exclude each other");
+  std::string path = options.view;
+  if (path.empty()) {
+    if (!options.viewByDefault || options.noView) return {};
+    const std::string reason = whyNoView();
+    if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
+    if (!reason.empty()) return {};
+    path = (std::filesystem::path(options.out) / "view.html").string();
+  }
+  requireViewable(path);
+  return path;
+}
+
+ViewPage::ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation)
+    : title_(std::move(title)), facts_(std::move(facts)), interpolation_(interpolation) {}
+
+std::size_t ViewPage::addModel(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding) {
+  Json& json = models_.emplace_back(trianglesOf(mesh));
+  json["cage"] = skinOf(cage, mesh, embedding);
+  appendMaterials(mesh, materials_);
+  return models_.size() - 1;
+}
+
+std::size_t ViewPage::addSurface(const TriangleMesh& mesh) {
+  models_.push_back(trianglesOf(mesh));
+  appendMaterials(mesh, materials_);
+  return models_.size() - 1;
+}
+
+void ViewPage::addBody(const ViewBody& body) {
+  assert(body.model < models_.size() && frames_.size() == 0);
+  bodies_.push_back(body);
+}
+
+void ViewPage::addProp(const TriangleMesh& mesh) {
+  assert(frames_.size() == 0);
+  props_.push_back(mesh);
+  appendMaterials(mesh, materials_);
+}
+
+Box3 ViewPage::focus() const {
+  if (!focus_.isEmpty()) return Box3(focus_.min() - frames_.origin(), focus_.max() - frames_.origin());
+  Box3 box;
+  for (std::size_t k = frames_.size() / kLookFrom; k < frames_.size(); ++k) box.extend(frames_.box(k));
+  return box;
+}
+
+Json ViewPage::bodyData(std::size_t body) const {
+  Box3 box;
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const std::vector<float>& nodes = frames_.nodes(k, body);
+    box.extend(boundingBox(PointView<const float>(nodes.data(), nodes.size() / 3)));
+  }
+  std::vector<std::uint16_t> words;
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const std::vector<float>& nodes = frames_.nodes(k, body);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      words.push_back(quantised(nodes[i], box.min()[axis], box.sizes()[axis]));
+    }
+  }
+  const ViewBody& of = bodies_[body];
+  return {{"model", of.model}, {"label", of.label}, {"skin", of.skin}, {"box", toJson(box)}, {"nodes", packed(words)}};
+}
+
+Json ViewPage::propData(std::size_t prop) const {
+  std::vector<float> numbers;  // by moment: the columns of a matrix, without its last row
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const Eigen::Matrix4f& matrix = frames_.prop(k, prop);
+    for (Eigen::Index c = 0; c < 4; ++c) {
+      for (Eigen::Index r = 0; r < 3; ++r) numbers.push_back(matrix(r, c));
+    }
+  }
+  Json json = rigidMeshOf(props_[prop], Eigen::Vector3d::Zero());
+  json["places"] = packed(numbers);
+  return json;
+}
+
+Json ViewPage::data() const {
+  assert(frames_.size() > 0 && frames_.bodyCount() == bodies_.size() && frames_.propCount() == props_.size());
+  Json json;
+  json["title"] = title_;
+  json["facts"] = facts_;
+  json["skin"] = interpolation_ == Interpolation::Linear ? "linear" : "quadratic";
+  json["moments"] = frames_.size();
+  json["stride"] = frames_.stride();
+  json["origin"] = toJson(frames_.origin());
+  json["focus"] = toJson(focus());
+  json["materials"] = materials_;
+  if (!obstacles_.groups.empty()) appendMaterials(obstacles_, json["materials"]);
+  json["models"] = models_;
+  json["bodies"] = Json::array();
+  for (std::size_t k = 0; k < bodies_.size(); ++k) json["bodies"].push_back(bodyData(k));
+  json["props"] = Json::array();
+  for (std::size_t k = 0; k < props_.size(); ++k) json["props"].push_back(propData(k));
+  if (!obstacles_.positions.empty()) json["obstacles"] = rigidMeshOf(obstacles_, frames_.origin());
+  return json;
+}
+
+std::string ViewPage::html() const {
+  // File names of models may be of any bytes.
+  const std::string text = data().dump(-1, ' ', false, Json::error_handler_t::replace);
+  return filled(partOf(inFolder("view.html")), {{"@STYLE@", partOf(inFolder("view.css"))},
+                                                {"@DATA@", escaped(text)},
+                                                {"@NOTICE@", partOf(inFolder("three_notice.txt"))},
+                                                {"@THREE@", escaped(partOf(kThree))},
+                                                {"@CONTROLS@", escaped(partOf(kOrbitControls))},
+                                                {"@SCRIPTS@", escaped(scripts())}});
+}
+
+void ViewPage::write(const std::string& path, bool quiet) const {
+  const std::string page = html();
+  writeFile(path, page);
+  if (quiet) return;
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+  std::printf("\nSee it in a browser: %s, %.1f MB. Open file://%s\n", path.c_str(),
+              1e-6 * static_cast<double>(page.size()), absolute.c_str());
+}
+
+std::vector<std::string> factsOf(const Model& model) {
+  return {withCommas(model.mesh.vertexCount()) + " vertices", withCommas(model.mesh.triangleCount()) + " triangles",
+          withCommas(model.cage.tetCount()) + " tets"};
+}
+
+std::string withCommas(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+  return text;
+}
+
+}  // namespace tetskin::scenes

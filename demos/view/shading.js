@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Normals of what is drawn: smooth, also across vertices that coincide, but for hard edges.
+
+/** Cosine of the angle between two faces from which their edge is hard. */
+const HARD_EDGE = Math.cos(80 * Math.PI / 180);
+
+/** By vertex: a number that vertices at one place share. */
+function placesOf(positions) {
+  const known = new Map(), places = new Uint32Array(positions.length / 3);
+  for (let v = 0; v < places.length; ++v) {
+    const key = positions[3 * v] + ',' + positions[3 * v + 1] + ',' + positions[3 * v + 2];
+    if (!known.has(key)) known.set(key, known.size);
+    places[v] = known.get(key);
+  }
+  return places;
+}
+
+/** Adds the area vector of a triangle to three sums of one array, whose places `to` names from `at` on. */
+function addAreaVector(positions, triangles, at, sums, to) {
+  const a = 3 * triangles[at], b = 3 * triangles[at + 1], c = 3 * triangles[at + 2];
+  const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+  const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
+  const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+  for (let corner = 0; corner < 3; ++corner) {
+    const sum = 3 * to[at + corner];
+    sums[sum] += x;
+    sums[sum + 1] += y;
+    sums[sum + 2] += z;
+  }
+}
+
+/** Unit normal of each corner's triangle, three numbers a corner. */
+function cornerNormals(positions, triangles) {
+  const normals = new Float32Array(3 * triangles.length), itself = triangles.map((v, corner) => corner);
+  for (let at = 0; at < triangles.length; at += 3) addAreaVector(positions, triangles, at, normals, itself);
+  for (let i = 0; i < normals.length; i += 3) {
+    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    for (let k = 0; k < 3; ++k) normals[i + k] /= length;
+  }
+  return normals;
+}
+
+/** The corners around each place, one place after the other. */
+function cornersByPlace(triangles, places) {
+  const corners = Array.from(triangles, (v, corner) => corner);
+  return corners.sort((a, b) => places[triangles[a]] - places[triangles[b]]);
+}
+
+/** By corner: a number that the corners share that have one normal. */
+function smoothGroups(positions, triangles) {
+  const places = placesOf(positions), normals = cornerNormals(positions, triangles);
+  const corners = cornersByPlace(triangles, places), groups = new Int32Array(triangles.length).fill(-1);
+  const joined = (a, b) => {
+    const dot = normals[3 * a] * normals[3 * b] + normals[3 * a + 1] * normals[3 * b + 1] + normals[3 * a + 2] * normals[3 * b + 2];
+    return dot > HARD_EDGE;
+  };
+  let count = 0;
+  for (let first = 0, end; first < corners.length; first = end) {
+    for (end = first; end < corners.length && places[triangles[corners[end]]] === places[triangles[corners[first]]];) ++end;
+    for (let i = first; i < end; ++i) {
+      if (groups[corners[i]] >= 0) continue;
+      const open = [corners[i]];
+      groups[corners[i]] = count;
+      while (open.length > 0) {
+        const from = open.pop();
+        for (let j = first; j < end; ++j) {
+          if (groups[corners[j]] >= 0 || !joined(from, corners[j])) continue;
+          groups[corners[j]] = count;
+          open.push(corners[j]);
+        }
+      }
+      ++count;
+    }
+  }
+  return {groups, count};
+}
+
+/** A mesh as it is drawn: each vertex as often as it has normals. */
+class DrawnMesh {
+  /** positions: by which hard edges are found */
+  constructor(triangles, positions) {
+    const {groups, count} = smoothGroups(positions, triangles);
+    const known = new Map(), sources = [], drawnGroups = [];
+    this.index = new Uint32Array(triangles.length);
+    for (let corner = 0; corner < triangles.length; ++corner) {
+      const key = groups[corner] * (positions.length / 3) + triangles[corner];
+      if (!known.has(key)) {
+        known.set(key, sources.length);
+        sources.push(triangles[corner]);
+        drawnGroups.push(groups[corner]);
+      }
+      this.index[corner] = known.get(key);
+    }
+    this.triangles = triangles;
+    this.cornerGroups = groups;
+    this.sources = Uint32Array.from(sources);
+    this.groups = Uint32Array.from(drawnGroups);
+    this.sums = new Float32Array(3 * count);
+    this.positions = new Float32Array(3 * sources.length);
+    this.normals = new Float32Array(3 * sources.length);
+  }
+
+  /** Normals need not be of unit length: the shader sees to that. */
+  update(positions) {
+    this.sums.fill(0);
+    for (let at = 0; at < this.triangles.length; at += 3) {
+      addAreaVector(positions, this.triangles, at, this.sums, this.cornerGroups);
+    }
+    for (let v = 0; v < this.sources.length; ++v) {
+      const from = 3 * this.sources[v], sum = 3 * this.groups[v];
+      for (let k = 0; k < 3; ++k) {
+        this.positions[3 * v + k] = positions[from + k];
+        this.normals[3 * v + k] = this.sums[sum + k];
+      }
+    }
+  }
+}
