@@ -179,7 +179,7 @@ class Stage {
   }
 
   addLights() {
-    this.scene.fog = new THREE.Fog(BACKGROUND, 5 * this.radius, 13 * this.radius);
+    this.scene.fog = new THREE.Fog(BACKGROUND);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8aa98, 0.6));
     const sun = new THREE.DirectionalLight(0xffffff, 0.48);
     sun.position.set(...SUN_DIRECTION).setLength(4 * this.radius).add(this.centre);
@@ -254,6 +254,8 @@ class Stage {
   }
 
   draw() {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    Object.assign(this.scene.fog, {near: away + 2 * this.radius, far: away + 10 * this.radius});
     this.renderer.render(this.scene, this.camera);
   }
 
