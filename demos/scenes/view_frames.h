@@ -20,7 +20,8 @@ struct ViewMoment {
 /// fourth, and so on: the page goes evenly between those that it has. So a run may be of any length.
 class ViewFrames {
  public:
-  /// Bytes of a page before base64, which takes a third more: 3,000 tets for ten thousand frames or so.
+  /// Bytes of a page before base64, which takes a third more: a cage of 3,000 tets, which has a thousand nodes, for two
+  /// thousand frames.
   static constexpr std::size_t kMostBytes = 12'000'000;
 
   explicit ViewFrames(std::size_t mostBytes = kMostBytes) : mostBytes_(mostBytes) {}

@@ -20,8 +20,9 @@ function placesOf(positions) {
 /** Adds the area vector of a triangle to three sums of one array, whose places `to` names from `at` on. */
 function addAreaVector(positions, triangles, at, sums, to) {
   const a = 3 * triangles[at], b = 3 * triangles[at + 1], c = 3 * triangles[at + 2];
-  const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
-  const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
+  const px = positions[a], py = positions[a + 1], pz = positions[a + 2];
+  const ux = positions[b] - px, uy = positions[b + 1] - py, uz = positions[b + 2] - pz;
+  const vx = positions[c] - px, vy = positions[c + 1] - py, vz = positions[c + 2] - pz;
   const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
   for (let corner = 0; corner < 3; ++corner) {
     const sum = 3 * to[at + corner];
@@ -53,12 +54,14 @@ function smoothGroups(positions, triangles) {
   const places = placesOf(positions), normals = cornerNormals(positions, triangles);
   const corners = cornersByPlace(triangles, places), groups = new Int32Array(triangles.length).fill(-1);
   const joined = (a, b) => {
-    const dot = normals[3 * a] * normals[3 * b] + normals[3 * a + 1] * normals[3 * b + 1] + normals[3 * a + 2] * normals[3 * b + 2];
-    return dot > HARD_EDGE;
+    let cosine = 0;
+    for (let k = 0; k < 3; ++k) cosine += normals[3 * a + k] * normals[3 * b + k];
+    return cosine > HARD_EDGE;
   };
+  const placeAt = i => places[triangles[corners[i]]];
   let count = 0;
   for (let first = 0, end; first < corners.length; first = end) {
-    for (end = first; end < corners.length && places[triangles[corners[end]]] === places[triangles[corners[first]]];) ++end;
+    for (end = first; end < corners.length && placeAt(end) === placeAt(first);) ++end;
     for (let i = first; i < end; ++i) {
       if (groups[corners[i]] >= 0) continue;
       const open = [corners[i]];

@@ -64,7 +64,9 @@ class Skin {
       let squared = 0;
       for (let k = 0; k < 3; ++k) {
         let sum = 0;
-        for (let c = 0; c < 3; ++c) sum += (gradients[a + 3 * c + k] - gradients[b + 3 * c + k]) * halfRest[3 * edge + c];
+        for (let c = 0; c < 3; ++c) {
+          sum += (gradients[a + 3 * c + k] - gradients[b + 3 * c + k]) * halfRest[3 * edge + c];
+        }
         edges[3 * edge + k] = sum;
         squared += sum * sum;
       }

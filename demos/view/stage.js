@@ -5,7 +5,9 @@
 
 const BACKGROUND = 0xf4f2ee;
 /** For materials that the demos do not know, in turn. */
-const PLAIN_COLOURS = [[0.42, 0.55, 0.68], [0.72, 0.58, 0.42], [0.50, 0.62, 0.45], [0.66, 0.48, 0.55], [0.62, 0.62, 0.60]];
+const PLAIN_COLOURS = [
+  [0.42, 0.55, 0.68], [0.72, 0.58, 0.42], [0.50, 0.62, 0.45], [0.66, 0.48, 0.55], [0.62, 0.62, 0.60],
+];
 const FIRST_DIRECTION = [-0.20, 0.36, 1.0];  // from what is looked at to the camera
 const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
@@ -45,9 +47,9 @@ class Materials {
 
   make(name) {
     const plain = {colour: PLAIN_COLOURS[this.made.size % PLAIN_COLOURS.length], shine: 0.1, opacity: 1};
-    const {colour, shine, opacity} = this.known[name] || plain;
+    const {colour, shine, opacity} = this.known[name] || plain, gloss = SHINE * shine;
     return new THREE.MeshPhongMaterial({
-      color: new THREE.Color(...colour), specular: new THREE.Color(SHINE * shine, SHINE * shine, SHINE * shine), shininess: 30,
+      color: new THREE.Color(...colour), specular: new THREE.Color(gloss, gloss, gloss), shininess: 30,
       transparent: opacity < 1, opacity, depthWrite: opacity === 1, shadowSide: THREE.DoubleSide,
     });
   }
@@ -179,7 +181,7 @@ class Stage {
   }
 
   addLights() {
-    this.scene.fog = new THREE.Fog(BACKGROUND, 5 * this.radius, 13 * this.radius);
+    this.scene.fog = new THREE.Fog(BACKGROUND);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8aa98, 0.6));
     const sun = new THREE.DirectionalLight(0xffffff, 0.48);
     sun.position.set(...SUN_DIRECTION).setLength(4 * this.radius).add(this.centre);
@@ -217,9 +219,10 @@ class Stage {
     const right = new THREE.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
     const high = Math.tan(this.camera.fov * Math.PI / 360);
     const free = this.free || {width: 1, height: 1}, aspect = this.camera.aspect;
+    const {min, max} = this.focus;
     let distance = 0;
     for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3(...['x', 'y', 'z'].map((axis, i) => this.focus[k >> i & 1 ? 'max' : 'min'][axis]));
+      const corner = new THREE.Vector3((k & 1 ? max : min).x, (k & 2 ? max : min).y, (k & 4 ? max : min).z);
       corner.sub(this.centre);
       const across = FILL * Math.abs(corner.dot(right)) / (high * aspect * free.width);
       const along = FILL * Math.abs(corner.dot(up)) / (high * free.height);
@@ -254,6 +257,8 @@ class Stage {
   }
 
   draw() {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    Object.assign(this.scene.fog, {near: away + 2 * this.radius, far: away + 10 * this.radius});
     this.renderer.render(this.scene, this.camera);
   }
 

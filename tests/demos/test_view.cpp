@@ -89,6 +89,16 @@ TEST(ViewPage, Of240FramesOfThirtyThousandVerticesIsBelow12Megabytes) {
   EXPECT_GT(bytes, 1'000'000u);
 }
 
+TEST(ViewPage, HoldsASurfaceByItsVertices) {
+  const TriangleMesh mesh = loadSurface(smallSerpent()).mesh;
+  ViewPage page("title", {}, Interpolation::Linear);
+  page.addBody({page.addSurface(mesh), "", ""});
+  for (const double along : {0.0, 0.5}) page.keep({{shifted(mesh.positions, along)}, {}});
+  const std::string html = page.html();
+  EXPECT_EQ(html.find("\"cage\":"), std::string::npos);
+  EXPECT_NE(html.find("\"vertices\":" + std::to_string(mesh.vertexCount())), std::string::npos);
+}
+
 TEST(ViewPage, GrowsByTheNodesOfAFrameAndNoFurtherThanItsRoom) {
   const auto bytes = [](int frames) { return risingPage(smallSerpent(), frames, 0.01).html().size(); };
   const auto nodes = static_cast<double>(loadModel(smallSerpent()).cage.nodeCount());

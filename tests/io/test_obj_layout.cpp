@@ -203,6 +203,23 @@ TEST(ObjLayout, NormalsReadBackAndLibrariesStayNamed) {
   for (int v = 0; v < 3; ++v) EXPECT_EQ(back.positions[v].cast<float>(), kMoved[v]);
 }
 
+TEST(ObjLayout, NamesALibraryInFrontAndLeavesAllElseInPlace) {
+  const TempFolder folder;
+  folder.write("skin.mtl", "newmtl skin\n");
+  const std::string text = "v 0 0 0\nv 1 0 0\nmtllib skin.mtl\nv 0 1 0\nf 1 2 3\n";
+  const ObjLayout layout = ObjLayout::fromFile(folder.write("m.obj", text)).value();
+  std::filesystem::create_directories(folder.path("out"));
+  const std::string path = folder.path("out/m.obj");
+  for (const ObjLayout& both :
+       {layout.withLibrary("a b.mtl").withNormals(), layout.withNormals().withLibrary("a b.mtl")}) {
+    ASSERT_TRUE(both.writeTo(path, viewOf(kMoved), viewOf(kNormals)).ok());
+    const std::string written = TempFolder::read(path);
+    EXPECT_EQ(written.rfind("mtllib a_b.mtl\nv 1 2 3\nvn ", 0), 0u) << written;
+    EXPECT_NE(written.find("\nmtllib ../skin.mtl\n"), std::string::npos) << written;
+    EXPECT_EQ(loadMesh(path).value().positions[2].cast<float>(), kMoved[2]);
+  }
+}
+
 TEST(ObjLayout, RefusesNormalsThatDoNotBelong) {
   const TempFolder folder;
   const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kBody));
