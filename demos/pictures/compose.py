@@ -33,6 +33,14 @@ PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0
 TWIST = 1.8  # radians a unit of length
 TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle
 
+# The hand of demos/scenes/hand.cpp: its fingers go from its palm along `HAND_UP`, and bend towards `HAND_FRONT`.
+HAND_UP, HAND_FRONT = np.array((0.0, np.cos(np.radians(50)), np.sin(np.radians(50)))), np.array((0.0, -np.sin(np.radians(50)), np.cos(np.radians(50))))
+FINGER_X = np.array((-0.5, -0.25, 0.0, 0.25, 0.5))
+ROOT, LENGTH = 1.0, 0.7
+CURL = np.array((1.9, 0.0, 0.0, 1.9, 1.9))        # radians, of a whole finger's length
+SPREAD = np.array((0.0, 0.22, -0.22, 0.0, 0.0))   # radians, to the side
+HAND_VIEW = (-0.6, 4.2, 2.4), (0.0, 0.62, 0.72), 27.0
+
 # Diffuse, ambient and specular colour, each as a part of the first. f3d lights from beside the camera alone: without an
 # ambient part what faces upwards is black.
 MATERIALS = {
@@ -230,6 +238,16 @@ def cage_panel(mesh, cage):
     return scene.draw(position, focus, 25.5), len(tets)
 
 
+def write_cage(nodes, tets, target):
+    with open(target, "w") as out:
+        out.write("# vtk DataFile Version 2.0\nmoved\nASCII\nDATASET UNSTRUCTURED_GRID\n")
+        out.write(f"POINTS {len(nodes)} double\n")
+        np.savetxt(out, nodes, "%.17g")
+        out.write(f"CELLS {len(tets)} {5 * len(tets)}\n")
+        np.savetxt(out, np.insert(tets, 0, 4, axis=1), "%d")
+        out.write(f"CELL_TYPES {len(tets)}\n" + len(tets) * "10\n")
+
+
 def turn(cage, target):
     """Writes a cage with its nodes turned about the z axis through their mean, in proportion to z."""
     nodes, tets = read_cage(cage)
@@ -237,19 +255,57 @@ def turn(cage, target):
     x, y, z = (nodes - centre).T
     angle = TWIST * z
     turned = centre + np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y, z], axis=1)
-    with open(target, "w") as out:
-        out.write("# vtk DataFile Version 2.0\ntwisted\nASCII\nDATASET UNSTRUCTURED_GRID\n")
-        out.write(f"POINTS {len(turned)} double\n")
-        np.savetxt(out, turned, "%.17g")
-        out.write(f"CELLS {len(tets)} {5 * len(tets)}\n")
-        np.savetxt(out, np.insert(tets, 0, 4, axis=1), "%d")
-        out.write(f"CELL_TYPES {len(tets)}\n" + len(tets) * "10\n")
+    write_cage(turned, tets, target)
+
+
+def parts_beyond(tets, beyond):
+    """A number for each node: the least of the nodes that hang together with it by tets beyond the fingers' roots."""
+    part = np.arange(len(beyond))
+    tets = tets[beyond[tets].all(axis=1)]
+    while True:
+        least = part[tets].min(axis=1)
+        before = part.copy()
+        for k in range(4):
+            np.minimum.at(part, tets[:, k], least)
+        if (part == before).all():
+            return part
+
+
+def open_hand(cage, target):
+    """Writes a cage of the hand with some fingers bent and two spread. Nodes move with the finger that they belong to: their
+    part's, or, where the cage joins all fingers to one part, the nearest."""
+    nodes, tets = read_cage(cage)
+    x, up, front = nodes[:, 0], nodes @ HAND_UP, nodes @ HAND_FRONT
+    part = parts_beyond(tets, up > ROOT)
+    where = x.copy()
+    for number in np.unique(part):
+        same = part == number
+        if np.ptp(x[same]) < 0.4:
+            where[same] = x[same].mean()
+    finger = np.abs(where[:, None] - FINGER_X).argmin(axis=1)
+    along = np.maximum(up - ROOT, 0.0)
+    bend, aside = np.maximum(CURL[finger], 1e-6) * along / LENGTH, SPREAD[finger] * np.minimum(along / 0.25, 1.0)
+    radius = LENGTH / np.maximum(CURL[finger], 1e-6)
+    up = np.where(along > 0, ROOT + (radius - front) * np.sin(bend), up)
+    front = np.where(along > 0, radius - (radius - front) * np.cos(bend), front)
+    across, high = x - FINGER_X[finger], up - ROOT
+    moved_x = FINGER_X[finger] + np.cos(aside) * across - np.sin(aside) * high
+    moved_up = np.where(along > 0, ROOT + np.sin(aside) * across + np.cos(aside) * high, up)
+    moved = moved_x[:, None] * np.array((1.0, 0.0, 0.0)) + moved_up[:, None] * HAND_UP + front[:, None] * HAND_FRONT
+    write_cage(moved, tets, target)
 
 
 def twist_panel(path):
     scene = Scene()
     add_mesh(scene, *read_obj(path))
     return scene.draw(*TWIST_VIEW)
+
+
+def hand_panel(path):
+    scene = Scene()
+    vertices, parts = read_obj(path)
+    add_mesh(scene, vertices, [(group, "hand", triangles) for group, _, triangles in parts])
+    return scene.draw(*HAND_VIEW)
 
 
 def save(panels, labels, gap, path):
@@ -282,6 +338,10 @@ def main():
         save([pile_panel(Path(source), int(rest[0]), view) for view in PILE_VIEWS], ["", ""], GAP, target)
     elif what == "turn":
         turn(source, target)
+    elif what == "open":
+        open_hand(source, target)
+    elif what == "hand":
+        save([hand_panel(path) for path in (source, *rest)], ["a whole cage", "split"], GAP, target)
     elif what == "twist":
         save([twist_panel(path) for path in (source, *rest)], ["linear", "quadratic"], GAP, target)
     else:
