@@ -204,7 +204,8 @@ void Drag::pick() {
   const WallTimer timer;
   const SurfaceHit hit = tree_.raycast(skin_, eye, aim + (aim - eye));
   rayMicroseconds_ = 1e3 * timer.milliseconds();
-  auto point = tree_.pointAt(body_, hit);
+  // Of few triangles, a horn ends in one vertex, which a ray may just miss.
+  auto point = hit ? tree_.pointAt(body_, hit) : tree_.pointOfVertex(body_, highest(model_.mesh));
   require(point.status());
   horn_ = point.value();
   picked_ = *horn_.position();

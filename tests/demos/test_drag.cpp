@@ -29,6 +29,14 @@ TEST(Drag, TheSerpentIsPickedSwungHungAndPushed) {
   EXPECT_TRUE(loadMesh(folder.path("out/drag/obstacles.obj")).ok());
 }
 
+TEST(Drag, TheSerpentIsPickedWhereAHornEndsInOneVertex) {
+  const CommandFolder folder;
+  const CommandResult result =
+      folder.run(TETSKIN_DRAG, {"--tets", "200", "--triangles", "4000", "--frames", "200", "--every", "199"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_GT(folder.json("out/drag/summary.json")["lag_swinging"], 0);
+}
+
 TEST(Drag, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
   const CommandFolder folder;
   const auto run = [&](const char* frames) {
