@@ -8,6 +8,8 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <tetskin/tetskin.h>
 
+#include <cstdio>
+
 struct Vertex {
   float position[3], normal[3], texcoord[2];
 };

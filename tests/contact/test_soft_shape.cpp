@@ -152,6 +152,9 @@ TEST(ContactShape, SaysWhatIsWrong) {
   bad = model.mesh;
   for (auto& p : bad.positions) p.y() = 0.5;
   EXPECT_EQ(codeOf(model.cage, bad), StatusCode::Degenerate) << "encloses nothing";
+  bad = model.mesh;
+  for (auto& triangle : bad.triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_NE(makeContactShape(model.cage, bad).status().message.find("face inwards"), std::string::npos);
 }
 
 /// A U of cubes, its legs nearer to each other than two edges.

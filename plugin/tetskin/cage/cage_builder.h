@@ -58,8 +58,8 @@ struct TETSKIN_CAGE_API CageReport {
 };
 
 /// Builds a cage of about `options.targetTets` tets that holds every vertex of the mesh: `embed` of it reports 0
-/// outside. Its tets are positive, conforming, with dihedral angles between 10 and 165 degrees; every node is used.
-/// Parts thinner than a tet are never lost.
+/// outside. Its tets are positive, conforming, with dihedral angles between 10 and 165 degrees (seen: 25 and 140);
+/// every node is used. Parts thinner than a tet are never lost.
 ///
 /// Where parts of the mesh lie nearer to each other than a tet, there are copies of tets, one for each part (see Cage):
 /// parts thicker than an eighth of a tet, and farther apart than that, are never fused but where a cleft ends within a

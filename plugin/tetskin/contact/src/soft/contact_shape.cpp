@@ -42,6 +42,17 @@ Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShape
   return {};
 }
 
+/// By the volume that they enclose, each with the first vertex.
+bool facesInwards(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  const Eigen::Vector3d& origin = mesh.positions[0];
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto from = [&](int v) -> Eigen::Vector3d { return mesh.positions[static_cast<std::size_t>(v)] - origin; };
+    volume += from(a).dot(from(b).cross(from(c)));
+  }
+  return volume < 0.0;
+}
+
 /// Triangles of which at least one corner, or the middle, is not within the solid that all of them bound.
 std::vector<int> visibleTriangles(const TriangleMesh& mesh, const WindingTree& solid) {
   const double over = kOverTriangle * boundingBox(mesh.positions).sizes().maxCoeff();
@@ -245,7 +256,9 @@ Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, c
   if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.nodes), options.cells);
   if (!data->grid.hasInside()) {
     return Status{StatusCode::Degenerate,
-                  "the mesh encloses nothing that the grid would see; close it, or give the shape more cells"};
+                  facesInwards(mesh) ? "the mesh's triangles face inwards; turn them around"
+                                     : "the mesh encloses nothing that the grid would see; close it, or give the "
+                                       "shape more cells"};
   }
   const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.samples);
   Status status;
