@@ -73,8 +73,9 @@ struct TETSKIN_CAGE_API CageReport {
 /// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
 ///          no triangle uses get tets of their own, however far away.
 /// report   written if not null, on failure too
-/// Cost     about proportional to triangles + tets: some five seconds per million triangles, and ten seconds and 300 MB
-///          per million tets
+/// Cost     about proportional to triangles + tets: some five seconds per million triangles, up to ten if so few tets
+/// are
+///          asked for that many lattices are tried, and ten seconds and 300 MB per million tets
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
 ///          kLargestTargetTets), Degenerate (all vertices in one point, or so near each other, or so far apart, that
 ///          double cannot hold a lattice)

@@ -4,8 +4,10 @@
 
 #include <tetskin/cage/src/material/tet_material.h>
 #include <tetskin/cage/src/split/lattice_links.h>
+#include <tetskin/cage/src/split/triangle_tree.h>
 #include <tetskin/cage/src/surface/triangle_crossing.h>
 
+#include <deque>
 #include <tuple>
 #include <vector>
 
@@ -19,11 +21,17 @@ struct TetCell {
 
 /// Straight ways in and out of a body, each within a tet or two: only triangles that touch these can be on them. What
 /// is of a triangle in a tet is an element, numbered as in `TetMaterial::triangles`.
+/// Cost: a way about O(log n) of its tet's n elements, and O(n log n) once for a tet that is asked about. A tet may
+/// hold the whole surface, and each of its triangles may send out ways: testing all of them against all would not do.
 class BodyWays {
  public:
   /// All outlive this object.
   BodyWays(const Surface& surface, const TetMaterial& material, const LatticeFrame& frame, const LatticeLinks& links)
-      : surface_(surface), material_(material), frame_(frame), links_(links) {}
+      : surface_(surface),
+        material_(material),
+        frame_(frame),
+        links_(links),
+        treeOf_(material.triangles.starts.size() - 1, -1) {}
 
   std::size_t firstElement(std::size_t tet) const { return material_.triangles.starts[tet]; }
   std::size_t lastElement(std::size_t tet) const { return material_.triangles.starts[tet + 1]; }
@@ -45,10 +53,17 @@ class BodyWays {
   Crossing crossingOf(std::size_t element, const Eigen::Vector3d& from, const Eigen::Vector3d& way) const;
   int firstCrossing(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way, bool leaving) const;
 
+  const TriangleTree& treeOf(int tet) const;
+  /// Calls visit(element, most) for all that the way crosses in a tet, and more, see TriangleTree.
+  template <class Visit>
+  void forElementsAlong(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way, Visit&& visit) const;
+
   const Surface& surface_;
   const TetMaterial& material_;
   const LatticeFrame& frame_;
   const LatticeLinks& links_;
+  mutable std::vector<int> treeOf_;                            ///< by tet: where in `trees_`, or -1 until it is needed
+  mutable std::deque<TriangleTree> trees_;                     ///< of tets with many elements
   mutable std::vector<std::tuple<double, int, int>> crossed_;  ///< scratch memory: share, triangle, change
 };
 
