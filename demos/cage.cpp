@@ -55,6 +55,7 @@ int run(CageCommand command) {
   CageReport report;
   CageOptions options = cageOptionsOf(command.model);
   options.fit = !command.loose;
+  announceCage(options.targetTets, command.model);
   Cage cage = cageFor(surface, options, &report);
   CalibrationReport calibration;
   if (command.model.calibrate) calibration = calibrated(cage, surface.name);
@@ -91,5 +92,8 @@ int main(int argc, char** argv) {
   line.addSummaryOption(command.json, "File of the summary");
   line.addFlag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
   line.addQuietOption(command.quiet);
-  return line.run(argc, argv, [&] { return run(command); });
+  return line.run(argc, argv, [&] {
+    command.model.quiet = command.quiet;
+    return run(command);
+  });
 }

@@ -349,5 +349,8 @@ int main(int argc, char** argv) {
   line.addCount("--frames", options.frames, "Timed frames of every variant; the median counts", 1000000);
   line.addSummaryOption(options.json, "File of the results");
   line.addQuietOption(options.quiet);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.quiet;
+    return run(options);
+  });
 }

@@ -94,6 +94,7 @@ Model placedSerpent(const DragOptions& options) {
   ModelOptions of;
   of.tets = options.tets;
   of.triangles = options.triangles;
+  of.quiet = options.output.quiet;
   Model model = loadModel(of);
   Placement place = placementOf(boundingBox(model.cage.nodes));
   model.cage = place.toWorld(model.cage);

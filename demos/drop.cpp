@@ -36,6 +36,13 @@ struct DropOptions {
   bool touchesBySurface() const { return contact == Contact::Surface && !reduced(); }
 };
 
+/// What is asked for is done or refused: only the default gives way to what a reduced body can do.
+void requireContact(const DropOptions& options, bool given) {
+  if (!given || !options.reduced() || options.contact == Contact::Cage) return;
+  throw InputError(
+      "--contact surface: a reduced body is touched at its cage's nodes alone; take --contact cage, or --body elastic");
+}
+
 /// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
 constexpr double kDamping = 0.04;
 
@@ -125,8 +132,8 @@ class Drop {
 ViewPage& Drop::addPage() {
   const Model& model = player_.model();
   std::vector<std::string> facts = factsOf(model);
-  if (options_.touchesBySurface()) facts.emplace_back("touches as drawn");
-  page_.emplace(model.name, facts, options_.skin.interpolation);
+  facts.push_back(factOf(options_.touchesBySurface() ? Contact::Surface : Contact::Cage));
+  page_.emplace(titleOf(model.name), facts, options_.skin.interpolation);
   page_->addBody({page_->addModel(model.cage, model.mesh, surface_.skin.binding()->embedding()), "", ""});
   page_->setObstacles(obstacles());
   return *page_;
@@ -242,5 +249,9 @@ int main(int argc, char** argv) {
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);
   line.addFlag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    requireContact(options, line.given("--contact"));
+    options.model.quiet = options.output.quiet;
+    return run(options);
+  });
 }

@@ -92,6 +92,7 @@ class Pile {
       of.builtIn = builtIn;
       of.tets = options.tets;
       of.triangles = options.triangles;
+      of.quiet = options.output.quiet;
       models_.emplace_back(of);
     }
     addBowl(world_);
@@ -111,7 +112,7 @@ class Pile {
   double nodeSpeed() const;
 
   /// Of the run to come: bodies of one model share it.
-  ViewPage page() const;
+  ViewPage page(Contact contact) const;
   ViewMoment moment() const;
 
  private:
@@ -179,10 +180,11 @@ double Pile::nodeSpeed() const {
   return std::sqrt(squared / count) / kSize;
 }
 
-ViewPage Pile::page() const {
+ViewPage Pile::page(Contact contact) const {
   ViewPage page("pile",
                 {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
-                 withCommas(bodyTets_) + " tets", "each touches the others as drawn"},
+                 withCommas(bodyTets_) + " tets",
+                 contact == Contact::Surface ? factOf(contact) : "contact with the bowl at the cages' nodes"},
                 Interpolation::Linear);
   for (const PileModel& of : models_) page.addModel(of.model.cage, of.model.mesh, of.binding->embedding());
   for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
@@ -206,7 +208,7 @@ int run(const PileOptions& options) {
   FrameWriter writer(plan, ObjLayout::fromMesh(pile.mesh()));
   const std::string summary = summaryPath(output), view = viewPath(output);
   std::optional<ViewPage> page;
-  if (!view.empty()) page = pile.page();
+  if (!view.empty()) page = pile.page(options.contact);
   Progress progress("simulating", output.frames, output.quiet);
   double milliseconds = 0.0, deepest = 0.0;
   bool finite = true;

@@ -212,7 +212,7 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 
 /// Both surfaces on one cage, as the frames have them.
 ViewPage pageOf(const Model& model, const Embedding& embedding) {
-  ViewPage page(model.name + ", a full turn", factsOf(model), Interpolation::Quadratic);
+  ViewPage page(titleOf(model.name) + ", a full turn", factsOf(model), Interpolation::Quadratic);
   const std::size_t shared = page.addModel(model.cage, model.mesh, embedding);
   for (const char* name : {"linear", "quadratic"}) page.addBody({shared, name, name});
   return page;
@@ -267,5 +267,8 @@ int main(int argc, char** argv) {
   line.addModelOptions(options.model);
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.output.quiet;
+    return run(options);
+  });
 }

@@ -37,7 +37,7 @@ std::string labelOf(const char* what, std::size_t tets) {
 void writeView(SceneRunner& runner, const ReportModel& model, const ReportOptions& options) {
   const ShownMotion shown = runner.shownMotion();
   scenes::ViewPage page(
-      model.name + ": " + runner.scene(),
+      scenes::titleOf(model.name) + ": " + runner.scene(),
       {scenes::withCommas(model.mesh.vertexCount()) + " vertices", "a coarse cage beside the reference"},
       Interpolation::Quadratic);
   page.addBody({page.addModel(shown.cage, model.mesh, embeddingOf(shown.cage, model.mesh)),

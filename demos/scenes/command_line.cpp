@@ -35,6 +35,17 @@ CLI::Validator isFinite(const char* demand, bool (*holds)(double)) {
   return {check, ""};
 }
 
+/// As the option itself reads it: "010" or "0x10" are the same number to both.
+CLI::Validator isWholeNumber(long long least, long long most) {
+  const std::string range = std::to_string(least) + " to " + std::to_string(most);
+  const auto check = [=](std::string& text) {
+    long long number = 0;
+    const bool good = CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+    return good ? std::string() : "'" + text + "' is not a whole number from " + range;
+  };
+  return {check, "INT in [" + std::to_string(least) + " - " + std::to_string(most) + "]"};
+}
+
 /// An option that takes one of some words, each for a value.
 template <class Choice>
 void addChoice(CLI::App& app, const std::string& name, Choice& choice,
@@ -98,12 +109,12 @@ void CommandLine::addFile(const std::string& name, std::string& value, const std
 }
 
 void CommandLine::addCount(const std::string& name, int& value, const std::string& description, int most) {
-  CLI::Option* option = parser_->app.add_option(name, value, description)->check(CLI::Range(1, most));
+  CLI::Option* option = parser_->app.add_option(name, value, description)->check(isWholeNumber(1, most));
   if (value > 0) option->capture_default_str();
 }
 
 void CommandLine::addCount(const std::string& name, std::size_t& value, const std::string& description, int most) {
-  parser_->app.add_option(name, value, description)->check(CLI::Range(1, most))->capture_default_str();
+  parser_->app.add_option(name, value, description)->check(isWholeNumber(1, most))->capture_default_str();
 }
 
 void CommandLine::addPositive(const std::string& name, double& value, const std::string& description) {
@@ -124,7 +135,7 @@ void CommandLine::addWords(const std::string& name, std::vector<std::string>& va
 void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& description) {
   parser_->app.add_option(name, values, description)
       ->delimiter(',')
-      ->check(CLI::Range(1, std::numeric_limits<int>::max()))
+      ->check(isWholeNumber(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
 }
 
@@ -135,7 +146,7 @@ void CommandLine::addSurfaceOptions(ModelOptions& options) {
   addChoice(parser_->app, "--model", options.builtIn, words, "A built-in model");
   parser_->app.get_option("--model")->excludes("--mesh");
   parser_->app.add_option("--triangles", options.triangles, "Triangles of the built-in model")
-      ->check(CLI::Range(kMinSerpentTriangles, kMaxSerpentTriangles))
+      ->check(isWholeNumber(kMinSerpentTriangles, kMaxSerpentTriangles))
       ->capture_default_str()
       ->excludes("--mesh");
 }

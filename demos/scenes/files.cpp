@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/files.h"
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -47,6 +49,17 @@ void writeFile(const std::string& path, std::string_view bytes) {
   if (done) return;
   fs::remove(part, error);
   throw InputError(path + kNotWritable);
+}
+
+std::string sizeText(double bytes) {
+  constexpr double kKilo = 1e3, kMega = 1e6;
+  char text[48];
+  if (bytes < kMega) {
+    std::snprintf(text, sizeof text, "%.0f kB", std::ceil(bytes / kKilo));
+  } else {
+    std::snprintf(text, sizeof text, "%.*f MB", bytes < 10 * kMega ? 1 : 0, bytes / kMega);
+  }
+  return text;
 }
 
 std::optional<std::string> contentsOf(const std::string& path) {

@@ -20,6 +20,9 @@ std::optional<std::string> contentsOf(const std::string& path);
 /// Throws InputError if this file cannot be written, so that it is known before the work. Does not change it.
 void requireWritable(const std::string& path);
 
+/// "12 MB", "1.2 MB", "3 kB".
+std::string sizeText(double bytes);
+
 /// Appends the shortest text that reads back as the same number.
 template <class Number>
 void appendNumber(std::string& text, Number value) {

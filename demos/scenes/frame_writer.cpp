@@ -57,10 +57,8 @@ std::size_t vtkBytes(const TetMesh& cage) {
   return kHead + numbers.size() + kOfTet * cage.tetCount();
 }
 
-std::string megabytes(double bytes) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f MB", bytes < 1e7 ? 1 : 0, 1e-6 * bytes);
-  return text;
+std::string framesText(int count) {
+  return std::to_string(count) + (count == 1 ? " frame" : " frames");
 }
 
 }  // namespace
@@ -133,13 +131,13 @@ void FrameWriter::requireRoom(double bytes) const {
     if (!error) room += static_cast<double>(size);
   }
   if (bytes <= room) return;
-  throw InputError(plan_.folder + ": " + std::to_string(frameCount()) + " frames take about " + megabytes(bytes) +
-                   ", and the disk has room for " + megabytes(room) +
+  throw InputError(plan_.folder + ": " + framesText(frameCount()) + (frameCount() == 1 ? " takes" : " take") +
+                   " about " + sizeText(bytes) + ", and the disk has room for " + sizeText(room) +
                    "; write fewer by --every or --frames, or elsewhere by --out");
 }
 
 std::string FrameWriter::announcement(double bytes) const {
-  return "writing " + std::to_string(frameCount()) + " frames, about " + megabytes(bytes) + ", to " + plan_.folder;
+  return "writing " + framesText(frameCount()) + ", about " + sizeText(bytes) + ", to " + plan_.folder;
 }
 
 std::vector<std::string> FrameWriter::filesOf(int frame) const {

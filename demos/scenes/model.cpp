@@ -99,6 +99,12 @@ CageOptions cageOptionsOf(const ModelOptions& options) {
   return cage;
 }
 
+void announceCage(std::size_t tets, const ModelOptions& options) {
+  if (options.quiet) return;
+  std::printf("building a cage of %zu tets\n", tets);
+  std::fflush(stdout);  // before the seconds, not after them
+}
+
 CalibrationReport calibrated(Cage& cage, const std::string& name) {
   const Result<CalibrationReport> report = calibrate(cage);
   if (!report.ok()) throw InputError(name + ": " + report.status().message);
@@ -115,6 +121,7 @@ Model loadModel(const ModelOptions& options) {
     require(layout.status());
     model.layout = std::move(layout).value();
   }
+  if (options.cage.empty()) announceCage(options.tets, options);
   model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
   // The small tets of one that is turned over come in another order.
   if (repairTetMesh(model.cage).negativeVolume.count > 0) model.cage.fineFill.clear();

@@ -38,6 +38,7 @@ struct ModelOptions {
   bool whole = false;             ///< the cage is not split
   bool calibrate = false;         ///< see tetskin::calibrate
   std::size_t fineTets = 30000;   ///< of which a reduced body has its vibrations
+  bool quiet = true;              ///< does not tell that a cage is built, which may take seconds
 };
 
 struct Surface {
@@ -56,6 +57,8 @@ Cage loadCage(const std::string& path);
 Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 CageOptions cageOptionsOf(const ModelOptions& options);
+/// Says that a cage of so many tets is about to be built, unless that is to be quiet.
+void announceCage(std::size_t tets, const ModelOptions& options);
 /// Calibrates a cage from the place that it is named by.
 CalibrationReport calibrated(Cage& cage, const std::string& name);
 /// The cage's tets are positive.

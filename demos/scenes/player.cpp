@@ -19,6 +19,7 @@ SceneOptions withReduction(const Model& model, const Placement& place, const Mod
   CageOptions fine;
   fine.targetTets = options.fineTets;
   fine.fit = false;
+  announceCage(fine.targetTets, options);
   const Cage tets = cageFor(model, fine);
   how.reduction = std::make_shared<Reduction>(place.toWorld(tets), how.modes);
   if (!model.cage.vertexTets.empty()) how.reduction->nodeTets = tetsOfNodes(model.mesh, model.cage, tets);

@@ -20,9 +20,6 @@ constexpr const char* kOrbitControls = TETSKIN_ORBIT_CONTROLS;
 /// In the order in which the page runs them.
 constexpr const char* kScripts[] = {"data.js", "skin.js", "shading.js", "stage.js", "player.js"};
 
-/// The first view leaves out so much of a run: bodies that fall begin high above all that follows.
-constexpr std::size_t kLookFrom = 20;
-
 std::string partOf(const std::string& path) {
   std::optional<std::string> text = contentsOf(path);
   if (!text) throw InputError(path + ": cannot be read; a page is made of it");
@@ -146,7 +143,7 @@ void ViewPage::addProp(const TriangleMesh& mesh) {
 Box3 ViewPage::focus() const {
   if (!focus_.isEmpty()) return Box3(focus_.min() - frames_.origin(), focus_.max() - frames_.origin());
   Box3 box;
-  for (std::size_t k = frames_.size() / kLookFrom; k < frames_.size(); ++k) box.extend(frames_.box(k));
+  for (std::size_t k = 0; k < frames_.size(); ++k) box.extend(frames_.box(k));
   return box;
 }
 
@@ -219,13 +216,22 @@ void ViewPage::write(const std::string& path, bool quiet) const {
   if (quiet) return;
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
-  std::printf("\nSee it in a browser: %s, %.1f MB. Open file://%s\n", path.c_str(),
-              1e-6 * static_cast<double>(page.size()), absolute.c_str());
+  std::printf("\nSee it in a browser: %s, %s. Open file://%s\n", path.c_str(),
+              sizeText(static_cast<double>(page.size())).c_str(), absolute.c_str());
 }
 
 std::vector<std::string> factsOf(const Model& model) {
   return {withCommas(model.mesh.vertexCount()) + " vertices", withCommas(model.mesh.triangleCount()) + " triangles",
           withCommas(model.cage.tetCount()) + " tets"};
+}
+
+std::string titleOf(const std::string& name) {
+  const std::string file = std::filesystem::path(name).filename().string();
+  return file.empty() ? name : file;
+}
+
+std::string factOf(Contact contact) {
+  return contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
 }
 
 std::string withCommas(std::size_t number) {

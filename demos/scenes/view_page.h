@@ -50,7 +50,7 @@ class ViewPage {
   void addProp(const TriangleMesh& mesh);
   /// Fixed, in the space of the nodes.
   void setObstacles(const TriangleMesh& mesh) { obstacles_ = mesh; }
-  /// What the first view shows; without it, the places where bodies are once they have begun to fall.
+  /// What the first view shows; without it, all places where bodies are.
   void setFocus(const Box3& focus) { focus_ = focus; }
 
   /// The next frame: bodies and props in the order in which they were added.
@@ -80,6 +80,10 @@ class ViewPage {
   ViewFrames frames_;
 };
 
+/// A model by the name of its file, without the folder.
+std::string titleOf(const std::string& name);
+/// What meets obstacles and other bodies.
+std::string factOf(Contact contact);
 /// "12,345".
 std::string withCommas(std::size_t number);
 /// Vertices, triangles and tets.

@@ -52,6 +52,9 @@ class Player {
       if (event.detail > 0 && event.target.tagName !== 'SELECT') event.target.blur();
     });
     element('reset').onclick = () => this.resetView();
+    for (const what of ['pointerdown', 'wheel', 'keydown', 'touchstart']) {
+      window.addEventListener(what, () => element('hint').classList.add('gone'), {passive: true, once: true});
+    }
     window.addEventListener('resize', () => this.resize());
     window.addEventListener('keydown', event => this.key(event));
   }
@@ -110,7 +113,9 @@ class Player {
   resize() {
     const {innerWidth: width, innerHeight: height} = window;
     const top = document.querySelector('header').getBoundingClientRect().bottom;
-    const bottom = height - document.querySelector('footer').getBoundingClientRect().top;
+    const footer = document.querySelector('footer').getBoundingClientRect();
+    element('hint').style.bottom = `${height - footer.top + 6}px`;
+    const bottom = height - element('hint').getBoundingClientRect().top;  // above the footer
     this.stage.resize(width, height, top, bottom);
     this.changed = true;
   }
@@ -154,6 +159,16 @@ function hasWebGl() {
   return Boolean(canvas.getContext('webgl2') || canvas.getContext('webgl'));
 }
 
+/** Without WebGL there is nothing to control: what is left is what can be done about it. */
+function showTrouble() {
+  const {title} = readData();
+  document.title = element('title').textContent = title;
+  document.querySelector('footer').hidden = element('hint').hidden = true;
+  element('trouble').textContent = 'This page draws with WebGL, which this browser does not offer. ' +
+    'Open it in another browser, or turn on hardware acceleration in this one\u2019s settings and load it again.';
+  element('trouble').hidden = false;
+}
+
 /** Plays, or shows one frame: view.html#frame=100. */
 function start() {
   const player = new Player(readData()), frame = /^#frame=(\d+)$/.exec(location.hash);
@@ -169,6 +184,5 @@ function start() {
 if (hasWebGl()) {
   window.player = start();
 } else {
-  element('trouble').textContent = 'This browser shows no WebGL, which this page draws with.';
-  element('trouble').hidden = false;
+  showTrouble();
 }

@@ -14,14 +14,18 @@ const SUN_DIRECTION = [-0.45, 1.0, 0.45];
 
 // Newer revisions of three.js have other names, and other defaults.
 
-function setAttribute(geometry, name, array) {
-  const attribute = new THREE.BufferAttribute(array, 3);
+function setAttribute(geometry, name, array, size = 3) {
+  const attribute = new THREE.BufferAttribute(array, size);
   geometry.setAttribute ? geometry.setAttribute(name, attribute) : geometry.addAttribute(name, attribute);
   return attribute;
 }
 
-/** Boxes are seldom full to their corners. */
-const FILL = 0.88;
+/** Of the room beside what covers the canvas, the share that the first view fills. */
+const FILL = 0.94;
+/** So many moments, and points of each body and prop at each, stand for the whole run in the first view. */
+const SEEN_MOMENTS = 60, SEEN_POINTS = 600;
+/** Darker than the background, so that what lies on the floor does not seem to float; fades out so many radii away. */
+const FLOOR_COLOUR = 0xd9d4ca, FLOOR_REACH = 5;
 
 /** Colours as they are given, and lights whose intensities are shares. */
 function makeRenderer(canvas) {
@@ -113,6 +117,14 @@ class Body {
     }
   }
 
+  /** Calls `use` with the coordinates of some of its nodes at a moment, at most about `most`. */
+  eachPoint(moment, most, use) {
+    this.move(moment);
+    for (let i = 0, step = 3 * Math.ceil(this.nodeCount / most); i < this.nodes.length; i += step) {
+      use(this.nodes[i], this.nodes[i + 1], this.nodes[i + 2]);
+    }
+  }
+
   /** Positions of the surface; `quadratic` where the body leaves the choice. */
   skin(quadratic) {
     if (!this.model.skin) return;
@@ -142,8 +154,18 @@ class Body {
 class Prop {
   constructor(data, materials) {
     this.places = data.places;
+    this.corners = data.positions;
     this.mesh = rigidMesh(data, materials);
     this.mesh.matrixAutoUpdate = false;
+  }
+
+  /** Calls `use` with the coordinates of some of its points at a moment, at most about `most`. */
+  eachPoint(moment, most, use) {
+    const m = this.places.subarray(12 * moment, 12 * moment + 12), c = this.corners;
+    for (let i = 0, step = 3 * Math.ceil(c.length / (3 * most)); i < c.length; i += step) {
+      const along = k => m[k] * c[i] + m[3 + k] * c[i + 1] + m[6 + k] * c[i + 2] + m[9 + k];
+      use(along(0), along(1), along(2));
+    }
   }
 
   show(moment) {
@@ -152,6 +174,20 @@ class Prop {
     for (let i = 0; i < 12; ++i) this.mesh.matrix.elements[4 * Math.floor(i / 3) + i % 3] = at(i);
     this.mesh.matrixWorldNeedsUpdate = true;
   }
+}
+
+/** Opaque in the middle, nothing at the rim. */
+function fadingTexture() {
+  const size = 256, canvas = document.createElement('canvas');
+  canvas.width = canvas.height = size;
+  const context = canvas.getContext('2d');
+  const fade = context.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
+  // An alpha map is read by its green.
+  [[0, 255], [0.25, 235], [0.5, 140], [0.75, 40], [0.98, 0]].forEach(([at, grey]) =>
+    fade.addColorStop(at, `rgb(${grey}, ${grey}, ${grey})`));
+  context.fillStyle = fade;
+  context.fillRect(0, 0, size, size);
+  return new THREE.CanvasTexture(canvas);
 }
 
 class Stage {
@@ -164,10 +200,13 @@ class Stage {
     this.focus = new THREE.Box3(low, high);
     this.centre = this.focus.getCenter(new THREE.Vector3());
     this.radius = 0.5 * this.focus.getSize(new THREE.Vector3()).length();
+    this.lastMoment = data.moments - 1;
+    this.freeHeight = 1;  // as a share
     const materials = new Materials(data.materials);
     this.bodies = data.bodies.map(body => new Body(body, data.models[body.model], materials));
     this.props = data.props.map(prop => new Prop(prop, materials));
     for (const thing of [...this.bodies, ...this.props]) this.scene.add(thing.mesh);
+    this.seen = this.seenPoints();
     for (const body of this.bodies) if (body.cage) this.scene.add(body.cage);
     if (data.obstacles) this.addObstacles(data.obstacles, materials);
     this.addLights();
@@ -202,33 +241,76 @@ class Stage {
     for (const group of data.groups) {
       const triangles = data.triangles.subarray(3 * group.first, 3 * (group.first + group.count));
       const whole = {first: 0, count: group.count, material: group.material};
-      this.scene.add(rigidMesh({triangles, positions: data.positions, groups: [whole]}, materials));
+      const mesh = rigidMesh({triangles, positions: data.positions, groups: [whole]}, materials);
+      if (group.material === 'floor') this.makeFloor(mesh);
+      this.scene.add(mesh);
     }
+  }
+
+  /** A floor that fades into the background before it ends. It is drawn first, and hides what is below it as if it were
+      opaque: hence it is not called transparent, which would have it drawn last. */
+  makeFloor(mesh) {
+    const {position} = mesh.geometry.attributes, places = new Float32Array(2 * position.count);
+    mesh.geometry.computeBoundingBox();
+    const {min, max} = mesh.geometry.boundingBox, {x, z} = this.centre;
+    const edge = Math.min(x - min.x, max.x - x, z - min.z, max.z - z);
+    const reach = 2 * Math.max(this.radius, Math.min(edge, FLOOR_REACH * this.radius));
+    for (let v = 0; v < position.count; ++v) {
+      places[2 * v] = 0.5 + (position.getX(v) - x) / reach;
+      places[2 * v + 1] = 0.5 + (position.getZ(v) - z) / reach;
+    }
+    setAttribute(mesh.geometry, 'uv', places, 2);
+    mesh.material = new THREE.MeshLambertMaterial({color: FLOOR_COLOUR, alphaMap: fadingTexture(), dithering: true,
+      blending: THREE.CustomBlending});
+    mesh.geometry.clearGroups();
+    mesh.renderOrder = -1;
+    mesh.castShadow = false;
   }
 
   resetView() {
     this.untouched = true;
-    this.controls.target.copy(this.centre);
-    this.camera.position.set(...FIRST_DIRECTION).setLength(this.distance()).add(this.centre);
+    const back = new THREE.Vector3(...FIRST_DIRECTION).normalize();
+    const right = new THREE.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
+    const [x, y, z] = this.closestPlace(right, up, back);
+    this.camera.position.set(0, 0, 0).addScaledVector(right, x).addScaledVector(up, y).addScaledVector(back, z);
+    this.controls.target.copy(this.camera.position).addScaledVector(back, this.centre.dot(back) - z);
     this.controls.update();
   }
 
-  /** From which the whole focus is seen, in the first direction, beside what covers the canvas. */
-  distance() {
-    const back = new THREE.Vector3(...FIRST_DIRECTION).normalize();
-    const right = new THREE.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
-    const high = Math.tan(this.camera.fov * Math.PI / 360);
-    const free = this.free || {width: 1, height: 1}, aspect = this.camera.aspect;
-    const {min, max} = this.focus;
-    let distance = 0;
-    for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3((k & 1 ? max : min).x, (k & 2 ? max : min).y, (k & 4 ? max : min).z);
-      corner.sub(this.centre);
-      const across = FILL * Math.abs(corner.dot(right)) / (high * aspect * free.width);
-      const along = FILL * Math.abs(corner.dot(up)) / (high * free.height);
-      distance = Math.max(distance, corner.dot(back) + Math.max(across, along));
+  /** Where the bodies and props are in the run: points, three numbers each. What a body does beyond the focus, as where
+      a pile's last ones start to fall, is not waited for. */
+  seenPoints() {
+    const points = [], {min, max} = this.focus, p = new THREE.Vector3();
+    const moments = Math.min(SEEN_MOMENTS, this.lastMoment + 1);
+    for (let k = 0; k < moments; ++k) {
+      const moment = moments === 1 ? 0 : Math.round(this.lastMoment * k / (moments - 1));
+      for (const thing of [...this.bodies, ...this.props]) {
+        thing.eachPoint(moment, SEEN_POINTS, (x, y, z) => {
+          p.set(x, y, z);
+          if (thing instanceof Body) p.clamp(min, max);
+          points.push(p.x, p.y, p.z);
+        });
+      }
     }
-    return distance;
+    return points;
+  }
+
+  /** The place of the camera, along three directions, from which all these points are seen beside what covers the
+      canvas: those at its sides give the least distance at which they fit, and the middle between them. */
+  closestPlace(right, up, back) {
+    const high = FILL * Math.tan(this.camera.fov * Math.PI / 360), p = new THREE.Vector3();
+    const fit = (side, slope) => {
+      let most = -Infinity, least = Infinity;
+      for (let i = 0; i < this.seen.length; i += 3) {
+        p.fromArray(this.seen, i);
+        const across = p.dot(side), nearer = slope * p.dot(back);
+        most = Math.max(most, across + nearer);
+        least = Math.min(least, across - nearer);
+      }
+      return {middle: (most + least) / 2, away: (most - least) / (2 * slope)};
+    };
+    const across = fit(right, high * this.camera.aspect), along = fit(up, high * this.freeHeight);
+    return [across.middle, along.middle, Math.max(across.away, along.away)];
   }
 
   /** top, bottom: pixels that are covered there. */
@@ -236,7 +318,7 @@ class Stage {
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.free = {width: 0.94, height: Math.max(0.3, (height - top - bottom) / height)};
+    this.freeHeight = Math.max(0.3, (height - top - bottom) / height);
     this.camera.setViewOffset(width, height, 0, Math.round((bottom - top) / 2), width, height);
     if (this.untouched) this.resetView();
   }

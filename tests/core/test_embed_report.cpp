@@ -33,6 +33,15 @@ TEST(EmbedReport, ReportNamesTheWorstVertex) {
   EXPECT_NE(report.describe().find("vertex 2 at (0.5, 0.5, -2)"), std::string::npos) << report.describe();
 }
 
+TEST(EmbedReport, NamesNoFarthestVertexWhereNoneIsOutside) {
+  const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
+  const Points vertices{{0.5, 0.5, 0.5}};
+  Embedding embedding;
+  const std::string text = embedInto(cage, viewOf(vertices), {}, embedding).describe();
+  EXPECT_EQ(text.find("1 vertices: 1 inside, 0 outside the cage\n"), 0u) << text;
+  EXPECT_EQ(text.find("farthest"), std::string::npos) << text;
+}
+
 TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices{{0.5, 0.5, 0.5}, {0.25, 1.5, 0.75}, {0.5, 0.5, -1.25}, {1.125, 0.5, 0.5}};

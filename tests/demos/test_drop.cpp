@@ -237,6 +237,31 @@ TEST_F(Drop, SaysHowMuchItWritesBeforeItDoes) {
   EXPECT_NE(result.out.find("MB, to o\n"), std::string::npos) << result.out;
 }
 
+TEST_F(Drop, SpeaksOfOneFrameAndOfFewBytesAsTheyAre) {
+  folder.write("box.obj", boxObj());
+  const CommandResult result = drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--out", "o"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("writing 1 frame, about "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(" kB, to o\n"), std::string::npos) << result.out;
+}
+
+TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {
+  folder.write("box.obj", boxObj());
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"--mesh", "box.obj", "--frames", "1", "--out", "o"});
+    return drop(more).out;
+  };
+  EXPECT_EQ(run({"--tets", "60"}).find("building a cage of 60 tets\n"), 0u);
+  EXPECT_EQ(run({"--tets", "60", "--quiet"}), "");
+  ASSERT_EQ(folder.run(TETSKIN_CAGE, {"--mesh", "box.obj", "--tets", "60", "-o", "c.vtk"}).status, 0);
+  EXPECT_EQ(run({"--cage", "c.vtk"}).find("building"), std::string::npos) << "there is none to build";
+}
+
+TEST_F(Drop, RefusesContactsThatAReducedBodyDoesNotHave) {
+  test::expectRefused(drop({"--body", "reduced", "--contact", "surface", "--out", "o"}), "--contact surface");
+  EXPECT_FALSE(folder.exists("o"));
+}
+
 TEST_F(Drop, RefusesMoreThanTheDiskHasRoomFor) {
   const CommandResult result = drop({"--tets", "60", "--triangles", "300000", "--frames", "1000000", "--out", "o"});
   test::expectRefused(result, "--every");

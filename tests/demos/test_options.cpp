@@ -102,6 +102,13 @@ TEST_F(Options, NumbersThatMakeNoSenseAreRefused) {
   }
 }
 
+TEST_F(Options, WhatIsNoWholeNumberIsCalledSo) {
+  for (const char* value : {"abc", "0", "1000001"}) {
+    expectRefusal(kDrop, {"--frames", value}, std::string("'") + value + "' is not a whole number from 1 to 1000000");
+  }
+  expectRefusal(kDrop, {"--triangles", "few"}, "'few' is not a whole number from 2000 to 2000000");
+}
+
 TEST_F(Options, ASummaryThatCannotBeWrittenIsRefusedBeforeTheWork) {
   for (const Program& program : {kDrop, kTwist, kCrowd, kErrorVsTime}) {
     const CommandResult result = folder.run(program.path, {"--triangles", "2000", "--json", "no/where.json"});

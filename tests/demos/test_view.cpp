@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "command.h"
 #include "scenes/input_error.h"
 #include "scenes/view_page.h"
@@ -130,6 +132,21 @@ TEST(View, IsWrittenByDropUnlessItIsLeftOut) {
   EXPECT_TRUE(folder.exists("elsewhere.html"));
   test::expectRefused(drop({"--view", "no/where/view.html"}), "no/where/view.html");
   test::expectRefused(drop({"--view", "a.html", "--no-view"}), "--no-view");
+}
+
+TEST(View, IsEntitledByTheNameOfTheMeshAloneAndSaysWhatTouches) {
+  const CommandFolder folder;
+  std::filesystem::create_directories(folder.path("some/folder"));
+  folder.write("some/folder/tet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const auto pageOf = [&](const std::string& contact) {
+    const CommandResult result = folder.run(TETSKIN_DROP, {"--mesh", folder.path("some/folder/tet.obj"), "--tets", "60",
+                                                           "--frames", "2", "--contact", contact, "--out", "o"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return folder.read("o/view.html");
+  };
+  EXPECT_NE(pageOf("surface").find("\"title\":\"tet.obj\""), std::string::npos);
+  EXPECT_NE(pageOf("surface").find("\"contact at the surface\""), std::string::npos);
+  EXPECT_NE(pageOf("cage").find("\"contact at the cage's nodes\""), std::string::npos);
 }
 
 TEST(View, IsWrittenByTheOthersWhereAskedFor) {

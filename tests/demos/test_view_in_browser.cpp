@@ -69,6 +69,7 @@ TEST(ViewInBrowser, PlaysWhatTheFramesHaveWithEitherSkin) {
   EXPECT_GT(seen["difference"], 0.005);
   EXPECT_GT(seen["cage"], 0.002);
   EXPECT_TRUE(seen["fits"]);
+  EXPECT_TRUE(seen["clear"]) << "the header or the footer hides a body";
   for (const std::string kind : {"linear", "quadratic"}) {
     for (const std::string frame : {"0", "100"}) {
       const auto expected =
@@ -90,6 +91,7 @@ TEST(ViewInBrowser, PlaysBothSkinsSideBySideOnAPhone) {
   EXPECT_GT(seen["colours"], 50);
   EXPECT_GT(seen["difference"], 0.005);
   EXPECT_TRUE(seen["fits"]);
+  EXPECT_TRUE(seen["clear"]) << "the header or the footer hides a body";
   const auto expected = test::objPositions(folder.read("o/frame_0100.obj"));
   EXPECT_LT(distance(seen["linear_100"], expected), kSame);
   EXPECT_LT(distance(seen["quadratic_100"], expected), kSame) << "each body has its own skin, whatever the switch";

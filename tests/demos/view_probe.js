@@ -31,6 +31,20 @@ function difference(a, b) {
   return others / (a.length / 4);
 }
 
+/** Whether all that bodies show now is between the header and the footer. */
+function isClear(player) {
+  const top = document.querySelector('header').getBoundingClientRect().bottom;
+  const bottom = document.querySelector('footer').getBoundingClientRect().top, point = new THREE.Vector3();
+  player.stage.camera.updateMatrixWorld();
+  for (const body of player.stage.bodies) {
+    for (let i = 0; i < body.positions.length; i += 3) {
+      const [x, y] = player.stage.onCanvas(point.fromArray(body.positions, i));
+      if (!(x >= 0 && x <= innerWidth && y >= top && y <= bottom)) return false;
+    }
+  }
+  return true;
+}
+
 /** Of all bodies, one after the other, in the space of the frames. */
 function positions(player) {
   const all = [];
@@ -49,6 +63,7 @@ function report(player) {
       player.seek(frame / player.data.stride);
       found[`${kind}_${frame}`] = positions(player);
       images.push(pixels(player));
+      found.clear = found.clear !== false && isClear(player);
     }
   }
   found.colours = coloursIn(images[0]);

@@ -163,15 +163,19 @@ std::string EmbedReport::unitsFault() const {
 std::string EmbedReport::describe() const {
   if (unbound > 0) return "none of " + std::to_string(vertexCount) + " vertices is embedded\n";
   char text[512];
-  std::snprintf(
-      text, sizeof text,
-      "%zu vertices: %zu inside, %zu outside the cage; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g\n"
-      "%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
-      "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
-      vertexCount, inside, outside, worstVertex, worstPosition.x(), worstPosition.y(), worstPosition.z(), worstDistance,
-      coincident, overlapping, flatTets, restErrorMax,
-      static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
+  std::snprintf(text, sizeof text, "%zu vertices: %zu inside, %zu outside the cage", vertexCount, inside, outside);
   std::string result = text;
+  if (outside > 0) {
+    std::snprintf(text, sizeof text, "; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g", worstVertex,
+                  worstPosition.x(), worstPosition.y(), worstPosition.z(), worstDistance);
+    result += text;
+  }
+  std::snprintf(text, sizeof text,
+                "\n%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
+                "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
+                coincident, overlapping, flatTets, restErrorMax,
+                static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
+  result += text;
   if (keptWithNeighbours > 0) {
     std::snprintf(text, sizeof text, "%zu vertices outside kept from another part of the cage, nearer than their own\n",
                   keptWithNeighbours);

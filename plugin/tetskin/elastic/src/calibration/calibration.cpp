@@ -147,7 +147,7 @@ std::string CalibrationReport::describe() const {
     text << "not calibrated: more tets than are ever refined; factor 1\n";
   } else {
     text << "stiffness times " << factor << ", by " << refinements << " refinements, the finest of " << refinedTets
-         << " tets; some " << 100.0 * left << " % of a displacement may be left\n";
+         << " tets; some " << std::lround(100.0 * left) << " % of a displacement may be left\n";
   }
   if (skippedModes > 0) text << skippedModes << " vibrations of loosely hanging parts were left out\n";
   text << milliseconds << " ms\n";
