@@ -24,12 +24,12 @@ void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
   }
 }
 
-/// By resize(0), GCC warns of members that would be copied uninitialized.
+/// Contacts with multibodies own memory: each must be destroyed.
 void clearContacts(btSoftBody& body) {
-  body.m_nodeRigidContacts.resizeNoInitialize(0);
-  body.m_faceRigidContacts.resizeNoInitialize(0);
-  body.m_faceNodeContacts.resizeNoInitialize(0);
-  body.m_faceNodeContactsCCD.resizeNoInitialize(0);
+  body.m_nodeRigidContacts.resize(0);
+  body.m_faceRigidContacts.resize(0);
+  body.m_faceNodeContacts.resize(0);
+  body.m_faceNodeContactsCCD.resize(0);
 }
 
 }  // namespace
