@@ -124,6 +124,69 @@ TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergy) {
   });
 }
 
+/// By singular values: of the least strain that a rotation leaves.
+double exactEnergy(const TetMesh& cage, const std::vector<LameOfTet>& material, const Points& nodes) {
+  double total = 0.0;
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    Matrix3d rest, now;
+    for (int k = 0; k < 3; ++k) {
+      rest.col(k) = cage.nodes[cage.tets[t][k + 1]] - cage.nodes[cage.tets[t][0]];
+      now.col(k) = nodes[cage.tets[t][k + 1]] - nodes[cage.tets[t][0]];
+    }
+    const Matrix3d f = now * rest.inverse();
+    Vector3d strain = Eigen::JacobiSVD<Matrix3d>(f).singularValues();
+    if (f.determinant() < 0.0) strain[2] = -strain[2];
+    strain.array() -= 1.0;
+    total += std::abs(rest.determinant()) / 6.0 *
+             (material[t].mu * strain.squaredNorm() + 0.5 * material[t].lambda * strain.sum() * strain.sum());
+  }
+  return total;
+}
+
+/// A body at rest that is turned at once is free of force, and a deformed one has the energy that it had.
+TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
+  const TetMesh cage = oddCage();
+  const std::vector<LameOfTet> material = test::variedMaterial(cage.tetCount());
+  test::Random random(61);
+  std::vector<Vector3d> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 2, 3}};
+  for (int k = 0; k < 10; ++k) axes.push_back(random.vector());
+  onEachInstructionSet([&] {
+    for (const Vector3d& axis : axes) {
+      for (const double degrees : {60.0, 90.0, 120.0, 170.0, 179.0, 179.9, 179.99, 180.0}) {
+        for (const double stretch : {1.0, 1.3, -0.7}) {  // along x; the last inside out
+          const Matrix3d gradient = Vector3d(stretch, 1.1, 0.8).asDiagonal();
+          Tets<TypeParam> tets(cage, material);
+          tets.settle(test::mapped(cage.nodes, gradient, {0, 0, 0}));
+          const Points turned = test::mapped(cage.nodes, turnBy(degrees, axis) * gradient, {1, 2, 3});
+          const double exact = exactEnergy(cage, material, turned);
+          tets.forces(turned);
+          EXPECT_NEAR(tets.energy(turned), exact, (this->kDouble ? 1e-9 : 1e-4) * exact)
+              << degrees << " degrees about " << axis.transpose() << ", stretched " << stretch;
+        }
+      }
+    }
+  });
+}
+
+TYPED_TEST(CorotatedTetsOf, FindTheRotationsOfAnyGradientFromAnyOther) {
+  const TetMesh cage = test::singleTet();
+  const std::vector<LameOfTet> material = test::variedMaterial(1);
+  onEachInstructionSet([&] {
+    test::Random random(62);
+    Tets<TypeParam> tets(cage, material);
+    int inverted = 0;
+    for (int k = 0; k < 500; ++k) {
+      Matrix3d gradient;
+      for (int i = 0; i < 9; ++i) gradient(i / 3, i % 3) = random();
+      inverted += gradient.determinant() < 0.0;
+      const Points nodes = test::mapped(cage.nodes, gradient, {0, 0, 0});
+      tets.forces(nodes);  // from the rotation of the gradient before
+      EXPECT_NEAR(tets.energy(nodes), exactEnergy(cage, material, nodes), 3e-3) << gradient;
+    }
+    EXPECT_GT(inverted, 100);
+  });
+}
+
 TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergyInsideOut) {
   const TetMesh cage = oddCage();
   Matrix3d mirror = Vector3d(1.3, 0.9, -0.7).asDiagonal();

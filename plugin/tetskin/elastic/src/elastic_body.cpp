@@ -90,8 +90,9 @@ struct ElasticBody<Scalar>::Parts {
     const Scalar* solution = dynamics.matrix().solution();
     for (std::size_t n = 0; n < masses.size(); ++n) {
       const std::size_t wide = dynamics.matrix().wideOf(n);
+      const bool held = dynamics.matrix().mass(n) == Scalar(0);
       for (std::size_t k = 0; k < 3; ++k) {
-        velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
+        if (!held) velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
         positions[3 * n + k] += static_cast<Scalar>(seconds) * velocities[3 * n + k];
       }
     }
@@ -149,9 +150,12 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   assert(parts_ && seconds > 0.0);
   Parts& p = *parts_;
   p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
-  p.dynamics.prepare(seconds, threads);
+  p.dynamics.predict(seconds, threads);
   p.dynamics.start(seconds, threads);
-  p.solve.start({&p.dynamics.matrix()}, p.limits, {}, threads);
+  elastic_detail::SolveLimits limits = p.limits;
+  limits.floor = p.dynamics.roundingSpeed(seconds);
+  limits.enough = limits.tolerance * limits.tolerance * p.dynamics.squaredDeviation();
+  p.solve.start({&p.dynamics.matrix()}, limits, {}, threads);
   p.solve.iterate(p.limits.iterations, threads);
   p.dynamics.removeMomentum();
   p.write(seconds);

@@ -50,6 +50,7 @@ struct DeformableSolver::Parts {
   void multiplyOthers(const SolvedSystem& system);
   /// The same times the matrices' own steps, and what ties add, for the conjugate gradient.
   void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
+  void removeMomentum(const SolvedBody& of) const;
   void writeVelocities(SolvedBody& of) const;
 
   DeformableSolver& solver;

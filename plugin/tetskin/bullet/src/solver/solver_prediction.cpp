@@ -104,14 +104,16 @@ void DeformableSolver::Parts::predict(SolvedBody& of, ParallelFor* inner) {
       toPoint(of.body->m_nodes[static_cast<int>(n)].m_vn, dynamics.velocity(n));
     }
   }
-  dynamics.prepare(static_cast<double>(dt()), inner);
+  const auto seconds = static_cast<double>(dt());
+  dynamics.predict(seconds, inner);
   dynamics.matrix().free();
-  dynamics.start(static_cast<double>(dt()), inner);
+  dynamics.start(seconds, inner);
   if (!of.elastic) return;
   elastic_detail::SolveLimits limits;
   limits.tolerance = of.limits->tolerance;
   limits.iterations = of.limits->iterations;
-  limits.floor = kUnseen * static_cast<double>(dt());
+  limits.floor = std::max(kUnseen * seconds, dynamics.roundingSpeed(seconds));
+  limits.enough = limits.tolerance * limits.tolerance * dynamics.squaredDeviation();
   of.solve->start({&dynamics.matrix()}, limits, {}, inner);
   of.solve->iterate(wasTouched(of) ? kIterationsBeforeContacts : limits.iterations, inner);
   of.iterations = of.solve->iterations();
@@ -122,7 +124,11 @@ void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
   const auto& matrix = of.dynamics->matrix();
   for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-    node.m_v += fromWide(matrix.solution() + matrix.wideOf(n));
+    // Implicitly, what other forces do comes on top: the solve began with the velocities from before them.
+    const btVector3 others = implicit() ? node.m_v - node.m_vn : btVector3(0, 0, 0);
+    if (node.m_im > 0) {
+      node.m_v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) + others;
+    }
     btScalar inverse[6];
     matrix.freeInverse(n, inverse);
     node.m_effectiveMass_inv = symmetricMatrix(inverse);

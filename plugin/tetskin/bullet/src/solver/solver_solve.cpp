@@ -28,7 +28,9 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
     of.touched |= !dv.isZero();
     if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
-    const btVector3 own = implicit() ? btVector3(0, 0, 0) : fromWide(solution);
+    // Beside the rigid motion: what the solution has been; implicitly, what the step has begun with.
+    btVector3 own(0, 0, 0);
+    if (of.elastic) own = implicit() ? before - fromPoint(dynamics.velocity(n)) : fromWide(solution);
     toPoint(before - own, dynamics.velocity(n));
     toWide(own + dv, solution);
     if (implicit()) {
@@ -80,11 +82,23 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   bool again = implicit() || !system.forces.empty();
   for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
-  if (again) return solveAgain(system, inner);
-  if (!first.elastic) return;
-  first.solve->iterate(first.limits->iterations, inner);
-  first.iterations = first.solve->iterations();
-  first.dynamics->removeMomentum();
+  if (again) {
+    solveAgain(system, inner);
+  } else if (first.elastic) {
+    first.solve->iterate(first.limits->iterations, inner);
+    first.iterations = first.solve->iterations();
+  }
+  const bool free = system.forces.empty() && system.rigids.empty() && !first.constrained && !first.touched;
+  if (free && first.elastic) removeMomentum(first);
+}
+
+/// Of a body that nothing touches. Implicitly, other forces, such as gravity, act in this solve.
+void DeformableSolver::Parts::removeMomentum(const SolvedBody& of) const {
+  if (!implicit()) return of.dynamics->removeMomentum();
+  of.dynamics->removeMomentum([&](std::size_t n) -> std::array<double, 3> {
+    const btVector3& impulse = solver.m_residual[of.first + static_cast<int>(n)];
+    return {static_cast<double>(impulse.x()), static_cast<double>(impulse.y()), static_cast<double>(impulse.z())};
+  });
 }
 
 void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor* inner) {
@@ -199,7 +213,7 @@ void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
   for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
-    node.m_v = implicit() ? v : v - node.m_splitv;
+    if (node.m_im > 0) node.m_v = implicit() ? v : v - node.m_splitv;
     of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, node.m_v.length2());
   }
 }

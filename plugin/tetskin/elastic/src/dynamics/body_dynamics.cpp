@@ -3,11 +3,11 @@
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/body_dynamics.h>
-#include <tetskin/elastic/src/dynamics/part_motion.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 namespace tetskin::elastic_detail {
 namespace {
@@ -19,6 +19,12 @@ using kernels::kGroup;
 constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
 /// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
 constexpr double kFullTurnStep = 1.0 / 240.0;
+/// A matrix of rotations that are older by an angle of phi takes rigid turning for strain; the stress of it turns the
+/// body, by dt^2 phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So much is let be:
+/// from 1 to 0.01 held.
+constexpr double kMostGain = 0.1;
+/// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
+constexpr double kStiff = 1e3;
 
 }  // namespace
 
@@ -27,7 +33,9 @@ BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
     : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), held_(nodes) {
   findParts(rest.tets);
   if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
-  for (AlignedVector<S>* v : {&points_, &velocities_, &relative_, &forces_}) v->assign(4 * matrix_.slotCount(), S(0));
+  for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
+    v->assign(4 * matrix_.slotCount(), S(0));
+  }
   for (AlignedVector<S>* v : {&rightSide_, &image_}) v->assign(matrix_.wideSize(), S(0));
 }
 
@@ -40,17 +48,26 @@ void BodyDynamics<S>::findParts(const std::vector<Tet>& tets) {
   }
   partOf_.assign(matrix_.slotCount(), 0);
   std::vector<std::uint32_t> numbers(nodeCount(), 0);  // from 1
+  std::uint32_t parts = 0;
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (number == 0) number = ++parts_;
+    if (number == 0) number = ++parts;
     partOf_[matrix_.slotOf(n)] = number - 1;
   }
+  motions_.resize(parts);
+  stiffness_.assign(parts, 0.0);
 }
 
 template <class S>
 void BodyDynamics<S>::setMaterial(const std::vector<LameOfTet>& lame) {
   assert(tets_ && lame.size() == tets_->count());
-  for (std::size_t t = 0; t < lame.size(); ++t) tets_->setMaterial(t, lame[t]);
+  const RestTets& rest = tets_->rest();
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  for (std::size_t t = 0; t < lame.size(); ++t) {
+    tets_->setMaterial(t, lame[t]);
+    const std::uint32_t part = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
+    stiffness_[part] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
+  }
   changed_ = true;
 }
 
@@ -77,15 +94,19 @@ void BodyDynamics<S>::prepareForces(ParallelFor* threads) {
 template <class S>
 void BodyDynamics<S>::prepare(double seconds, ParallelFor* threads) {
   assert(seconds > 0.0);
-  const double alpha = alphaFor(seconds);
-  const bool other = changed_ || alpha != alpha_;
   prepareForces(threads);
-  const double share = std::min(1.0, seconds / kFullTurnStep);
-  if (other || (tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * kMostTurn))) {
-    matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
-    alpha_ = alpha;
-    changed_ = false;
-  }
+  assembleIfNeeded(seconds, 1.0, threads);
+}
+
+template <class S>
+void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads) {
+  const double alpha = alphaFor(seconds);
+  const double share = turnShare * std::min(1.0, seconds / kFullTurnStep);
+  const bool turned = tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * kMostTurn);
+  if (!changed_ && alpha == alpha_ && !turned) return;
+  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
+  alpha_ = alpha;
+  changed_ = false;
 }
 
 /// Calls visit(slot, first scalar in wide vectors) for all slots.
@@ -97,33 +118,112 @@ void bySlots(std::size_t slots, Visit&& visit) {
 }
 
 template <class S>
-void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
-  std::fill_n(matrix_.solution(), matrix_.wideSize(), S(0));
-  if (!tets_) {
-    std::fill(rightSide_.begin(), rightSide_.end(), S(0));
-  } else {
-    // Of velocities beside that of the whole body, which are small: the stiffness has no part of that, but for
-    // rounding. Slots without node have no velocity, and none is read.
-    std::array<double, 3> sum{};
-    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += static_cast<double>(velocities_[4 * slot + k]);
-    }
-    const auto count = static_cast<double>(nodeCount());
-    const S mean[3] = {static_cast<S>(sum[0] / count), static_cast<S>(sum[1] / count), static_cast<S>(sum[2] / count)};
-    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
-      for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = velocities_[4 * slot + k] - mean[k];
-    }
-    matrix_.multiply(relative_.data(), image_.data(), threads);
-    const auto dt = static_cast<S>(seconds);
-    bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-      const S mass = matrix_.massAt(slot);
-      for (std::size_t k = 0; k < 3; ++k) {
-        rightSide_[wide + k * kGroup] =
-            dt * forces_[4 * slot + k] - image_[wide + k * kGroup] + mass * relative_[4 * slot + k];
-      }
-    });
+void BodyDynamics<S>::findMotions(double seconds) {
+  std::vector<HeldNodes> held(motions_.size());
+  for (std::size_t n = 0; held_ > 0 && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (matrix_.massAt(slot) != S(0)) continue;
+    const S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    held[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
   }
-  std::copy(rightSide_.begin(), rightSide_.end(), matrix_.residual());
+  // About where parts were before: one pass, and no digits lost far from the origin.
+  std::vector<PartMoments> moments(motions_.size());
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    const std::uint32_t part = partOf_[slot];
+    moments[part].add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], motions_[part].about().data());
+  }
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    held[k].finish(seconds);
+    const Eigen::Vector3d near = motions_[k].about();
+    motions_[k].find(moments[k], near, held[k], seconds);
+  }
+}
+
+/// Velocities become those of the rigid motion; `relative_` what they are beside it.
+template <class S>
+void BodyDynamics<S>::moveRigidly(double seconds) {
+  std::vector<RigidVelocity> rigid;
+  for (const PartMotion& motion : motions_) rigid.push_back(motion.velocities(seconds));
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    double v0[3];
+    rigid[partOf_[slot]].at(x, v0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      moved_[4 * slot + k] = static_cast<S>(x[k] + seconds * v0[k]);
+      relative_[4 * slot + k] = static_cast<S>(v[k] - v0[k]);
+      v[k] = static_cast<S>(v0[k]);
+    }
+  }
+}
+
+template <class S>
+bool BodyDynamics<S>::isStiff(double seconds) const {
+  return seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
+}
+
+/// The angle by which tets may turn before the matrix is made anew, over that of a soft body.
+template <class S>
+double BodyDynamics<S>::allowedTurn(double seconds) const {
+  return std::min(1.0, std::sqrt(kMostGain / (seconds * seconds * stiffnessOverInertia_)) / kMeanTurn);
+}
+
+template <class S>
+void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
+  assert(seconds > 0.0);
+  if (!tets_) return assembleIfNeeded(seconds, 1.0, threads);
+  findMotions(seconds);
+  if (changed_) {
+    stiffnessOverInertia_ = 0.0;
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      const double inertia = motions_[k].leastInertia();
+      if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
+    }
+  }
+  moveRigidly(seconds);
+  tets_->forces(moved_.data(), forces_.data(), threads);
+  assembleIfNeeded(seconds, allowedTurn(seconds), threads);
+}
+
+template <class S>
+double BodyDynamics<S>::roundingSpeed(double seconds) const {
+  constexpr double kShare = 0.1;  // of the last digit
+  double reach = 0.0;
+  for (const PartMotion& motion : motions_) reach = std::max(reach, motion.reach());
+  return kShare * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
+}
+
+template <class S>
+void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+  S* solution = matrix_.solution();
+  S* residual = matrix_.residual();
+  squaredDeviation_ = 0.0;
+  if (!tets_) {
+    std::fill_n(solution, matrix_.wideSize(), S(0));
+    std::fill(rightSide_.begin(), rightSide_.end(), S(0));
+    std::copy(rightSide_.begin(), rightSide_.end(), residual);
+    return;
+  }
+  const auto dt = static_cast<S>(seconds);
+  const bool stiff = isStiff(seconds);
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S mass = matrix_.massAt(slot);
+    S* deviation = &relative_[4 * slot];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S impulse = mass * deviation[k];
+      rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
+      if (stiff && mass != S(0)) {
+        squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
+        deviation[k] = S(0);
+      }
+      solution[wide + k * kGroup] = deviation[k];
+    }
+  });
+  if (stiff && held_ == 0) {
+    std::copy(rightSide_.begin(), rightSide_.end(), residual);
+    return;
+  }
+  matrix_.multiply(relative_.data(), image_.data(), threads);
+  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
 }
 
 template <class S>
@@ -154,43 +254,35 @@ double BodyDynamics<S>::energy(ParallelFor* threads) {
 }
 
 template <class S>
-void BodyDynamics<S>::removeMomentum() {
-  using Vector = Eigen::Vector3d;
+void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse) {
   S* solution = matrix_.solution();
-  const auto solutionAt = [&](std::size_t wide) {
-    return Vector(solution[wide], solution[wide + kGroup], solution[wide + 2 * kGroup]);
-  };
-  const auto pointAt = [&](std::size_t slot) {
-    return Vector(points_[4 * slot], points_[4 * slot + 1], points_[4 * slot + 2]);
-  };
-  std::vector<PartMotion> parts(parts_);
-  if (held_ > 0) {
-    for (std::size_t n = 0; n < nodeCount(); ++n) {
-      const std::size_t slot = matrix_.slotOf(n);
-      if (matrix_.massAt(slot) == S(0)) parts[partOf_[slot]].pivot.add(pointAt(slot));
-    }
+  std::vector<PartMomentum> now(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S* v = &velocities_[4 * slot];
+    double velocity[3];
+    for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
+    const std::uint32_t part = partOf_[slot];
+    now[part].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[part].about().data());
+  });
+  std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
+  for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n), part = partOf_[slot];
+    if (matrix_.massAt(slot) == S(0)) continue;
+    const S* x = &points_[4 * slot];
+    const std::array<double, 3> from = impulse(n);
+    const Eigen::Vector3d given(from[0], from[1], from[2]);
+    impulses[part] += given;
+    torques[part] += (Eigen::Vector3d(x[0], x[1], x[2]) - motions_[part].about()).cross(given);
+  }
+  std::vector<RigidVelocity> excess;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    excess.push_back(motions_[k].excess(now[k], impulses[k], torques[k]));
   }
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    PartMotion& part = parts[partOf_[slot]];
-    const auto m = static_cast<double>(matrix_.massAt(slot));
-    part.mass += m;
-    part.push += m * solutionAt(wide);
-    part.about += m * pointAt(slot);
-  });
-  for (PartMotion& part : parts) part.finishPush();
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    PartMotion& part = parts[partOf_[slot]];
-    const auto m = static_cast<double>(matrix_.massAt(slot));
-    const Vector arm = pointAt(slot) - part.about;
-    part.rate += m * arm.cross(solutionAt(wide));
-    part.inertia += m * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
-  });
-  for (PartMotion& part : parts) part.finishRate();
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     if (matrix_.massAt(slot) == S(0)) return;
-    const PartMotion& part = parts[partOf_[slot]];
-    const Vector rigid = part.push + part.rate.cross(pointAt(slot) - part.about);
-    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(rigid[static_cast<int>(k)]);
+    double v[3];
+    excess[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
   });
 }
 

@@ -2,17 +2,24 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // One body's implicit step. From positions x and velocities v, which already have what gravity and others give them:
-//   (M + alpha K) dv = dt f(x) - alpha K v,   alpha = dt (damping + dt),   v <- v + dv,   x <- x + dt v
-// with f the corotated forces and K their stiffness at the rotations of x: a backward Euler step, of first order, which
-// keeps linear and angular momentum.
+//   v0, x0 = x + dt v0: as the body would move if it were rigid, see part_motion.h
+//   (M + alpha K) y = dt f(x0) + M (v - v0),   alpha = dt (damping + dt)
+//   v <- v0 + y,   x <- x + dt v
+// with f the corotated forces and K their stiffness at the rotations of x0: a backward Euler step, of first order, which
+// keeps linear and angular momentum. Only what deviates from rigid motion is solved for. A step that solves for all of
+// the velocity takes turning by an angle of phi for a strain of phi^2 / 2, and for more where K is of older rotations:
+// stiff bodies explode by it.
 //
 // This work is based on:
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
 #pragma once
 
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
+#include <tetskin/elastic/src/dynamics/part_motion.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
+#include <array>
+#include <functional>
 #include <optional>
 
 namespace tetskin::elastic_detail {
@@ -43,8 +50,18 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void prepareForces(ParallelFor* threads);
   /// Forces, and the matrix if it has to change.
   void prepare(double seconds, ParallelFor* threads);
-  /// The right side of the step: of the matrix's residual, and of `startAgain`. The solution is 0.
+
+  /// The beginning of a step: the rigid motion, forces at the points as it moves them, the matrix if it has to change.
+  /// `velocity` is that of the rigid motion from here on.
+  void predict(double seconds, ParallelFor* threads);
+  /// After `predict`: the right side of the step, which is of the matrix's residual and of `startAgain`, too. The
+  /// solution, a velocity beside the rigid motion's, has its start: of a soft body what it was, of a stiff one 0.
   void start(double seconds, ParallelFor* threads);
+  /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in the
+  /// residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
+  double squaredDeviation() const { return squaredDeviation_; }
+  /// Velocities that hardly change a position, by its last digits.
+  double roundingSpeed(double seconds) const;
   void rightSide(std::size_t node, S out[3]) const;
   /// residual = right side - A solution, of the solution as it is. Add what else acts to the residual.
   void startAgain(ParallelFor* threads);
@@ -56,10 +73,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   S* scratchPoints() { return relative_.data(); }
   double energy(ParallelFor* threads);
 
-  /// The solution becomes free of the linear and the angular momentum that internal forces cannot give, but a solve
-  /// that is cut short does: of each part that shares no node with others; held at a node, of momentum about the node,
-  /// held along a line, about the line.
-  void removeMomentum();
+  /// The solution loses the linear and the angular momentum that internal forces cannot give, but a solve that is cut
+  /// short does: see `PartMotion::excess`.
+  /// impulse  of a node, by what else has acted on it in the step; none: nothing has
+  void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {});
   bool anyHeld() const { return held_ > 0; }
 
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
@@ -67,16 +84,24 @@ class TETSKIN_ELASTIC_API BodyDynamics {
  private:
   double alphaFor(double seconds) const;
   void findParts(const std::vector<Tet>& tets);
+  void findMotions(double seconds);
+  void moveRigidly(double seconds);
+  void assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads);
+  double allowedTurn(double seconds) const;
+  bool isStiff(double seconds) const;
 
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;
-  AlignedVector<S> points_, velocities_, relative_, forces_;  ///< by slot
-  AlignedVector<S> rightSide_, image_;                        ///< wide
+  AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0
+  AlignedVector<S> rightSide_, image_;                                ///< wide
   double damping_ = 0.0, alpha_ = 0.0;
   bool changed_ = true;                ///< masses or material, since the last assembly
   std::size_t held_;                   ///< nodes
   std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node
-  std::uint32_t parts_ = 0;
+  std::vector<PartMotion> motions_;    ///< by part, of the last `predict`
+  std::vector<double> stiffness_;      ///< by part: sum of V (2 mu + lambda) over its tets
+  double stiffnessOverInertia_ = 0.0;  ///< of the part where it is most: with dt^2, how much turning is taken for strain
+  double squaredDeviation_ = 0.0;
 };
 
 }  // namespace tetskin::elastic_detail

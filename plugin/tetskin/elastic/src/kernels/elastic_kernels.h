@@ -42,8 +42,8 @@ struct TetWork {
 
 template <class S>
 struct TetFindings {
-  S smallestDot = 1;    ///< of a tet's rotation and that of the matrix, as quaternions
-  double turned = 0.0;  ///< sum of (1 - such a dot), an eighth of the angle's square
+  S mostTurned = 0;     ///< of the squared differences of a tet's rotation and that of the matrix, as quaternions
+  double turned = 0.0;  ///< sum of such differences, each a quarter of the angle's square
   double energy = 0.0;
 };
 
@@ -62,6 +62,7 @@ struct RowWork {
   const std::uint32_t* sums = nullptr;   ///< by entry, and one more: first of its terms
   const std::uint32_t* terms = nullptr;  ///< 16 a term: corners of the rows' nodes, corners of the neighbours
   const S* corners = nullptr;            ///< rotated gradients, see `rotatedGradients`
+  S leastMass = 0;                       ///< over the trace of the stiffness's diagonal block; see `assemble`
 
   // To multiply and to solve. Wide vectors by chunk, points by slot.
   S* residual = nullptr;   ///< transformed: (D + L)^-1 r

@@ -82,7 +82,8 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
   for (int i = 0; i < 3; ++i) block[4 * i] += trace;
 }
 
-/// Rows have the sum of their masses, so that a body moves as a whole without resistance.
+/// Rows have the sum of their masses, so that a body moves as a whole without resistance. A mass below the last digits
+/// of its stiffness would be lost in that sum, and the matrix not be positive: it counts as `leastMass` of them.
 template <class S, int W>
 void assemble(const RowWork<S>& work) {
   using V = Lanes<S, W>;
@@ -98,7 +99,9 @@ void assemble(const RowWork<S>& work) {
           rowSum[k] += block[k];
         }
       }
-      const V mass = wide<S, W>(work.masses + kGroup * c + lane);
+      const V real = wide<S, W>(work.masses + kGroup * c + lane);
+      const V least = -work.leastMass * (rowSum[0] + rowSum[4] + rowSum[8]);
+      const V mass = (real > S(0)) & (real < least) ? least : real;
       const V d[6] = {mass - rowSum[0], S(-0.5) * (rowSum[1] + rowSum[3]), S(-0.5) * (rowSum[2] + rowSum[6]),
                       mass - rowSum[4], S(-0.5) * (rowSum[5] + rowSum[7]), mass - rowSum[8]};
       for (int k = 0; k < 6; ++k) put<S, W>(d[k], work.diagonal + kWideSymmetric * c + k * kGroup + lane);

@@ -19,7 +19,7 @@
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
 /// The square of the angle in radians below which a step of Newton's is the last: the next one would be of the order of
-/// its square. And most steps: those that are not converged are, a substep later.
+/// its square. And most steps, after which `findRotation` is faster.
 template <class S>
 constexpr S kLastStep = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
 constexpr int kMostSteps = 8;
@@ -32,6 +32,17 @@ struct Quaternions {
 template <class S, int W>
 TETSKIN_INLINE Quaternions<S, W> quaternions(const S* from) {
   return {wide<S, W>(from), wide<S, W>(from + kGroup), wide<S, W>(from + 2 * kGroup), wide<S, W>(from + 3 * kGroup)};
+}
+
+/// Of two rotations, whatever the quaternions' signs: 4 sin^2 of a quarter of the angle between them. Unlike 1 - their
+/// dot product it has digits where they are nearly the same.
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Quaternions<S, W>& q) {
+  using V = Lanes<S, W>;
+  const auto opposite = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < S(0);
+  const V sign = opposite ? all<S, W>(-1) : all<S, W>(1);
+  const V w = p.w - sign * q.w, x = p.x - sign * q.x, y = p.y - sign * q.y, z = p.z - sign * q.z;
+  return w * w + x * x + y * y + z * z;
 }
 
 /// Row by row.
@@ -90,6 +101,128 @@ TETSKIN_INLINE Lanes<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W
   return wx * wx + wy * wy + wz * wz;
 }
 
+/// 1 where the rotation is at a saddle or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue below 0.
+/// At 0, of a mirrored tet, there are many maxima, and the one at hand is as good as any.
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
+  using V = Lanes<S, W>;
+  const V* a = s.at;
+  const V trace = a[0] + a[4] + a[8], diagonal = S(1 + 1e-3) * trace;
+  const V m00 = diagonal - a[0], m11 = diagonal - a[4], m22 = diagonal - a[8];
+  const V m01 = S(-0.5) * (a[1] + a[3]), m02 = S(-0.5) * (a[2] + a[6]), m12 = S(-0.5) * (a[5] + a[7]);
+  const V c00 = m11 * m22 - m12 * m12, c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11;
+  const V det = m00 * c00 + m01 * c01 + m02 * c02;
+  const auto negative = (m00 < S(0)) | (m00 * m11 < m01 * m01) | (det < S(0)) | (trace < S(0));
+  return negative ? all<S, W>(1) : V{};
+}
+
+/// A symmetric 4x4 matrix becomes diagonal, its eigenvectors the columns of `vectors`: Jacobi's method.
+TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4][4]) {
+  constexpr int kSweeps = 8;  // it converges quadratically: three or four do
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i + 1; j < 4; ++j) {
+        if (a[i][j] * a[i][j] < 1e-36) continue;
+        const double half = (a[j][j] - a[i][i]) / (2 * a[i][j]), size = half < 0 ? -half : half;
+        const double tangent = (half < 0 ? -1.0 : 1.0) / (size + squareRoot(half * half + 1));
+        const double c = 1 / squareRoot(tangent * tangent + 1), s = tangent * c;
+        const auto turn = [&](double& x, double& y) {
+          const double before = x;
+          x = c * before - s * y;
+          y = s * before + c * y;
+        };
+        for (int k = 0; k < 4; ++k) turn(a[k][i], a[k][j]);
+        for (int k = 0; k < 4; ++k) turn(a[i][k], a[j][k]);
+        for (int k = 0; k < 4; ++k) turn(vectors[k][i], vectors[k][j]);
+      }
+    }
+  }
+}
+
+/// The quaternion w x y z of the rotation that maximises tr(R^T F), from any other: the first eigenvector of that form
+/// (Berthold K. P. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4,
+/// 1987, doi 10.1364/JOSAA.4.000629). Some 1 us. Left as it is where F is 0 or not finite.
+TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) {
+  double squared = 0.0;
+  for (int k = 0; k < 9; ++k) squared += f[k] * f[k];
+  if (!(squared > 0.0 && squared < 1e300)) return;
+  const double unit = 1 / squareRoot(squared);
+  double m[9];
+  for (int k = 0; k < 9; ++k) m[k] = unit * f[k];
+  const double t = m[0] + m[4] + m[8];
+  const double x = m[7] - m[5], y = m[2] - m[6], z = m[3] - m[1];
+  const double xy = m[1] + m[3], xz = m[2] + m[6], yz = m[5] + m[7];
+  double a[4][4] = {{t, x, y, z}, {x, 2 * m[0] - t, xy, xz}, {y, xy, 2 * m[4] - t, yz}, {z, xz, yz, 2 * m[8] - t}};
+  double vectors[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  diagonalise(a, vectors);
+  int first = 0;
+  for (int k = 1; k < 4; ++k) first = a[k][k] > a[first][first] ? k : first;
+  // Of several that are as good, as of a body turned inside out, the nearest to the one before, or to a fixed one: tets
+  // side by side must not choose by their rounding.
+  constexpr double kAsGood = 1e-3, kHasPart = 1e-3;
+  const double fixed[4] = {0, 1, 0, 0};
+  const auto project = [&](const double* wanted, double* to) {
+    double length = 0.0;
+    for (int k = 0; k < 4; ++k) to[k] = 0.0;
+    for (int n = 0; n < 4; ++n) {
+      if (a[n][n] < a[first][first] - kAsGood) continue;
+      double part = 0.0;
+      for (int k = 0; k < 4; ++k) part += wanted[k] * vectors[k][n];
+      for (int k = 0; k < 4; ++k) to[k] += part * vectors[k][n];
+      length += part * part;
+    }
+    length = squareRoot(length);
+    if (!(length > kHasPart)) return false;
+    for (int k = 0; k < 4; ++k) to[k] /= length;
+    return true;
+  };
+  double found[4];
+  const bool chosen = project(q, found) || project(fixed, found);
+  for (int k = 0; k < 4; ++k) q[k] = chosen ? found[k] : vectors[k][first];
+}
+
+/// Of those tets that have lost theirs.
+template <class S, int W>
+TETSKIN_NOINLINE void findRotations(const WideMatrix<S, W>& f, const Lanes<S, W>& lost, Quaternions<S, W>& q) {
+  S from[9][W], to[4][W], which[W];
+  for (int k = 0; k < 9; ++k) put<S, W>(f.at[k], from[k]);
+  put<S, W>(q.w, to[0]), put<S, W>(q.x, to[1]), put<S, W>(q.y, to[2]), put<S, W>(q.z, to[3]);
+  put<S, W>(lost, which);
+  for (int i = 0; i < W; ++i) {
+    if (!(which[i] > S(0))) continue;
+    double gradient[9], found[4];
+    for (int k = 0; k < 9; ++k) gradient[k] = static_cast<double>(from[k][i]);
+    for (int k = 0; k < 4; ++k) found[k] = static_cast<double>(to[k][i]);
+    findRotation(gradient, found);
+    for (int k = 0; k < 4; ++k) to[k][i] = static_cast<S>(found[k]);
+  }
+  q = {wide<S, W>(to[0]), wide<S, W>(to[1]), wide<S, W>(to[2]), wide<S, W>(to[3])};
+}
+
+/// The rotations that maximise tr(R^T F), from those of the step before; s becomes R^T F. As a quadratic form of R's
+/// quaternion it has no other maxima, but saddles that steps hardly lead away from: a tet that has been turned by 180
+/// degrees begins at one.
+template <class S, int W>
+TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& q, WideMatrix<S, W>& r,
+                                  WideMatrix<S, W>& s) {
+  const auto follow = [&] {
+    r = rotationOf<S, W>(q);
+    s = transposedProduct<S, W>(r, f);
+  };
+  follow();
+  Lanes<S, W> squaredAngle{};
+  for (int k = 0; k < kMostSteps; ++k) {
+    squaredAngle = turnAlong<S, W>(q, s);
+    follow();
+    if (!anyAbove<S, W>(squaredAngle, kLastStep<S>)) break;
+  }
+  const Lanes<S, W> stillTurning = (squaredAngle > kLastStep<S>) ? all<S, W>(1) : Lanes<S, W>{};
+  const Lanes<S, W> lost = larger(atNoMaximum<S, W>(s), stillTurning);
+  if (!anyAbove<S, W>(lost, S(0.5))) return;
+  findRotations<S, W>(f, lost, q);
+  follow();
+}
+
 template <class S, int W>
 TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, const S* points, int lane) {
   using V = Lanes<S, W>;
@@ -135,7 +268,7 @@ TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S
 template <class S, int W>
 TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
   using V = Lanes<S, W>;
-  V smallestDot = all<S, W>(1), turned{};
+  V mostTurned{}, turned{};
   double energy = 0.0;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
@@ -143,21 +276,16 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
       const WideMatrix<S, W> f = deformationGradient<S, W>(pack, work.points, lane);
       S* const rotations = work.rotations + 4 * kGroup * p + lane;
       Quaternions<S, W> q = quaternions<S, W>(rotations);
-      WideMatrix<S, W> r = rotationOf<S, W>(q), s = transposedProduct<S, W>(r, f);
-      for (int step = 0; step < kMostSteps; ++step) {
-        const V angles = turnAlong<S, W>(q, s);
-        r = rotationOf<S, W>(q);
-        s = transposedProduct<S, W>(r, f);
-        if (!anyAbove<S, W>(angles, kLastStep<S>)) break;
-      }
+      WideMatrix<S, W> r, s;
+      turnToMaximum<S, W>(f, q, r, s);
       put<S, W>(q.w, rotations);
       put<S, W>(q.x, rotations + kGroup);
       put<S, W>(q.y, rotations + 2 * kGroup);
       put<S, W>(q.z, rotations + 3 * kGroup);
       const Quaternions<S, W> before = quaternions<S, W>(work.assembled + 4 * kGroup * p + lane);
-      const V same = absolute<S, W>(q.w * before.w + q.x * before.x + q.y * before.y + q.z * before.z);
-      smallestDot = smaller(same, smallestDot);
-      turned += S(1) - same;
+      const V turn = squaredDifference<S, W>(q, before);
+      mostTurned = larger(turn, mostTurned);
+      turned += turn;
 
       const V e0 = s.at[0] - S(1), e4 = s.at[4] - S(1), e8 = s.at[8] - S(1);
       const V e1 = S(0.5) * (s.at[1] + s.at[3]), e2 = S(0.5) * (s.at[2] + s.at[6]), e5 = S(0.5) * (s.at[5] + s.at[7]);
@@ -177,7 +305,7 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
       }
     }
   }
-  return {smallest<S, W>(smallestDot), static_cast<double>(laneSum<S, W>(turned)), energy};
+  return {largest<S, W>(mostTurned), static_cast<double>(laneSum<S, W>(turned)), energy};
 }
 
 template <class S, int W>

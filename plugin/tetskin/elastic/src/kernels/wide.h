@@ -55,13 +55,13 @@ TETSKIN_INLINE S laneSum(const Lanes<S, W>& v) {
   }
 }
 template <class S, int W>
-TETSKIN_INLINE S smallest(const Lanes<S, W>& v) {
+TETSKIN_INLINE S largest(const Lanes<S, W>& v) {
   if constexpr (W == 1) {
     return v;
   } else {
-    S least = v[0];
-    for (int i = 1; i < W; ++i) least = v[i] < least ? v[i] : least;
-    return least;
+    S most = v[0];
+    for (int i = 1; i < W; ++i) most = v[i] > most ? v[i] : most;
+    return most;
   }
 }
 template <class S, int W>

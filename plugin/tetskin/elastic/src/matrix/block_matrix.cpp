@@ -4,6 +4,7 @@
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
 #include <cassert>
+#include <limits>
 #include <numeric>
 
 namespace tetskin::elastic_detail {
@@ -12,6 +13,10 @@ using kernels::kGroup;
 using kernels::kWideSymmetric;
 
 namespace {
+
+/// Of a node, over the trace of the block of alpha K on its diagonal: so many last digits of it.
+template <class S>
+constexpr S kLeastMass = 16 * std::numeric_limits<S>::epsilon();
 
 /// Of a positive matrix: xx xy xz yy yz zz.
 template <class S>
@@ -104,6 +109,7 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work();
     part.corners = corners;
+    part.leastMass = kLeastMass<S>;
     part.diagonal = freeDiagonal_.data();
     part.inverse = freeInverse_.data();
     part.firstChunk = first;

@@ -99,11 +99,11 @@ double CorotatedTets<S>::cornerForces(const S* points, bool energy, ParallelFor*
     work.points = points;
     findings_[task] = table.forces(work, energy);
   });
-  smallestDot_ = S(1);
+  mostTurned_ = S(0);
   turned_ = 0.0;
   double total = 0.0;
   for (const kernels::TetFindings<S>& part : findings_) {
-    smallestDot_ = std::min(smallestDot_, part.smallestDot);
+    mostTurned_ = std::max(mostTurned_, part.mostTurned);
     turned_ += part.turned;
     total += part.energy;
   }
@@ -130,23 +130,23 @@ template <class S>
 double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
   // What asks is told, and changes nothing: rotations are turned from where they were before.
   const AlignedVector<S> rotations = rotations_;
-  const S smallestDot = smallestDot_;
+  const S mostTurned = mostTurned_;
   const double turned = turned_;
   const double energy = cornerForces(points, true, threads);
   rotations_ = rotations;
-  smallestDot_ = smallestDot;
+  mostTurned_ = mostTurned;
   turned_ = turned;
   return energy;
 }
 
 template <class S>
 double CorotatedTets<S>::meanTurn() const {
-  return std::sqrt(8.0 * std::max(0.0, turned_) / static_cast<double>(noTet(count())));
+  return std::sqrt(4.0 * turned_ / static_cast<double>(noTet(count())));
 }
 
 template <class S>
 double CorotatedTets<S>::mostTurn() const {
-  return 2.0 * std::acos(std::min(1.0, static_cast<double>(smallestDot_)));
+  return 4.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(mostTurned_))));
 }
 
 template <class S>

@@ -64,8 +64,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   AlignedVector<S> rotations_, assembled_, corners_;
   std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot
   std::size_t slots_ = 0;
-  S smallestDot_ = 0;
-  double turned_ = 0.0;                            ///< sum of an eighth of the angles' squares
+  S mostTurned_ = 0;                               ///< squared difference of quaternions
+  double turned_ = 0.0;                            ///< sum of them, a quarter of the angles' squares
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
 };
 

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/elastic/src/dynamics/part_motion.h>
+
+#include <Eigen/Geometry>
+
+#include "elastic_fixtures.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using elastic_detail::HeldNodes;
+using elastic_detail::PartMoments;
+using elastic_detail::PartMotion;
+using test::Points;
+
+constexpr double kSeconds = 1.0 / 60;
+
+/// Nodes with masses and velocities, some of them held: those of mass 0.
+struct Part {
+  Points nodes, velocities;
+  std::vector<double> masses;
+
+  PartMotion motion() const {
+    HeldNodes held;
+    PartMoments moments;
+    const Vector3d near(0.3, -0.2, 0.1);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (masses[n] == 0.0) held.add(nodes[n], velocities[n]);
+      moments.add(masses[n], nodes[n].data(), velocities[n].data(), near.data());
+    }
+    held.finish(kSeconds);
+    PartMotion found;
+    found.find(moments, near, held, kSeconds);
+    return found;
+  }
+  /// Where the rigid motion takes them.
+  Points moved(const PartMotion& motion) const {
+    const auto rigid = motion.velocities(kSeconds);
+    Points to = nodes;
+    for (Vector3d& p : to) {
+      double v[3];
+      rigid.at(p.data(), v);
+      p += kSeconds * Vector3d(v[0], v[1], v[2]);
+    }
+    return to;
+  }
+  Vector3d momentumOf(const Points& rates) const {
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t n = 0; n < nodes.size(); ++n) sum += masses[n] * rates[n];
+    return sum;
+  }
+  Vector3d spinOf(const Points& rates, const Vector3d& about) const {
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t n = 0; n < nodes.size(); ++n) sum += masses[n] * (nodes[n] - about).cross(rates[n]);
+    return sum;
+  }
+  Points ratesTo(const Points& to) const {
+    Points rates;
+    for (std::size_t n = 0; n < nodes.size(); ++n) rates.push_back((to[n] - nodes[n]) / kSeconds);
+    return rates;
+  }
+};
+
+Part spinning(double rate, unsigned seed) {
+  test::Random random(seed);
+  Part part;
+  part.nodes = test::jittered(test::latticeCage(3, 2, 1), 0.3, seed).nodes;
+  const Vector3d omega = rate * random.vector().normalized(), drift = random.vector();
+  for (const Vector3d& p : part.nodes) {
+    part.masses.push_back(1.5 + random());
+    part.velocities.push_back(drift + omega.cross(p) + 0.2 * rate * random.vector());
+  }
+  return part;
+}
+
+void expectRigid(const Points& before, const Points& after) {
+  for (std::size_t a = 0; a < before.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      EXPECT_NEAR((after[a] - after[b]).norm(), (before[a] - before[b]).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(PartMotion, OfAFreePartKeepsItsShapeItsMomentumAndItsAngularMomentum) {
+  for (const double rate : {0.0, 0.1, 1.0, 10.0, 30.0}) {
+    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+      const Part part = spinning(rate, seed);
+      const Points to = part.moved(part.motion()), rates = part.ratesTo(to);
+      expectRigid(part.nodes, to);
+      EXPECT_LT((part.momentumOf(rates) - part.momentumOf(part.velocities)).norm(), 1e-10 * (1.0 + rate));
+      EXPECT_LT((part.spinOf(rates, {0, 0, 0}) - part.spinOf(part.velocities, {0, 0, 0})).norm(), 1e-9 * (1.0 + rate));
+    }
+  }
+}
+
+TEST(PartMotion, BeyondARightAngleInAStepLeavesTheRestToTheSolve) {
+  for (const double rate : {60.0, 100.0, 1e4}) {
+    const Part part = spinning(rate, 1);
+    const Points to = part.moved(part.motion());
+    expectRigid(part.nodes, to);
+    const Vector3d wanted = part.spinOf(part.velocities, {0, 0, 0}), has = part.spinOf(part.ratesTo(to), {0, 0, 0});
+    EXPECT_LT(has.norm(), wanted.norm());
+    EXPECT_GT(has.norm(), 0.5 * std::min(wanted.norm(), 1.0 / kSeconds));
+  }
+}
+
+TEST(PartMotion, OfAHeldNodeTurnsAboutItAndKeepsTheAngularMomentumAboutIt) {
+  Part part = spinning(10.0, 2);
+  part.masses[5] = 0.0;
+  for (const Vector3d& led : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
+    part.velocities[5] = led;
+    const Points to = part.moved(part.motion());
+    expectRigid(part.nodes, to);
+    EXPECT_LT((to[5] - part.nodes[5] - kSeconds * led).norm(), 1e-14);
+    EXPECT_LT((part.spinOf(part.ratesTo(to), part.nodes[5]) - part.spinOf(part.velocities, part.nodes[5])).norm(), 1e-9);
+  }
+}
+
+TEST(PartMotion, OfAHeldLineTurnsAboutItAndFollowsIt) {
+  Part part = spinning(10.0, 3);
+  part.nodes[0] = {0, 0, 0};
+  part.nodes[1] = {0, 1, 0};
+  part.nodes[2] = {0, 3, 0};
+  for (int k = 0; k < 3; ++k) part.masses[static_cast<std::size_t>(k)] = 0.0;
+  for (const double tilt : {0.0, 0.3}) {  // radians a second, about x
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d& p = part.nodes[static_cast<std::size_t>(k)];
+      part.velocities[static_cast<std::size_t>(k)] = Vector3d(tilt, 0, 0).cross(p) + Vector3d(tilt, 0, tilt);
+    }
+    const Points to = part.moved(part.motion()), rates = part.ratesTo(to);
+    expectRigid(part.nodes, to);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LT((to[k] - part.nodes[k] - kSeconds * part.velocities[k]).norm(), 1e-14 + 1e-4 * tilt) << k;
+    }
+    const double wanted = part.spinOf(part.velocities, {0, 0, 0}).y();
+    EXPECT_NEAR(part.spinOf(rates, {0, 0, 0}).y(), wanted, 1e-9 + 0.02 * tilt * std::abs(wanted));
+  }
+}
+
+TEST(PartMotion, OfWhatIsHeldByMoreGoesWhereItIsLed) {
+  Part part = spinning(10.0, 4);
+  const Matrix3d turn = test::turnBy(3.0, {1, 2, 3});
+  const Vector3d shift(0.01, -0.02, 0.03);
+  Points led;
+  for (const Vector3d& p : part.nodes) led.push_back(turn * p + shift);
+  for (std::size_t k = 0; k < 5; ++k) {
+    part.masses[k] = 0.0;
+    part.velocities[k] = (led[k] - part.nodes[k]) / kSeconds;
+  }
+  const Points to = part.moved(part.motion());
+  for (std::size_t n = 0; n < to.size(); ++n) EXPECT_LT((to[n] - led[n]).norm(), 1e-13) << n;
+  for (std::size_t k = 0; k < 5; ++k) part.velocities[k].setZero();
+  const Points stays = part.moved(part.motion());
+  for (std::size_t n = 0; n < to.size(); ++n) EXPECT_EQ(stays[n], part.nodes[n]) << n;
+}
+
+TEST(PartMotion, OfWhatIsNotFiniteIsNone) {
+  Part part = spinning(1.0, 5);
+  part.velocities[3].x() = std::numeric_limits<double>::quiet_NaN();
+  const PartMotion motion = part.motion();
+  EXPECT_TRUE(motion.about().allFinite());
+  EXPECT_EQ(part.moved(motion), part.nodes);
+}
+
+}  // namespace
+}  // namespace tetskin
