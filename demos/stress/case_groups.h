@@ -23,6 +23,7 @@ void addEventCases(Cases& cases);
 void addModelCases(Cases& cases);
 void addContactCases(Cases& cases);
 void addReducedCases(Cases& cases);
+void addClaims(Cases& cases);
 
 /// "1e+06", "0.49".
 std::string text(double value);

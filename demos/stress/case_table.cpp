@@ -11,6 +11,7 @@ std::vector<StressCase> stressCases() {
   addModelCases(cases);
   addContactCases(cases);
   addReducedCases(cases);
+  addClaims(cases);
   return cases;
 }
 

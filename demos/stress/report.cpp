@@ -81,6 +81,9 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["extent_max"] = verdict.extentMax;
     row["lowest"] = verdict.lowest;
     row["rest_speed"] = verdict.restSpeed;
+    row["energy"] = verdict.energy;
+    row["energy_stored"] = verdict.energyStored;
+    row["momentum_lost"] = verdict.momentumLost;
     row["expected"] = toString(stressCase.simulation);
     row["held"] = verdict.held();
     row["broken"] = verdict.broken;
@@ -128,6 +131,12 @@ std::string toMarkdown(const std::vector<Row>& rows) {
 
 void printRow(const Row& row) {
   const Verdict& verdict = row.verdict;
+  if (row.stressCase.claim) {
+    std::printf("%-72s energy %7.4f  momentum %8.1e  extent %7.4g %7.0f ms  %s\n", row.stressCase.name.c_str(),
+                verdict.energy, verdict.momentumLost, verdict.extentMax, verdict.milliseconds,
+                heldWord(verdict).c_str());
+    return;
+  }
   std::printf("%-48s %-10s %8.3g  %-10s %7.4f %9.1e %7.0f ms  %s\n", row.stressCase.name.c_str(),
               simulationWord(verdict).c_str(), verdict.extentMax, verdict.status.c_str(), verdict.amplification,
               verdict.restError, verdict.milliseconds, heldWord(verdict).c_str());

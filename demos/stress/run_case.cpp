@@ -111,7 +111,7 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
 Verdict runCase(const StressCase& stressCase) {
   const scenes::WallTimer timer;
   Verdict verdict;
-  bindAndRun(stressCase, verdict);
+  stressCase.claim ? runClaim(*stressCase.claim, verdict) : bindAndRun(stressCase, verdict);
   verdict.milliseconds = timer.milliseconds();
   return verdict;
 }

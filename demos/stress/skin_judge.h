@@ -22,6 +22,9 @@ struct Verdict {
   /// over: whether the body has recovered.
   double shapeError = 0.0;
   double lowest = 0.0;     ///< of the surface at the end, over the scene's floor, in sizes; 0 where there is none
+  double energy = 0.0;        ///< of a claim: the most there was, over what it began with and was given
+  double energyStored = 0.0;  ///< the same of elastic energy alone, also in the steps of a landing
+  double momentumLost = 0.0;  ///< likewise: the most of momentum and angular momentum, of a free body
   double restSpeed = 0.0;  ///< root mean square of the nodes' in the last half second, in sizes a second
   bool skinFinite = true;  ///< at every update
   std::string status;      ///< the worst that `update` said, or why there is no skin

@@ -4,10 +4,12 @@
 
 #include <tetskin/core/mesh_skin.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/world.h"
+#include "stress/claim.h"
 
 namespace tetskin::stress {
 
@@ -76,7 +78,8 @@ struct StressCase {
   bool rests = false;                   ///< it shall be at rest at the end
   StatusCode refusal = StatusCode::Ok;  ///< of makeSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
-  bool lasts = false;                   ///< a minute and more of simulated time: only runs with --long
+  bool lasts = false;                   ///< a minute and more of simulated time, or one of thousands: only with --long
+  std::optional<Claim> claim;           ///< what is run and judged instead of all the above
 
   double substep() const { return timeStep / substeps; }
 };

@@ -4,10 +4,13 @@
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/surface_spring.h>
 
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tetskin {
 namespace {
@@ -30,7 +33,9 @@ Status checkSpring(const SurfaceSpringOptions& options) {
   if (!(options.damping >= 0.0) || !std::isfinite(options.damping)) {
     return {StatusCode::InvalidOption, "the damping of a spring must be 0 or more, and finite"};
   }
-  if (!(options.maxForce > 0.0)) return {StatusCode::InvalidOption, "the force of a spring must be allowed above 0"};
+  if (!(options.maxForce >= 0.0)) {
+    return {StatusCode::InvalidOption, "the largest force of a spring must be above 0, or 0 for the default"};
+  }
   return {};
 }
 
@@ -38,11 +43,32 @@ Status badPivot() {
   return {StatusCode::NonFinite, "the pivot of a spring is not finite"};
 }
 
-JointSettings settingsOf(const SurfaceSpringOptions& options, double stiffness) {
+/// For a point in space: holds the body and moves it as fast as a hand would.
+double defaultForce(const btDiscreteDynamicsWorld& world, const btSoftBody& body) {
+  constexpr double kWeights = 4.0, kSizes = 20.0;
+  double mass = 0.0;
+  Box3 box;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    if (node.m_im > 0) mass += 1.0 / static_cast<double>(node.m_im);
+    box.extend(toEigen(node.m_x));
+  }
+  const double gravity = static_cast<double>(world.getGravity().length());
+  const double force = mass * std::max(kWeights * gravity, kSizes * box.sizes().maxCoeff());
+  return force > 0.0 ? force : std::numeric_limits<double>::infinity();
+}
+
+JointSettings settingsOf(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Partner& partner,
+                         const SurfaceSpringOptions& options) {
   JointSettings settings;
+  const double stiffness = partner.object() ? kToBody : kToPoint;
   settings.stiffness = options.stiffness > 0.0 ? options.stiffness : stiffness;
   settings.damping = options.damping;
-  settings.maxForce = options.maxForce;
+  if (options.maxForce > 0.0) {
+    settings.maxForce = options.maxForce;
+  } else if (!partner.object()) {
+    settings.maxForce = defaultForce(world, *point.body());
+  }
   settings.collide = options.collide;
   return settings;
 }
@@ -60,8 +86,8 @@ struct SurfaceSpring::Parts {
 
   static Result<std::unique_ptr<SurfaceSpring>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                      std::unique_ptr<Partner> partner, const Options& options) {
-    const double stiffness = partner->object() ? kToBody : kToPoint;
-    auto parts = std::make_unique<Parts>(world, point, std::move(partner), settingsOf(options, stiffness));
+    const JointSettings settings = settingsOf(world, point, *partner, options);
+    auto parts = std::make_unique<Parts>(world, point, std::move(partner), settings);
     return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(parts)));
   }
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Options& options) {

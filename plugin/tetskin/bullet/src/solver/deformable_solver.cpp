@@ -149,7 +149,10 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   for (const SolvedBody& of : bodies) parts.iterations += of.iterations;
   keepNormalImpulses(projection, parts.bodies, m_residual);
   parts.ties.finish(parts.bodies);
-  for (SolvedBody& of : bodies) parts.writeVelocities(of);
+  for (SolvedBody& of : bodies) {
+    if (of.solvedAgain) of.dynamics->bendTurns(static_cast<double>(parts.dt()));
+    parts.writeVelocities(of);
+  }
   parts.hidden.hideLonely(bodies, m_dt);
 }
 

@@ -30,6 +30,7 @@ struct SolvedBody {
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool constrained = false;  ///< by more than held nodes
+  bool solvedAgain = false;  ///< with what contacts and other forces do
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
 
   /// Of a node of the body, by its number.

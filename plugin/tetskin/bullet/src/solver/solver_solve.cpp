@@ -84,6 +84,7 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
   for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
   if (again) {
     solveAgain(system, inner);
+    for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
   } else if (first.elastic) {
     first.solve->iterate(first.limits->iterations, inner);
     first.iterations = first.solve->iterations();
@@ -139,13 +140,16 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   elastic_detail::SolveLimits limits;
   limits.floor = kUnseen * static_cast<double>(dt());
   limits.iterations = 0;
-  bool inContact = false;
+  bool inContact = false, stiff = false;
+  double squaredStart = 0.0;
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     if (of.elastic) limits.enough += of.solve->enough();
     inContact |= of.constrained || of.touched;
+    stiff |= of.dynamics->isStiff();
+    squaredStart += of.dynamics->squaredSolution();
   }
   const double closer = !system.rigids.empty() ? kCloserWithRigids : inContact ? kCloserInContact : 1.0;
   double tolerance = closer * limits.tolerance;
@@ -157,6 +161,12 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   limits.tolerance = tolerance;
   limits.floor *= closer;
   limits.enough *= share * share;  // of squares
+  if (stiff) {
+    // The residual that a contact begins with is as large as the body is stiff: what may be left of it would move light
+    // nodes. What may be left is a share of what has been given.
+    limits.enough = std::max(limits.enough, limits.tolerance * limits.tolerance * squaredStart);
+    limits.tolerance = 0.0;
+  }
   return limits;
 }
 

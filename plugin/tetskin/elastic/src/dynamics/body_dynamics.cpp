@@ -25,6 +25,8 @@ constexpr double kFullTurnStep = 1.0 / 240.0;
 constexpr double kMostGain = 0.1;
 /// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
 constexpr double kStiff = 1e3;
+/// dt^2 times that, above which a turn that arises within a step, of a tenth of a radian, stores energy to speak of.
+constexpr double kFeelsTurns = 1.0;
 
 }  // namespace
 
@@ -156,11 +158,6 @@ void BodyDynamics<S>::moveRigidly(double seconds) {
   }
 }
 
-template <class S>
-bool BodyDynamics<S>::isStiff(double seconds) const {
-  return seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
-}
-
 /// The angle by which tets may turn before the matrix is made anew, over that of a soft body.
 template <class S>
 double BodyDynamics<S>::allowedTurn(double seconds) const {
@@ -179,6 +176,7 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
       if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
     }
   }
+  stiff_ = seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
   moveRigidly(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
   assembleIfNeeded(seconds, allowedTurn(seconds), threads);
@@ -204,26 +202,38 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
     return;
   }
   const auto dt = static_cast<S>(seconds);
-  const bool stiff = isStiff(seconds);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S mass = matrix_.massAt(slot);
     S* deviation = &relative_[4 * slot];
     for (std::size_t k = 0; k < 3; ++k) {
       const S impulse = mass * deviation[k];
       rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
-      if (stiff && mass != S(0)) {
+      if (stiff_ && mass != S(0)) {
         squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
         deviation[k] = S(0);
       }
       solution[wide + k * kGroup] = deviation[k];
     }
   });
-  if (stiff && held_ == 0) {
+  if (stiff_ && held_ == 0) {
     std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }
   matrix_.multiply(relative_.data(), image_.data(), threads);
   for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+double BodyDynamics<S>::squaredSolution() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S v = solution[wide + k * kGroup];
+      sum += static_cast<double>(matrix_.massAt(slot) * v * v);
+    }
+  });
+  return sum;
 }
 
 template <class S>
@@ -253,9 +263,10 @@ double BodyDynamics<S>::energy(ParallelFor* threads) {
   return tets_ ? tets_->energy(points_.data(), threads) : 0.0;
 }
 
+/// Of the velocities as the solution has them.
 template <class S>
-void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse) {
-  S* solution = matrix_.solution();
+std::vector<PartMomentum> BodyDynamics<S>::momentaNow() const {
+  const S* solution = matrix_.solution();
   std::vector<PartMomentum> now(motions_.size());
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S* v = &velocities_[4 * slot];
@@ -264,6 +275,36 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
     const std::uint32_t part = partOf_[slot];
     now[part].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[part].about().data());
   });
+  return now;
+}
+
+template <class S>
+void BodyDynamics<S>::bendTurns(double seconds) {
+  if (!tets_ || seconds * seconds * stiffnessOverInertia_ < kFeelsTurns) return;
+  S* solution = matrix_.solution();
+  const std::vector<PartMomentum> now = momentaNow();
+  std::vector<PartMoments> moments(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    S v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = velocities_[4 * slot + k] + solution[wide + k * kGroup];
+    const std::uint32_t part = partOf_[slot];
+    moments[part].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[part].about().data());
+  });
+  std::vector<RigidVelocity> chords;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    chords.push_back(motions_[k].chord(now[k], moments[k], motions_[k].about(), seconds));
+  }
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    chords[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse) {
+  const std::vector<PartMomentum> now = momentaNow();
   std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
   for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n), part = partOf_[slot];
@@ -278,6 +319,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     excess.push_back(motions_[k].excess(now[k], impulses[k], torques[k]));
   }
+  S* solution = matrix_.solution();
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     if (matrix_.massAt(slot) == S(0)) return;
     double v[3];

@@ -60,6 +60,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in the
   /// residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
   double squaredDeviation() const { return squaredDeviation_; }
+  /// Of the last `predict`.
+  bool isStiff() const { return stiff_; }
+  /// The square of the solution's norm, by masses.
+  double squaredSolution() const;
   /// Velocities that hardly change a position, by its last digits.
   double roundingSpeed(double seconds) const;
   void rightSide(std::size_t node, S out[3]) const;
@@ -77,6 +81,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// short does: see `PartMotion::excess`.
   /// impulse  of a node, by what else has acted on it in the step; none: nothing has
   void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {});
+  /// Where something else than elasticity has turned a part in this step, the solution has that turn as the chord of a
+  /// rotation: a stiff body would be stretched by a straight one. Nothing changes for soft bodies, which hardly feel it.
+  void bendTurns(double seconds);
   bool anyHeld() const { return held_ > 0; }
 
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
@@ -88,13 +95,14 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void moveRigidly(double seconds);
   void assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads);
   double allowedTurn(double seconds) const;
-  bool isStiff(double seconds) const;
+  std::vector<PartMomentum> momentaNow() const;
 
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;
   AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0
   AlignedVector<S> rightSide_, image_;                                ///< wide
   double damping_ = 0.0, alpha_ = 0.0;
+  bool stiff_ = false;
   bool changed_ = true;                ///< masses or material, since the last assembly
   std::size_t held_;                   ///< nodes
   std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node

@@ -128,8 +128,7 @@ void HeldNodes::finish(double seconds) {
 
 void PartMotion::find(const PartMoments& moments, const Vector3d& near, const HeldNodes& held, double seconds) {
   *this = {};
-  kind_ = held.kind;
-  axis_ = held.axis;
+  held_ = held;
   mass_ = moments.mass;
   const Vector3d first = vectorOf(moments.first), momentum = vectorOf(moments.momentum);
   const Vector3d mean = mass_ > 0.0 ? Vector3d(first / mass_) : Vector3d(Vector3d::Zero());
@@ -138,7 +137,7 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
   second << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
   central_ = second - mass_ * mean * mean.transpose();
 
-  const bool free = kind_ == HeldNodes::Nothing;
+  const bool free = held_.kind == HeldNodes::Nothing;
   const Vector3d offset = free ? mean : Vector3d(held.centre - near);
   about_ = near + offset;
   velocity_ = !free ? held.velocity : mass_ > 0.0 ? Vector3d(momentum / mass_) : Vector3d(Vector3d::Zero());
@@ -152,14 +151,14 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
     return;
   }
   const Vector3d own = seconds * (spin_ - mass_ * arm.cross(velocity_));  // beside the motion of what is held
-  switch (kind_) {
+  switch (held.kind) {
     case HeldNodes::Nothing:
     case HeldNodes::Point:
       turn_ = turnWith(own, second_);
       break;
     case HeldNodes::Line: {
       const Vector3d led = momentOf(held.turn, second_);
-      turn_ = turnAround(held.turn * axis_, axis_.dot(own - led), second_) * held.turn;
+      turn_ = turnAround(held.turn * held.axis, held.axis.dot(own - led), second_) * held.turn;
       break;
     }
     case HeldNodes::Fixed:
@@ -184,12 +183,28 @@ RigidVelocity PartMotion::excess(const PartMomentum& now, const Vector3d& impuls
   const Vector3d spin = vectorOf(now.spin) - spin_ - torque;
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
   const Matrix3d inertia = inertiaOf(turn_, second_);
-  if (kind_ == HeldNodes::Nothing && mass_ > 0.0) push = (vectorOf(now.momentum) - momentum_ - impulse) / mass_;
-  if (kind_ == HeldNodes::Nothing || kind_ == HeldNodes::Point) rate = inertia.partialPivLu().solve(spin);
-  if (kind_ == HeldNodes::Line) rate = axis_ * (axis_.dot(spin) / axis_.dot(inertia * axis_));
+  if (held_.kind == HeldNodes::Nothing && mass_ > 0.0) push = (vectorOf(now.momentum) - momentum_ - impulse) / mass_;
+  if (held_.kind == HeldNodes::Nothing || held_.kind == HeldNodes::Point) rate = inertia.partialPivLu().solve(spin);
+  if (held_.kind == HeldNodes::Line) rate = held_.axis * (held_.axis.dot(spin) / held_.axis.dot(inertia * held_.axis));
   if (!push.allFinite()) push.setZero();
   if (!rate.allFinite()) rate.setZero();
   return rigidVelocity(about_, push, crossMatrix(rate) * turn_);
+}
+
+RigidVelocity PartMotion::chord(const PartMomentum& now, const PartMoments& moments, const Vector3d& near,
+                                double seconds) const {
+  PartMotion turned;
+  turned.find(moments, near, held_, seconds);
+  return turned.velocities(seconds) - velocities(seconds) - excess(now, Vector3d::Zero(), Vector3d::Zero());
+}
+
+RigidVelocity RigidVelocity::operator-(const RigidVelocity& other) const {
+  RigidVelocity difference = *this;
+  double there[3];
+  other.at(about, there);
+  for (int k = 0; k < 3; ++k) difference.velocity[k] -= there[k];
+  for (int k = 0; k < 9; ++k) difference.field[k] -= other.field[k];
+  return difference;
 }
 
 }  // namespace tetskin::elastic_detail

@@ -79,6 +79,7 @@ struct RigidVelocity {
     const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
     for (int i = 0; i < 3; ++i) out[i] = velocity[i] + field[3 * i] * x + field[3 * i + 1] * y + field[3 * i + 2] * z;
   }
+  RigidVelocity operator-(const RigidVelocity& other) const;
 };
 
 class PartMotion {
@@ -102,9 +103,14 @@ class PartMotion {
   /// impulse, torque  what else has acted on it in the step
   RigidVelocity excess(const PartMomentum& now, const Eigen::Vector3d& impulse, const Eigen::Vector3d& torque) const;
 
+  /// What must be added to velocities in which something else has turned the part: the turn is a straight motion, in
+  /// proportion to where nodes are, and becomes a chord. Momenta stay.
+  /// now, moments  of these velocities
+  RigidVelocity chord(const PartMomentum& now, const PartMoments& moments, const Eigen::Vector3d& near,
+                      double seconds) const;
+
  private:
-  HeldNodes::Kind kind_ = HeldNodes::Nothing;
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  HeldNodes held_;
   Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   double mass_ = 0.0;
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();  ///< about `about_`
