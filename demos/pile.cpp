@@ -127,7 +127,7 @@ class Pile {
 };
 
 void Pile::add(const PileModel& of, int k, const PileOptions& options) {
-  SoftBodyOptions how;
+  SoftBodyOptions how = oneKilogram();
   how.implicit = options.setting == Setting::Implicit;
   btSoftBody& body = world_.add(placedAt(of.model.cage, k), how);
   if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);

@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
        "a case did not hold"});
   line.addFlag("--quick", options.quick, "A part of the cases, in some 20 s");
   line.addFlag("--long", options.lasting,
-               "Instead of all others the cases of a minute of simulated time, in some minutes");
+               "Instead of all others the cases of a minute of simulated time, and all claims, in some 25 minutes");
   line.addWord("--force", options.force, {"bullet", "tetskin"},
                "Only the cases of Bullet's forces, or of tetskin's force and solver (default: both)");
   line.addText("--only", options.only, "Only the cases with this in their names");

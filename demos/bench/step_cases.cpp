@@ -158,7 +158,7 @@ void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
   const TouchingModel model(tets);
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
   world.addBox({0, -2.0, 0}, {10, 1, 10});
-  SoftBodyOptions how;
+  SoftBodyOptions how = scenes::oneKilogram();
   how.relativeStiffness = sinks ? 5.0 : 100.0;
   btSoftBody& body = world.add(model.cage, how);
   body.setActivationState(DISABLE_DEACTIVATION);

@@ -43,6 +43,7 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
                                 Elasticity elasticity) {
   scenes::SceneOptions options;
   SoftBodyOptions& body = options.body;
+  body.mass = 0.0;
   body.density = densityOf(reference);
   body.margin = kMarginShare * scenes::kSize;
   body.implicit = elasticity == Elasticity::BulletImplicit;

@@ -23,7 +23,7 @@ constexpr double kFloorTolerance = 0.01;
 
 /// What a scene is made of. Which nodes are held is the scene's own affair.
 struct SceneOptions {
-  SoftBodyOptions body;
+  SoftBodyOptions body = oneKilogram();
   Force force = Force::Elastic;
   int substeps = 4;                      ///< of a frame
   std::shared_ptr<Reduction> reduction;  ///< with Force::Reduced: whose vibrations

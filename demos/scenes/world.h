@@ -42,6 +42,13 @@ constexpr double kSize = 2.0;
 /// Of gravity, in lengths a second, squared.
 constexpr double kEarth = 9.81;
 
+/// The library's defaults for a body of 1 kg, which all figures of the demos are of.
+inline SoftBodyOptions oneKilogram() {
+  SoftBodyOptions options;
+  options.mass = 1.0;
+  return options;
+}
+
 /// What holds soft bodies together, and with it the world that they need.
 enum class Force {
   MassSpring,        ///< Bullet's classic world

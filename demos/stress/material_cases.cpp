@@ -21,7 +21,7 @@ Simulation documented(const StressCase& landing) {
   if (isOurs(landing.force)) return promised(landing);
   const bool offered = landing.force == Force::LinearElasticity || landing.force == Force::NeoHookean;
   if (landing.implicit || !offered) return Simulation::Either;
-  SoftBodyOptions stiffest;  // its default stiffness is what `timeStep` bounds it by
+  SoftBodyOptions stiffest = scenes::oneKilogram();  // its default stiffness is what `timeStep` bounds it by
   stiffest.relativeStiffness = 1e30;
   stiffest.timeStep = landing.substep();
   const TetMesh cage = makeModel(Cage::Bar, Surface::Bar).cage;

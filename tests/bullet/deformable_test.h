@@ -31,7 +31,7 @@ class TetskinWorld : public EmptyWorld {
 
 inline std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage,
                                              const SoftBodyOptions& options = {}) {
-  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, options);
+  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, oneKilogram(options));
   EXPECT_TRUE(body.ok()) << body.status().message;
   return std::move(body).value();
 }

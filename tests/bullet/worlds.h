@@ -19,6 +19,8 @@
 
 #include <memory>
 
+#include "support/one_kilogram.h"
+
 namespace tetskin::test {
 
 /// A world with a floor at y = 0. Derived classes make the world and remove their body before it goes.
@@ -115,7 +117,7 @@ class DeformableWorldBase : public TestWorld {
 class DeformableWorld : public DeformableWorldBase {
  public:
   explicit DeformableWorld(const TetMesh& cage) : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {
-    body_ = makeSoftBody(cage, soft->getWorldInfo()).value();
+    body_ = makeSoftBody(cage, soft->getWorldInfo(), oneKilogram()).value();
     soft->addSoftBody(body_.get());
     soft->addForce(body_.get(), &gravity);
     soft->addForce(body_.get(), &elasticity);

@@ -161,6 +161,31 @@ TEST_P(SpringsIn, HoldARigidBodyByManyPointsAtOnce) {
   for (const auto& spring : springs) EXPECT_LT(spring->stretch(), 0.01);
 }
 
+/// Unbounded ones threw it at hundreds of sizes per second, and stretched it to twenty.
+TEST_P(SpringsIn, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
+  auto world = deformableWorld(GetParam());
+  TouchedBody of(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+  auto spring = SurfaceSpring::add(world->deformable(), point).value();
+  const btVector3 target = *point.position() + btVector3(5, 2, 0);
+  ASSERT_EQ(spring->setTarget(target), TouchStatus::Ok);
+  double fastest = 0, largest = 0;
+  for (int s = 0; s < 480; ++s) {
+    substep(*world);
+    ASSERT_TRUE(isFinite(of.body()));
+    for (int n = 0; n < of.body().m_nodes.size(); ++n) {
+      fastest = std::max(fastest, static_cast<double>(of.body().m_nodes[n].m_v.length()));
+    }
+    btVector3 low, high;
+    of.body().updateBounds();
+    of.body().getAabb(low, high);
+    largest = std::max(largest, static_cast<double>((high - low).length()));
+  }
+  EXPECT_LT(fastest, 40);
+  EXPECT_LT(largest, 6);
+  EXPECT_LT((*point.position() - target).length(), 3) << "it comes";
+}
+
 TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
   auto world = deformableWorld(Solving::Tetskin);
   TouchedBody of(*world);

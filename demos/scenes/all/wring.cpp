@@ -50,7 +50,7 @@ std::unique_ptr<Scene> makeWring(const Cage& cage, const SceneOptions& wished) {
   const auto isHeld = [=](const Eigen::Vector3d& p) { return p[rest.axis] <= rest.from || p[rest.axis] >= rest.to; };
   auto held = std::make_shared<std::vector<int>>(nodesWhere(cage, isHeld));
   btSoftBody& body = scene->add(cage, isHeld);
-  const double mass = options.body.density > 0.0 ? options.body.density * totalVolume(cage) : options.body.mass;
+  const double mass = options.body.mass > 0.0 ? options.body.mass : options.body.density * totalVolume(cage);
   scene->beforeFrame = [=, &body](int frame, const Moved&) {
     if (frame == kReleased) release(body, cage, mass, rest, *held);
   };

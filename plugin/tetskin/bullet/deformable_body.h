@@ -53,17 +53,22 @@ class TETSKIN_BULLET_API DeformableBody {
   /// The stiffness in use, in pressure units: the last one set, or that of the options, or the default for this cage,
   /// the world's gravity and `options.timeStep`.
   double youngsModulus() const;
+  /// The same over density, gravity (of the world when the body was added) and size: from 30 (wobbles, sags) to 300
+  /// (firm). Below some 5 a body cannot hold itself up: its own weight flattens it.
+  double relativeStiffness() const;
   double poissonRatio() const;  ///< 0 to below 0.5
   double damping() const;       ///< seconds
 
   /// The body's material from the next step on; it wakes. As in SoftBodyOptions, but the stiffness must be above 0, and
-  /// is not bounded by the time step. Errors: InvalidOption, and nothing is changed.
+  /// is not bounded by the time step. Errors: InvalidOption, also for what is too stiff for the body's mass and size (in
+  /// float above 1e12 density size^2 / s^2, in double 1e16), and nothing is changed.
   Status setYoungsModulus(double pressure);
   Status setPoissonRatio(double ratio);  ///< likewise
   Status setDamping(double seconds);     ///< likewise
 
-  /// Gravity follows the world's, also when that changes, until it is set here. The body wakes.
-  void setGravity(const btVector3& gravity);
+  /// Gravity follows the world's, also when that changes, until it is set here. The body wakes. Error: InvalidOption for
+  /// one that is not finite, or above 1e6 sizes per second squared; nothing is changed.
+  Status setGravity(const btVector3& gravity);
   void followWorldGravity();  ///< again, as at first
 
   /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]`. The body wakes. Errors:

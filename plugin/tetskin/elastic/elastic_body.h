@@ -25,8 +25,10 @@ struct ElasticOptions {
   int iterations = 200;                ///< of the conjugate gradient in a step, at most; at least 1
 };
 
-/// Corotated linear elasticity of a cage, stepped by backward Euler: stable at any stiffness, of first order in the
-/// step, and with the linear and angular momentum that it began with. Tets come back from being flat or inside out.
+/// Corotated linear elasticity of a cage, stepped by backward Euler: stable, of first order in the step, and with the
+/// linear and angular momentum that it began with. Parts that nothing deforms move as rigid bodies do, at any stiffness
+/// and spin below one radian per step: only what deviates from that is solved for. Tets come back from being flat or
+/// inside out, and find their rotation from any other.
 ///
 /// This work is based on:
 ///   Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004
@@ -43,7 +45,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// At rest, where the cage is.
   /// cage    usable (see `usable`), without flat tets; any unit
   /// Cost    O(T log T) for T tets; memory about 700 bytes a tet in float
-  /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch, InvalidOption
+  /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch; InvalidOption, also for a stiffness over density
+  ///         and squared size (the cube root of the volume) above 1e12 in float or 1e16 in double, in 1 / s^2
   static Result<ElasticBody> make(const TetMesh& cage, const ElasticOptions& options);
 
   std::size_t nodeCount() const;  ///< of the cage; 0 if empty
@@ -55,7 +58,7 @@ class TETSKIN_ELASTIC_API ElasticBody {
   void hold(std::size_t node, bool held = true);
 
   /// One step; returns the iterations that it took. Cost O(T)
-  /// seconds       above 0
+  /// seconds       above 0 and finite, as the acceleration; else nothing moves
   /// acceleration  of all nodes that are not held: gravity
   /// threads       see `ParallelFor`; the bits are the same with any number
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);

@@ -13,8 +13,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <numeric>
+#include <string>
 
 namespace tetskin {
 
@@ -42,16 +44,20 @@ double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& option
   return median(std::move(stiffness));
 }
 
-/// bounded  by what explicit elastic forces can bear
-double defaultYoungsModulus(const Cage& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
-                            double gravity, bool bounded) {
+/// Density times gravity times size: the unit of relative stiffness.
+double weightPressure(const Cage& cage, const std::vector<double>& masses, double gravity) {
   const double volume =
       cage.masses.empty() ? totalVolume(cage) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
   const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / volume;
   // Without gravity nothing sags; the earth's serves as a scale.
   constexpr double kEarth = 9.81;
-  const double wanted = options.relativeStiffness * density * (gravity > 0.0 ? gravity : kEarth) *
-                        boundingBox(cage.nodes).sizes().maxCoeff();
+  return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
+}
+
+/// bounded  by what explicit elastic forces can bear
+double defaultYoungsModulus(const Cage& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
+                            double gravity, bool bounded) {
+  const double wanted = options.relativeStiffness * weightPressure(cage, masses, gravity);
   if (!bounded) return wanted;
   const double frequency = medianSquaredFrequency(cage, options, masses);
   return std::min(wanted, kStableFrequency / (options.timeStep * options.timeStep * frequency));
@@ -59,7 +65,7 @@ double defaultYoungsModulus(const Cage& cage, const SoftBodyOptions& options, co
 
 std::vector<double> nodeMasses(const TetMesh& cage, const SoftBodyOptions& options) {
   if (!options.nodeMasses.empty()) return options.nodeMasses;
-  return lumpedMasses(cage, options.density > 0.0 ? options.density * totalVolume(cage) : options.mass);
+  return lumpedMasses(cage, options.mass > 0.0 ? options.mass : options.density * totalVolume(cage));
 }
 
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
@@ -81,8 +87,22 @@ void setMaterial(Force& force, const ElasticMaterial& material) {
   setDamping(force, static_cast<btScalar>(material.damping));
 }
 
-Status invalid(const char* message) {
+Status invalid(const std::string& message) {
   return {StatusCode::InvalidOption, message};
+}
+
+/// What moves farther in a step than numbers of this precision tell apart is not simulated, it is lost.
+Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
+  constexpr double kMost = 1e6;
+  double volume = 0.0;
+  for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
+  const double size = std::cbrt(volume), length = static_cast<double>(gravity.length());
+  if (length <= kMost * size) return {};
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 sizes per second squared)",
+                length, size, kMost * size);
+  return invalid(text);
 }
 
 }  // namespace
@@ -102,6 +122,7 @@ struct DeformableBody::Parts {
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: what it has when it is not pinned
   ElasticMaterial material;
+  double weightPressure = 1.0;  ///< see there
   ForceModel forceModel = ForceModel::Corotated;
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
@@ -123,6 +144,7 @@ struct DeformableBody::Parts {
   }
   Status set(const ElasticMaterial& now) {
     Status status = checkMaterial(now);
+    if (status.ok()) status = checkStiffness(*body, now);
     if (status.ok()) apply(now);
     return status;
   }
@@ -162,6 +184,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
                                      : defaultYoungsModulus(cage, options, masses, gravity, bounded),
                                  options.poissonRatio, options.damping};
   Status status = checkMaterial(material);
+  if (status.ok()) status = checkStiffness(*body, material);
+  if (status.ok()) status = checkGravity(world.getGravity(), *body);
   if (solver->isReducedSolver()) {
     status = invalid(
         "a world made with a btReducedDeformableBodySolver holds reduced bodies alone; make it with a "
@@ -181,6 +205,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
   parts->forceModel = options.forceModel;
   parts->material = material;
+  parts->weightPressure = weightPressure(cage, masses, gravity);
   parts->makeElasticity(options);
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
@@ -238,6 +263,9 @@ const btSoftBody& DeformableBody::body() const {
 double DeformableBody::youngsModulus() const {
   return parts_->material.youngsModulus;
 }
+double DeformableBody::relativeStiffness() const {
+  return parts_->material.youngsModulus / parts_->weightPressure;
+}
 double DeformableBody::poissonRatio() const {
   return parts_->material.poissonRatio;
 }
@@ -257,9 +285,11 @@ Status DeformableBody::setDamping(double seconds) {
   return parts_->set({youngsModulus(), poissonRatio(), seconds});
 }
 
-void DeformableBody::setGravity(const btVector3& gravity) {
+Status DeformableBody::setGravity(const btVector3& gravity) {
+  if (Status status = checkGravity(gravity, body()); !status.ok()) return status;
   parts_->gravity.set(gravity);
   body().activate();
+  return {};
 }
 
 void DeformableBody::followWorldGravity() {

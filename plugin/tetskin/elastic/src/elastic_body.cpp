@@ -7,6 +7,7 @@
 #include <tetskin/elastic/src/dynamics/body_dynamics.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace tetskin {
 namespace {
@@ -35,7 +36,14 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
       !status.ok()) {
     return status;
   }
-  return checkPositive<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node");
+  if (Status status = checkPositive<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"); !status.ok()) {
+    return status;
+  }
+  const double volume = totalVolume(cage);
+  const double mass = options.nodeMasses.empty()
+                          ? options.density * volume
+                          : std::accumulate(options.nodeMasses.begin(), options.nodeMasses.end(), 0.0);
+  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, options.damping, mass, volume);
 }
 
 Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
@@ -147,7 +155,9 @@ void ElasticBody<Scalar>::hold(std::size_t node, bool held) {
 
 template <class Scalar>
 int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& acceleration, ParallelFor* threads) {
-  assert(parts_ && seconds > 0.0);
+  assert(parts_);
+  const bool finite = std::isfinite(acceleration[0] + acceleration[1] + acceleration[2]);
+  if (!(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
   Parts& p = *parts_;
   p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
   p.dynamics.predict(seconds, threads);

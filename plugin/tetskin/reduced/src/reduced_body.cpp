@@ -40,8 +40,8 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world) {
 Status checkOptions(const ReducedBodyOptions& options) {
   const auto isSize = [](double value) { return value >= 0.0 && std::isfinite(value); };
   if (options.modes < 0) return invalid("a reduced body cannot have less than no modes; 0 takes all");
-  if (!isSize(options.density) || (options.density == 0.0 && !(isSize(options.mass) && options.mass > 0.0))) {
-    return invalid("a reduced body needs a mass above 0, or a density above 0");
+  if (!isSize(options.density) || !isSize(options.mass) || (options.density == 0.0 && options.mass == 0.0)) {
+    return invalid("a reduced body needs a mass above 0, or a density above 0, and both finite");
   }
   if (!isSize(options.friction) || std::isnan(options.margin)) {
     return invalid("a reduced body's friction must not be negative, nor its margin NaN");
@@ -69,7 +69,7 @@ Status checkModes(const VibrationModes& modes) {
 ModalMaterial materialOf(const VibrationModes& modes, const TetMesh& cage, const ReducedBodyOptions& options,
                          double gravity) {
   ModalMaterial material{options.youngsModulus, options.density, options.damping};
-  if (material.density == 0.0) {
+  if (options.mass > 0.0) {
     double volume = 0.0;
     for (const double mass : modes.masses) volume += mass;
     material.density = options.mass / volume;

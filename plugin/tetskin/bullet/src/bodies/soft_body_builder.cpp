@@ -21,14 +21,17 @@ constexpr double kMarginFraction = 0.02;
 constexpr int kMassSpringIterations = 8;
 
 Status checkOptions(const SoftBodyOptions& options) {
-  if (!(options.density >= 0.0) || (options.density == 0.0 && !(options.mass > 0.0))) {
-    return {StatusCode::InvalidOption, "a soft body needs a mass above 0, or a density above 0"};
+  const auto finite = [](double value) { return std::isfinite(static_cast<btScalar>(value)); };
+  if (!(options.mass >= 0.0 && finite(options.mass)) || !(options.density >= 0.0 && finite(options.density)) ||
+      (options.mass == 0.0 && options.density == 0.0)) {
+    return {StatusCode::InvalidOption, "a soft body needs a mass above 0, or a density above 0, and both finite"};
   }
-  if (!(options.friction >= 0.0) || std::isnan(options.margin)) {
-    return {StatusCode::InvalidOption, "a soft body's friction must not be negative, nor its margin NaN"};
+  if (!(options.friction >= 0.0 && finite(options.friction)) || !finite(options.margin)) {
+    return {StatusCode::InvalidOption, "a soft body's friction must not be negative, and it and its margin be finite"};
   }
   if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
-      !(options.timeStep > 0.0) || !std::isfinite(options.youngsModulus + options.damping)) {
+      !(options.timeStep > 0.0) ||
+      !finite(options.youngsModulus) || !finite(options.relativeStiffness) || !finite(options.damping) || !finite(options.timeStep)) {
     return {StatusCode::InvalidOption,
             "a soft body's stiffness and damping must not be negative, and finite, and its time step must be above 0"};
   }
@@ -61,10 +64,7 @@ btSoftBody::TetraScratch restScratch() {
 }
 
 void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
-  double mass = options.mass;
-  if (options.density > 0.0) {
-    mass = options.density * totalVolume(cage);
-  }
+  const double mass = options.mass > 0.0 ? options.mass : options.density * totalVolume(cage);
   const std::vector<double> masses = options.nodeMasses.empty() ? lumpedMasses(cage, mass) : options.nodeMasses;
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
@@ -155,7 +155,7 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
 SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options) {
   if (options.nodeMasses.empty() && !cage.masses.empty()) {
     const double volume = std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
-    const double density = options.density > 0.0 ? options.density : options.mass / volume;
+    const double density = options.mass > 0.0 ? options.mass / volume : options.density;
     for (const double mass : cage.masses) options.nodeMasses.push_back(density * mass);
   }
   if (options.stiffnessScale.empty() && options.forceModel != ForceModel::MassSpring) {

@@ -43,6 +43,9 @@ const std::vector<std::unique_ptr<ForcedBody>>& ElasticForce::bodies() const {
 
 Status ElasticForce::setMaterial(const ElasticMaterial& material) {
   if (Status status = checkMaterial(material); !status.ok()) return status;
+  for (const auto& of : parts_->bodies) {
+    if (Status status = checkStiffness(*of->body, material); !status.ok()) return status;
+  }
   parts_->material = material;
   for (const auto& of : parts_->bodies) of->setMaterial(material);
   return {};
@@ -61,6 +64,7 @@ Status ElasticForce::addTo(btDeformableMultiBodyDynamicsWorld& world, btSoftBody
                            std::vector<double> stiffnessScale) {
   if (Status status = checkMaterial(parts_->material); !status.ok()) return status;
   if (Status status = checkTets(body, stiffnessScale); !status.ok()) return status;
+  if (Status status = checkStiffness(body, parts_->material); !status.ok()) return status;
   const auto& inWorld = world.getSoftBodyArray();
   btDeformableBodySolver* solver = solverOf(body);
   if (!solver || inWorld.findLinearSearch(&body) == inWorld.size()) {
@@ -103,6 +107,7 @@ void ElasticForce::removeFrom(btSoftBody& body) {
 
 void ElasticForce::addSoftBody(btSoftBody* body) {
   if (parts_->find(body) || !checkTets(*body, {}).ok() || !checkMaterial(parts_->material).ok()) return;
+  if (!checkStiffness(*body, parts_->material).ok()) return;
   btDeformableLagrangianForce::addSoftBody(body);
   auto of = std::make_unique<ForcedBody>();
   of->body = body;

@@ -87,6 +87,21 @@ Status checkMaterial(const ElasticMaterial& material) {
   return elastic_detail::checkMaterial<btScalar>(material.youngsModulus, material.poissonRatio, material.damping);
 }
 
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
+  double mass = 0.0, volume = 0.0;
+  int free = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    if (body.m_nodes[n].m_im == 0) continue;
+    mass += 1.0 / static_cast<double>(body.m_nodes[n].m_im);
+    ++free;
+  }
+  if (free == 0) return {};
+  for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
+  // What is pinned has mass, too.
+  const double whole = mass * body.m_nodes.size() / free;
+  return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, whole, volume);
+}
+
 void ForcedBody::build(const ElasticMaterial& material) {
   if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
   dynamics = std::make_unique<Dynamics>(restTetsOf(*body), static_cast<std::size_t>(body->m_nodes.size()));

@@ -20,6 +20,8 @@ void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics);
 /// Ok, or why nothing can be made of the body's tets.
 Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale);
 Status checkMaterial(const ElasticMaterial& material);
+/// Whether it is not too stiff for the body's mass: see elastic_detail::checkStiffness.
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
 
 /// One body under an ElasticForce.
 struct ForcedBody {

@@ -6,6 +6,7 @@
 #include <tetskin/core/types.h>
 
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -34,6 +35,28 @@ Status checkMaterial(double youngsModulus, double poissonRatio, double damping) 
   return invalid(sizeof(Scalar) == sizeof(float)
                      ? "a material so stiff, or so strongly damped, is beyond the range of float"
                      : "a material so stiff, or so strongly damped, is beyond the range of double");
+}
+
+/// A Young's modulus over a density, and over the square of a size, in 1 / s^2, above which positions of this precision
+/// store more energy by their last digits than a body that falls or turns has. Tested to be stable that far, in steps of
+/// 1/60 s.
+template <class Scalar>
+constexpr double kMostStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
+
+/// Whether a body can be simulated that is so stiff beside its mass.
+/// volume  at rest, its cube root counts as the size
+template <class Scalar>
+Status checkStiffness(double youngsModulus, double damping, double mass, double volume) {
+  constexpr double kLongStep = 1.0 / 60.0;
+  const double size = std::cbrt(volume), density = mass / volume;
+  const double most = kMostStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);
+  if (!(mass > 0.0 && volume > 0.0) || youngsModulus <= most) return {};
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "a Young's modulus of %.3g with damping of %.3g s is too stiff for a mass of %.3g in a volume of %.3g, "
+                "in %s: at most %.3g",
+                youngsModulus, damping, mass, volume, sizeof(Scalar) == sizeof(float) ? "float" : "double", most);
+  return {StatusCode::InvalidOption, text};
 }
 
 /// stiffnessScale  by tet, or empty: 1
