@@ -40,10 +40,11 @@ struct SurfaceContactPoint {
 /// In any deformable world with any of its solvers. Nothing else need be done: static, kinematic and dynamic bodies and
 /// the links of multibodies are met in whatever order they were added, as their groups, their masks and their flags
 /// (CF_NO_CONTACT_RESPONSE) allow. Planes, boxes, spheres, capsules and cylinders are met exactly; convex hulls by
-/// their faces, as they are drawn, that is without their margin; other convex shapes by Bullet's GJK; meshes, height
-/// fields and other concave shapes by their triangles, on the side from which these look counter-clockwise; compounds
-/// by their children. Friction is Bullet's. Surfaces are met as linear skins draw them: a quadratic one is
-/// drawn up to some thousandths of the body's size away, more in few tets and under loads.
+/// their faces, as they are drawn, that is without their margin; other convex shapes by Bullet's GJK; meshes and other
+/// concave shapes by their triangles, on the side from which these look counter-clockwise, mirrored with the shape
+/// where its scaling is negative; height fields on the side of their up axis, whatever their winding; compounds by
+/// their children. Friction is Bullet's. Surfaces are met as linear skins draw them: a quadratic one is drawn up to
+/// some thousandths of the body's size away, more in few tets and under loads.
 ///
 /// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again. This object, the body,
 ///           the world, rigid bodies and their shapes may go in any order, each as Bullet allows it. What the world's
