@@ -111,6 +111,37 @@ TEST(DeformableBody, LeavesTheWorldWithItsForces) {
   step(world, 2);  // nothing dangles
 }
 
+TEST(DeformableBody, LeavesItsBodyToAnotherWorldThatItWasMovedTo) {
+  EmptyWorld first;
+  test::TetskinWorld second;
+  auto body = added(first, test::smallCageAbove(3));
+  btSoftBody& moved = body->body();
+  first.deformable().removeSoftBody(&moved);
+  moved.m_worldInfo = &second.deformable().getWorldInfo();
+  second.deformable().addSoftBody(&moved);
+  EXPECT_EQ(body->solverPath(), SolverPath::None);
+  body.reset();
+  step(first, 1);
+  step(second, 1);
+  EXPECT_EQ(second.deformable().getSoftBodyArray().size(), 1);
+  EXPECT_FALSE(std::isnan(lowest(moved)));
+  second.deformable().removeSoftBody(&moved);
+  delete &moved;
+}
+
+TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
+  EmptyWorld bullets;
+  test::TetskinWorld ours;
+  for (EmptyWorld* world : {&bullets, static_cast<EmptyWorld*>(&ours)}) {
+    const auto body = added(*world, test::smallCageAbove(3));
+    EXPECT_NE(body->solverPath(), SolverPath::None);
+    world->deformable().removeSoftBody(&body->body());
+    EXPECT_EQ(body->solverPath(), SolverPath::None);
+    world->deformable().addSoftBody(&body->body());
+    EXPECT_EQ(body->solverPath(), SolverPath::None);
+  }
+}
+
 TEST(DeformableBody, StiffnessScalesWithSizeSoThatBodiesOfAllSizesSagAlike) {
   EmptyWorld world;
   const auto sag = [&](double scale) {

@@ -14,6 +14,7 @@ enum class SolverPath {
   Bullet,     ///< Bullet's force
   ForceOnly,  ///< an ElasticForce in Bullet's solve
   Solver,     ///< an ElasticForce in the solve of a DeformableSolver
+  None,       ///< no force: the body has been taken out of its world
 };
 
 /// A soft body in a deformable world, with gravity and elastic forces of its own: what Bullet leaves to the application
@@ -24,7 +25,8 @@ enum class SolverPath {
 /// when this object goes. That should be before the world does. If the world has been deleted first, this object only
 /// frees its memory; but a solver that outlives its world must not be used in another one then.
 ///
-/// The application may take the body out of the world itself: it then has no forces any more.
+/// The application may take the body out of the world itself: it then has no forces any more. If it has put the body
+/// into another world, the body is the application's own: it stays there when this object goes, and is not deleted.
 class TETSKIN_BULLET_API DeformableBody {
  public:
   /// Makes the body (see `makeSoftBody`) and adds it to the world. Unless `options.configureWorld` is false, switches
