@@ -275,6 +275,46 @@ TEST_P(SurfaceContactIn, TellsItsContacts) {
   EXPECT_NEAR(sum, 10.0 / 240, 0.3 * 10.0 / 240);
 }
 
+double pushedUp(const TouchingBody& body) {
+  double sum = 0;
+  for (const SurfaceContactPoint& at : body.contact->contacts()) sum += static_cast<double>(at.impulse.y());
+  return sum;
+}
+
+TEST_P(SurfaceContactIn, KeepsItsContactsWhenTheWorldIsAskedForOthers) {
+  struct Nothing : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      return 0;
+    }
+  } nothing;
+  const auto made = worldOf(GetParam());
+  TouchingBody body(*made, ballMesh(24, 0.35), btVector3(0, btScalar(0.36), 0));
+  step(*made, 60);
+  const double before = pushedUp(body);
+  const std::size_t count = body.contact->contacts().size();
+  ASSERT_GT(before, 0.01);
+  btCollisionObject* floor = made->world->getCollisionObjectArray()[0];
+  made->world->contactTest(floor, nothing);
+  made->world->contactTest(&body.body->body(), nothing);
+  made->world->contactPairTest(floor, &body.body->body(), nothing);
+  EXPECT_EQ(pushedUp(body), before);
+  EXPECT_EQ(body.contact->contacts().size(), count);
+}
+
+TEST(SurfaceContact, IsOffWhereTheBodyIsToMeetNoRigidBodies) {
+  TetskinWorld world;
+  TouchingBody body(world, ballMesh(16, 0.35), btVector3(0, btScalar(0.36), 0));
+  btSoftBody& soft = body.body->body();
+  step(world, 10);
+  const int before = soft.m_cfg.collisions;
+  soft.m_cfg.collisions = 0;
+  step(world, 30);
+  EXPECT_TRUE(body.contact->contacts().empty());
+  EXPECT_LT(body.height(), -0.5);
+  soft.m_cfg.collisions = before;
+}
+
 TEST(SurfaceContact, SetsAMarginAndGivesItBack) {
   EmptyWorld world;
   TouchingBody body(world, ballMesh(8, 0.35), btVector3(0, 2, 0));
