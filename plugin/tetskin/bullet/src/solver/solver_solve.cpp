@@ -15,6 +15,16 @@ namespace {
 /// up to 1 % of its energy. What a dynamic rigid body gets is known as well as they are small.
 constexpr double kCloserInContact = 0.3, kCloserWithRigids = 0.1;
 
+/// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
+/// nothing.
+btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
+  btVector3 v = node.m_v;
+  for (int k = 0; k < 3; ++k) {
+    if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
+  }
+  return v;
+}
+
 }  // namespace
 
 /// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
@@ -200,7 +210,7 @@ void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
     node.m_v = implicit() ? v : v - node.m_splitv;
-    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, node.m_v.length2());
+    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, movingPart(node, dt()).length2());
   }
 }
 
