@@ -68,7 +68,11 @@ class TETSKIN_BULLET_API DeformableBody {
   void setGravity(const btVector3& gravity);
   void followWorldGravity();  ///< again, as at first
 
-  /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]`. The body wakes. Errors:
+  /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]` before the world steps,
+  /// once a frame or once a step, or set its m_v, by which it goes on; a body that sleeps has to be activated. With a
+  /// `DeformableSolver` a node that is moved by its m_x has the velocity of its motion: it is spread over as many steps
+  /// as lay between the last two times that the node was moved. Where all of the body is put elsewhere (`translate`,
+  /// `rotate`, `transform`, or the m_x of free nodes, too) nothing is given a velocity. The body wakes. Errors:
   /// IndexOutOfRange; that it is pinned already is none.
   Status pin(int node);
   /// Lets it go again, with the mass that it had; likewise.

@@ -14,6 +14,9 @@ namespace {
 /// Of the errors that a solve may leave. Where something pushes they do work, always of the same sign: a landing gained
 /// up to 1 % of its energy. What a dynamic rigid body gets is known as well as they are small.
 constexpr double kCloserInContact = 0.3, kCloserWithRigids = 0.1;
+/// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
+/// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
+constexpr double kWithForeignForces = 1e-6;
 
 /// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
 /// nothing.
@@ -135,19 +138,21 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   elastic_detail::SolveLimits limits;
   limits.floor = kUnseen * static_cast<double>(dt());
   limits.iterations = 0;
-  bool inContact = false;
+  bool inContact = false, anyElastic = false;
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     if (of.elastic) limits.enough += of.solve->enough();
     inContact |= of.constrained || of.touched;
+    anyElastic |= of.elastic != nullptr;
   }
   const double closer = !system.rigids.empty() ? kCloserWithRigids : inContact ? kCloserInContact : 1.0;
   double tolerance = closer * limits.tolerance;
   for (const btDeformableLagrangianForce* force : system.forces) {
     const auto* coupling = dynamic_cast<const CouplingForce*>(force);
-    if (coupling) tolerance = std::min(tolerance, coupling->tolerance());
+    const double foreign = anyElastic ? kWithForeignForces : 1.0;
+    tolerance = std::min(tolerance, coupling ? coupling->tolerance() : foreign);
   }
   const double share = tolerance / std::max(limits.tolerance, 1e-300);  // 0 is a tolerance, too
   limits.tolerance = tolerance;
