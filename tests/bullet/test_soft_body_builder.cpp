@@ -214,6 +214,9 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   options = {};
   options.friction = std::numeric_limits<double>::quiet_NaN();
   fails(good, options, StatusCode::InvalidOption);
+  options = {};
+  options.forceModel = static_cast<ForceModel>(99);
+  fails(good, options, StatusCode::InvalidOption);
 }
 
 }  // namespace

@@ -225,6 +225,17 @@ TEST(SoftContacts, SaysWhatItCannotServe) {
   EXPECT_EQ(SoftContacts::add(world->deformable()).status().code, StatusCode::InvalidOption);
 }
 
+TEST(SoftContacts, RefuseABodyThatOthersHave) {
+  const auto world = worldOf(Setting::Solver);
+  const auto body = added(*world, ball().at(Vector3d(0, 2, 0)));
+  const auto first = contactsIn(*world), second = contactsIn(*world);
+  ASSERT_TRUE(first->include(body->body(), ball().shape).ok());
+  EXPECT_TRUE(first->include(body->body(), ball().shape).ok());  // again, with the same
+  EXPECT_EQ(second->include(body->body(), ball().shape).code, StatusCode::InvalidOption);
+  first->exclude(body->body());
+  EXPECT_TRUE(second->include(body->body(), ball().shape).ok());
+}
+
 TEST(SoftContacts, RefusesBodiesThatAreNotTheShapes) {
   const auto world = worldOf(Setting::Solver), elsewhere = worldOf(Setting::Solver);
   const auto contacts = contactsIn(*world);
