@@ -170,6 +170,16 @@ tetskin_test_style(layers ${CMAKE_COMMAND} -P tests/style/layers.cmake)
 if(TARGET docs)
   tetskin_test_style(docs ${DOXYGEN_EXECUTABLE} ${PROJECT_BINARY_DIR}/plugin/Doxyfile.docs)
 endif()
+# By the compile commands of a configuration without unity builds, which is made here and not built.
+if(PYTHON_OF_SYSTEM AND CMAKE_GENERATOR MATCHES "Ninja|Makefiles")
+  set(alone ${PROJECT_BINARY_DIR}/configurations/alone)
+  tetskin_test_style(alone_configured ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${alone} -G ${CMAKE_GENERATOR}
+    -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=OFF
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF)
+  tetskin_test_style(alone ${PYTHON_OF_SYSTEM} -B tests/style/alone.py ${alone})
+  set_tests_properties(style.alone_configured PROPERTIES FIXTURES_SETUP compile_commands)
+  set_tests_properties(style.alone PROPERTIES FIXTURES_REQUIRED compile_commands PROCESSORS ${nested_parallel})
+endif()
 if(CLANG_FORMAT)
   tetskin_test_style(format ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT})
 endif()

@@ -351,7 +351,7 @@ TEST(SurfaceContact, RefusesWhatDoesNotBelongTogether) {
     options.share = bad;
     EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);
   }
-  for (const double bad : {-1.0, HUGE_VAL, std::nan("")}) {
+  for (const double bad : {-1.0, HUGE_VAL, std::nan(""), 1e-9, 1e-5}) {
     SurfaceContactOptions options;
     options.sampleSpacing = bad;
     EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);

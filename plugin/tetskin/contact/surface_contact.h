@@ -22,7 +22,7 @@ struct SurfaceContactOptions {
   /// the one that carries most. More nodes hold it more firmly, and stiffen the body where it touches.
   double share = 0.1;
   /// Rest units: triangles with longer edges get samples of this spacing, which touch as vertices do. 0: none. Vertices
-  /// must not be farther apart than what the body touches is thick.
+  /// must not be farther apart than what the body touches is thick. At most 10,000,000 of them.
   double sampleSpacing = 0.0;
 };
 
