@@ -200,7 +200,9 @@ TEST(DrivenNodes, KeepTheirVelocityWhenTheyAreLetGo) {
     bar.steps(4);
   }
   for (int n = 0; n < bar.soft().m_nodes.size(); ++n) {
-    if (bar.body->isPinned(n)) ASSERT_TRUE(bar.body->unpin(n).ok());
+    if (bar.body->isPinned(n)) {
+      ASSERT_TRUE(bar.body->unpin(n).ok());
+    }
   }
   bar.steps(60);
   double sum = 0;
