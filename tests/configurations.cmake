@@ -42,10 +42,10 @@ tetskin_test_configuration(double_precision TARGET tests_of_precision TESTS "^(b
 tetskin_test_configuration(sanitized TARGET unit_tests TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced)"
   LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertexOutside|NeverTearWhatHangsTogether|AreStableAtAny|LongitudinalFrequencies|Timoshenkos" OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DEMOS=OFF)
-# The tests that start threads.
+# The tests that start threads, also those beside Bullet's worlds.
 tetskin_test_configuration(thread_sanitized TARGET test_threads TESTS ^threads OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=thread -DTETSKIN_DEMOS=OFF
-  -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_IO=OFF)
+  -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_REDUCED=OFF -DTETSKIN_IO=OFF)
 
 # The fuzzers, a minute each: by libFuzzer if there is a clang with its runtime, otherwise by our random driver. That
 # the rest configures, links and runs without the parts left out is tested by the way.
@@ -169,6 +169,16 @@ endif()
 tetskin_test_style(layers ${CMAKE_COMMAND} -P tests/style/layers.cmake)
 if(TARGET docs)
   tetskin_test_style(docs ${DOXYGEN_EXECUTABLE} ${PROJECT_BINARY_DIR}/plugin/Doxyfile.docs)
+endif()
+# By the compile commands of a configuration without unity builds, which is made here and not built.
+if(PYTHON_OF_SYSTEM AND CMAKE_GENERATOR MATCHES "Ninja|Makefiles")
+  set(alone ${PROJECT_BINARY_DIR}/configurations/alone)
+  tetskin_test_style(alone_configured ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${alone} -G ${CMAKE_GENERATOR}
+    -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=OFF
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF)
+  tetskin_test_style(alone ${PYTHON_OF_SYSTEM} -B tests/style/alone.py ${alone})
+  set_tests_properties(style.alone_configured PROPERTIES FIXTURES_SETUP compile_commands)
+  set_tests_properties(style.alone PROPERTIES FIXTURES_REQUIRED compile_commands PROCESSORS ${nested_parallel})
 endif()
 if(CLANG_FORMAT)
   tetskin_test_style(format ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT})

@@ -4,6 +4,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
 #include <cmath>
@@ -109,6 +110,63 @@ TEST(DeformableBody, LeavesTheWorldWithItsForces) {
   auto* solver = static_cast<btDeformableBodySolver*>(world.softSolver.get());
   EXPECT_EQ(solver->getLagrangianForceArray()->size(), 0);
   step(world, 2);  // nothing dangles
+}
+
+TEST(DeformableBody, LeavesItsBodyToAnotherWorldThatItWasMovedTo) {
+  EmptyWorld first;
+  test::TetskinWorld second;
+  auto body = added(first, test::smallCageAbove(3));
+  btSoftBody& moved = body->body();
+  first.deformable().removeSoftBody(&moved);
+  moved.m_worldInfo = &second.deformable().getWorldInfo();
+  second.deformable().addSoftBody(&moved);
+  EXPECT_EQ(body->solverPath(), SolverPath::None);
+  body.reset();
+  step(first, 1);
+  step(second, 1);
+  EXPECT_EQ(second.deformable().getSoftBodyArray().size(), 1);
+  EXPECT_FALSE(std::isnan(lowest(moved)));
+  second.deformable().removeSoftBody(&moved);
+  delete &moved;
+}
+
+TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
+  EmptyWorld bullets;
+  test::TetskinWorld ours;
+  for (EmptyWorld* world : {&bullets, static_cast<EmptyWorld*>(&ours)}) {
+    const auto body = added(*world, test::smallCageAbove(3));
+    EXPECT_NE(body->solverPath(), SolverPath::None);
+    world->deformable().removeSoftBody(&body->body());
+    EXPECT_EQ(body->solverPath(), SolverPath::None);
+    world->deformable().addSoftBody(&body->body());
+    EXPECT_EQ(body->solverPath(), SolverPath::None);
+  }
+}
+
+/// As the guide says.
+TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
+  test::TetskinWorld world;
+  const TetMesh cage = test::smallCageAbove(1);
+  TetMesh aside = cage;
+  for (Eigen::Vector3d& p : aside.nodes) p.x() += 5;
+  const auto healthy = added(world, aside);
+  auto body = added(world, cage);
+  SoftBodySkin skin;
+  ASSERT_TRUE(skin.bind(body->body(), cage, test::sphere(8, 0.2, Eigen::Vector3d(0.3, 1.3, 0.4))).ok());
+  const auto binding = skin.binding();
+  step(world, 1);
+  body->body().m_nodes[3].m_v.setX(std::numeric_limits<btScalar>::quiet_NaN());
+  step(world, 1);
+  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  body.reset();
+  body = added(world, cage);
+  ASSERT_TRUE(skin.bind(body->body(), binding).ok());
+  step(world, 60);
+  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  for (const btSoftBody* of : {&body->body(), &healthy->body()}) {
+    EXPECT_GT(lowest(*of), -0.05);
+    EXPECT_LT(lowest(*of), 0.5);
+  }
 }
 
 TEST(DeformableBody, StiffnessScalesWithSizeSoThatBodiesOfAllSizesSagAlike) {

@@ -223,6 +223,9 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   SoftBodyOptions options;
   options.margin = kNaN;
   fails(good, options, StatusCode::InvalidOption);
+  options = {};
+  options.forceModel = static_cast<ForceModel>(99);
+  fails(good, options, StatusCode::InvalidOption);
 }
 
 }  // namespace

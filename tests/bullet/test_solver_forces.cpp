@@ -142,5 +142,32 @@ TEST(SolverWithOthers, ABodyGivenAForceByBulletsMeansHasThatForce) {
   step(world, 5);
 }
 
+/// A mouse that holds still what rests must leave it at rest, however the solve is cut short.
+TEST(SolverWithOthers, BulletsForcesGainNoEnergyOnElasticBodies) {
+  for (const double youngsModulus : {2e4, 2e5}) {
+    TetskinWorld world;
+    world.deformable().setGravity(btVector3(0, 0, 0));
+    SoftBodyOptions options;
+    options.youngsModulus = youngsModulus;
+    TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
+    for (Eigen::Vector3d& p : cage.nodes) p.y() += 2;
+    const auto body = added(world, cage, options);
+    btSoftBody& soft = body->body();
+    soft.setActivationState(DISABLE_DEACTIVATION);
+    const btSoftBody::Face& face = soft.m_faces[0];
+    btVector3 at(0, 0, 0);
+    for (const btSoftBody::Node* node : face.m_n) at += node->m_x / 3;
+    btDeformableMousePickingForce mouse(100, btScalar(0.5), face, at, 20);
+    world.deformable().addForce(&soft, &mouse);
+    double fastest = 0;
+    for (int f = 0; f < 90; ++f) {
+      step(world, 1);
+      fastest = std::max(fastest, std::sqrt(static_cast<double>(soft.m_maxSpeedSquared)));
+    }
+    EXPECT_LT(fastest, 0.3) << youngsModulus;
+    world.deformable().removeForce(&soft, &mouse);
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

@@ -70,6 +70,7 @@ class ClassicWorld : public TestWorld {
     addFloor();
     soft->getWorldInfo().m_gravity.setValue(0, -10, 0);
     soft->getWorldInfo().m_sparsesdf.Initialize();
+    options = oneKilogram(options);
     options.forceModel = ForceModel::MassSpring;
     body_ = makeSoftBody(cage, soft->getWorldInfo(), options).value();
     soft->addSoftBody(body_.get());

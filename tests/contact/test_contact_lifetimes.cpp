@@ -66,6 +66,29 @@ TEST(ContactLifetimes, ObstaclesComeAndGoInTouch) {
   EXPECT_LT(body->height(), 2.0);
 }
 
+TEST(ContactLifetimes, NoObstacleIsToldOfThatHasLeftTheWorld) {
+  TetskinWorld world;
+  const auto shelfAt = [&](btScalar x) {
+    return std::make_unique<Obstacle>(world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.5), 1)),
+                                      placeAt(btVector3(x, 4, 0)));
+  };
+  auto left = shelfAt(-1), right = shelfAt(1);
+  TouchingBody body(world, boxMesh(Eigen::Vector3d(0.35, 0.35, 0.35)), btVector3(0, btScalar(4.86), 0));
+  const auto touches = [&](const btCollisionObject* object) {
+    const auto all = body.contact->contacts();
+    return std::any_of(all.begin(), all.end(), [&](const SurfaceContactPoint& at) { return at.object == object; });
+  };
+  step(world, 30);
+  const btCollisionObject *gone = &left->body(), *stays = &right->body();
+  ASSERT_TRUE(touches(gone));
+  ASSERT_TRUE(touches(stays));
+  left.reset();
+  EXPECT_FALSE(touches(gone));
+  EXPECT_TRUE(touches(stays));
+  step(world, 1);
+  EXPECT_FALSE(touches(gone));
+}
+
 TEST(ContactLifetimes, OtherSoftBodiesKeepBulletsPath) {
   TetskinWorld world;
   const TouchingBody body(world, ballMesh(12, 0.35), btVector3(0, btScalar(0.36), 0));

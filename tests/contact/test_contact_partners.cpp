@@ -77,6 +77,76 @@ TEST_P(ContactPartners, AKinematicBodyCarriesWhatLiesOnIt) {
   EXPECT_NEAR(body.height(), 2.2, 0.01);
 }
 
+/// Ways of moving a kinematic body in each step.
+enum class Told { World, MotionState, Both };
+
+/// A plate goes 0.5 m sideways in a second and then 0.5 m up; how far the body on it has come.
+btVector3 carried(EmptyWorld& world, const SoftBodyOptions& material, Told told, bool bySurface) {
+  const btVector3 start(0, 4, 0);
+  btDefaultMotionState motion(placeAt(start));
+  Obstacle plate(world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)), placeAt(start));
+  plate.body().setCollisionFlags(plate.body().getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  plate.body().setActivationState(DISABLE_DEACTIVATION);
+  if (told == Told::MotionState) plate.body().setMotionState(&motion);
+  TouchingBody body(world, boxMesh(Eigen::Vector3d(0.35, 0.35, 0.35)),
+                    btVector3(0, btScalar(bySurface ? 4.86 : 5.03), 0), {}, material);
+  if (!bySurface) body.contact.reset();
+  btSoftBody& soft = body.body->body();
+  soft.m_cfg.kDF = 1;
+  const auto centre = [&] {
+    btVector3 sum(0, 0, 0);
+    for (int n = 0; n < soft.m_nodes.size(); ++n) sum += soft.m_nodes[n].m_x;
+    return sum / static_cast<btScalar>(soft.m_nodes.size());
+  };
+  step(world, 15);
+  const btVector3 before = centre();
+  btVector3 at = start;
+  for (int k = 0; k < 480; ++k) {
+    at += btScalar(0.5) / 240 * (k < 240 ? btVector3(1, 0, 0) : btVector3(0, 1, 0));
+    motion.setWorldTransform(placeAt(at));
+    if (told != Told::MotionState) plate.body().setWorldTransform(placeAt(at));
+    if (told == Told::Both) plate.body().setInterpolationWorldTransform(placeAt(at));
+    world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+  }
+  plate.body().setMotionState(nullptr);
+  return centre() - before;
+}
+
+TEST_P(ContactPartners, AKinematicBodyCarriesByItsWorldTransformOrItsMotionState) {
+  for (const Told told : {Told::World, Told::MotionState}) {
+    for (const bool bySurface : {false, true}) {
+      const auto world = worldOf(GetParam());
+      const btVector3 way = carried(*world, material(), told, bySurface);
+      EXPECT_NEAR(way.x(), 0.5, 0.03) << bySurface;
+      EXPECT_NEAR(way.y(), 0.5, 0.03) << bySurface;
+    }
+  }
+}
+
+/// Bullet finds a kinematic body's velocity from where its interpolation transform was left.
+TEST_P(ContactPartners, AKinematicBodyCarriesNothingIfItsInterpolationTransformIsSetInEachStep) {
+  for (const bool bySurface : {false, true}) {
+    const auto world = worldOf(GetParam());
+    const btVector3 way = carried(*world, material(), Told::Both, bySurface);
+    EXPECT_NEAR(way.x(), 0, 0.01) << bySurface;
+    EXPECT_LT(way.y(), 0.25) << bySurface;
+  }
+}
+
+/// Put under the body from 20 m away, in one step: at rest if it is told by both transforms.
+TEST_P(ContactPartners, AKinematicBodyThatIsTeleportedByBothTransformsThrowsNothing) {
+  const auto world = worldOf(GetParam());
+  Obstacle plate(*world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)), placeAt(btVector3(0, -20, 0)));
+  plate.body().setCollisionFlags(plate.body().getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  plate.body().setActivationState(DISABLE_DEACTIVATION);
+  TouchingBody body(*world, ballMesh(16, 0.35), btVector3(0, btScalar(4.9), 0), {}, material());
+  for (const auto tell : {&btCollisionObject::setWorldTransform, &btCollisionObject::setInterpolationWorldTransform}) {
+    (plate.body().*tell)(placeAt(btVector3(0, 4, 0)));
+  }
+  step(*world, 45);
+  EXPECT_NEAR(body.height(), 4.5, 0.03);
+}
+
 TEST_P(ContactPartners, AFallingBallWakesASleeper) {
   const auto made = worldOf(GetParam());
   EmptyWorld& world = *made;

@@ -119,6 +119,43 @@ TEST_P(SoftContactsIn, FrictionSlowsWhatSlidesAndNoneDoesNot) {
   EXPECT_LT(speed[true], 0.75 * speed[false]);
 }
 
+/// The pad is held as a whole, and moved a metre by its m_x, once a frame or once a step.
+TEST(SoftContacts, CarryABodyOnAPadThatIsMovedByHand) {
+  for (const int steps : {4, 1}) {
+    const auto world = worldOf(Setting::Solver);
+    SoftBodyOptions held;
+    held.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(9, 9, 9)));
+    TetMesh cage = plate().cage;
+    for (Vector3d& p : cage.nodes) p.y() += 2.0;
+    const auto pad = added(*world, cage, held);
+    for (Vector3d& p : cage.nodes) p.y() += 2 * Plate::kHalfThickness;
+    SoftBodyOptions firm;
+    firm.youngsModulus = 20000.0;
+    const auto carried = added(*world, cage, firm);
+    SoftContactOptions options;
+    options.friction = 1.0;
+    const auto contacts = contactsIn(*world, options);
+    ASSERT_TRUE(contacts->include(pad->body(), plate().shape).ok());
+    ASSERT_TRUE(contacts->include(carried->body(), plate().shape).ok());
+    step(*world, 15);
+    const btScalar before = centreOf(carried->body()).x();
+    const int moves = 360 / steps;
+    for (int k = 1; k <= moves; ++k) {
+      // From rest to rest, half a metre a second squared on and off.
+      const auto wayAt = [&](int n) {
+        const btScalar share = static_cast<btScalar>(n) / static_cast<btScalar>(moves);
+        return share * share * (3 - 2 * share);
+      };
+      for (int n = 0; n < pad->body().m_nodes.size(); ++n) {
+        pad->body().m_nodes[n].m_x += btVector3(wayAt(k) - wayAt(k - 1), 0, 0);
+      }
+      const btScalar dt = btScalar(1) / 240;
+      world->deformable().stepSimulation(static_cast<btScalar>(steps) * dt, steps, dt);
+    }
+    EXPECT_NEAR(centreOf(carried->body()).x() - before, 1.0, 0.03) << steps;
+  }
+}
+
 TEST_P(SoftContactsIn, ABodyMayLeaveTheWorldWhileItTouches) {
   const auto world = worldOf(GetParam());
   auto a = addBall(*world, Vector3d(0, 0, 0)), b = addBall(*world, Vector3d(0.3, 0.77, 0));
@@ -186,6 +223,17 @@ TEST(SoftContacts, SaysWhatItCannotServe) {
   world->deformable().setLineSearch(true);
   step(*world, 1);  // the world tells its solver then
   EXPECT_EQ(SoftContacts::add(world->deformable()).status().code, StatusCode::InvalidOption);
+}
+
+TEST(SoftContacts, RefuseABodyThatOthersHave) {
+  const auto world = worldOf(Setting::Solver);
+  const auto body = added(*world, ball().at(Vector3d(0, 2, 0)));
+  const auto first = contactsIn(*world), second = contactsIn(*world);
+  ASSERT_TRUE(first->include(body->body(), ball().shape).ok());
+  EXPECT_TRUE(first->include(body->body(), ball().shape).ok());  // again, with the same
+  EXPECT_EQ(second->include(body->body(), ball().shape).code, StatusCode::InvalidOption);
+  first->exclude(body->body());
+  EXPECT_TRUE(second->include(body->body(), ball().shape).ok());
 }
 
 TEST(SoftContacts, RefusesBodiesThatAreNotTheShapes) {

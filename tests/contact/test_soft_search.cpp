@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 
+#include <random>
 #include <set>
 
 #include "soft_fixtures.h"
@@ -97,6 +99,30 @@ TEST_F(SoftSearch, BodiesApartHaveNoCandidates) {
   PairCandidates candidates;
   candidates.find(*first, *second, btScalar(0.1));
   EXPECT_TRUE(candidates.runs().empty());
+}
+
+TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {
+  std::mt19937 random(3);
+  for (const btVector3& spread : {btVector3(9, 1, 1), btVector3(1, 1, 9), btVector3(3, 3, 3), btVector3(0, 0, 0)}) {
+    std::vector<ContactBox> boxes(60);
+    for (ContactBox& box : boxes) {
+      btVector3 low, size;
+      for (int k = 0; k < 3; ++k) {
+        low[k] = spread[k] * static_cast<btScalar>(random() % 1000) / 1000;
+        size[k] = static_cast<btScalar>(random() % 1000) / 1000;
+      }
+      box.extend(low);
+      box.extend(low + size);
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+      for (std::size_t b = 0; b < boxes.size(); ++b) {
+        if (boxes[a].meets(boxes[b])) all.emplace_back(a, b);
+      }
+    }
+    EXPECT_EQ(pairsOfBoxesThatMeet(boxes), all);
+  }
+  EXPECT_TRUE(pairsOfBoxesThatMeet({}).empty());
 }
 
 TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {

@@ -137,6 +137,16 @@ double energyOf(EmptyWorld& world, const btSoftBody& body) {
   return energy;
 }
 
+TEST(SurfaceContact, LetsBodiesFallAsleepFarFromTheOrigin) {
+  for (const btScalar far : {btScalar(10000), btScalar(30000)}) {
+    TetskinWorld world;
+    Obstacle ground(world, std::make_unique<btBoxShape>(btVector3(5, 1, 5)), placeAt(btVector3(far, 4, 0)));
+    TouchingBody body(world, ballMesh(12, 0.35), btVector3(far, btScalar(5.4), 0));
+    step(world, 240);
+    EXPECT_FALSE(body.body->body().isActive()) << far;
+  }
+}
+
 TEST_P(SurfaceContactIn, GainsNoEnergyInALanding) {
   const auto world = worldOf(GetParam());
   TouchingBody body(*world, ballMesh(24, 0.35), btVector3(0, btScalar(0.55), 0));
@@ -275,6 +285,46 @@ TEST_P(SurfaceContactIn, TellsItsContacts) {
   EXPECT_NEAR(sum, 10.0 / 240, 0.3 * 10.0 / 240);
 }
 
+double pushedUp(const TouchingBody& body) {
+  double sum = 0;
+  for (const SurfaceContactPoint& at : body.contact->contacts()) sum += static_cast<double>(at.impulse.y());
+  return sum;
+}
+
+TEST_P(SurfaceContactIn, KeepsItsContactsWhenTheWorldIsAskedForOthers) {
+  struct Nothing : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      return 0;
+    }
+  } nothing;
+  const auto made = worldOf(GetParam());
+  TouchingBody body(*made, ballMesh(24, 0.35), btVector3(0, btScalar(0.36), 0));
+  step(*made, 60);
+  const double before = pushedUp(body);
+  const std::size_t count = body.contact->contacts().size();
+  ASSERT_GT(before, 0.01);
+  btCollisionObject* floor = made->world->getCollisionObjectArray()[0];
+  made->world->contactTest(floor, nothing);
+  made->world->contactTest(&body.body->body(), nothing);
+  made->world->contactPairTest(floor, &body.body->body(), nothing);
+  EXPECT_EQ(pushedUp(body), before);
+  EXPECT_EQ(body.contact->contacts().size(), count);
+}
+
+TEST(SurfaceContact, IsOffWhereTheBodyIsToMeetNoRigidBodies) {
+  TetskinWorld world;
+  TouchingBody body(world, ballMesh(16, 0.35), btVector3(0, btScalar(0.36), 0));
+  btSoftBody& soft = body.body->body();
+  step(world, 10);
+  const int before = soft.m_cfg.collisions;
+  soft.m_cfg.collisions = 0;
+  step(world, 30);
+  EXPECT_TRUE(body.contact->contacts().empty());
+  EXPECT_LT(body.height(), -0.5);
+  soft.m_cfg.collisions = before;
+}
+
 TEST(SurfaceContact, SetsAMarginAndGivesItBack) {
   EmptyWorld world;
   TouchingBody body(world, ballMesh(8, 0.35), btVector3(0, 2, 0));
@@ -301,7 +351,7 @@ TEST(SurfaceContact, RefusesWhatDoesNotBelongTogether) {
     options.share = bad;
     EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);
   }
-  for (const double bad : {-1.0, HUGE_VAL, std::nan("")}) {
+  for (const double bad : {-1.0, HUGE_VAL, std::nan(""), 1e-9, 1e-5}) {
     SurfaceContactOptions options;
     options.sampleSpacing = bad;
     EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);

@@ -298,6 +298,7 @@ TEST(CageLocator, Moves) {
   CageLocator first(plates.cage);
   const int tet = first.locate(plates.mesh.positions[7], {7, 7, 7});
   CageLocator second = std::move(first);
+  EXPECT_EQ(first.locate(plates.mesh.positions[7], {7, 7, 7}), -1);  // NOLINT: moved from
   EXPECT_EQ(second.locate(plates.mesh.positions[7], {7, 7, 7}), tet);
   first = std::move(second);
   EXPECT_EQ(first.locate(plates.mesh.positions[7], {7, 7, 7}), tet);

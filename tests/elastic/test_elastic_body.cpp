@@ -116,6 +116,10 @@ TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
   const ElasticBody<TypeParam> last(std::move(nothing));
   EXPECT_EQ(last.nodeCount(), 4u);
   EXPECT_EQ(nothing.nodeCount(), 0u);  // NOLINT: moved from
+  nothing.hold(0);
+  EXPECT_EQ(nothing.step(0.01), 0);
+  EXPECT_TRUE(nothing.forces().empty());
+  EXPECT_EQ(nothing.energy(), 0.0);
 }
 
 TYPED_TEST(ElasticBodyOf, IsAtRestWhereTheCageIs) {

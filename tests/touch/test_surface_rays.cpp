@@ -195,6 +195,42 @@ TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
   EXPECT_EQ(of.tree.pointOfVertex(small->body(), 0).status().code, StatusCode::SizeMismatch);
 }
 
+TEST(SurfaceTree, MakesNoPointsOfWeightsThatDoNotAddUp) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  SurfaceHit hit;
+  hit.status = TouchStatus::Ok;
+  hit.body = &of.body();
+  hit.triangle = 0;
+  const auto codeOf = [&](btScalar a, btScalar b, btScalar c) {
+    hit.weights[0] = a;
+    hit.weights[1] = b;
+    hit.weights[2] = c;
+    return of.tree.pointAt(of.body(), hit).status().code;
+  };
+  const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(), infinite = std::numeric_limits<btScalar>::infinity();
+  EXPECT_EQ(codeOf(nan, 0, 1), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(1, 0, nan), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(infinite, -infinite, 1), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(1, 1, 1), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(btScalar(0.25), btScalar(0.25), btScalar(0.5)), StatusCode::Ok);
+}
+
+TEST(SurfaceTree, ThatWasMovedFromIsEmpty) {
+  auto world = deformableWorld(Solving::Tetskin);
+  TouchedBody of(*world);
+  const SurfaceTree elsewhere(std::move(of.tree));
+  EXPECT_TRUE(elsewhere.check().ok());
+  const SurfaceTree& empty = of.tree;  // NOLINT: moved from
+  EXPECT_EQ(empty.check().code, StatusCode::Empty);
+  EXPECT_EQ(empty.raycast(of.skin, btVector3(0, 9, 0), btVector3(0, -9, 0)).status, TouchStatus::Miss);
+  EXPECT_EQ(empty.pointOfVertex(of.body(), 0).status().code, StatusCode::Empty);
+  EXPECT_EQ(empty.pointAtRest(of.body(), {0, 0, 0}).status().code, StatusCode::Empty);
+  EXPECT_EQ(empty.pointAt(of.body(), {}).status().code, StatusCode::Empty);
+  EXPECT_NE(empty.applyImpulse(of.body(), {btVector3(0, 0, 0), 1, 1}).status, TouchStatus::Ok);
+  EXPECT_NE(empty.applyForce(of.body(), {btVector3(0, 0, 0), 1, 1}).status, TouchStatus::Ok);
+}
+
 TEST(RayTree, FindsTheOnlyTriangleAndSkipsFlatOnes) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}};

@@ -14,6 +14,7 @@ enum class SolverPath {
   Bullet,     ///< Bullet's force
   ForceOnly,  ///< an ElasticForce in Bullet's solve
   Solver,     ///< an ElasticForce in the solve of a DeformableSolver
+  None,       ///< no force: the body has been taken out of its world
 };
 
 /// A soft body in a deformable world, with gravity and elastic forces of its own: what Bullet leaves to the application
@@ -24,7 +25,8 @@ enum class SolverPath {
 /// when this object goes. That should be before the world does. If the world has been deleted first, this object only
 /// frees its memory; but a solver that outlives its world must not be used in another one then.
 ///
-/// The application may take the body out of the world itself: it then has no forces any more.
+/// The application may take the body out of the world itself: it then has no forces any more. If it has put the body
+/// into another world, the body is the application's own: it stays there when this object goes, and is not deleted.
 class TETSKIN_BULLET_API DeformableBody {
  public:
   /// Makes the body (see `makeSoftBody`) and adds it to the world. Unless `options.configureWorld` is false, switches
@@ -71,7 +73,11 @@ class TETSKIN_BULLET_API DeformableBody {
   Status setGravity(const btVector3& gravity);
   void followWorldGravity();  ///< again, as at first
 
-  /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]`. The body wakes. Errors:
+  /// Holds a node where it is. To move a pinned node, set the m_x of `body().m_nodes[node]` before the world steps,
+  /// once a frame or once a step, or set its m_v, by which it goes on; a body that sleeps has to be activated. With a
+  /// `DeformableSolver` a node that is moved by its m_x has the velocity of its motion: it is spread over as many steps
+  /// as lay between the last two times that the node was moved. Where all of the body is put elsewhere (`translate`,
+  /// `rotate`, `transform`, or the m_x of free nodes, too) nothing is given a velocity. The body wakes. Errors:
   /// IndexOutOfRange; that it is pinned already is none.
   Status pin(int node);
   /// Lets it go again, with the mass that it had; likewise.

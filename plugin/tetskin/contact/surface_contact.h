@@ -22,7 +22,7 @@ struct SurfaceContactOptions {
   /// the one that carries most. More nodes hold it more firmly, and stiffen the body where it touches.
   double share = 0.1;
   /// Rest units: triangles with longer edges get samples of this spacing, which touch as vertices do. 0: none. Vertices
-  /// must not be farther apart than what the body touches is thick.
+  /// must not be farther apart than what the body touches is thick. At most 10,000,000 of them.
   double sampleSpacing = 0.0;
 };
 
@@ -38,12 +38,15 @@ struct SurfaceContactPoint {
 /// A soft body meets rigid ones by its visual surface, instead of by the nodes of its cage, which lie outside of it.
 ///
 /// In any deformable world with any of its solvers. Nothing else need be done: static, kinematic and dynamic bodies and
-/// the links of multibodies are met in whatever order they were added, as their groups, their masks and their flags
-/// (CF_NO_CONTACT_RESPONSE) allow. Planes, boxes, spheres, capsules and cylinders are met exactly; convex hulls by
-/// their faces, as they are drawn, that is without their margin; other convex shapes by Bullet's GJK; meshes, height
-/// fields and other concave shapes by their triangles, on the side from which these look counter-clockwise; compounds
-/// by their children. Friction is Bullet's. Surfaces are met as linear skins draw them: a quadratic one is
-/// drawn up to some thousandths of the body's size away, more in few tets and under loads.
+/// the links of multibodies are met in whatever order they were added, as their groups, their masks, their flags
+/// (CF_NO_CONTACT_RESPONSE) and the body's `m_cfg.collisions` (any of RVSmask) allow. A world's contactTest finds
+/// nothing of the body, and leaves its contacts as they are. Planes, boxes, spheres, capsules and cylinders are met
+/// exactly; convex hulls by their faces, as they are drawn, that is without their margin; other convex shapes by
+/// Bullet's GJK; meshes and other concave shapes by their triangles, on the side from which these look
+/// counter-clockwise, mirrored with the shape where its scaling is negative; height fields on the side of their up
+/// axis, whatever their winding; compounds by their children. Friction is Bullet's. Surfaces are met as linear skins
+/// draw them: a quadratic one is drawn up to some thousandths of the body's size away, more in few tets and under
+/// loads.
 ///
 /// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again. This object, the body,
 ///           the world, rigid bodies and their shapes may go in any order, each as Bullet allows it. What the world's
@@ -70,7 +73,8 @@ class TETSKIN_CONTACT_API SurfaceContact {
   /// The dispatcher forgets us: to be called once for each, after its world is deleted, and before it is itself.
   static void shutdown(btCollisionDispatcher& dispatcher);
 
-  /// Those of the last substep in which the body was awake, each once, by obstacle. Allocates the result.
+  /// Those of the last substep in which the body was awake, each once, by obstacle; without obstacles that have left
+  /// the world since. Allocates the result.
   std::vector<SurfaceContactPoint> contacts() const;
 
   /// Vertices and samples that may touch.

@@ -75,6 +75,7 @@ class TETSKIN_CORE_API CageLocator {
   /// smallest barycentric distance on the way. Of a cage without `vertexTets`, by the point's place alone.
   /// point         rest space
   /// nearVertices  of the triangle that the point lies on or near; in range
+  /// Result        -1 of a locator that was moved from
   /// Cost          O(k log k) for k tets between them; without `vertexTets`, O(T)
   int locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const;
 

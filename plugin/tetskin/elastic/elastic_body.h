@@ -36,7 +36,7 @@ struct ElasticOptions {
 template <class Scalar>
 class TETSKIN_ELASTIC_API ElasticBody {
  public:
-  /// Empty; use `make`.
+  /// Empty, as one that was moved from: it has no nodes, and a step of it does nothing. Use `make`.
   ElasticBody();
   ~ElasticBody();
   ElasticBody(ElasticBody&&) noexcept;

@@ -64,7 +64,7 @@ class TETSKIN_TOUCH_API SurfaceTree {
   SurfaceTree& operator=(SurfaceTree&&) noexcept;
 
   /// Ok; or why the tree is empty, and every ray misses: no binding, a mesh without triangles, indices out of range,
-  /// another mesh than the binding's.
+  /// another mesh than the binding's, or a tree that was moved from.
   const Status& check() const;
 
   /// The nearest triangle between two points, from either side.
@@ -76,8 +76,8 @@ class TETSKIN_TOUCH_API SurfaceTree {
   SurfaceHit raycast(const SoftBodySkin& skin, const btVector3& from, const btVector3& to,
                      const TriangleFilter& filter = {}) const;
 
-  /// The point that a ray has hit. Errors: InvalidOption for what is no hit, or one of another body; SizeMismatch for a
-  /// body of another cage.
+  /// The point that a ray has hit. Errors: InvalidOption for what is no hit, or one of another body, or has weights
+  /// that do not add up to 1; SizeMismatch for a body of another cage.
   Result<SurfacePoint> pointAt(btSoftBody& body, const SurfaceHit& hit) const;
   /// A vertex of the mesh; its axes are those of the largest triangle around it, its normal that at rest. Cost
   /// O(triangles). Errors: IndexOutOfRange, also for a vertex without triangles; SizeMismatch
@@ -93,6 +93,7 @@ class TETSKIN_TOUCH_API SurfaceTree {
 
  private:
   struct Parts;
+  Parts& parts() const;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -148,6 +148,10 @@ struct DeformableBody::Parts {
     if (status.ok()) apply(now);
     return status;
   }
+  bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
+  bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
+  /// Whoever takes the body out of the world takes it from its forces.
+  bool isActedOn() const { return isInItsWorld() && gravity.m_softBodies.size() > 0; }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
     return {StatusCode::IndexOutOfRange,
@@ -240,6 +244,7 @@ ForceModel DeformableBody::forceModel() const {
 }
 
 SolverPath DeformableBody::solverPath() const {
+  if (!parts_->isActedOn()) return SolverPath::None;
   if (parts_->forceModel != ForceModel::Corotated) return SolverPath::Bullet;
   const auto* own = dynamic_cast<const DeformableSolver*>(&parts_->solver);
   return own && own->solves() ? SolverPath::Solver : SolverPath::ForceOnly;
@@ -248,7 +253,11 @@ SolverPath DeformableBody::solverPath() const {
 DeformableBody::~DeformableBody() {
   // Taken out of the world, by the application or by the world's own end: nothing there is left to be told, and nothing
   // may be there to tell.
-  if (!parts_->body->getBroadphaseHandle()) return;
+  if (!parts_->isInAWorld()) return;
+  if (!parts_->isInItsWorld()) {
+    (void)parts_->body.release();  // another world has it still
+    return;
+  }
   removeFromList(parts_->list, &parts_->gravity);
   removeFromList(parts_->list, parts_->elasticity.get());
   parts_->world.removeSoftBody(parts_->body.get());

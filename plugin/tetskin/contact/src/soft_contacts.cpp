@@ -42,6 +42,16 @@ struct SearchingSolver : btDeformableBodySolver {
   static bool searches(const btDeformableBodySolver& solver) { return solver.*&SearchingSolver::m_lineSearch; }
 };
 
+/// Whether contacts of the world, but these, have the body: each would push it as if it were alone.
+bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const ContactForce& own,
+                const btSoftBody& body) {
+  for (int i = 0; i < list.size(); ++i) {
+    const auto* contacts = dynamic_cast<const ContactForce*>(list[i]);
+    if (contacts && contacts != &own && contacts->find(body)) return true;
+  }
+  return false;
+}
+
 /// The others keep their order.
 void takeOut(btAlignedObjectArray<btDeformableLagrangianForce*>& list, const btDeformableLagrangianForce* force) {
   int kept = 0;
@@ -92,6 +102,9 @@ Status SoftContacts::include(btSoftBody& body, std::shared_ptr<const ContactShap
   const auto& inWorld = parts_->world.getSoftBodyArray();
   if (inWorld.findLinearSearch(&body) == inWorld.size()) {
     return invalidContact("add the body to the world of the contacts before including it");
+  }
+  if (isInOthers(*parts_->solver.getLagrangianForceArray(), parts_->force, body)) {
+    return invalidContact("the body is included in other soft contacts of the world: exclude it there first");
   }
   const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
   const auto tets = static_cast<std::size_t>(body.m_tetras.size());

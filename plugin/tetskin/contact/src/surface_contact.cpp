@@ -22,6 +22,9 @@ constexpr double kSearchSlack = 0.005;
 /// Of the weights of a vertex outside, their absolute values added up: more is of a cage that does not fit.
 constexpr btScalar kLargestSpread = btScalar(1.2);
 
+/// Of the triangles: with some hundred bytes each, more would be a mistake in the spacing.
+constexpr double kMostSamples = 10'000'000;
+
 Status refused(StatusCode code, const char* message) {
   return {code, message};
 }
@@ -49,6 +52,13 @@ Status checkFit(const btSoftBody& body, const Embedding& embedding, const Triang
     return refused(StatusCode::SizeMismatch, "the binding is of another cage: the body has another number of nodes");
   }
   return {};
+}
+
+Status checkSpacing(const TriangleMesh& mesh, double spacing) {
+  if (!(spacing > 0.0) || countOfSamples(mesh, spacing) <= kMostSamples) return {};
+  return refused(StatusCode::InvalidOption,
+                 "the sample spacing of surface contact is so small that the mesh would get more than 10,000,000 "
+                 "samples; make it larger, in the unit of the mesh at rest");
 }
 
 Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
@@ -137,6 +147,7 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
        {checkContactOptions(options), checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
     if (!status.ok()) return status;
   }
+  if (Status status = checkSpacing(mesh, options.sampleSpacing); !status.ok()) return status;
   const double size = largestSide(body);
   const auto margin = static_cast<btScalar>(options.margin >= 0.0 ? options.margin : kSurfaceMargin * size);
   ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);

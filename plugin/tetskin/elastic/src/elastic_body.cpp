@@ -149,15 +149,15 @@ PointView<Scalar> ElasticBody<Scalar>::velocities() {
 
 template <class Scalar>
 void ElasticBody<Scalar>::hold(std::size_t node, bool held) {
+  if (!parts_) return;
   assert(node < nodeCount());
   parts_->dynamics.setMass(node, held ? Scalar(0) : static_cast<Scalar>(parts_->masses[node]));
 }
 
 template <class Scalar>
 int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& acceleration, ParallelFor* threads) {
-  assert(parts_);
   const bool finite = std::isfinite(acceleration[0] + acceleration[1] + acceleration[2]);
-  if (!(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
+  if (!parts_ || !(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
   Parts& p = *parts_;
   p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
   p.dynamics.predict(seconds, threads);
@@ -174,6 +174,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
 
 template <class Scalar>
 std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
+  if (!parts_) return {};
   parts_->read({});
   parts_->dynamics.prepareForces(nullptr);
   std::vector<std::array<double, 3>> out(nodeCount());
@@ -185,6 +186,7 @@ std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
 
 template <class Scalar>
 double ElasticBody<Scalar>::energy() {
+  if (!parts_) return 0.0;
   parts_->read({});
   return parts_->dynamics.energy(nullptr);
 }

@@ -15,6 +15,9 @@ namespace {
 
 using touch_detail::PointData;
 
+/// What may be missing of 1 in the weights of a hit.
+constexpr btScalar kWeightsRounding = btScalar(1e-3);
+
 Status checkMesh(const SoftBodyBinding* binding, const TriangleMesh& mesh) {
   if (!binding) return {StatusCode::Empty, "a surface tree needs a binding: that of a bound skin"};
   if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
@@ -84,58 +87,69 @@ SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
 
+/// Of one that was moved from: those of an empty tree.
+SurfaceTree::Parts& SurfaceTree::parts() const {
+  static Parts movedFrom{{StatusCode::Empty, "the surface tree was moved elsewhere"}, {}, {}, {}, {}, {}};
+  return parts_ ? *parts_ : movedFrom;
+}
+
 const Status& SurfaceTree::check() const {
-  return parts_->status;
+  return parts().status;
 }
 
 SurfaceHit SurfaceTree::raycast(const SoftBodySkin& skin, const btVector3& from, const btVector3& to,
                                 const TriangleFilter& filter) const {
   SurfaceHit hit;
-  if (!parts_->status.ok()) return hit;
+  if (!parts().status.ok()) return hit;
   if (!touch_detail::isFiniteVector(from) || !touch_detail::isFiniteVector(to)) {
     hit.status = TouchStatus::NonFinite;
     return hit;
   }
-  hit.status = parts_->fitted.fit(skin);
-  if (hit.status == TouchStatus::Ok) hit = parts_->fitted.cast(from, to, filter);
+  hit.status = parts().fitted.fit(skin);
+  if (hit.status == TouchStatus::Ok) hit = parts().fitted.cast(from, to, filter);
   if (hit) hit.body = skin.body();
   return hit;
 }
 
 Result<SurfacePoint> SurfaceTree::pointAt(btSoftBody& body, const SurfaceHit& hit) const {
-  if (Status status = parts_->checkBody(body); !status.ok()) return status;
-  if (!hit || hit.triangle < 0 || static_cast<std::size_t>(hit.triangle) >= parts_->mesh.triangleCount()) {
+  if (Status status = parts().checkBody(body); !status.ok()) return status;
+  if (!hit || hit.triangle < 0 || static_cast<std::size_t>(hit.triangle) >= parts().mesh.triangleCount()) {
     return Status{StatusCode::InvalidOption, "the ray has met nothing: ask the hit first"};
   }
+  btScalar sum = 0;
+  for (const btScalar w : hit.weights) sum += w;
+  if (!(btFabs(sum - 1) < kWeightsRounding)) {
+    return Status{StatusCode::InvalidOption, "the weights of the hit do not add up to 1"};
+  }
   if (hit.body != &body) return Status{StatusCode::InvalidOption, "the ray has hit another body"};
-  return parts_->pointOf(body, static_cast<std::size_t>(hit.triangle), {hit.weights[0], hit.weights[1], hit.weights[2]},
+  return parts().pointOf(body, static_cast<std::size_t>(hit.triangle), {hit.weights[0], hit.weights[1], hit.weights[2]},
                          0);
 }
 
 Result<SurfacePoint> SurfaceTree::pointOfVertex(btSoftBody& body, int vertex) const {
-  if (Status status = parts_->checkBody(body); !status.ok()) return status;
-  const touch_detail::NearestTriangle found = touch_detail::largestAround(parts_->mesh, vertex);
+  if (Status status = parts().checkBody(body); !status.ok()) return status;
+  const touch_detail::NearestTriangle found = touch_detail::largestAround(parts().mesh, vertex);
   if (found.triangle < 0) {
     return Status{StatusCode::IndexOutOfRange, "no triangle of the mesh has a vertex " + std::to_string(vertex)};
   }
-  return parts_->pointOf(body, static_cast<std::size_t>(found.triangle), {1, 0, 0}, found.firstCorner);
+  return parts().pointOf(body, static_cast<std::size_t>(found.triangle), {1, 0, 0}, found.firstCorner);
 }
 
 Result<SurfacePoint> SurfaceTree::pointAtRest(btSoftBody& body, const Eigen::Vector3d& rest) const {
-  if (Status status = parts_->checkBody(body); !status.ok()) return status;
+  if (Status status = parts().checkBody(body); !status.ok()) return status;
   if (!std::isfinite(rest.squaredNorm()))
     return Status{StatusCode::NonFinite, "the rest position is not finite, or too far for a distance from it to be"};
-  const touch_detail::NearestTriangle found = touch_detail::nearestTriangle(parts_->mesh, rest);
+  const touch_detail::NearestTriangle found = touch_detail::nearestTriangle(parts().mesh, rest);
   const auto& w = found.weights;
-  return parts_->pointOf(body, static_cast<std::size_t>(found.triangle),
+  return parts().pointOf(body, static_cast<std::size_t>(found.triangle),
                          {static_cast<btScalar>(w[0]), static_cast<btScalar>(w[1]), static_cast<btScalar>(w[2])}, 0);
 }
 
 SurfacePush SurfaceTree::applyImpulse(btSoftBody& body, const SurfaceBlast& blast) const {
   touch_detail::NodePushes pushes;
   SurfacePush push = {TouchStatus::OtherBody};
-  if (!parts_->checkBody(body).ok()) return push;
-  push = touch_detail::pushesOf(blast, parts_->binding->embedding(), parts_->areas, body, pushes);
+  if (!parts().checkBody(body).ok()) return push;
+  push = touch_detail::pushesOf(blast, parts().binding->embedding(), parts().areas, body, pushes);
   if (push.status != TouchStatus::Ok) return push;
   if (touch_detail::isReduced(body)) return {TouchStatus::InvalidOption};
   touch_detail::applyImpulses(pushes, body);
@@ -145,8 +159,8 @@ SurfacePush SurfaceTree::applyImpulse(btSoftBody& body, const SurfaceBlast& blas
 SurfacePush SurfaceTree::applyForce(btSoftBody& body, const SurfaceBlast& blast, int steps) const {
   touch_detail::NodePushes pushes;
   SurfacePush push = {TouchStatus::OtherBody};
-  if (!parts_->checkBody(body).ok()) return push;
-  push = touch_detail::pushesOf(blast, parts_->binding->embedding(), parts_->areas, body, pushes);
+  if (!parts().checkBody(body).ok()) return push;
+  push = touch_detail::pushesOf(blast, parts().binding->embedding(), parts().areas, body, pushes);
   if (push.status != TouchStatus::Ok) return push;
   const TouchStatus done = touch_detail::applyForces(std::move(pushes), steps, body, nullptr);
   if (done != TouchStatus::Ok) return {done};

@@ -42,6 +42,15 @@ Status checkOptions(const SoftBodyOptions& options) {
     return {StatusCode::InvalidOption,
             "a soft body's solver tolerance must be at least 0 and below 1, and its iterations at least 1"};
   }
+  switch (options.forceModel) {
+    case ForceModel::Corotated:
+    case ForceModel::NeoHookean:
+    case ForceModel::LinearElasticity:
+    case ForceModel::MassSpring:
+      break;
+    default:
+      return {StatusCode::InvalidOption, "there is no such force model: see ForceModel"};
+  }
   if (!options.stiffnessScale.empty() && options.forceModel == ForceModel::MassSpring) {
     return {StatusCode::InvalidOption,
             "mass-spring bodies take no stiffness for each tet (stiffnessScale); leave it out, or choose another "

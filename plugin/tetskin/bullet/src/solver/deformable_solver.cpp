@@ -87,6 +87,8 @@ void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& sof
   parts.hidden.show(softBodies);
   parts.all.copyFromArray(softBodies);
   const bool changed = parts.collect(softBodies);
+  if (changed) parts.driven.keepOnly(softBodies);
+  if (dt > 0) parts.driven.begin(m_softBodies, dt);  // a removal is no step
   for (int i = 0; i < (changed ? m_numNodes : parts.bodies.awakeCount()); ++i) {
     m_dv[i].setZero();
     m_ddv[i].setZero();
@@ -168,7 +170,9 @@ void DeformableSolver::applyTransforms(btScalar dt) {
       body.m_nodes[n].m_splitv.setZero();
     }
   }
+  parts.driven.beforeIntegration(m_softBodies);
   btDeformableBodySolver::applyTransforms(dt);
+  parts.driven.end(m_softBodies, dt);
 }
 
 }  // namespace tetskin

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/src/solver/driven_nodes.h>
 #include <tetskin/bullet/src/solver/rigid_ties.h>
 
 #include <vector>
@@ -55,6 +56,7 @@ struct DeformableSolver::Parts {
 
   DeformableSolver& solver;
   SolverBodies bodies;
+  DrivenNodes driven;
   RigidTies ties;
   HiddenBodies hidden;
   ParallelFor* threads = nullptr;

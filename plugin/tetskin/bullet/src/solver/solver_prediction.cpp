@@ -6,6 +6,7 @@
 #include <tetskin/bullet/src/solver/solver_parts.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tetskin {
 namespace {
@@ -29,15 +30,16 @@ void prepareStep(btSoftBody& body, btScalar dt) {
 }
 
 /// Returns the square of the highest speed, before it is bounded.
-btScalar moveNodes(btSoftBody& body, btScalar dt) {
+double moveNodes(btSoftBody& body, btScalar dt) {
   const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
   const btScalar kept = 1 - body.m_cfg.drag;
-  btScalar most = 0;
+  double most = 0.0;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     btSoftBody::Node& node = body.m_nodes[n];
     node.m_v *= kept;
-    const btScalar squared = node.m_v.length2();
-    if (squared > fastest * fastest) node.m_v *= fastest / btSqrt(squared);
+    const double squared = toEigen(node.m_v).squaredNorm();  // in double: the square of a speed may be out of float's range
+    const auto allowed = static_cast<double>(fastest);
+    if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
     most = std::max(most, squared);
     node.m_q = node.m_x + dt * node.m_v;
     node.m_splitv.setZero();
@@ -138,8 +140,8 @@ void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
 /// As btDeformableBodySolver::predictDeformableMotion, but for the trees.
 void DeformableSolver::Parts::predictPositions(SolvedBody& of) const {
   prepareStep(*of.body, dt());
-  const btScalar squaredSpeed = moveNodes(*of.body, dt());
-  of.fittedTrees->fit(*of.body, *of.dynamics, btSqrt(squaredSpeed) * dt());
+  const double squaredSpeed = moveNodes(*of.body, dt());
+  of.fittedTrees->fit(*of.body, *of.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
 }
 
 }  // namespace tetskin

@@ -14,6 +14,19 @@ namespace {
 /// Of the errors that a solve may leave. Where something pushes they do work, always of the same sign: a landing gained
 /// up to 1 % of its energy. What a dynamic rigid body gets is known as well as they are small.
 constexpr double kCloserInContact = 0.3, kCloserWithRigids = 0.1;
+/// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
+/// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
+constexpr double kWithForeignForces = 1e-6;
+
+/// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
+/// nothing.
+btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
+  btVector3 v = node.m_v;
+  for (int k = 0; k < 3; ++k) {
+    if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
+  }
+  return v;
+}
 
 }  // namespace
 
@@ -140,7 +153,7 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   elastic_detail::SolveLimits limits;
   limits.floor = kUnseen * static_cast<double>(dt());
   limits.iterations = 0;
-  bool inContact = false, stiff = false;
+  bool inContact = false, anyElastic = false, stiff = false;
   double squaredStart = 0.0;
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
@@ -150,12 +163,14 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
     inContact |= of.constrained || of.touched;
     stiff |= of.dynamics->isStiff();
     squaredStart += of.dynamics->squaredSolution();
+    anyElastic |= of.elastic != nullptr;
   }
   const double closer = !system.rigids.empty() ? kCloserWithRigids : inContact ? kCloserInContact : 1.0;
   double tolerance = closer * limits.tolerance;
   for (const btDeformableLagrangianForce* force : system.forces) {
     const auto* coupling = dynamic_cast<const CouplingForce*>(force);
-    if (coupling) tolerance = std::min(tolerance, coupling->tolerance());
+    const double foreign = anyElastic ? kWithForeignForces : 1.0;
+    tolerance = std::min(tolerance, coupling ? coupling->tolerance() : foreign);
   }
   const double share = tolerance / std::max(limits.tolerance, 1e-300);  // 0 is a tolerance, too
   limits.tolerance = tolerance;
@@ -224,7 +239,7 @@ void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
     if (node.m_im > 0) node.m_v = implicit() ? v : v - node.m_splitv;
-    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, node.m_v.length2());
+    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, movingPart(node, dt()).length2());
   }
 }
 

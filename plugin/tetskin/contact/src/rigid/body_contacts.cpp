@@ -55,7 +55,8 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
 
 bool BodyContacts::responds(const btCollisionObject& object) const {
   const auto& disabled = body_.m_collisionDisabledObjects;
-  return object.hasContactResponse() && body_.hasContactResponse() &&
+  const bool meetsRigids = (body_.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0;
+  return meetsRigids && object.hasContactResponse() && body_.hasContactResponse() &&
          disabled.findLinearSearch(const_cast<btCollisionObject*>(&object)) == disabled.size();
 }
 
@@ -113,6 +114,10 @@ void BodyContacts::collideChildren(const btCollisionShape& compound, const Shape
 void BodyContacts::forget(const btCollisionObject& object) {
   const auto isOf = [&](const KnownShape& known) { return known.object == &object; };
   known_.erase(std::remove_if(known_.begin(), known_.end(), isOf), known_.end());
+  const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
+  for (std::size_t k = 0; k < std::min(kept, touches_.size()); ++k) {
+    if (body_.m_nodeRigidContacts[static_cast<int>(k)].m_cti.m_colObj == &object) touches_[k].node = -1;
+  }
 }
 
 ShapeMemory& BodyContacts::memoryOf(const btCollisionShape& shape, const btCollisionObject& object) {

@@ -36,7 +36,8 @@ class BodyContacts {
   /// An object that is met no more, or not for now.
   void forget(const btCollisionObject& object);
 
-  /// Where each of Bullet's contacts of the body touches: `m_nodeRigidContacts`, in order.
+  /// Where each of Bullet's contacts of the body touches: `m_nodeRigidContacts`, in order. No node: an object that was
+  /// forgotten since, and may be gone.
   const std::vector<NodeTouch>& touches() const { return touches_; }
   btSoftBody& body() const { return body_; }
   const TouchSearch& search() const { return search_; }

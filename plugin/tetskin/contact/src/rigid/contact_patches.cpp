@@ -123,9 +123,6 @@ CarriedPoint pointWithin(const CarriedTriangle& triangle, const std::array<btSca
   return point;
 }
 
-/// More would be a mistake in the spacing, and would not end.
-constexpr double kMostCuts = 256;
-
 /// At the corners of the small triangles into which each edge's `steps` cut it, but not at its own.
 void appendSamples(const CarriedTriangle& triangle, int steps, std::vector<CarriedPoint>& points) {
   for (int i = 0; i <= steps; ++i) {
@@ -142,7 +139,7 @@ void appendTrianglePatches(const EmbeddingData& data, const TriangleMesh& mesh, 
                            std::vector<LoosePatch>& patches) {
   const std::vector<std::uint32_t> runs = runsOfVertices(data);
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::min(std::ceil(contact_detail::longestEdge(mesh, t) / spacing), kMostCuts);
+    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
     if (!(steps > 1.0)) continue;
     const CarriedTriangle triangle = carriedTriangle(data, runs, t);
     LoosePatch patch;
@@ -214,6 +211,15 @@ void closeCluster(std::size_t firstPatch, ContactPatches& to) {
 }
 
 }  // namespace
+
+double countOfSamples(const TriangleMesh& mesh, double spacing) {
+  double count = 0.0;
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
+    if (steps > 1.0) count += (steps + 1.0) * (steps + 2.0) / 2.0;
+  }
+  return count;
+}
 
 ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing) {
   assert(embedding.vertexCount() == mesh.vertexCount() && spacing >= 0.0);

@@ -42,6 +42,9 @@ struct ContactPatches {
   std::size_t pointCount = 0;
 };
 
+/// How many samples a spacing above 0 takes on the larger triangles. Cost O(triangles)
+double countOfSamples(const TriangleMesh& mesh, double spacing);
+
 /// The vertices of a mesh, each place once, and with a spacing above 0 samples on its larger triangles, no farther than
 /// that from each other. Cost O(n log n) for n of them.
 /// mesh     of the embedding

@@ -66,6 +66,7 @@ std::vector<SurfaceContactPoint> contactPoints(const BodyContacts& contacts) {
   std::vector<SurfaceContactPoint> points;
   std::vector<std::uint32_t> numbers;
   for (std::size_t k = 0; k < std::min(touches.size(), impulses.size()); ++k) {
+    if (touches[k].node < 0) continue;
     const auto& bullets = body.m_nodeRigidContacts[static_cast<int>(k)];
     std::size_t at = 0;
     while (at < points.size() && !(numbers[at] == touches[k].point && points[at].object == bullets.m_cti.m_colObj))

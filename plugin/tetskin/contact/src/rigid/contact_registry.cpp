@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
 #include <BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h>
 #include <BulletSoftBody/btSoftRigidCollisionAlgorithm.h>
 #include <tetskin/contact/src/rigid/contact_registry.h>
@@ -140,7 +141,13 @@ btCollisionAlgorithm* ContactRegistry::Maker::CreateCollisionAlgorithm(btCollisi
                                                                        const btCollisionObjectWrapper* first,
                                                                        const btCollisionObjectWrapper* second) {
   const auto* soft = static_cast<const btSoftBody*>((m_swapped ? second : first)->getCollisionObject());
-  if (registry_.find(*soft)) {
+  const bool touches = registry_.find(*soft) != nullptr;
+  if (touches && closestPoints_) {
+    // Of a query, as contactTest: Bullet's would add contacts to those of the step.
+    void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(btEmptyAlgorithm));
+    return new (memory) btEmptyAlgorithm(info);
+  }
+  if (touches) {
     void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(SurfaceAlgorithm));
     return new (memory) SurfaceAlgorithm(registry_, info, first, second, m_swapped);
   }

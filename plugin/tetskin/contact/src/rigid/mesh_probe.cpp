@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
 
 #include <algorithm>
@@ -10,14 +12,21 @@ namespace {
 /// Keeps the triangles that meet a box; Bullet's own test is of coarse boxes.
 class TriangleGatherer : public btTriangleCallback {
  public:
-  TriangleGatherer(const btVector3& low, const btVector3& high, std::vector<ProbeTriangle>& out)
-      : low_(low), high_(high), out_(out) {}
+  TriangleGatherer(const btVector3& low, const btVector3& high, const OutwardSide& outward,
+                   std::vector<ProbeTriangle>& out)
+      : low_(low), high_(high), outward_(outward), out_(out) {}
   void processTriangle(btVector3* corners, int, int) override;
 
  private:
   btVector3 low_, high_;
+  OutwardSide outward_;
   std::vector<ProbeTriangle>& out_;
 };
+
+/// Below 0: mirrored.
+btScalar handedness(const btVector3& scaling) {
+  return scaling.x() * scaling.y() * scaling.z();
+}
 
 bool boxesMeet(const ProbeTriangle& triangle, const btVector3& low, const btVector3& high) {
   for (int k = 0; k < 3; ++k) {
@@ -40,7 +49,7 @@ void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
   triangle.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const btScalar area = triangle.normal.length();
   if (!(area > 0)) return;
-  triangle.normal /= area;
+  triangle.normal /= outward_.isBehind(triangle.normal) ? -area : area;
   triangle.low = triangle.high = corners[0];
   for (int k = 1; k < 3; ++k) {
     triangle.low.setMin(corners[k]);
@@ -51,8 +60,20 @@ void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
 
 }  // namespace
 
+OutwardSide::OutwardSide(const btConcaveShape& shape) : sign_(handedness(shape.getLocalScaling())) {
+  const int type = shape.getShapeType();
+  if (type == TERRAIN_SHAPE_PROXYTYPE) {
+    upAxis_ = static_cast<const btHeightfieldTerrainShape&>(shape).getUpAxis();
+    sign_ = shape.getLocalScaling()[upAxis_];
+  } else if (type == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE) {
+    const auto& scaled = static_cast<const btScaledBvhTriangleMeshShape&>(shape);
+    sign_ *= handedness(scaled.getChildShape()->getLocalScaling());
+  }
+}
+
 void MeshProbe::take(const btConcaveShape& shape, btScalar thickness) {
   shape_ = &shape;
+  outward_ = OutwardSide(shape);
   thickness_ = thickness;
 }
 
@@ -61,7 +82,7 @@ bool MeshProbe::enter(const Ball& ball, btScalar reach) {
   const btScalar side = ball.radius + std::max(reach, thickness_);
   const btVector3 half(side, side, side);
   entered_.clear();
-  TriangleGatherer gatherer(ball.centre - half, ball.centre + half, entered_);
+  TriangleGatherer gatherer(ball.centre - half, ball.centre + half, outward_, entered_);
   shape_->processAllTriangles(&gatherer, ball.centre - half, ball.centre + half);
   narrowed_ = entered_;
   return !entered_.empty();

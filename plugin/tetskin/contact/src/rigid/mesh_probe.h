@@ -15,8 +15,22 @@ namespace tetskin {
 /// A triangle, with what tells quickly that it is far.
 struct ProbeTriangle {
   TriangleCorners corners;
-  btVector3 normal;  ///< of unit length, to where the corners are counter-clockwise
+  btVector3 normal;  ///< of unit length, outwards
   btVector3 low, high;
+};
+
+/// Which side of a shape's triangles is outside: where their corners are counter-clockwise, mirrored with the shape. Of
+/// terrain, whose winding is another along each axis, it is the side of its up axis.
+class OutwardSide {
+ public:
+  OutwardSide() = default;
+  explicit OutwardSide(const btConcaveShape& shape);
+  /// normal  where the corners are counter-clockwise
+  bool isBehind(const btVector3& normal) const { return (upAxis_ < 0 ? btScalar(1) : normal[upAxis_]) * sign_ < 0; }
+
+ private:
+  btScalar sign_ = 1;
+  int upAxis_ = -1;  ///< of terrain
 };
 
 /// Points behind a triangle are inside, as far as `thickness`; farther, they belong to something else. Asks the shape
@@ -31,6 +45,7 @@ class MeshProbe : public ShapeProbe {
 
  private:
   const btConcaveShape* shape_ = nullptr;
+  OutwardSide outward_;
   btScalar thickness_ = 0, reach_ = 0;
   std::vector<ProbeTriangle> entered_, narrowed_;
 };

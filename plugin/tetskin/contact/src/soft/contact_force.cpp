@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBodySolver.h>
+#include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/contact_force.h>
 
 #include <algorithm>
@@ -90,16 +91,20 @@ void ContactForce::readBodies() {
 }
 
 void ContactForce::detect() {
-  for (const auto& first : bodies_) {
-    for (const auto& second : bodies_) {
-      if (first == second && !first->self) continue;
-      if (!first->readable || !second->readable || !(first->awake || second->awake)) continue;
-      if (first->box.meets(second->box)) {
-        detectPair(*first, *second);
-      } else if (!pairMemory_.empty()) {
-        pairMemory_.erase({first->id, second->id});
-      }
-    }
+  std::vector<ContactBody*> readable;
+  std::vector<ContactBox> boxes;
+  for (const auto& of : bodies_) {
+    if (!of->readable) continue;
+    readable.push_back(of.get());
+    boxes.push_back(of->box);
+  }
+  BodyPairs near;
+  for (const auto& [a, b] : pairsOfBoxesThatMeet(boxes)) {
+    if (a != b || readable[a]->self) near.emplace_back(readable[a], readable[b]);
+  }
+  forgetAllBut(near);
+  for (const auto& [first, second] : near) {
+    if (first->awake || second->awake) detectPair(*first, *second);
   }
   if (rows_.empty()) return;
   correctPositions(rows_, static_cast<btScalar>(options_.correction),
@@ -110,6 +115,17 @@ void ContactForce::detect() {
   predictVelocities();
   keepNear();
   estimateImpulses(rows_, memory_, dt_);
+}
+
+/// near  in the order of their ids
+void ContactForce::forgetAllBut(const BodyPairs& near) {
+  auto pair = near.begin();
+  for (auto known = pairMemory_.begin(); known != pairMemory_.end();) {
+    const auto idsOf = [](const auto& of) { return std::make_pair(of.first->id, of.second->id); };
+    while (pair != near.end() && idsOf(*pair) < known->first) ++pair;
+    const bool isNear = pair != near.end() && idsOf(*pair) == known->first;
+    known = isNear ? std::next(known) : pairMemory_.erase(known);
+  }
 }
 
 void ContactForce::detectPair(ContactBody& first, ContactBody& second) {

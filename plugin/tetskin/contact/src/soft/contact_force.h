@@ -41,7 +41,9 @@ class ContactForce : public CouplingForce {
 
  private:
   void readBodies();
+  using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
   void detect();
+  void forgetAllBut(const BodyPairs& near);
   void detectPair(ContactBody& first, ContactBody& second);
   void addRow(ContactBody& first, ContactBody& second, const Touch& touch);
   void predictVelocities();

@@ -188,6 +188,7 @@ CageLocator::CageLocator(CageLocator&&) noexcept = default;
 CageLocator& CageLocator::operator=(CageLocator&&) noexcept = default;
 
 int CageLocator::locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
+  if (!parts_) return -1;
   return (parts_->cage.vertexTets.empty() ? parts_->nearestOfAll(point) : parts_->search(point, nearVertices)).tet;
 }
 

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""alone.py BUILD_FOLDER [FILE...]: each source and each header of the library compiles by itself, not only where a unity
+build has put others before it. By the compile commands of a build without unity; only these files, if any are named.
+
+Eigen is precompiled, but for public headers: it takes most of the time, and everything has it by way of core's types."""
+import concurrent.futures
+import json
+import pathlib
+import shlex
+import subprocess
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+LIBRARY = SOURCE / "plugin" / "tetskin"
+EIGEN = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
+
+
+def options_of(entry):
+    """Those that matter to what compiles."""
+    words = shlex.split(entry["command"])
+    kept = [w for w in words[1:] if w.startswith(("-D", "-I", "-m", "-f", "-std")) and w != "-fPIC"]
+    for place, word in enumerate(words):
+        if word == "-isystem":
+            kept += words[place:place + 2]
+    return [words[0], "-std=c++17"] + kept + ["-w"]
+
+
+def precompile(options, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    header = folder / "eigen.h"
+    header.write_text(EIGEN, encoding="utf-8")
+    # With no more macros than everything has: what is defined beside these may be defined or not.
+    options = [option for option in options if not option.startswith("-DTETSKIN")]
+    subprocess.run(options + ["-x", "c++-header", str(header), "-o", str(header) + ".gch"], check=True)
+    return ["-include", str(header)]
+
+
+def is_public(file):
+    return file.suffix == ".h" and "src" not in file.relative_to(LIBRARY).parts
+
+
+def compile_alone(options, file):
+    """What the compiler says, if that is anything. A source's own header comes first, which is then alone, too."""
+    header = file.with_suffix(".h")
+    first = f'#include "{header}"\n' if file.suffix == ".cpp" and header.exists() and not is_public(header) else ""
+    text = f'{first}#include "{file}"\n'
+    command = options + ["-fsyntax-only", "-x", "c++", "-"]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    return done.stderr if done.returncode else ""
+
+
+def main():
+    build = pathlib.Path(sys.argv[1])
+    wanted = {pathlib.Path(name).resolve() for name in sys.argv[2:]}
+    entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    options = {pathlib.Path(e["file"]): options_of(e) for e in entries if LIBRARY in pathlib.Path(e["file"]).parents}
+    plain = {}  # by library: the options that its headers are compiled with
+    for file, own in options.items():
+        library = file.relative_to(LIBRARY).parts[0]
+        if not any(option.startswith("-m") for option in own):
+            plain.setdefault(library, own)
+    for header in sorted(LIBRARY.rglob("*.h")):
+        library = header.relative_to(LIBRARY).parts[0]
+        options[header] = plain.get(library, plain["bullet"])  # tetskin.h, export.h: whatever a user has
+    eigen = precompile(plain["bullet"], build / "alone")
+    if not wanted and len(options) < 300:
+        sys.exit(f"Only {len(options)} files found: look for them elsewhere")
+
+    def check(file):
+        return compile_alone(options[file] + ([] if is_public(file) else eigen), file)
+
+    files = sorted(wanted or options)
+    with_source = {file.with_suffix(".h") for file in files if file.suffix == ".cpp"}
+    files = [file for file in files if is_public(file) or file not in with_source]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        faults = [(file, said) for file, said in zip(files, pool.map(check, files)) if said]
+    for file, said in faults:
+        print(f"{file.relative_to(SOURCE)} does not compile by itself:\n{said}")
+    print(f"{len(files) - len(faults)} of {len(files)} files, {len(options)} with their headers, compile by themselves")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
