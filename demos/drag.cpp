@@ -18,9 +18,9 @@
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/materials.h"
+#include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
-#include "scenes/progress.h"
+#include "scenes/playback.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -312,33 +312,32 @@ void Drag::tell(nlohmann::ordered_json& json) const {
 int run(const DragOptions& options) {
   Drag drag(options);
   const OutputOptions& output = options.output;
-  FramePlan plan = framePlanOf(output);
-  plan.materials = materialLibrary(drag.drawn());
-  plan.obstacles = drag.floor();
-  FrameWriter writer(plan, ObjLayout::fromMesh(drag.drawn()));
+  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::fromMesh(drag.drawn()));
   const std::string summary = summaryPath(output), view = viewPath(output);
   std::optional<ViewPage> page;
   if (!view.empty()) page = drag.page();
-  Progress progress("simulating", output.frames, output.quiet);
-  double milliseconds = 0.0;
-  bool finite = true;
-  for (int frame = 0; frame < output.frames && finite; ++frame) {
+  const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
-    finite = frame == 0 || drag.step(frame);
-    milliseconds += timer.milliseconds();
+    const bool finite = frame == 0 || drag.step(frame);
+    run.simulationMs += timer.milliseconds();
+    return finite;
+  };
+  const auto keep = [&](int) {
+    if (page) page->keep(drag.moment());
+  };
+  const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = drag.surface();
-    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
-    if (finite && page) page->keep(drag.moment());
-    progress.show(frame + 1);
-  }
+    writer.write(frame, surface, boundingBox(surface), {});
+  };
+  const Playback run = playFrames("simulating", output, step, keep, write);
   nlohmann::ordered_json json;
   drag.tell(json);
-  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
-  json["finite"] = finite;
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  json["finite"] = run.finite;
   writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
   if (page) page->write(view, output.quiet);
-  if (finite) return kDone;
+  if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_drag: the simulation exploded\n");
   return kRunFailed;
 }

@@ -16,9 +16,9 @@
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/materials.h"
+#include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
-#include "scenes/progress.h"
+#include "scenes/playback.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -134,14 +134,8 @@ void Pile::add(const PileModel& of, int k, const PileOptions& options) {
   world_.touchEachOther(body, of.shape);
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
-  const int first = static_cast<int>(mesh_.vertexCount());
   bodyTets_ += of.model.cage.tetCount();
-  for (const TriangleGroup& group : of.model.mesh.groups) {
-    mesh_.groups.push_back(
-        {of.model.name, group.material, mesh_.triangleCount() + group.firstTriangle, group.triangleCount});
-  }
-  mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
-  for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
+  (void)append(of.model.mesh, mesh_, of.model.name);
 }
 
 bool Pile::step() {
@@ -202,39 +196,39 @@ ViewMoment Pile::moment() const {
 int run(const PileOptions& options) {
   Pile pile(options);
   const OutputOptions& output = options.output;
-  FramePlan plan = framePlanOf(output);
-  plan.materials = materialLibrary(pile.mesh());
-  plan.obstacles = pile.obstacles();
-  FrameWriter writer(plan, ObjLayout::fromMesh(pile.mesh()));
+  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
   const std::string summary = summaryPath(output), view = viewPath(output);
   std::optional<ViewPage> page;
   if (!view.empty()) page = pile.page(options.contact);
-  Progress progress("simulating", output.frames, output.quiet);
-  double milliseconds = 0.0, deepest = 0.0;
-  bool finite = true;
-  for (int frame = 0; frame < output.frames && finite; ++frame) {
+  double deepest = 0.0;
+  const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
-    finite = frame == 0 || pile.step();
-    milliseconds += timer.milliseconds();
+    const bool finite = frame == 0 || pile.step();
+    run.simulationMs += timer.milliseconds();
+    return finite;
+  };
+  const auto measure = [&](int) {
     deepest = std::min(deepest, pile.deepest());
+    if (page) page->keep(pile.moment());
+  };
+  const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = pile.surface();
-    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
-    if (finite && page) page->keep(pile.moment());
-    progress.show(frame + 1);
-  }
+    writer.write(frame, surface, boundingBox(surface), {});
+  };
+  const Playback run = playFrames("simulating", output, step, measure, write);
   nlohmann::ordered_json json;
   json["bodies"] = options.bodies;
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
-  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["deepest_contact"] = deepest;
   json["deepest_contact_at_end"] = pile.deepest();
   json["contacts_at_end"] = pile.contactCount();
   json["node_speed_at_end"] = pile.nodeSpeed();
-  json["finite"] = finite;
+  json["finite"] = run.finite;
   writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
   if (page) page->write(view, output.quiet);
-  if (finite) return kDone;
+  if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_pile: the simulation exploded\n");
   return kRunFailed;
 }

@@ -77,6 +77,13 @@ FramePlan framePlanOf(const OutputOptions& options) {
   return plan;
 }
 
+FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, const TriangleMesh& obstacles) {
+  FramePlan plan = framePlanOf(options);
+  plan.materials = materialLibrary(drawn);
+  plan.obstacles = obstacles;
+  return plan;
+}
+
 FrameWriter::FrameWriter(const FramePlan& plan, const ObjLayout& layout)
     : plan_(plan), layout_(plan.materials.empty() ? layout : layout.withLibrary(kLibraryName)) {
   assert(plan.frames > 0 && plan.every > 0);

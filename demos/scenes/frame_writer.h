@@ -31,6 +31,8 @@ struct FramePlan {
 
 /// A plan as the command line has it: frames, every, folder, quiet.
 FramePlan framePlanOf(const OutputOptions& options);
+/// The same, with the materials of what is drawn, and what that falls on.
+FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, const TriangleMesh& obstacles);
 
 /// An OBJ sequence of surfaces in double, written as float where that will do, and perhaps the cages beside them. The
 /// folder holds the frames of one run: what an earlier one wrote there and this one will not overwrite goes when the

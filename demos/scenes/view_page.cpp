@@ -30,12 +30,16 @@ std::string inFolder(const char* name) {
   return std::string(kFolder) + "/" + name;
 }
 
-/// In a script element nothing may look like its end.
-std::string escaped(std::string script) {
-  for (std::size_t at = script.find("</"); at != std::string::npos; at = script.find("</", at)) {
-    script.replace(at, 2, "<\\/");
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
   }
-  return script;
+  return text;
+}
+
+/// In a script element nothing may look like its end.
+std::string escaped(const std::string& script) {
+  return replaced(script, "</", "<\\/");
 }
 
 std::string scripts() {
@@ -200,10 +204,10 @@ Json ViewPage::data() const {
 }
 
 std::string ViewPage::html() const {
-  // File names of models may be of any bytes.
+  // File names of models may be of any bytes, and look like any tag.
   const std::string text = data().dump(-1, ' ', false, Json::error_handler_t::replace);
   return filled(partOf(inFolder("view.html")), {{"@STYLE@", partOf(inFolder("view.css"))},
-                                                {"@DATA@", escaped(text)},
+                                                {"@DATA@", replaced(text, "<", "\\u003c")},
                                                 {"@NOTICE@", partOf(inFolder("three_notice.txt"))},
                                                 {"@THREE@", escaped(partOf(kThree))},
                                                 {"@CONTROLS@", escaped(partOf(kOrbitControls))},
