@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/core/src/base/lame.h>

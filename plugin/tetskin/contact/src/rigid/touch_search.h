@@ -55,8 +55,8 @@ struct ShapeMemory {
   std::vector<btVector3> carriers;     ///< as ContactPatches::nodes
   std::vector<btScalar> clear;         ///< by patch
   std::vector<btVector3> nodes;        ///< world space, from where on the whole body is clear of a shape that rests
-  btTransform place;                   ///< of that shape
-  unsigned clearUntil = 0;             ///< step
+  btTransform place = btTransform::getIdentity();  ///< of that shape
+  unsigned clearUntil = 0;                         ///< step
   unsigned steps = 0;
 };
 
