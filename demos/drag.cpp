@@ -34,6 +34,7 @@ using Eigen::Vector3d;
 struct DragOptions {
   std::size_t tets = 1000, triangles = 60000;
   double stiffness = 10;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   OutputOptions output{"out/drag", "", 600, 1, false};
 };
 
@@ -138,6 +139,7 @@ class Drag {
   World world_;
   btSoftBody& body_;
   std::shared_ptr<const SoftBodyBinding> binding_;
+  SelfContact selfContact_;
   SurfaceTree tree_;
   SoftBodySkin skin_;
   SurfacePoint horn_, crown_;
@@ -165,11 +167,13 @@ Drag::Drag(const DragOptions& options)
       world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
       body_(world_.add(model_.cage, {})),
       binding_(bound(model_)),
+      selfContact_(selfContactOf(model_.name, model_.cage, model_.mesh, options.selfContact, options.output.quiet)),
       tree_(binding_, model_.mesh) {
   require(tree_.check());
   body_.setActivationState(DISABLE_DEACTIVATION);
   world_.addBox({0, -0.25 * kSize, 0}, {3 * kSize, 0.25 * kSize, 3 * kSize});
   world_.touchBySurface(body_, *binding_, model_.mesh);
+  if (selfContact_.shape) world_.touchEachOther(body_, selfContact_.shape, true);
   require(skin_.bind(body_, binding_));
   const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
   // In front of the horns, from above.
@@ -302,6 +306,7 @@ void Drag::tell(nlohmann::ordered_json& json) const {
   json["tets"] = model_.cage.tetCount();
   json["triangles"] = model_.mesh.triangleCount();
   json["stiffness"] = options_.stiffness;
+  selfContact_.tell(json);
   json["first_ray_us"] = rayMicroseconds_;
   json["lag_swinging"] = lag_;
   json["stretch_hanging"] = hangs_;
@@ -354,6 +359,7 @@ int main(int argc, char** argv) {
   line.addCount("--tets", options.tets, "Tets of the cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
   line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");
+  line.addSelfContactOption(options.selfContact);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] { return run(options); });
 }

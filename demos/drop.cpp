@@ -25,6 +25,7 @@ struct DropOptions {
   ModelOptions model;
   Force force = Force::Elastic;
   Contact contact = Contact::Surface;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   std::string body = "elastic";
   std::size_t modes = 20;
   SkinOptions skin;
@@ -33,14 +34,19 @@ struct DropOptions {
 
   bool reduced() const { return body == "reduced"; }
   /// Bullet's reduced bodies are touched at their nodes alone.
-  bool touchesBySurface() const { return contact == Contact::Surface && !reduced(); }
+  Contact contactPossible() const { return reduced() ? Contact::Cage : contact; }
 };
 
 /// What is asked for is done or refused: only the default gives way to what a reduced body can do.
 void requireContact(const DropOptions& options, bool given) {
-  if (!given || !options.reduced() || options.contact == Contact::Cage) return;
-  throw InputError(
-      "--contact surface: a reduced body is touched at its cage's nodes alone; take --contact cage, or --body elastic");
+  if (!options.reduced()) return;
+  const char* fault = ": a reduced body is touched at its cage's nodes alone; ";
+  if (given && options.contact == Contact::Surface) {
+    throw InputError(std::string("--contact surface") + fault + "take --contact cage, or --body elastic");
+  }
+  if (options.selfContact == SelfContactWish::On) {
+    throw InputError(std::string("--self-contact on") + fault + "take --self-contact off, or --body elastic");
+  }
 }
 
 /// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
@@ -80,7 +86,8 @@ class Drop {
         player_(options.model, "obstacles", howOf(options)),
         surface_(player_.carry(options.skin)),
         restExtent_(bounds().sizes().maxCoeff()) {
-    if (options.touchesBySurface()) player_.touchBySurface();
+    if (options.contactPossible() == Contact::Surface) player_.touchBySurface();
+    player_.touchItself(wishBeside(options.contactPossible(), options.selfContact));
   }
 
   const ObjLayout& layout() const { return player_.model().layout; }
@@ -132,7 +139,7 @@ class Drop {
 ViewPage& Drop::addPage() {
   const Model& model = player_.model();
   std::vector<std::string> facts = factsOf(model);
-  facts.push_back(factOf(options_.touchesBySurface() ? Contact::Surface : Contact::Cage));
+  facts.push_back(factOf(options_.contactPossible(), player_.selfContact().shape != nullptr));
   page_.emplace(titleOf(model.name), facts, options_.skin.interpolation);
   page_->addBody({page_->addModel(model.cage, model.mesh, surface_.skin.binding()->embedding()), "", ""});
   page_->setObstacles(obstacles());
@@ -148,7 +155,8 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
     json["modes_left_out"] = reduction->leftOut;
   }
   json["force"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
-  json["contact"] = options_.touchesBySurface() ? "surface" : "cage";
+  json["contact"] = options_.contactPossible() == Contact::Surface ? "surface" : "cage";
+  player_.selfContact().tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
@@ -189,6 +197,7 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
       json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
   row("force", json.at("force").get<std::string>());
   row("contact", json.at("contact").get<std::string>());
+  row("contact with itself", json.at("self_contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
   row("skin", number("skin_us_per_frame", "%.1f us a frame"));
   row("write", number("write_ms_per_frame", "%.2f ms a frame"));
@@ -245,6 +254,7 @@ int main(int argc, char** argv) {
   line.addCount("--modes", options.modes, "Vibrations of a reduced body");
   line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of");
   line.addContactOption(options.contact);
+  line.addSelfContactOption(options.selfContact);
   line.addInterpolationOption(options.skin);
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);

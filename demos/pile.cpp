@@ -33,8 +33,11 @@ struct PileOptions {
   int bodies = 10;
   std::size_t tets = 500, triangles = 20000;  ///< of each model
   Contact contact = Contact::Surface;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   Setting setting = Setting::Solver;
   OutputOptions output{"out/pile", "", 600, 1, false};
+
+  bool touchThemselves() const { return wishBeside(contact, selfContact) != SelfContactWish::Off; }
 };
 
 constexpr double kFrame = 1.0 / 60.0;
@@ -112,7 +115,7 @@ class Pile {
   double nodeSpeed() const;
 
   /// Of the run to come: bodies of one model share it.
-  ViewPage page(Contact contact) const;
+  ViewPage page(const PileOptions& options) const;
   ViewMoment moment() const;
 
  private:
@@ -131,7 +134,7 @@ void Pile::add(const PileModel& of, int k, const PileOptions& options) {
   how.implicit = options.setting == Setting::Implicit;
   btSoftBody& body = world_.add(placedAt(of.model.cage, k), how);
   if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
-  world_.touchEachOther(body, of.shape);
+  world_.touchEachOther(body, of.shape, options.touchThemselves());
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
   bodyTets_ += of.model.cage.tetCount();
@@ -174,11 +177,13 @@ double Pile::nodeSpeed() const {
   return std::sqrt(squared / count) / kSize;
 }
 
-ViewPage Pile::page(Contact contact) const {
+ViewPage Pile::page(const PileOptions& options) const {
+  const Contact contact = options.contact;
   ViewPage page("pile",
                 {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
                  withCommas(bodyTets_) + " tets",
-                 contact == Contact::Surface ? factOf(contact) : "contact with the bowl at the cages' nodes"},
+                 contact == Contact::Surface ? factOf(contact, options.touchThemselves())
+                                             : "contact with the bowl at the cages' nodes"},
                 Interpolation::Linear);
   for (const PileModel& of : models_) page.addModel(of.model.cage, of.model.mesh, of.binding->embedding());
   for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
@@ -199,7 +204,7 @@ int run(const PileOptions& options) {
   FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
   const std::string summary = summaryPath(output), view = viewPath(output);
   std::optional<ViewPage> page;
-  if (!view.empty()) page = pile.page(options.contact);
+  if (!view.empty()) page = pile.page(options);
   double deepest = 0.0;
   const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
@@ -219,6 +224,7 @@ int run(const PileOptions& options) {
   nlohmann::ordered_json json;
   json["bodies"] = options.bodies;
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
+  json["self_contact"] = options.touchThemselves() ? "on" : "off";
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["deepest_contact"] = deepest;
   json["deepest_contact_at_end"] = pile.deepest();
@@ -245,6 +251,7 @@ int main(int argc, char** argv) {
   line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
   line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);
   line.addContactOption(options.contact);
+  line.addSelfContactOption(options.selfContact);
   line.addSettingOption(options.setting);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] { return run(options); });

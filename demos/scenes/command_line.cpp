@@ -174,6 +174,11 @@ void CommandLine::addContactOption(Contact& contact) {
             "What meets the obstacles: the surface as drawn, or the cage's nodes, as Bullet has it");
 }
 
+void CommandLine::addSelfContactOption(SelfContactWish& wish) {
+  addChoice(parser_->app, "--self-contact", wish, {{"on", SelfContactWish::On}, {"off", SelfContactWish::Off}},
+            "Whether a body meets itself at its surface (default: with --contact surface, unless the mesh is open)");
+}
+
 void CommandLine::addSettingOption(Setting& setting) {
   addChoice(parser_->app, "--setting", setting,
             {{"solver", Setting::Solver}, {"explicit", Setting::Explicit}, {"implicit", Setting::Implicit}},

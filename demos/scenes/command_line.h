@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "scenes/model.h"
+#include "scenes/self_contact.h"
 #include "scenes/world.h"
 
 namespace tetskin::scenes {
@@ -87,6 +88,8 @@ class CommandLine {
   /// --force: bullet (neo-Hookean) or tetskin.
   void addForceOption(Force& force);
   void addContactOption(Contact& contact);
+  /// --self-contact: on or off.
+  void addSelfContactOption(SelfContactWish& wish);
   /// --setting: solver, explicit or implicit.
   void addSettingOption(Setting& setting);
   /// --interpolation.

@@ -68,6 +68,15 @@ void Player::touchBySurface() {
   scene_->world().touchBySurface(scene_->body(), *carried_.front().skin.binding(), model_.mesh);
 }
 
+void Player::touchItself(SelfContactWish wish) {
+  Placement atRest = place_;  // where its cage is, which the scene has put elsewhere
+  atRest.offset.setZero();
+  TriangleMesh mesh = model_.mesh;
+  atRest.toWorld(mesh.positions);
+  selfContact_ = selfContactOf(model_.name, atRest.toWorld(model_.cage), mesh, wish, options_.quiet);
+  if (selfContact_.shape) scene_->world().touchEachOther(scene_->body(), selfContact_.shape, true);
+}
+
 /// Returns false if node positions are not finite.
 bool Player::step(int frame, Playback& run) {
   const WallTimer simulation;

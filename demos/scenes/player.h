@@ -33,6 +33,10 @@ class Player {
   /// Rigid bodies meet the model's mesh from now on, which must be carried already.
   void touchBySurface();
 
+  /// The body meets itself at its surface from now on, if it can: see `selfContactOf`.
+  void touchItself(SelfContactWish wish);
+  const SelfContact& selfContact() const { return selfContact_; }
+
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
   const Placement& place() const { return place_; }
@@ -56,6 +60,7 @@ class Player {
   std::unique_ptr<Scene> scene_;
   std::deque<Carried> carried_;
   EmbedReport fit_;
+  SelfContact selfContact_;
 };
 
 }  // namespace tetskin::scenes

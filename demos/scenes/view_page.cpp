@@ -234,8 +234,9 @@ std::string titleOf(const std::string& name) {
   return file.empty() ? name : file;
 }
 
-std::string factOf(Contact contact) {
-  return contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
+std::string factOf(Contact contact, bool withItself) {
+  const std::string where = contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
+  return withItself ? where + ", and with itself" : where;
 }
 
 std::string withCommas(std::size_t number) {

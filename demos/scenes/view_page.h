@@ -83,7 +83,7 @@ class ViewPage {
 /// A model by the name of its file, without the folder.
 std::string titleOf(const std::string& name);
 /// What meets obstacles and other bodies.
-std::string factOf(Contact contact);
+std::string factOf(Contact contact, bool withItself);
 /// "12,345".
 std::string withCommas(std::size_t number);
 /// Vertices, triangles and tets.

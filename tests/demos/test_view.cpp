@@ -145,7 +145,7 @@ TEST(View, IsEntitledByTheNameOfTheMeshAloneAndSaysWhatTouches) {
     return folder.read("o/view.html");
   };
   EXPECT_NE(pageOf("surface").find("\"title\":\"tet.obj\""), std::string::npos);
-  EXPECT_NE(pageOf("surface").find("\"contact at the surface\""), std::string::npos);
+  EXPECT_NE(pageOf("surface").find("\"contact at the surface, and with itself\""), std::string::npos);
   EXPECT_NE(pageOf("cage").find("\"contact at the cage's nodes\""), std::string::npos);
 }
 
