@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scripted pointer picks the serpent by a horn, swings it, and hangs it on a ring; an explosion pushes it, and a hat
-// rides on its head.
+// A scripted pointer picks the serpent, or another mesh, by a horn or what is highest, swings it, and hangs it on a
+// ring; an explosion pushes it, and a hat rides on its head.
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/touch/surface_spring.h>
 #include <tetskin/touch/surface_tree.h>
@@ -32,7 +32,7 @@ using namespace tetskin::scenes;
 using Eigen::Vector3d;
 
 struct DragOptions {
-  std::size_t tets = 1000, triangles = 60000;
+  ModelOptions model;
   double stiffness = 10;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
   OutputOptions output{"out/drag", "", 600, 1, false};
@@ -91,12 +91,9 @@ class Ring {
   std::unique_ptr<btPoint2PointConstraint> pin_;
 };
 
-Model placedSerpent(const DragOptions& options) {
-  ModelOptions of;
-  of.tets = options.tets;
-  of.triangles = options.triangles;
-  of.quiet = options.output.quiet;
-  Model model = loadModel(of);
+/// Just above the floor.
+Model placedModel(const ModelOptions& options) {
+  Model model = loadModel(options);
   Placement place = placementOf(boundingBox(model.cage.nodes));
   model.cage = place.toWorld(model.cage);
   place.toWorld(model.mesh.positions);
@@ -116,7 +113,7 @@ int highest(const TriangleMesh& mesh) {
 class Drag {
  public:
   explicit Drag(const DragOptions& options);
-  /// False if the serpent has exploded.
+  /// False if the body has exploded.
   bool step(int frame);
   const TriangleMesh& drawn() const { return drawn_; }
   std::vector<Vector3d> surface() const;
@@ -146,7 +143,7 @@ class Drag {
   std::unique_ptr<SurfaceSpring> spring_;
   std::unique_ptr<Ring> ring_;
   std::array<TriangleMesh, 3> props_ = {makeHat(kHat), makeRing(kRing, 0.02 * kSize), makePointer(0.02 * kSize)};
-  TriangleMesh drawn_;                    ///< the serpent and these
+  TriangleMesh drawn_;                    ///< the body and these
   std::array<std::size_t, 3> propFirst_;  ///< their first vertices there
   btVector3 picked_{0, 0, 0};
   double lag_ = 0, hangs_ = 0;
@@ -163,7 +160,7 @@ SoftBodyBinding::Pointer bound(const Model& model) {
 
 Drag::Drag(const DragOptions& options)
     : options_(options),
-      model_(placedSerpent(options)),
+      model_(placedModel(options.model)),
       world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
       body_(world_.add(model_.cage, {})),
       binding_(bound(model_)),
@@ -178,7 +175,8 @@ Drag::Drag(const DragOptions& options)
   const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
   // In front of the horns, from above.
   const btVector3 over = toBullet(tip + kSize * Vector3d(0.035, 0.1, 0.035)), under = over - btVector3(0, kSize, 0);
-  auto crown = tree_.pointAt(body_, tree_.raycast(skin_, over, under));
+  const SurfaceHit top = tree_.raycast(skin_, over, under);
+  auto crown = top ? tree_.pointAt(body_, top) : tree_.pointOfVertex(body_, highest(model_.mesh));
   require(crown.status());
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);
@@ -287,8 +285,8 @@ Eigen::Affine3d affine(const btTransform& transform) {
 
 ViewPage Drag::page() const {
   std::vector<std::string> facts = factsOf(model_);
-  facts.emplace_back("picked by a horn, swung, hung on a ring, pushed");
-  ViewPage page(model_.name, facts, Interpolation::Linear);
+  facts.emplace_back("picked at the top, swung, hung on a ring, pushed");
+  ViewPage page(titleOf(model_.name), facts, Interpolation::Linear);
   page.addBody({page.addModel(model_.cage, model_.mesh, binding_->embedding()), "", ""});
   for (const TriangleMesh& prop : props_) page.addProp(prop);
   page.setObstacles(floor());
@@ -315,10 +313,10 @@ void Drag::tell(nlohmann::ordered_json& json) const {
 }
 
 int run(const DragOptions& options) {
-  Drag drag(options);
   const OutputOptions& output = options.output;
-  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::fromMesh(drag.drawn()));
   const std::string summary = summaryPath(output), view = viewPath(output);
+  Drag drag(options);
+  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::fromMesh(drag.drawn()));
   std::optional<ViewPage> page;
   if (!view.empty()) page = drag.page();
   const auto step = [&](int frame, Playback& run) {
@@ -351,15 +349,20 @@ int run(const DragOptions& options) {
 
 int main(int argc, char** argv) {
   DragOptions options;
+  options.model.tets = 1000;
   CommandLine line(
-      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.",
+      "A pointer picks the serpent, or your mesh, at its highest point, swings it and hangs it on a ring; lengths are "
+      "over its size.",
       {{{"tetskin_drag", "out/drag/frame_0000.obj, ..., and summary.json with the lag"},
+        {"tetskin_drag --mesh yours.obj", "a mesh of yours, picked at its highest point"},
         {"tetskin_drag --stiffness 1 --out soft", "a soft spring: the serpent lags behind the pointer"}},
        "the simulation exploded"});
-  line.addCount("--tets", options.tets, "Tets of the cage", 20000);
-  line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
+  line.addMeshOptions(options.model);
   line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");
   line.addSelfContactOption(options.selfContact);
   line.addOutputOptions(options.output);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.output.quiet;
+    return run(options);
+  });
 }

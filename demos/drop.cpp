@@ -209,14 +209,14 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 }
 
 int run(const DropOptions& options) {
-  Drop drop(options);
   const OutputOptions& output = options.output;
+  const std::string path = summaryPath(output), view = viewPath(output);
+  Drop drop(options);
   FramePlan plan = framePlanOf(output);
   plan.cages = options.writeCage;
   plan.obstacles = drop.obstacles();
   if (options.model.mesh.empty()) plan.materials = materialLibrary(drop.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, drop.layout()));
-  const std::string path = summaryPath(output), view = viewPath(output);
   const ViewPage* page = view.empty() ? nullptr : &drop.addPage();
 
   const Playback run = drop.simulate(writer);
@@ -252,7 +252,8 @@ int main(int argc, char** argv) {
       "--body", options.body, {"elastic", "reduced"},
       "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
   line.addCount("--modes", options.modes, "Vibrations of a reduced body");
-  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of");
+  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of",
+                static_cast<int>(kLargestTargetTets));
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
   line.addInterpolationOption(options.skin);
@@ -261,6 +262,9 @@ int main(int argc, char** argv) {
   line.addFlag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
   return line.run(argc, argv, [&] {
     requireContact(options, line.given("--contact"));
+    for (const char* name : {"--modes", "--fine-tets"}) {
+      if (line.given(name) && !options.reduced()) throw InputError(std::string(name) + " is for --body reduced");
+    }
     options.model.quiet = options.output.quiet;
     return run(options);
   });

@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 
 struct PileOptions {
   int bodies = 10;
-  std::size_t tets = 500, triangles = 20000;  ///< of each model
+  ModelOptions model;  ///< without a mesh: what all of kModels have in common
   Contact contact = Contact::Surface;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
   Setting setting = Setting::Solver;
@@ -54,7 +54,7 @@ struct PileModel {
     model.cage = place.toWorld(model.cage);
     place.toWorld(model.mesh.positions);
     auto made = makeContactShape(model.cage, model.mesh);
-    require(made.status());
+    if (!made.ok()) throw InputError(model.name + ": " + made.status().message);
     shape = made.value();
     auto bound = SoftBodyBinding::make(model.cage, model.mesh);
     require(bound.status());
@@ -90,16 +90,14 @@ Cage placedAt(Cage cage, int k) {
 class Pile {
  public:
   explicit Pile(const PileOptions& options) : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
+    ModelOptions model = options.model;
+    if (!model.mesh.empty()) models_.emplace_back(model);
     for (const BuiltIn builtIn : kModels) {
-      ModelOptions of;
-      of.builtIn = builtIn;
-      of.tets = options.tets;
-      of.triangles = options.triangles;
-      of.quiet = options.output.quiet;
-      models_.emplace_back(of);
+      model.builtIn = builtIn;
+      if (model.mesh.empty()) models_.emplace_back(model);
     }
     addBowl(world_);
-    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options);
+    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % models_.size()], k, options);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
@@ -199,10 +197,10 @@ ViewMoment Pile::moment() const {
 }
 
 int run(const PileOptions& options) {
-  Pile pile(options);
   const OutputOptions& output = options.output;
-  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
   const std::string summary = summaryPath(output), view = viewPath(output);
+  Pile pile(options);
+  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
   std::optional<ViewPage> page;
   if (!view.empty()) page = pile.page(options);
   double deepest = 0.0;
@@ -243,16 +241,25 @@ int run(const PileOptions& options) {
 
 int main(int argc, char** argv) {
   PileOptions options;
-  CommandLine line("Soft bodies of three models fall into a bowl, some across thin poles, and lie on each other.",
-                   {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
-                     {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
-                    "the simulation exploded"});
+  options.model.tets = 500;
+  options.model.triangles = 20000;
+  CommandLine line(
+      "Soft bodies of three models, or of your mesh, fall into a bowl, some across thin poles, and lie on each other.",
+      {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
+        {"tetskin_pile --mesh yours.obj", "ten of a mesh of yours, which must be closed"},
+        {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
+       "the simulation exploded"});
   line.addCount("--bodies", options.bodies, "How many bodies", 100);
-  line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
-  line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);
+  line.addInput("--mesh", options.model.mesh,
+                "Closed mesh of all bodies, any format assimp reads (default: three models)");
+  line.addCount("--tets", options.model.tets, "Tets of each model's cage", 20000);
+  line.addCount("--triangles", options.model.triangles, "Triangles of each built-in model", 500000);
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
   line.addSettingOption(options.setting);
   line.addOutputOptions(options.output);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.output.quiet;
+    return run(options);
+  });
 }

@@ -209,6 +209,7 @@ ViewPage pageOf(const Model& model, const Embedding& embedding) {
 }
 
 int run(const TwistOptions& options) {
+  const std::string path = summaryPath(options.output), view = viewPath(options.output);
   Player player(options.model, "wring");
   const auto carry = [&](Interpolation interpolation) -> const Carried& {
     SkinOptions skin = options.skin;
@@ -221,7 +222,6 @@ int run(const TwistOptions& options) {
   FramePlan plan = framePlanOf(options.output);
   if (options.model.mesh.empty()) plan.materials = materialLibrary(pair.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, pair.layout()));
-  const std::string path = summaryPath(options.output), view = viewPath(options.output);
   std::optional<ViewPage> page;
   if (!view.empty()) page = pageOf(player.model(), quadratic.skin.binding()->embedding());
   Totals totals;

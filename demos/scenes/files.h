@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tetskin::scenes {
 
@@ -19,6 +20,10 @@ std::optional<std::string> contentsOf(const std::string& path);
 
 /// Throws InputError if this file cannot be written, so that it is known before the work. Does not change it.
 void requireWritable(const std::string& path);
+
+/// Throws InputError if this is not the name of a file with one of these extensions, which are in small letters with
+/// their dots; of none: any.
+void requireExtension(const std::string& path, const std::vector<std::string>& extensions);
 
 /// "12 MB", "1.2 MB", "3 kB".
 std::string sizeText(double bytes);

@@ -36,14 +36,6 @@ bool isNumbered(const std::string& name, const std::string& base, const std::str
          name.find_first_not_of("0123456789", first) == end;
 }
 
-/// Whether a line of the list is a name that a run here gives: the list may have been edited.
-bool isOurs(const std::string& name) {
-  for (const char* known : {kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
-    if (name == known) return true;
-  }
-  return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
-}
-
 /// What `saveTetMesh` makes of it as .vtk.
 std::size_t vtkBytes(const TetMesh& cage) {
   constexpr std::size_t kHead = 120, kOfTet = sizeof "4 \n10\n" - 1;
@@ -62,6 +54,13 @@ std::string framesText(int count) {
 }
 
 }  // namespace
+
+bool isOfFrames(const std::string& name) {
+  for (const char* known : {kListName, kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
+    if (name == known) return true;
+  }
+  return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
+}
 
 bool fitsFloat(const Box3& box) {
   constexpr double kFarOut = 100.0;  ///< sizes from the origin
@@ -169,7 +168,7 @@ std::set<std::string> FrameWriter::filesOfEarlierRun() const {
   std::set<std::string> names;
   std::ifstream list(pathOf(kListName));
   for (std::string name; std::getline(list, name);) {
-    if (isOurs(name)) names.insert(name);
+    if (isOfFrames(name) && name != kListName) names.insert(name);  // it may have been edited
   }
   return names;
 }

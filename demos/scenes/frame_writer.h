@@ -18,6 +18,9 @@ namespace tetskin::scenes {
 /// far out that float cannot hold it.
 bool fitsFloat(const Box3& box);
 
+/// Whether a run writes, or removes, files of this name in its folder.
+bool isOfFrames(const std::string& name);
+
 /// Which frames a run writes, and where.
 struct FramePlan {
   std::string folder;

@@ -97,24 +97,22 @@ std::string whyNoView() {
   return {};
 }
 
-void requireViewable(const std::string& path) {
+void requireViewable() {
   const std::string reason = whyNoView();
   if (!reason.empty()) throw InputError("--view: " + reason);
-  requireWritable(path);
 }
 
 std::string viewPath(const OutputOptions& options) {
   if (options.noView && !options.view.empty()) throw InputError("--view and --no-view exclude each other");
-  std::string path = options.view;
-  if (path.empty()) {
-    if (!options.viewByDefault || options.noView) return {};
-    const std::string reason = whyNoView();
-    if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
-    if (!reason.empty()) return {};
-    path = (std::filesystem::path(options.out) / "view.html").string();
+  if (!options.view.empty()) {
+    requireViewable();
+    return options.view;
   }
-  requireViewable(path);
-  return path;
+  if (!options.viewByDefault || options.noView) return {};
+  const std::string reason = whyNoView();
+  if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
+  if (!reason.empty()) return {};
+  return (std::filesystem::path(options.out) / "view.html").string();
 }
 
 ViewPage::ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation)

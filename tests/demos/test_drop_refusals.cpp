@@ -91,7 +91,16 @@ TEST_F(DropRefuses, ASummaryThatCannotBeWritten) {
   const CommandResult result =
       drop({"--mesh", "box.obj", "--tets", "60", "--frames", "2", "--out", "o", "--json", "no/such/s.json"});
   test::expectRefused(result, "no/such/s.json");
-  EXPECT_EQ(folder.count("o", ".obj"), 0u);
+  EXPECT_FALSE(folder.exists("o"));
+}
+
+TEST_F(DropRefuses, VibrationsOfABodyThatHasNone) {
+  expectRefused({"--modes", "5"}, {"--modes is for --body reduced"});
+  expectRefused({"--fine-tets", "5000"}, {"--fine-tets is for --body reduced"});
+}
+
+TEST_F(DropRefuses, MoreTetsThanACageCanHave) {
+  expectRefused({"--tets", "20000001"}, {"from 1 to 20000000"});
 }
 
 TEST_F(DropRefuses, UnknownOptionsAndSenselessValues) {
