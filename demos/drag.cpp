@@ -363,6 +363,9 @@ int main(int argc, char** argv) {
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] {
     options.model.quiet = options.output.quiet;
+    options.model.loaded = [&](const TriangleMesh& mesh, const ObjLayout& layout) {
+      requireRoomFor(mesh, layout, options.output);
+    };
     return run(options);
   });
 }

@@ -266,6 +266,9 @@ int main(int argc, char** argv) {
       if (line.given(name) && !options.reduced()) throw InputError(std::string(name) + " is for --body reduced");
     }
     options.model.quiet = options.output.quiet;
+    options.model.loaded = [&](const TriangleMesh& mesh, const ObjLayout& layout) {
+      requireRoomFor(mesh, layout, options.output);
+    };
     return run(options);
   });
 }

@@ -64,6 +64,13 @@ std::string sizeText(double bytes) {
   return text;
 }
 
+fs::path existingPart(fs::path folder) {
+  std::error_code error;
+  folder = fs::absolute(folder, error);
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
 std::optional<std::string> contentsOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return {};

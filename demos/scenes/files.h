@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ namespace tetskin::scenes {
 /// Writes a whole file under the name `path.part` and renames it, so that a file called `path` is always complete.
 /// Through symbolic links, and straight into what is no regular file (/dev/stdout). Throws InputError with the path.
 void writeFile(const std::string& path, std::string_view bytes);
+
+/// What is there already on the way to a folder; the folder itself if it is.
+std::filesystem::path existingPart(std::filesystem::path folder);
 
 /// All bytes of a file; nothing if it cannot be read.
 std::optional<std::string> contentsOf(const std::string& path);

@@ -63,14 +63,6 @@ bool touches(const std::string& written, const std::string& other) {
   return false;
 }
 
-/// What is there already on the way to a folder.
-fs::path existingPart(fs::path folder) {
-  std::error_code error;
-  folder = fs::absolute(folder, error);
-  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
-  return folder;
-}
-
 void requireFolder(const std::string& path) {
   const fs::path there = existingPart(path);
   std::error_code error;
