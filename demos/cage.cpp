@@ -50,7 +50,6 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
 }
 
 int run(CageCommand command) {
-  if (!command.json.empty()) requireWritable(command.json);
   const Surface surface = loadSurface(command.model);
   CageReport report;
   CageOptions options = cageOptionsOf(command.model);
@@ -86,9 +85,9 @@ int main(int argc, char** argv) {
                       "some 300, as soft as the mesh, and how well they fit"}},
                     "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
-  line.addFile("-o,--output", command.output,
-               "Cage to write: .vtk, with all that is known of it; tets alone: .msh, .ele with .node",
-               CommandLine::Need::Required);
+  line.addOutput("-o,--output", command.output,
+                 "Cage to write: .vtk, with all that is known of it; tets alone: .msh, .ele with .node",
+                 CommandLine::Need::Required, {".vtk", ".node", ".ele", ".msh"});
   line.addSummaryOption(command.json, "File of the summary");
   line.addFlag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
   line.addQuietOption(command.quiet);

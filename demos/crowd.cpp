@@ -320,7 +320,6 @@ void printTable(const nlohmann::ordered_json& json) {
 }
 
 int run(const CrowdOptions& options) {
-  if (!options.json.empty()) requireWritable(options.json);
   try {
     const nlohmann::ordered_json json = Measurement(options).run();
     if (!options.json.empty()) writeJson(json, options.json);

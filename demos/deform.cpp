@@ -5,9 +5,7 @@
 #include <tetskin/io/tet_files.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "scenes/command_line.h"
@@ -111,18 +109,7 @@ nlohmann::ordered_json summarise(const Model& model, const DeformCommand& comman
   return json;
 }
 
-bool isObj(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".obj";
-}
-
 int run(const DeformCommand& command) {
-  if (!isObj(command.output)) {
-    throw InputError(command.output + ": is of a format that is not written; use .obj");
-  }
-  if (!command.json.empty()) requireWritable(command.json);
   Model model;
   static_cast<Surface&>(model) = loadSurface(command.model);
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
@@ -165,14 +152,14 @@ int main(int argc, char** argv) {
         {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj --normals transformed",
          "the same with its normals"}},
        ""});
-  line.addFile("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads", kRequired);
-  line.addFile("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh", kRequired);
-  line.addFile("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order",
-               kRequired);
-  line.addFile("-o,--output", command.output, "Deformed mesh to write: .obj", kRequired);
+  line.addInput("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads", kRequired);
+  line.addInput("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh", kRequired);
+  line.addInput("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order",
+                kRequired);
+  line.addOutput("-o,--output", command.output, "Deformed mesh to write: .obj", kRequired, {".obj"});
   line.addInterpolationOption(command.skin);
   line.addSkinOptions(command.skin);
-  line.addFile("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
+  line.addOutput("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
   line.addSummaryOption(command.json, "File of the summary");
   line.addQuietOption(command.quiet);
   return line.run(argc, argv, [&] { return run(command); });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scripted pointer picks the serpent by a horn, swings it, and hangs it on a ring; an explosion pushes it, and a hat
-// rides on its head.
+// A scripted pointer picks the serpent, or another mesh, by a horn or what is highest, swings it, and hangs it on a
+// ring; an explosion pushes it, and a hat rides on its head.
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/touch/surface_spring.h>
 #include <tetskin/touch/surface_tree.h>
@@ -18,9 +18,9 @@
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/materials.h"
+#include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
-#include "scenes/progress.h"
+#include "scenes/playback.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -32,8 +32,9 @@ using namespace tetskin::scenes;
 using Eigen::Vector3d;
 
 struct DragOptions {
-  std::size_t tets = 1000, triangles = 60000;
+  ModelOptions model;
   double stiffness = 10;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   OutputOptions output{"out/drag", "", 600, 1, false};
 };
 
@@ -90,12 +91,9 @@ class Ring {
   std::unique_ptr<btPoint2PointConstraint> pin_;
 };
 
-Model placedSerpent(const DragOptions& options) {
-  ModelOptions of;
-  of.tets = options.tets;
-  of.triangles = options.triangles;
-  of.quiet = options.output.quiet;
-  Model model = loadModel(of);
+/// Just above the floor.
+Model placedModel(const ModelOptions& options) {
+  Model model = loadModel(options);
   Placement place = placementOf(boundingBox(model.cage.nodes));
   model.cage = place.toWorld(model.cage);
   place.toWorld(model.mesh.positions);
@@ -115,7 +113,7 @@ int highest(const TriangleMesh& mesh) {
 class Drag {
  public:
   explicit Drag(const DragOptions& options);
-  /// False if the serpent has exploded.
+  /// False if the body has exploded.
   bool step(int frame);
   const TriangleMesh& drawn() const { return drawn_; }
   std::vector<Vector3d> surface() const;
@@ -138,13 +136,14 @@ class Drag {
   World world_;
   btSoftBody& body_;
   std::shared_ptr<const SoftBodyBinding> binding_;
+  SelfContact selfContact_;
   SurfaceTree tree_;
   SoftBodySkin skin_;
   SurfacePoint horn_, crown_;
   std::unique_ptr<SurfaceSpring> spring_;
   std::unique_ptr<Ring> ring_;
   std::array<TriangleMesh, 3> props_ = {makeHat(kHat), makeRing(kRing, 0.02 * kSize), makePointer(0.02 * kSize)};
-  TriangleMesh drawn_;                    ///< the serpent and these
+  TriangleMesh drawn_;                    ///< the body and these
   std::array<std::size_t, 3> propFirst_;  ///< their first vertices there
   btVector3 picked_{0, 0, 0};
   double lag_ = 0, hangs_ = 0;
@@ -161,20 +160,23 @@ SoftBodyBinding::Pointer bound(const Model& model) {
 
 Drag::Drag(const DragOptions& options)
     : options_(options),
-      model_(placedSerpent(options)),
+      model_(placedModel(options.model)),
       world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
       body_(world_.add(model_.cage, {})),
       binding_(bound(model_)),
+      selfContact_(selfContactOf(model_.name, model_.cage, model_.mesh, options.selfContact, options.output.quiet)),
       tree_(binding_, model_.mesh) {
   require(tree_.check());
   body_.setActivationState(DISABLE_DEACTIVATION);
   world_.addBox({0, -0.25 * kSize, 0}, {3 * kSize, 0.25 * kSize, 3 * kSize});
   world_.touchBySurface(body_, *binding_, model_.mesh);
+  if (selfContact_.shape) world_.touchEachOther(body_, selfContact_.shape, true);
   require(skin_.bind(body_, binding_));
   const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
   // In front of the horns, from above.
   const btVector3 over = toBullet(tip + kSize * Vector3d(0.035, 0.1, 0.035)), under = over - btVector3(0, kSize, 0);
-  auto crown = tree_.pointAt(body_, tree_.raycast(skin_, over, under));
+  const SurfaceHit top = tree_.raycast(skin_, over, under);
+  auto crown = top ? tree_.pointAt(body_, top) : tree_.pointOfVertex(body_, highest(model_.mesh));
   require(crown.status());
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);
@@ -283,8 +285,8 @@ Eigen::Affine3d affine(const btTransform& transform) {
 
 ViewPage Drag::page() const {
   std::vector<std::string> facts = factsOf(model_);
-  facts.emplace_back("picked by a horn, swung, hung on a ring, pushed");
-  ViewPage page(model_.name, facts, Interpolation::Linear);
+  facts.emplace_back("picked at the top, swung, hung on a ring, pushed");
+  ViewPage page(titleOf(model_.name), facts, Interpolation::Linear);
   page.addBody({page.addModel(model_.cage, model_.mesh, binding_->embedding()), "", ""});
   for (const TriangleMesh& prop : props_) page.addProp(prop);
   page.setObstacles(floor());
@@ -302,6 +304,7 @@ void Drag::tell(nlohmann::ordered_json& json) const {
   json["tets"] = model_.cage.tetCount();
   json["triangles"] = model_.mesh.triangleCount();
   json["stiffness"] = options_.stiffness;
+  selfContact_.tell(json);
   json["first_ray_us"] = rayMicroseconds_;
   json["lag_swinging"] = lag_;
   json["stretch_hanging"] = hangs_;
@@ -310,35 +313,34 @@ void Drag::tell(nlohmann::ordered_json& json) const {
 }
 
 int run(const DragOptions& options) {
-  Drag drag(options);
   const OutputOptions& output = options.output;
-  FramePlan plan = framePlanOf(output);
-  plan.materials = materialLibrary(drag.drawn());
-  plan.obstacles = drag.floor();
-  FrameWriter writer(plan, ObjLayout::fromMesh(drag.drawn()));
   const std::string summary = summaryPath(output), view = viewPath(output);
+  Drag drag(options);
+  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::fromMesh(drag.drawn()));
   std::optional<ViewPage> page;
   if (!view.empty()) page = drag.page();
-  Progress progress("simulating", output.frames, output.quiet);
-  double milliseconds = 0.0;
-  bool finite = true;
-  for (int frame = 0; frame < output.frames && finite; ++frame) {
+  const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
-    finite = frame == 0 || drag.step(frame);
-    milliseconds += timer.milliseconds();
+    const bool finite = frame == 0 || drag.step(frame);
+    run.simulationMs += timer.milliseconds();
+    return finite;
+  };
+  const auto keep = [&](int) {
+    if (page) page->keep(drag.moment());
+  };
+  const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = drag.surface();
-    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
-    if (finite && page) page->keep(drag.moment());
-    progress.show(frame + 1);
-  }
+    writer.write(frame, surface, boundingBox(surface), {});
+  };
+  const Playback run = playFrames("simulating", output, step, keep, write);
   nlohmann::ordered_json json;
   drag.tell(json);
-  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
-  json["finite"] = finite;
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  json["finite"] = run.finite;
   writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
   if (page) page->write(view, output.quiet);
-  if (finite) return kDone;
+  if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_drag: the simulation exploded\n");
   return kRunFailed;
 }
@@ -347,14 +349,23 @@ int run(const DragOptions& options) {
 
 int main(int argc, char** argv) {
   DragOptions options;
+  options.model.tets = 1000;
   CommandLine line(
-      "A pointer picks the serpent by a horn, swings it and hangs it on a ring; lengths are over its size.",
+      "A pointer picks the serpent, or your mesh, at its highest point, swings it and hangs it on a ring; lengths are "
+      "over its size.",
       {{{"tetskin_drag", "out/drag/frame_0000.obj, ..., and summary.json with the lag"},
+        {"tetskin_drag --mesh yours.obj", "a mesh of yours, picked at its highest point"},
         {"tetskin_drag --stiffness 1 --out soft", "a soft spring: the serpent lags behind the pointer"}},
        "the simulation exploded"});
-  line.addCount("--tets", options.tets, "Tets of the cage", 20000);
-  line.addCount("--triangles", options.triangles, "Triangles of the serpent", 500000);
+  line.addMeshOptions(options.model);
   line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");
+  line.addSelfContactOption(options.selfContact);
   line.addOutputOptions(options.output);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.output.quiet;
+    options.model.loaded = [&](const TriangleMesh& mesh, const ObjLayout& layout) {
+      requireRoomFor(mesh, layout, options.output);
+    };
+    return run(options);
+  });
 }

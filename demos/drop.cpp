@@ -25,6 +25,7 @@ struct DropOptions {
   ModelOptions model;
   Force force = Force::Elastic;
   Contact contact = Contact::Surface;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   std::string body = "elastic";
   std::size_t modes = 20;
   SkinOptions skin;
@@ -33,14 +34,19 @@ struct DropOptions {
 
   bool reduced() const { return body == "reduced"; }
   /// Bullet's reduced bodies are touched at their nodes alone.
-  bool touchesBySurface() const { return contact == Contact::Surface && !reduced(); }
+  Contact contactPossible() const { return reduced() ? Contact::Cage : contact; }
 };
 
 /// What is asked for is done or refused: only the default gives way to what a reduced body can do.
 void requireContact(const DropOptions& options, bool given) {
-  if (!given || !options.reduced() || options.contact == Contact::Cage) return;
-  throw InputError(
-      "--contact surface: a reduced body is touched at its cage's nodes alone; take --contact cage, or --body elastic");
+  if (!options.reduced()) return;
+  const char* fault = ": a reduced body is touched at its cage's nodes alone; ";
+  if (given && options.contact == Contact::Surface) {
+    throw InputError(std::string("--contact surface") + fault + "take --contact cage, or --body elastic");
+  }
+  if (options.selfContact == SelfContactWish::On) {
+    throw InputError(std::string("--self-contact on") + fault + "take --self-contact off, or --body elastic");
+  }
 }
 
 /// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
@@ -80,7 +86,8 @@ class Drop {
         player_(options.model, "obstacles", howOf(options)),
         surface_(player_.carry(options.skin)),
         restExtent_(bounds().sizes().maxCoeff()) {
-    if (options.touchesBySurface()) player_.touchBySurface();
+    if (options.contactPossible() == Contact::Surface) player_.touchBySurface();
+    player_.touchItself(wishBeside(options.contactPossible(), options.selfContact));
   }
 
   const ObjLayout& layout() const { return player_.model().layout; }
@@ -132,7 +139,7 @@ class Drop {
 ViewPage& Drop::addPage() {
   const Model& model = player_.model();
   std::vector<std::string> facts = factsOf(model);
-  facts.push_back(factOf(options_.touchesBySurface() ? Contact::Surface : Contact::Cage));
+  facts.push_back(factOf(options_.contactPossible(), player_.selfContact().shape != nullptr));
   page_.emplace(titleOf(model.name), facts, options_.skin.interpolation);
   page_->addBody({page_->addModel(model.cage, model.mesh, surface_.skin.binding()->embedding()), "", ""});
   page_->setObstacles(obstacles());
@@ -148,7 +155,8 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
     json["modes_left_out"] = reduction->leftOut;
   }
   json["force"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
-  json["contact"] = options_.touchesBySurface() ? "surface" : "cage";
+  json["contact"] = options_.contactPossible() == Contact::Surface ? "surface" : "cage";
+  player_.selfContact().tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
@@ -189,6 +197,7 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
       json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
   row("force", json.at("force").get<std::string>());
   row("contact", json.at("contact").get<std::string>());
+  row("contact with itself", json.at("self_contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
   row("skin", number("skin_us_per_frame", "%.1f us a frame"));
   row("write", number("write_ms_per_frame", "%.2f ms a frame"));
@@ -200,14 +209,14 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
 }
 
 int run(const DropOptions& options) {
-  Drop drop(options);
   const OutputOptions& output = options.output;
+  const std::string path = summaryPath(output), view = viewPath(output);
+  Drop drop(options);
   FramePlan plan = framePlanOf(output);
   plan.cages = options.writeCage;
   plan.obstacles = drop.obstacles();
   if (options.model.mesh.empty()) plan.materials = materialLibrary(drop.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, drop.layout()));
-  const std::string path = summaryPath(output), view = viewPath(output);
   const ViewPage* page = view.empty() ? nullptr : &drop.addPage();
 
   const Playback run = drop.simulate(writer);
@@ -243,15 +252,23 @@ int main(int argc, char** argv) {
       "--body", options.body, {"elastic", "reduced"},
       "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
   line.addCount("--modes", options.modes, "Vibrations of a reduced body");
-  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of");
+  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of",
+                static_cast<int>(kLargestTargetTets));
   line.addContactOption(options.contact);
+  line.addSelfContactOption(options.selfContact);
   line.addInterpolationOption(options.skin);
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);
   line.addFlag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
   return line.run(argc, argv, [&] {
     requireContact(options, line.given("--contact"));
+    for (const char* name : {"--modes", "--fine-tets"}) {
+      if (line.given(name) && !options.reduced()) throw InputError(std::string(name) + " is for --body reduced");
+    }
     options.model.quiet = options.output.quiet;
+    options.model.loaded = [&](const TriangleMesh& mesh, const ObjLayout& layout) {
+      requireRoomFor(mesh, layout, options.output);
+    };
     return run(options);
   });
 }

@@ -16,9 +16,9 @@
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
-#include "scenes/materials.h"
+#include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
-#include "scenes/progress.h"
+#include "scenes/playback.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -31,10 +31,13 @@ using Eigen::Vector3d;
 
 struct PileOptions {
   int bodies = 10;
-  std::size_t tets = 500, triangles = 20000;  ///< of each model
+  ModelOptions model;  ///< without a mesh: what all of kModels have in common
   Contact contact = Contact::Surface;
+  SelfContactWish selfContact = SelfContactWish::WherePossible;
   Setting setting = Setting::Solver;
   OutputOptions output{"out/pile", "", 600, 1, false};
+
+  bool touchThemselves() const { return wishBeside(contact, selfContact) != SelfContactWish::Off; }
 };
 
 constexpr double kFrame = 1.0 / 60.0;
@@ -51,7 +54,7 @@ struct PileModel {
     model.cage = place.toWorld(model.cage);
     place.toWorld(model.mesh.positions);
     auto made = makeContactShape(model.cage, model.mesh);
-    require(made.status());
+    if (!made.ok()) throw InputError(model.name + ": " + made.status().message);
     shape = made.value();
     auto bound = SoftBodyBinding::make(model.cage, model.mesh);
     require(bound.status());
@@ -87,16 +90,14 @@ Cage placedAt(Cage cage, int k) {
 class Pile {
  public:
   explicit Pile(const PileOptions& options) : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
+    ModelOptions model = options.model;
+    if (!model.mesh.empty()) models_.emplace_back(model);
     for (const BuiltIn builtIn : kModels) {
-      ModelOptions of;
-      of.builtIn = builtIn;
-      of.tets = options.tets;
-      of.triangles = options.triangles;
-      of.quiet = options.output.quiet;
-      models_.emplace_back(of);
+      model.builtIn = builtIn;
+      if (model.mesh.empty()) models_.emplace_back(model);
     }
     addBowl(world_);
-    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % kModels.size()], k, options);
+    for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % models_.size()], k, options);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
@@ -112,7 +113,7 @@ class Pile {
   double nodeSpeed() const;
 
   /// Of the run to come: bodies of one model share it.
-  ViewPage page(Contact contact) const;
+  ViewPage page(const PileOptions& options) const;
   ViewMoment moment() const;
 
  private:
@@ -131,17 +132,11 @@ void Pile::add(const PileModel& of, int k, const PileOptions& options) {
   how.implicit = options.setting == Setting::Implicit;
   btSoftBody& body = world_.add(placedAt(of.model.cage, k), how);
   if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
-  world_.touchEachOther(body, of.shape);
+  world_.touchEachOther(body, of.shape, options.touchThemselves());
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, of.binding));
-  const int first = static_cast<int>(mesh_.vertexCount());
   bodyTets_ += of.model.cage.tetCount();
-  for (const TriangleGroup& group : of.model.mesh.groups) {
-    mesh_.groups.push_back(
-        {of.model.name, group.material, mesh_.triangleCount() + group.firstTriangle, group.triangleCount});
-  }
-  mesh_.positions.insert(mesh_.positions.end(), of.model.mesh.positions.begin(), of.model.mesh.positions.end());
-  for (const auto& [a, b, c] : of.model.mesh.triangles) mesh_.triangles.push_back({a + first, b + first, c + first});
+  (void)append(of.model.mesh, mesh_, of.model.name);
 }
 
 bool Pile::step() {
@@ -180,11 +175,13 @@ double Pile::nodeSpeed() const {
   return std::sqrt(squared / count) / kSize;
 }
 
-ViewPage Pile::page(Contact contact) const {
+ViewPage Pile::page(const PileOptions& options) const {
+  const Contact contact = options.contact;
   ViewPage page("pile",
                 {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
                  withCommas(bodyTets_) + " tets",
-                 contact == Contact::Surface ? factOf(contact) : "contact with the bowl at the cages' nodes"},
+                 contact == Contact::Surface ? factOf(contact, options.touchThemselves())
+                                             : "contact with the bowl at the cages' nodes"},
                 Interpolation::Linear);
   for (const PileModel& of : models_) page.addModel(of.model.cage, of.model.mesh, of.binding->embedding());
   for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
@@ -200,41 +197,42 @@ ViewMoment Pile::moment() const {
 }
 
 int run(const PileOptions& options) {
-  Pile pile(options);
   const OutputOptions& output = options.output;
-  FramePlan plan = framePlanOf(output);
-  plan.materials = materialLibrary(pile.mesh());
-  plan.obstacles = pile.obstacles();
-  FrameWriter writer(plan, ObjLayout::fromMesh(pile.mesh()));
   const std::string summary = summaryPath(output), view = viewPath(output);
+  Pile pile(options);
+  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
   std::optional<ViewPage> page;
-  if (!view.empty()) page = pile.page(options.contact);
-  Progress progress("simulating", output.frames, output.quiet);
-  double milliseconds = 0.0, deepest = 0.0;
-  bool finite = true;
-  for (int frame = 0; frame < output.frames && finite; ++frame) {
+  if (!view.empty()) page = pile.page(options);
+  double deepest = 0.0;
+  const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
-    finite = frame == 0 || pile.step();
-    milliseconds += timer.milliseconds();
+    const bool finite = frame == 0 || pile.step();
+    run.simulationMs += timer.milliseconds();
+    return finite;
+  };
+  const auto measure = [&](int) {
     deepest = std::min(deepest, pile.deepest());
+    if (page) page->keep(pile.moment());
+  };
+  const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = pile.surface();
-    if (finite && frame % output.every == 0) writer.write(frame, surface, boundingBox(surface), {});
-    if (finite && page) page->keep(pile.moment());
-    progress.show(frame + 1);
-  }
+    writer.write(frame, surface, boundingBox(surface), {});
+  };
+  const Playback run = playFrames("simulating", output, step, measure, write);
   nlohmann::ordered_json json;
   json["bodies"] = options.bodies;
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
-  json["simulation_ms_per_frame"] = milliseconds / std::max(1, output.frames - 1);
+  json["self_contact"] = options.touchThemselves() ? "on" : "off";
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["deepest_contact"] = deepest;
   json["deepest_contact_at_end"] = pile.deepest();
   json["contacts_at_end"] = pile.contactCount();
   json["node_speed_at_end"] = pile.nodeSpeed();
-  json["finite"] = finite;
+  json["finite"] = run.finite;
   writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
   if (page) page->write(view, output.quiet);
-  if (finite) return kDone;
+  if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_pile: the simulation exploded\n");
   return kRunFailed;
 }
@@ -243,15 +241,25 @@ int run(const PileOptions& options) {
 
 int main(int argc, char** argv) {
   PileOptions options;
-  CommandLine line("Soft bodies of three models fall into a bowl, some across thin poles, and lie on each other.",
-                   {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
-                     {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
-                    "the simulation exploded"});
+  options.model.tets = 500;
+  options.model.triangles = 20000;
+  CommandLine line(
+      "Soft bodies of three models, or of your mesh, fall into a bowl, some across thin poles, and lie on each other.",
+      {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
+        {"tetskin_pile --mesh yours.obj", "ten of a mesh of yours, which must be closed"},
+        {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
+       "the simulation exploded"});
   line.addCount("--bodies", options.bodies, "How many bodies", 100);
-  line.addCount("--tets", options.tets, "Tets of each model's cage", 20000);
-  line.addCount("--triangles", options.triangles, "Triangles of each model", 500000);
+  line.addInput("--mesh", options.model.mesh,
+                "Closed mesh of all bodies, any format assimp reads (default: three models)");
+  line.addCount("--tets", options.model.tets, "Tets of each model's cage", 20000);
+  line.addCount("--triangles", options.model.triangles, "Triangles of each built-in model", 500000);
   line.addContactOption(options.contact);
+  line.addSelfContactOption(options.selfContact);
   line.addSettingOption(options.setting);
   line.addOutputOptions(options.output);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    options.model.quiet = options.output.quiet;
+    return run(options);
+  });
 }

@@ -1,9 +1,10 @@
 # For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
 
-# What the library and the demos need; what the unit tests need beyond that; what all tests need beyond that. Debian 12,
-# Ubuntu 24.04 and later.
-build_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libcli11-dev nlohmann-json3-dev
-  libbenchmark-dev python3-matplotlib libjs-three)
+# What the library needs; what tetskin_drop needs beyond that, and what all demos do; what the unit tests need beyond the
+# library, and what all tests need beyond all of these. Debian 12, Ubuntu 24.04 and later.
+library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev)
+drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
+demo_packages=(libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
 check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium)
 
@@ -15,7 +16,7 @@ require_packages() {
     for tool in cmake c++; do
       if ! command -v "$tool" >/dev/null; then
         echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
-          "assimp, CLI11, nlohmann-json, Google Benchmark, three.js (for pages) and, for the tests, GoogleTest; then run this again. Missing: $tool" >&2
+          "assimp, CLI11, nlohmann-json, three.js (for pages) and, for the tests, GoogleTest and Google Benchmark; then run this again. Missing: $tool" >&2
         exit 1
       fi
     done

@@ -11,6 +11,7 @@
 
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/joined_mesh.h"
 #include "scenes/materials.h"
 #include "scenes/player.h"
 #include "scenes/summary.h"
@@ -75,7 +76,7 @@ class SideBySide {
     sides.maxCoeff(&longest);
     const int beside = (longest + 1) % 3, deep = (longest + 2) % 3;
     offset_[beside] = -kGap * std::hypot(sides[beside], sides[deep]);
-    for (const char* name : {"linear", "quadratic"}) append(mesh, name);
+    for (const char* name : {"linear", "quadratic"}) (void)append(mesh, mesh_, name);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
@@ -99,17 +100,6 @@ class SideBySide {
 
  private:
   static constexpr double kGap = 1.1;  ///< of the centres, over the widest that a turned section can be
-
-  void append(const TriangleMesh& mesh, const char* name) {
-    const int first = static_cast<int>(mesh_.vertexCount());
-    for (const TriangleGroup& group : mesh.groups) {
-      mesh_.groups.push_back({name, group.material, mesh_.triangleCount() + group.firstTriangle, group.triangleCount});
-    }
-    if (mesh.groups.empty()) mesh_.groups.push_back({name, "", mesh_.triangleCount(), mesh.triangleCount()});
-    mesh_.positions.insert(mesh_.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    mesh_.texcoords.insert(mesh_.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
-    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  }
 
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
   TriangleMesh mesh_;
@@ -219,6 +209,7 @@ ViewPage pageOf(const Model& model, const Embedding& embedding) {
 }
 
 int run(const TwistOptions& options) {
+  const std::string path = summaryPath(options.output), view = viewPath(options.output);
   Player player(options.model, "wring");
   const auto carry = [&](Interpolation interpolation) -> const Carried& {
     SkinOptions skin = options.skin;
@@ -231,7 +222,6 @@ int run(const TwistOptions& options) {
   FramePlan plan = framePlanOf(options.output);
   if (options.model.mesh.empty()) plan.materials = materialLibrary(pair.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, pair.layout()));
-  const std::string path = summaryPath(options.output), view = viewPath(options.output);
   std::optional<ViewPage> page;
   if (!view.empty()) page = pageOf(player.model(), quadratic.skin.binding()->embedding());
   Totals totals;

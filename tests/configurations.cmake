@@ -71,11 +71,13 @@ function(tetskin_test_consumer name)
   set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600 LABELS config)
 endfunction()
 
-if(TETSKIN_INSTALL)
+if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
+  # What the others use is installed as the first page says, by a user of whom no build is known.
   set(prefix ${PROJECT_BINARY_DIR}/consumers/prefix)
-  add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DPREFIX=${prefix}
-    -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
-  set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed_package LABELS config)
+  add_test(NAME consumer.readme COMMAND ${PYTHON_IN_PATH} -B ${CMAKE_CURRENT_SOURCE_DIR}/consumer/readme.py
+    --folder ${PROJECT_BINARY_DIR}/consumers/readme --prefix ${prefix} --generator ${CMAKE_GENERATOR})
+  set_tests_properties(consumer.readme PROPERTIES FIXTURES_SETUP installed_package LABELS config TIMEOUT 1800
+    PROCESSORS ${nested_parallel})
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
   tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
   find_package(Eigen3 3.4 CONFIG REQUIRED)
@@ -91,6 +93,14 @@ if(TETSKIN_INSTALL)
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/pkg_config.cmake)
     set_tests_properties(consumer.pkg_config PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
   endif()
+  # A project of C alone is told what it lacks.
+  set(c_project ${PROJECT_BINARY_DIR}/consumers/c_project)
+  file(WRITE ${c_project}/CMakeLists.txt
+    "cmake_minimum_required(VERSION 3.21)\nproject(app LANGUAGES C)\nfind_package(tetskin REQUIRED)\n")
+  add_test(NAME consumer.of_c_alone COMMAND ${CMAKE_COMMAND} -S ${c_project} -B ${c_project}/build
+    -DCMAKE_PREFIX_PATH=${prefix})
+  set_tests_properties(consumer.of_c_alone PROPERTIES PASS_REGULAR_EXPRESSION "tetskin[^A-Za-z]+is[^A-Za-z]+a[^A-Za-z]+C[+][+]"
+    FIXTURES_REQUIRED installed_package LABELS config)
   # The README's first program with flags that the library was not compiled with: what they change in the layout or the
   # allocation of a type must not matter.
   set(package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=program -DCMAKE_BUILD_TYPE=None)

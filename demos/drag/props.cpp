@@ -65,18 +65,4 @@ TriangleMesh makeRing(double radius, double thickness) {
   return named("ring", std::move(mesh));
 }
 
-std::size_t append(const TriangleMesh& part, TriangleMesh& whole) {
-  const std::size_t first = whole.vertexCount();
-  for (TriangleGroup group : part.groups) {
-    group.firstTriangle += whole.triangleCount();
-    whole.groups.push_back(std::move(group));
-  }
-  whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
-  for (const auto& [a, b, c] : part.triangles) {
-    const int shift = static_cast<int>(first);
-    whole.triangles.push_back({a + shift, b + shift, c + shift});
-  }
-  return first;
-}
-
 }  // namespace tetskin::scenes

@@ -15,7 +15,4 @@ TriangleMesh makeRing(double radius, double thickness);
 /// A double cone, for a pointer.
 TriangleMesh makePointer(double radius);
 
-/// Adds a mesh, with its groups, to another; returns its first vertex there.
-std::size_t append(const TriangleMesh& part, TriangleMesh& whole);
-
 }  // namespace tetskin::scenes

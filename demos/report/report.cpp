@@ -90,7 +90,7 @@ ReportResult makeReport(const ReportOptions& wished) {
   options.referenceTets = model.reference.tets;
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
-  if (!options.view.empty()) scenes::requireViewable(options.view);
+  if (!options.view.empty()) scenes::requireViewable();
   CageShelf cages(model.mesh, model.reference.tets);
   // A file's tets are right as they are.
   const bool calibrated = model.reference.from == kFormula;

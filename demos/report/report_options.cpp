@@ -43,8 +43,9 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addSurfaceOptions(o.model);
   line.addWords("--scene", o.scenes, "With commas (default: sag,twist,drop,exact), of: " + scenes::sceneNames());
   line.addCounts("--tets", o.tets, "Tets of the cages, with commas");
-  line.addCount("--reference-tets", o.referenceTets, "Tets of the cage that counts as right");
-  line.addFile(
+  line.addCount("--reference-tets", o.referenceTets, "Tets of the cage that counts as right",
+                static_cast<int>(kLargestTargetTets));
+  line.addInput(
       "--reference", o.reference,
       "Tets that count as right, and fuse no parts of the mesh that are near to each other: .vtk, .ele/.node or "
       ".msh, in the mesh's space (default: by formula for a built-in model that has one, otherwise a built cage)");
@@ -66,10 +67,14 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addPositive("--stiffness", o.stiffness, "Young's modulus over density x gravity x size (default: the scene's)");
   line.addPositive("--target-error", o.targetError, "Print the cheapest setting below this, in box diagonals");
   line.addCount("--show-tets", o.shownTets, "The cage nearest to this colours a mesh by its errors");
-  line.addFile(
+  line.addOutput(
       "--view", o.view,
       "Write a page that plays, in a browser, that cage beside the reference, in sag or the first other scene");
-  line.addFile("--out", o.out, "Folder of the report, and of what an interrupted run had finished");
+  line.addFolder(
+      "--out", o.out, "Folder of the report, and of what an interrupted run had finished",
+      [&o](const std::string& name) {  // tables, plots, coloured meshes, and the results unless --json has them
+        return name.rfind("error_", 0) == 0 && (o.json.empty() || name != "error_vs_time.json");
+      });
   line.addSummaryOption(o.json, "File of the results (default: error_vs_time.json in the folder)");
   line.addQuietOption(o.quiet);
 }

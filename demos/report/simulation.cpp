@@ -11,6 +11,7 @@
 #include "report/bullet_surface.h"
 #include "scenes/input_error.h"
 #include "scenes/memory.h"
+#include "scenes/placement.h"
 #include "scenes/statistics.h"
 #include "scenes/timer.h"
 
@@ -85,16 +86,6 @@ class TimedSurfaces {
   std::array<std::vector<double>, kSurfaceKinds.size()> times_;
 };
 
-std::vector<Eigen::Vector3f> nodesOf(const btSoftBody& body) {
-  const PointView<const btScalar> view = nodePositions(body);
-  std::vector<Eigen::Vector3f> nodes;
-  nodes.reserve(view.size());
-  for (std::size_t n = 0; n < view.size(); ++n) {
-    nodes.emplace_back(Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(view[n]).cast<float>());
-  }
-  return nodes;
-}
-
 }  // namespace
 
 const char* nameOf(SurfaceKind kind) {
@@ -118,7 +109,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
   }
   TimedSurfaces surfaces(scene->body(), cage, mesh, kinds);
   std::vector<double> milliseconds;
-  result.trajectory.push_back(nodesOf(scene->body()));
+  result.trajectory.push_back(scenes::nodesOf<float>(scene->body()));
   for (int frame = 1; frame <= scene->options().frames; ++frame) {
     const scenes::CpuTimer timer;
     scene->step(frame);
@@ -127,7 +118,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
     result.finite = !scene->check().exploded;
     if (!result.finite) break;
     surfaces.update(frame, options.substeps);
-    result.trajectory.push_back(nodesOf(scene->body()));
+    result.trajectory.push_back(scenes::nodesOf<float>(scene->body()));
     done();
   }
   result.milliseconds = scenes::median(std::move(milliseconds));

@@ -13,6 +13,7 @@
 #include <new>
 
 #include "scenes/files.h"
+#include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
 
@@ -20,6 +21,7 @@ namespace tetskin::scenes {
 namespace {
 
 constexpr int kMostFrames = 1000000;
+constexpr auto kMostTets = static_cast<int>(kLargestTargetTets);
 
 CLI::Validator isFileName() {
   return {[](std::string& text) { return std::string(text.empty() ? "the name of a file is empty" : ""); }, ""};
@@ -72,6 +74,15 @@ std::string textOf(const HelpEnd& end) {
   return text + "  2  wrong arguments, unreadable input, or files that do not fit each other";
 }
 
+/// "--output" of "-o,--output".
+std::string lastOf(const std::string& names) {
+  return names.substr(names.rfind(',') + 1);
+}
+
+void requireStandardOutput() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw InputError("standard output cannot be written");
+}
+
 std::string versionOf(const std::string& program) {
   char bullet[16];
   std::snprintf(bullet, sizeof bullet, "%d.%02d", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100);
@@ -83,6 +94,7 @@ std::string versionOf(const std::string& program) {
 
 struct CommandLine::Parser {
   CLI::App app;
+  std::vector<std::function<void(NamedFiles&)>> files = {};
 };
 
 CommandLine::CommandLine(const std::string& description, const HelpEnd& end)
@@ -102,10 +114,34 @@ void CommandLine::addText(const std::string& name, std::string& value, const std
   parser_->app.add_option(name, value, description);
 }
 
-void CommandLine::addFile(const std::string& name, std::string& value, const std::string& description, Need need) {
+void CommandLine::addName(const std::string& name, std::string& value, const std::string& description, Need need) {
   CLI::Option* option = parser_->app.add_option(name, value, description)->check(isFileName());
   option->required(need == Need::Required);
   if (!value.empty()) option->capture_default_str();
+}
+
+void CommandLine::addFiles(const std::function<void(NamedFiles& files)>& tell) {
+  parser_->files.push_back(tell);
+}
+
+void CommandLine::addInput(const std::string& name, std::string& value, const std::string& description, Need need) {
+  addName(name, value, description, need);
+  addFiles([name, &value](NamedFiles& files) { files.reads(lastOf(name), value); });
+}
+
+void CommandLine::addOutput(const std::string& name, std::string& value, const std::string& description, Need need,
+                            const std::vector<std::string>& extensions) {
+  addName(name, value, description, need);
+  addFiles([name, &value, extensions](NamedFiles& files) {
+    if (!value.empty()) requireExtension(value, extensions);
+    files.writes(lastOf(name), value);
+  });
+}
+
+void CommandLine::addFolder(const std::string& name, std::string& value, const std::string& description,
+                            const NamedFiles::IsWritten& isWritten) {
+  addName(name, value, description, Need::Optional);
+  addFiles([name, &value, isWritten](NamedFiles& files) { files.writesFolder(name, value, isWritten); });
 }
 
 void CommandLine::addCount(const std::string& name, int& value, const std::string& description, int most) {
@@ -135,12 +171,12 @@ void CommandLine::addWords(const std::string& name, std::vector<std::string>& va
 void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& description) {
   parser_->app.add_option(name, values, description)
       ->delimiter(',')
-      ->check(isWholeNumber(1, std::numeric_limits<int>::max()))
+      ->check(isWholeNumber(1, kMostTets))
       ->capture_default_str();
 }
 
 void CommandLine::addSurfaceOptions(ModelOptions& options) {
-  addFile("--mesh", options.mesh, "Render mesh, any format assimp reads (default: the built-in --model)");
+  addInput("--mesh", options.mesh, "Render mesh, any format assimp reads (default: the built-in --model)");
   std::vector<std::pair<std::string, BuiltIn>> words;
   for (const BuiltIn model : builtInModels()) words.emplace_back(nameOf(model), model);
   addChoice(parser_->app, "--model", options.builtIn, words, "A built-in model");
@@ -153,14 +189,14 @@ void CommandLine::addSurfaceOptions(ModelOptions& options) {
 
 void CommandLine::addMeshOptions(ModelOptions& options) {
   addSurfaceOptions(options);
-  addCount("--tets", options.tets, "Tets of a built cage");
+  addCount("--tets", options.tets, "Tets of a built cage", kMostTets);
   addFlag("--whole", options.whole, "Do not split the cage where parts of the mesh lie nearer than a tet: they fuse");
   addFlag("--calibrate", options.calibrate, "Give the cage the softness of the mesh: coarse tets are too stiff");
 }
 
 void CommandLine::addModelOptions(ModelOptions& options) {
   addMeshOptions(options);
-  addFile("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
+  addInput("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
   parser_->app.get_option("--cage")->excludes("--tets");
 }
 
@@ -172,6 +208,11 @@ void CommandLine::addForceOption(Force& force) {
 void CommandLine::addContactOption(Contact& contact) {
   addChoice(parser_->app, "--contact", contact, {{"surface", Contact::Surface}, {"cage", Contact::Cage}},
             "What meets the obstacles: the surface as drawn, or the cage's nodes, as Bullet has it");
+}
+
+void CommandLine::addSelfContactOption(SelfContactWish& wish) {
+  addChoice(parser_->app, "--self-contact", wish, {{"on", SelfContactWish::On}, {"off", SelfContactWish::Off}},
+            "Whether a body meets itself at its surface (default: with --contact surface, unless the mesh is open)");
 }
 
 void CommandLine::addSettingOption(Setting& setting) {
@@ -200,7 +241,7 @@ void CommandLine::addSkinOptions(SkinOptions& options) {
 }
 
 void CommandLine::addSummaryOption(std::string& path, const std::string& description) {
-  addFile("--json", path, description);
+  addOutput("--json", path, description);
 }
 
 void CommandLine::addQuietOption(bool& quiet) {
@@ -210,13 +251,18 @@ void CommandLine::addQuietOption(bool& quiet) {
 void CommandLine::addOutputOptions(OutputOptions& options) {
   addCount("--frames", options.frames, "Frames of 1/60 s", kMostFrames);
   addCount("--every", options.every, "Write every so many frames", kMostFrames);
-  addFile("--out", options.out, "Folder of the OBJ sequence");
-  addFile("--view", options.view,
-          std::string("Write a page that plays the run in a browser") +
-              (options.viewByDefault ? " (default: view.html in the folder)" : ""));
+  addFolder("--out", options.out, "Folder of the OBJ sequence", isOfFrames);
+  addOutput("--view", options.view,
+            std::string("Write a page that plays the run in a browser") +
+                (options.viewByDefault ? " (default: view.html in the folder)" : ""));
   if (options.viewByDefault) addFlag("--no-view", options.noView, "Write no such page");
   addSummaryOption(options.json, "File of the summary (default: summary.json in the folder)");
   addQuietOption(options.quiet);
+  addFiles([&options](NamedFiles& files) {
+    if (options.json.empty()) files.writes("--out", summaryPath(options));
+    const bool hasView = options.viewByDefault && !options.noView && options.view.empty();
+    if (hasView) files.writes("--out", (std::filesystem::path(options.out) / "view.html").string());
+  });
 }
 
 bool CommandLine::given(const std::string& name) const {
@@ -226,13 +272,20 @@ bool CommandLine::given(const std::string& name) const {
 int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   try {
-    parser_->app.parse(argc, argv);
-    return demo();
-  } catch (const CLI::CallForHelp&) {
-    std::fputs(parser_->app.help().c_str(), stdout);
-    return kDone;
-  } catch (const CLI::CallForVersion&) {
-    std::fputs(versionOf(name).c_str(), stdout);
+    try {
+      parser_->app.parse(argc, argv);
+      NamedFiles files;
+      for (const auto& tell : parser_->files) tell(files);
+      files.check();
+      const int status = demo();
+      requireStandardOutput();
+      return status;
+    } catch (const CLI::CallForHelp&) {
+      std::fputs(parser_->app.help().c_str(), stdout);
+    } catch (const CLI::CallForVersion&) {
+      std::fputs(versionOf(name).c_str(), stdout);
+    }
+    requireStandardOutput();
     return kDone;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: out of memory; ask for fewer tets or triangles\n", name.c_str());
@@ -243,10 +296,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
 }
 
 std::string summaryPath(const OutputOptions& options) {
-  std::string path =
-      options.json.empty() ? (std::filesystem::path(options.out) / "summary.json").string() : options.json;
-  requireWritable(path);
-  return path;
+  return options.json.empty() ? (std::filesystem::path(options.out) / "summary.json").string() : options.json;
 }
 
 }  // namespace tetskin::scenes

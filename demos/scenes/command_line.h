@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "scenes/model.h"
+#include "scenes/named_files.h"
+#include "scenes/self_contact.h"
 #include "scenes/world.h"
 
 namespace tetskin::scenes {
@@ -60,8 +62,17 @@ class CommandLine {
 
   void addFlag(const std::string& name, bool& value, const std::string& description);
   void addText(const std::string& name, std::string& value, const std::string& description);
-  /// A file's or folder's name, not empty.
-  void addFile(const std::string& name, std::string& value, const std::string& description, Need need = Need::Optional);
+  // Names of files and folders, not empty. All are looked at before the demo runs: see NamedFiles.
+
+  /// A file to be read.
+  void addInput(const std::string& name, std::string& value, const std::string& description,
+                Need need = Need::Optional);
+  /// A file to be written. extensions  that it may have, with their dots; none: any
+  void addOutput(const std::string& name, std::string& value, const std::string& description,
+                 Need need = Need::Optional, const std::vector<std::string>& extensions = {});
+  /// A folder in which files of some names are written.
+  void addFolder(const std::string& name, std::string& value, const std::string& description,
+                 const NamedFiles::IsWritten& isWritten);
   /// A whole number from 1 to `most`.
   void addCount(const std::string& name, int& value, const std::string& description,
                 int most = std::numeric_limits<int>::max());
@@ -87,6 +98,8 @@ class CommandLine {
   /// --force: bullet (neo-Hookean) or tetskin.
   void addForceOption(Force& force);
   void addContactOption(Contact& contact);
+  /// --self-contact: on or off.
+  void addSelfContactOption(SelfContactWish& wish);
   /// --setting: solver, explicit or implicit.
   void addSettingOption(Setting& setting);
   /// --interpolation.
@@ -109,10 +122,14 @@ class CommandLine {
 
  private:
   struct Parser;
+  void addName(const std::string& name, std::string& value, const std::string& description, Need need);
+  /// Told once the line is parsed.
+  void addFiles(const std::function<void(NamedFiles& files)>& tell);
+
   std::unique_ptr<Parser> parser_;
 };
 
-/// Where the summary goes; its folder is there, and it can be written. Throws InputError.
+/// Where the summary goes.
 std::string summaryPath(const OutputOptions& options);
 
 }  // namespace tetskin::scenes

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/files.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -62,6 +64,13 @@ std::string sizeText(double bytes) {
   return text;
 }
 
+fs::path existingPart(fs::path folder) {
+  std::error_code error;
+  folder = fs::absolute(folder, error);
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
 std::optional<std::string> contentsOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return {};
@@ -77,6 +86,17 @@ void requireWritable(const std::string& path) {
   if (!isReplaceable(before) && before != fs::file_type::directory) return;
   if (!std::ofstream(path, std::ios::app)) throw InputError(path + kNotWritable);
   if (before == fs::file_type::not_found) fs::remove(fs::canonical(path, none), none);  // not the link to it
+}
+
+void requireExtension(const std::string& path, const std::vector<std::string>& extensions) {
+  std::string extension = fs::path(path).extension().string(), known;
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extensions.empty() || std::count(extensions.begin(), extensions.end(), extension) > 0) return;
+  for (const std::string& one : extensions) {
+    known += (known.empty() ? "" : &one == &extensions.back() ? " or " : ", ") + one;
+  }
+  throw InputError(path + ": is of a format that is not written; use " + known);
 }
 
 std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed) {

@@ -4,6 +4,7 @@
 
 #include <tetskin/io/tet_files.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdio>
 #include <filesystem>
@@ -36,14 +37,6 @@ bool isNumbered(const std::string& name, const std::string& base, const std::str
          name.find_first_not_of("0123456789", first) == end;
 }
 
-/// Whether a line of the list is a name that a run here gives: the list may have been edited.
-bool isOurs(const std::string& name) {
-  for (const char* known : {kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
-    if (name == known) return true;
-  }
-  return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
-}
-
 /// What `saveTetMesh` makes of it as .vtk.
 std::size_t vtkBytes(const TetMesh& cage) {
   constexpr std::size_t kHead = 120, kOfTet = sizeof "4 \n10\n" - 1;
@@ -63,6 +56,50 @@ std::string framesText(int count) {
 
 }  // namespace
 
+bool isOfFrames(const std::string& name) {
+  for (const char* known : {kListName, kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
+    if (name == known) return true;
+  }
+  return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
+}
+
+namespace {
+
+std::set<std::string> filesOfEarlierRun(const fs::path& folder) {
+  std::set<std::string> names;
+  std::ifstream list(folder / kListName);
+  for (std::string name; std::getline(list, name);) {
+    if (isOfFrames(name) && name != kListName) names.insert(name);  // it may have been edited
+  }
+  return names;
+}
+
+/// The folder may be still to be made.
+void requireRoom(const FramePlan& plan, double bytes) {
+  std::error_code error;
+  auto room = static_cast<double>(fs::space(existingPart(plan.folder), error).available);
+  if (error) return;  // a file system that does not tell
+  for (const std::string& name : filesOfEarlierRun(plan.folder)) {
+    const auto size = fs::file_size(fs::path(plan.folder) / name, error);
+    if (!error) room += static_cast<double>(size);
+  }
+  if (bytes <= room) return;
+  throw InputError(plan.folder + ": " + framesText(plan.count()) + (plan.count() == 1 ? " takes" : " take") +
+                   " about " + sizeText(bytes) + ", and the disk has room for " + sizeText(room) +
+                   "; write fewer by --every or --frames, or elsewhere by --out");
+}
+
+}  // namespace
+
+void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const OutputOptions& options) {
+  std::vector<Eigen::Vector3f> points(mesh.vertexCount());
+  std::transform(mesh.positions.begin(), mesh.positions.end(), points.begin(),
+                 [](const Eigen::Vector3d& p) { return p.cast<float>(); });
+  std::vector<char> buffer;
+  const FramePlan plan = framePlanOf(options);
+  requireRoom(plan, plan.count() * static_cast<double>(layout.format(viewOf(std::as_const(points)), buffer).size()));
+}
+
 bool fitsFloat(const Box3& box) {
   constexpr double kFarOut = 100.0;  ///< sizes from the origin
   return box.center().norm() <= kFarOut * box.sizes().maxCoeff();
@@ -74,6 +111,13 @@ FramePlan framePlanOf(const OutputOptions& options) {
   plan.frames = options.frames;
   plan.every = options.every;
   plan.quiet = options.quiet;
+  return plan;
+}
+
+FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, const TriangleMesh& obstacles) {
+  FramePlan plan = framePlanOf(options);
+  plan.materials = materialLibrary(drawn);
+  plan.obstacles = obstacles;
   return plan;
 }
 
@@ -111,8 +155,8 @@ void FrameWriter::writeFrame(int frame, PointView<const Scalar> surface, PointVi
 
 /// All frames have about as many bytes as the first.
 void FrameWriter::begin(double frameBytes) {
-  const double bytes = frameCount() * frameBytes;
-  requireRoom(bytes);
+  const double bytes = plan_.count() * frameBytes;
+  requireRoom(plan_, bytes);
   if (!plan_.quiet) std::printf("%s\n", announcement(bytes).c_str());
   replaceEarlierRun();
   writeMaterials(kLibraryName, plan_.materials);
@@ -122,22 +166,8 @@ void FrameWriter::begin(double frameBytes) {
   writeMaterials("obstacles.mtl", materialLibrary(plan_.obstacles));
 }
 
-void FrameWriter::requireRoom(double bytes) const {
-  std::error_code error;
-  auto room = static_cast<double>(fs::space(plan_.folder, error).available);
-  if (error) return;  // a file system that does not tell
-  for (const std::string& name : filesOfEarlierRun()) {
-    const auto size = fs::file_size(pathOf(name), error);
-    if (!error) room += static_cast<double>(size);
-  }
-  if (bytes <= room) return;
-  throw InputError(plan_.folder + ": " + framesText(frameCount()) + (frameCount() == 1 ? " takes" : " take") +
-                   " about " + sizeText(bytes) + ", and the disk has room for " + sizeText(room) +
-                   "; write fewer by --every or --frames, or elsewhere by --out");
-}
-
 std::string FrameWriter::announcement(double bytes) const {
-  return "writing " + framesText(frameCount()) + ", about " + sizeText(bytes) + ", to " + plan_.folder;
+  return "writing " + framesText(plan_.count()) + ", about " + sizeText(bytes) + ", to " + plan_.folder;
 }
 
 std::vector<std::string> FrameWriter::filesOf(int frame) const {
@@ -152,24 +182,15 @@ std::vector<std::string> FrameWriter::filesOfAllFrames() const {
   std::vector<std::string> names;
   if (!plan_.materials.empty()) names.emplace_back(kLibraryName);
   if (!plan_.obstacles.positions.empty()) names.insert(names.end(), {"obstacles.obj", "obstacles.mtl"});
-  for (int count = 0; count < frameCount(); ++count) {
+  for (int count = 0; count < plan_.count(); ++count) {
     for (std::string& name : filesOf(count * plan_.every)) names.push_back(std::move(name));
-  }
-  return names;
-}
-
-std::set<std::string> FrameWriter::filesOfEarlierRun() const {
-  std::set<std::string> names;
-  std::ifstream list(pathOf(kListName));
-  for (std::string name; std::getline(list, name);) {
-    if (isOurs(name)) names.insert(name);
   }
   return names;
 }
 
 /// Two sequences in one folder would be taken for one.
 void FrameWriter::refuseFramesOfOthers() const {
-  const std::set<std::string> known = filesOfEarlierRun();
+  const std::set<std::string> known = filesOfEarlierRun(plan_.folder);
   for (const fs::directory_entry& entry : fs::directory_iterator(plan_.folder)) {
     const std::string name = entry.path().filename().string();
     if (name.rfind("frame_", 0) != 0 || entry.path().extension() != ".obj" || known.count(name) > 0) continue;
@@ -182,7 +203,7 @@ void FrameWriter::refuseFramesOfOthers() const {
 void FrameWriter::replaceEarlierRun() const {
   const std::vector<std::string> names = filesOfAllFrames();
   const std::set<std::string> kept(names.begin(), names.end());
-  for (const std::string& name : filesOfEarlierRun()) {
+  for (const std::string& name : filesOfEarlierRun(plan_.folder)) {
     if (kept.count(name) > 0) continue;
     std::error_code error;
     fs::remove(pathOf(name), error);

@@ -18,6 +18,9 @@ namespace tetskin::scenes {
 /// far out that float cannot hold it.
 bool fitsFloat(const Box3& box);
 
+/// Whether a run writes, or removes, files of this name in its folder.
+bool isOfFrames(const std::string& name);
+
 /// Which frames a run writes, and where.
 struct FramePlan {
   std::string folder;
@@ -27,10 +30,18 @@ struct FramePlan {
   std::string materials;   ///< a material library for the frames; empty: the layout's own, or none
   TriangleMesh obstacles;  ///< what the frames' surface falls on, in a file of its own; or empty
   bool quiet = false;
+
+  int count() const { return (frames - 1) / every + 1; }
 };
 
 /// A plan as the command line has it: frames, every, folder, quiet.
 FramePlan framePlanOf(const OutputOptions& options);
+/// The same, with the materials of what is drawn, and what that falls on.
+FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, const TriangleMesh& obstacles);
+
+/// Throws InputError if the disk has no room for frames of this mesh: what can be known before there is a cage for it.
+/// The first frame is looked at again.
+void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const OutputOptions& options);
 
 /// An OBJ sequence of surfaces in double, written as float where that will do, and perhaps the cages beside them. The
 /// folder holds the frames of one run: what an earlier one wrote there and this one will not overwrite goes when the
@@ -54,15 +65,12 @@ class FrameWriter {
   template <class Scalar>
   void writeFrame(int frame, PointView<const Scalar> surface, PointView<const float> normals, const TetMesh* cage);
   void begin(double frameBytes);
-  void requireRoom(double bytes) const;
   std::string announcement(double bytes) const;
   std::vector<std::string> filesOf(int frame) const;
   std::vector<std::string> filesOfAllFrames() const;
-  std::set<std::string> filesOfEarlierRun() const;
   void refuseFramesOfOthers() const;
   void replaceEarlierRun() const;
   void writeMaterials(const std::string& name, const std::string& library) const;
-  int frameCount() const { return (plan_.frames - 1) / plan_.every + 1; }
   std::string pathOf(const std::string& name) const;
 
   FramePlan plan_;

@@ -121,6 +121,7 @@ Model loadModel(const ModelOptions& options) {
     require(layout.status());
     model.layout = std::move(layout).value();
   }
+  if (options.loaded) options.loaded(model.mesh, model.layout);
   if (options.cage.empty()) announceCage(options.tets, options);
   model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
   // The small tets of one that is turned over come in another order.

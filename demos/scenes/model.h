@@ -12,6 +12,7 @@
 #include <tetskin/io/obj_sequence.h>
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ struct ModelOptions {
   bool calibrate = false;         ///< see tetskin::calibrate
   std::size_t fineTets = 30000;   ///< of which a reduced body has its vibrations
   bool quiet = true;              ///< does not tell that a cage is built, which may take seconds
+  /// Told what was loaded, before a cage is built for it.
+  std::function<void(const TriangleMesh& mesh, const ObjLayout& layout)> loaded = {};
 };
 
 struct Surface {

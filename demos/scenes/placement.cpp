@@ -26,16 +26,6 @@ void Placement::readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3
   }
 }
 
-std::vector<Eigen::Vector3d> nodesOf(const btSoftBody& body) {
-  const PointView<const btScalar> view = nodePositions(body);
-  std::vector<Eigen::Vector3d> nodes;
-  nodes.reserve(view.size());
-  for (std::size_t n = 0; n < view.size(); ++n) {
-    nodes.emplace_back(Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(view[n]).cast<double>());
-  }
-  return nodes;
-}
-
 Placement placementOf(const Box3& box) {
   Placement placement;
   placement.centre = box.center();

@@ -28,7 +28,16 @@ struct Placement {
 };
 
 /// A body's nodes as they are now, world space.
-std::vector<Eigen::Vector3d> nodesOf(const btSoftBody& body);
+template <class Scalar = double>
+std::vector<Eigen::Matrix<Scalar, 3, 1>> nodesOf(const btSoftBody& body) {
+  const PointView<const btScalar> view = nodePositions(body);
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
+  nodes.reserve(view.size());
+  for (std::size_t n = 0; n < view.size(); ++n) {
+    nodes.emplace_back(Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(view[n]).template cast<Scalar>());
+  }
+  return nodes;
+}
 
 /// Scales a box to kSize, and puts its centre at the origin.
 Placement placementOf(const Box3& box);

@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "scenes/input_error.h"
-#include "scenes/progress.h"
 #include "scenes/tets_of_nodes.h"
 #include "scenes/timer.h"
 
@@ -69,6 +68,15 @@ void Player::touchBySurface() {
   scene_->world().touchBySurface(scene_->body(), *carried_.front().skin.binding(), model_.mesh);
 }
 
+void Player::touchItself(SelfContactWish wish) {
+  Placement atRest = place_;  // where its cage is, which the scene has put elsewhere
+  atRest.offset.setZero();
+  TriangleMesh mesh = model_.mesh;
+  atRest.toWorld(mesh.positions);
+  selfContact_ = selfContactOf(model_.name, atRest.toWorld(model_.cage), mesh, wish, options_.quiet);
+  if (selfContact_.shape) scene_->world().touchEachOther(scene_->body(), selfContact_.shape, true);
+}
+
 /// Returns false if node positions are not finite.
 bool Player::step(int frame, Playback& run) {
   const WallTimer simulation;
@@ -91,28 +99,19 @@ std::vector<Eigen::Vector3d> Player::nodes() const {
   return nodes;
 }
 
-Playback Player::play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write) {
-  Playback run;
-  Progress progress(doing, output.frames, output.quiet);
-  for (int frame = 0; frame < output.frames; ++frame) {
-    run.finite = frame == 0 || step(frame, run);
-    for (const Carried& carried : carried_) {
-      const Findings found = scene_->check(carried.skin.positions());
-      run.finite = run.finite && !found.exploded;
-      run.aboveFloor = run.aboveFloor && found.aboveFloor;
-    }
-    if (!run.finite) break;
-    measure(frame);
-    if (frame % output.every == 0) {
-      const WallTimer timer;
-      write(frame);
-      run.writeMs += timer.milliseconds();
-      ++run.written;
-    }
-    run.frames = frame + 1;
-    progress.show(frame + 1);
+bool Player::makeFrame(int frame, Playback& run) {
+  bool good = frame == 0 || step(frame, run);
+  for (const Carried& carried : carried_) {
+    const Findings found = scene_->check(carried.skin.positions());
+    good = good && !found.exploded;
+    run.aboveFloor = run.aboveFloor && found.aboveFloor;
   }
-  return run;
+  return good;
+}
+
+Playback Player::play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write) {
+  return playFrames(
+      doing, output, [this](int frame, Playback& run) { return makeFrame(frame, run); }, measure, write);
 }
 
 }  // namespace tetskin::scenes

@@ -7,6 +7,7 @@
 
 #include "scenes/command_line.h"
 #include "scenes/placement.h"
+#include "scenes/playback.h"
 #include "scenes/table.h"
 
 namespace tetskin::scenes {
@@ -17,19 +18,6 @@ struct Carried {
   std::vector<Eigen::Vector3d> surface;  ///< vertexCount
   double microseconds = 0.0;             ///< of all updates
 };
-
-/// What a run has shown.
-struct Playback {
-  int frames = 0, written = 0;
-  double simulationMs = 0.0, writeMs = 0.0;  ///< of all frames
-  bool finite = true;                        ///< and not exploded; the run ends before the first frame that is not
-  bool aboveFloor = true;                    ///< in all frames
-
-  int steps() const { return frames > 1 ? frames - 1 : 1; }
-};
-
-/// Told the number of a frame.
-using OfFrame = std::function<void(int frame)>;
 
 /// A model in a scene, with surfaces on its body. It may have any size and be anywhere: results are in its own space.
 /// Frame 0 is the model at rest.
@@ -44,6 +32,10 @@ class Player {
 
   /// Rigid bodies meet the model's mesh from now on, which must be carried already.
   void touchBySurface();
+
+  /// The body meets itself at its surface from now on, if it can: see `selfContactOf`.
+  void touchItself(SelfContactWish wish);
+  const SelfContact& selfContact() const { return selfContact_; }
 
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
@@ -60,6 +52,7 @@ class Player {
  private:
   SoftBodyBinding::Pointer bind(const SkinOptions& options);
   bool step(int frame, Playback& run);
+  bool makeFrame(int frame, Playback& run);
 
   ModelOptions options_;
   Model model_;
@@ -67,6 +60,7 @@ class Player {
   std::unique_ptr<Scene> scene_;
   std::deque<Carried> carried_;
   EmbedReport fit_;
+  SelfContact selfContact_;
 };
 
 }  // namespace tetskin::scenes

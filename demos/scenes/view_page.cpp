@@ -30,12 +30,16 @@ std::string inFolder(const char* name) {
   return std::string(kFolder) + "/" + name;
 }
 
-/// In a script element nothing may look like its end.
-std::string escaped(std::string script) {
-  for (std::size_t at = script.find("</"); at != std::string::npos; at = script.find("</", at)) {
-    script.replace(at, 2, "<\\/");
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
   }
-  return script;
+  return text;
+}
+
+/// In a script element nothing may look like its end.
+std::string escaped(const std::string& script) {
+  return replaced(script, "</", "<\\/");
 }
 
 std::string scripts() {
@@ -93,24 +97,22 @@ std::string whyNoView() {
   return {};
 }
 
-void requireViewable(const std::string& path) {
+void requireViewable() {
   const std::string reason = whyNoView();
   if (!reason.empty()) throw InputError("--view: " + reason);
-  requireWritable(path);
 }
 
 std::string viewPath(const OutputOptions& options) {
   if (options.noView && !options.view.empty()) throw InputError("--view and --no-view exclude each other");
-  std::string path = options.view;
-  if (path.empty()) {
-    if (!options.viewByDefault || options.noView) return {};
-    const std::string reason = whyNoView();
-    if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
-    if (!reason.empty()) return {};
-    path = (std::filesystem::path(options.out) / "view.html").string();
+  if (!options.view.empty()) {
+    requireViewable();
+    return options.view;
   }
-  requireViewable(path);
-  return path;
+  if (!options.viewByDefault || options.noView) return {};
+  const std::string reason = whyNoView();
+  if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
+  if (!reason.empty()) return {};
+  return (std::filesystem::path(options.out) / "view.html").string();
 }
 
 ViewPage::ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation)
@@ -200,10 +202,10 @@ Json ViewPage::data() const {
 }
 
 std::string ViewPage::html() const {
-  // File names of models may be of any bytes.
+  // File names of models may be of any bytes, and look like any tag.
   const std::string text = data().dump(-1, ' ', false, Json::error_handler_t::replace);
   return filled(partOf(inFolder("view.html")), {{"@STYLE@", partOf(inFolder("view.css"))},
-                                                {"@DATA@", escaped(text)},
+                                                {"@DATA@", replaced(text, "<", "\\u003c")},
                                                 {"@NOTICE@", partOf(inFolder("three_notice.txt"))},
                                                 {"@THREE@", escaped(partOf(kThree))},
                                                 {"@CONTROLS@", escaped(partOf(kOrbitControls))},
@@ -230,8 +232,9 @@ std::string titleOf(const std::string& name) {
   return file.empty() ? name : file;
 }
 
-std::string factOf(Contact contact) {
-  return contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
+std::string factOf(Contact contact, bool withItself) {
+  const std::string where = contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
+  return withItself ? where + ", and with itself" : where;
 }
 
 std::string withCommas(std::size_t number) {

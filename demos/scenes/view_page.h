@@ -19,9 +19,9 @@ namespace tetskin::scenes {
 /// Why no page can be made, in a sentence; empty if one can be: pages contain three.js, which must have been there when
 /// the demos were configured, and be there still.
 std::string whyNoView();
-/// Throws InputError if no page can be made, or none at this path.
-void requireViewable(const std::string& path);
-/// Where a run's page goes, empty for none; its folder is there. Where a default page cannot be made, says why. Throws
+/// Throws InputError if no page can be made.
+void requireViewable();
+/// Where a run's page goes, empty for none. Where a default page cannot be made, says why. Throws
 /// InputError where one that was asked for cannot be made.
 std::string viewPath(const OutputOptions& options);
 
@@ -83,7 +83,7 @@ class ViewPage {
 /// A model by the name of its file, without the folder.
 std::string titleOf(const std::string& name);
 /// What meets obstacles and other bodies.
-std::string factOf(Contact contact);
+std::string factOf(Contact contact, bool withItself);
 /// "12,345".
 std::string withCommas(std::size_t number);
 /// Vertices, triangles and tets.

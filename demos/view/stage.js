@@ -11,6 +11,8 @@ const PLAIN_COLOURS = [
 const FIRST_DIRECTION = [-0.20, 0.36, 1.0];  // from what is looked at to the camera
 const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
+const NEAREST = 0.01;  // that is drawn, in radii of what is looked at
+const CLEARANCE = 2 * NEAREST;  // of the camera over the floor and obstacles
 
 // Newer revisions of three.js have other names, and other defaults.
 
@@ -208,9 +210,11 @@ class Stage {
     for (const thing of [...this.bodies, ...this.props]) this.scene.add(thing.mesh);
     this.seen = this.seenPoints();
     for (const body of this.bodies) if (body.cage) this.scene.add(body.cage);
+    this.solids = [];  // obstacles that are not seen through, all of them convex
+    this.floorY = -Infinity;
     if (data.obstacles) this.addObstacles(data.obstacles, materials);
     this.addLights();
-    this.camera = new THREE.PerspectiveCamera(28, 1, 0.01 * this.radius, 100 * this.radius);
+    this.camera = new THREE.PerspectiveCamera(28, 1, NEAREST * this.radius, 100 * this.radius);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableKeys = false;  // arrows are the player's
     this.controls.enableDamping = true;
@@ -242,6 +246,7 @@ class Stage {
       const triangles = data.triangles.subarray(3 * group.first, 3 * (group.first + group.count));
       const whole = {first: 0, count: group.count, material: group.material};
       const mesh = rigidMesh({triangles, positions: data.positions, groups: [whole]}, materials);
+      if (!mesh.material.some(material => material.transparent)) this.solids.push(mesh);
       if (group.material === 'floor') this.makeFloor(mesh);
       this.scene.add(mesh);
     }
@@ -253,6 +258,7 @@ class Stage {
     const {position} = mesh.geometry.attributes, places = new Float32Array(2 * position.count);
     mesh.geometry.computeBoundingBox();
     const {min, max} = mesh.geometry.boundingBox, {x, z} = this.centre;
+    this.floorY = Math.max(this.floorY, max.y);
     const edge = Math.min(x - min.x, max.x - x, z - min.z, max.z - z);
     const reach = 2 * Math.max(this.radius, Math.min(edge, FLOOR_REACH * this.radius));
     for (let v = 0; v < position.count; ++v) {
@@ -338,7 +344,33 @@ class Stage {
     }
   }
 
+  /** How high the camera must be where it is: over the floor, and over the obstacle that it is in. */
+  leastHeight({x, y, z}) {
+    const clearance = CLEARANCE * this.radius, ray = new THREE.Raycaster(), reach = 1000 * this.radius;
+    const firstHit = (mesh, direction) => {
+      ray.set(new THREE.Vector3(x, this.centre.y - direction * reach, z), new THREE.Vector3(0, direction, 0));
+      const [hit] = ray.intersectObject(mesh);
+      return hit && hit.point.y;
+    };
+    let least = this.floorY + clearance;
+    for (const mesh of this.solids) {
+      const top = firstHit(mesh, -1), bottom = firstHit(mesh, 1);
+      if (y > bottom - clearance && y < top + clearance) least = Math.max(least, top + clearance);
+    }
+    return least;
+  }
+
+  /** The mouse may have led the camera into the floor or an obstacle, from where all is hidden or inside out. */
+  liftCamera() {
+    const {camera: {position}, controls: {target}} = this, least = this.leastHeight(position);
+    if (position.y >= least && target.y >= this.floorY) return;
+    position.y = Math.max(position.y, least);
+    target.y = Math.max(target.y, this.floorY);
+    this.camera.lookAt(target);
+  }
+
   draw() {
+    this.liftCamera();
     const away = this.camera.position.distanceTo(this.controls.target);
     Object.assign(this.scene.fog, {near: away + 2 * this.radius, far: away + 10 * this.radius});
     this.renderer.render(this.scene, this.camera);

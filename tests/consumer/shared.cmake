@@ -5,7 +5,8 @@ function(run)
 endfunction()
 set(prefix ${FOLDER}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON
-  -DCMAKE_UNITY_BUILD=ON -DTETSKIN_WARNINGS_AS_ERRORS=ON -DCMAKE_INSTALL_LIBDIR=lib/here)
+  "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG" -DCMAKE_UNITY_BUILD=ON -DTETSKIN_WARNINGS_AS_ERRORS=ON
+  -DCMAKE_INSTALL_LIBDIR=lib/here)
 run(${CMAKE_COMMAND} --build ${FOLDER}/build --parallel 2)
 run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${prefix})
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${FOLDER}/consumer -G ${GENERATOR} -Dtetskin_DIR=${prefix}/lib/here/cmake/tetskin

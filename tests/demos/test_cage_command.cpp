@@ -108,8 +108,10 @@ TEST_F(CageCommand, LooseCagesHaveMoreVolumeAndOneShapeOfTet) {
 
 TEST_F(CageCommand, FlatSheetGetsAThinCage) {
   folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  ASSERT_EQ(cage({"--mesh", "sheet.obj", "--tets", "300", "-o", "c.vtk", "--json", "c.json"}).status, 0);
+  const CommandResult result = cage({"--mesh", "sheet.obj", "--tets", "300", "-o", "c.vtk", "--json", "c.json"});
+  ASSERT_EQ(result.status, 0);
   EXPECT_EQ(folder.json("c.json")["vertices_outside"], 0);
+  EXPECT_NE(result.out.find("\n1 component of the mesh, 1 of the cage"), std::string::npos) << result.out;
 }
 
 TEST_F(CageCommand, RefusesBadInput) {
@@ -124,7 +126,7 @@ TEST_F(CageCommand, RefusesBadInput) {
   expectRefused({"--mesh", "far.obj", "-o", "c.vtk"}, "far.obj:3: vertex 2 has a coordinate beyond 1e18");
   expectRefused({"--mesh", "point.obj", "-o", "c.vtk"}, "point.obj");
   expectRefused({"--mesh", "ok.obj", "--tets", "0", "-o", "c.vtk"}, "--tets");
-  expectRefused({"--mesh", "ok.obj", "--tets", "900000000", "-o", "c.vtk"}, "ok.obj");
+  expectRefused({"--mesh", "ok.obj", "--tets", "900000000", "-o", "c.vtk"}, "--tets");
   expectRefused({"--mesh", "ok.obj", "-o", "c.xyz"}, "c.xyz");
   expectRefused({"--mesh", "ok.obj", "-o", "no/such/c.vtk"}, "no/such/c.vtk");
   expectRefused({"--mesh", "ok.obj"}, "--output");

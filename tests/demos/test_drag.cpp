@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/mesh_loader.h>
 
-#include "command.h"
+#include "drop_run.h"
 
 namespace tetskin {
 namespace {
@@ -50,6 +50,17 @@ TEST(Drag, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
   EXPECT_EQ(folder.count("out/drag", ".obj"), 2u + 1u);
   folder.write("out/drag/frame_0009.obj", "mine");
   test::expectRefused(run("2"), "frame_0009.obj");
+}
+
+TEST(Drag, TakesAMeshOfTheUsers) {
+  const CommandFolder folder;
+  folder.write("box.obj", test::boxObj());
+  const CommandResult result =
+      folder.run(TETSKIN_DRAG, {"--mesh", "box.obj", "--tets", "60", "--frames", "200", "--every", "199"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/drag/summary.json");
+  EXPECT_EQ(json["triangles"], 12);
+  EXPECT_GT(json["lag_swinging"], 0);
 }
 
 TEST(Drag, RefusesWhatMakesNoSense) {

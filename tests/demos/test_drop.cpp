@@ -8,51 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "command.h"
+#include "drop_run.h"
 
 namespace tetskin {
 namespace {
 
-using test::CommandFolder;
+using test::boxObj;
 using test::CommandResult;
+using test::cubeVtk;
 
-/// A box as an OBJ with quads, texture coordinates, groups and a comment, around the origin.
-std::string boxObj(double half = 0.4, const char* firstX = nullptr) {
-  std::string text = "# a box\nmtllib box.mtl\n";
-  for (int k = 0; k < 8; ++k) {
-    const std::string x = k == 0 && firstX ? firstX : std::to_string(k & 1 ? half : -half);
-    text += "v " + x + " " + std::to_string(k & 2 ? half : -half) + " " + std::to_string(k & 4 ? half : -half) + "\n";
-  }
-  text += "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\ng sides\nusemtl red\nf 1/1 3/2 4/3 2/4\nf 5/1 6/2 8/3 7/4\n";
-  text += "f 1/1 2/2 6/3 5/4\nf 3/1 7/2 8/3 4/4\ng caps\nusemtl blue\nf 1/1 5/2 7/3 3/4\nf 2/1 4/2 8/3 6/4\n";
-  return text;
-}
-
-/// One cube of edge 1 around the origin as six tets.
-std::string cubeVtk() {
-  std::string text = "# vtk DataFile Version 2.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
-  for (int k = 0; k < 8; ++k) {
-    text += std::string(k & 1 ? "0.5 " : "-0.5 ") + (k & 2 ? "0.5 " : "-0.5 ") + (k & 4 ? "0.5\n" : "-0.5\n");
-  }
-  text += "CELLS 6 30\n4 0 1 3 7\n4 0 3 2 7\n4 0 2 6 7\n4 0 6 4 7\n4 0 4 5 7\n4 0 5 1 7\nCELL_TYPES 6\n";
-  return text + "10\n10\n10\n10\n10\n10\n";
-}
-
-class Drop : public testing::Test {
- protected:
-  CommandResult drop(std::vector<std::string> arguments) const { return folder.run(TETSKIN_DROP, arguments); }
-
-  /// Exit status 2, one line on standard error that mentions the words, nothing written.
-  void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const CommandResult result = drop(arguments);
-    for (const std::string& word : words) test::expectRefused(result, word);
-    EXPECT_FALSE(folder.exists("out"));
-  }
-
-  CommandFolder folder;
-};
+class Drop : public test::DropRun {};
 
 /// How far a frame is from the best rigid image of the first, RMS, over the first one's largest side.
 double deformation(const std::vector<std::array<double, 3>>& rest, const std::vector<std::array<double, 3>>& now) {
@@ -180,71 +146,6 @@ TEST_F(Drop, AReducedBodyFallsStaysAboveTheFloorAndRests) {
   EXPECT_NE(result.out.find("reduced, 8 modes"), std::string::npos) << result.out;
 }
 
-TEST_F(Drop, WritesEveryKthFrameAndTheCageBesideIt) {
-  folder.write("box.obj", boxObj());
-  ASSERT_EQ(
-      drop({"--mesh", "box.obj", "--tets", "60", "--frames", "9", "--every", "4", "--write-cage", "--out", "o"}).status,
-      0);
-  for (const char* name : {"o/frame_0000.obj", "o/frame_0004.obj", "o/frame_0008.obj", "o/cage_0000.vtk",
-                           "o/cage_0008.vtk", "o/obstacles.obj"}) {
-    EXPECT_TRUE(folder.exists(name)) << name;
-  }
-  EXPECT_EQ(folder.count("o", ".vtk"), 3u);
-  EXPECT_EQ(folder.json("o/summary.json")["frames_written"], 3);
-}
-
-TEST_F(Drop, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
-  folder.write("box.obj", boxObj());
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"--mesh", "box.obj", "--tets", "60", "--out", "o", "--quiet", "--frames"});
-    return drop(more);
-  };
-  ASSERT_EQ(run({"8", "--write-cage"}).status, 0);
-  const std::vector<std::string> others = {"o/cage_0100.vtk", "o/cage_old.vtk", "o/frames.obj", "o/notes.txt"};
-  for (const std::string& name : others) folder.write(name, "mine");
-  folder.write("kept.obj", "mine");
-  folder.write("o/.tetskin_frames", folder.read("o/.tetskin_frames") + "../kept.obj\nnotes.txt\ncage_old.vtk\n\n.\n");
-  folder.write("o/frame_0100.obj", "mine");
-  test::expectRefused(run({"5", "--every", "2"}), "frame_0100.obj");
-  EXPECT_EQ(folder.read("o/frame_0100.obj"), "mine");
-  EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what is refused replaces nothing";
-  std::filesystem::remove(folder.path("o/frame_0100.obj"));
-
-  EXPECT_EQ(run({"3", "--json", "no/where.json"}).status, 2);
-  EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what does not run replaces nothing";
-  ASSERT_EQ(run({"5", "--every", "2"}).status, 0);
-  for (const char* name : {"o/frame_0000.obj", "o/frame_0002.obj", "o/frame_0004.obj"}) {
-    EXPECT_TRUE(folder.exists(name)) << name;
-  }
-  EXPECT_EQ(folder.count("o", ".obj"), 3u + 1u + 1u) << "ours, the one that is not, and the obstacles";
-  EXPECT_EQ(folder.count("o", ".vtk"), 2u);
-  for (const std::string& name : others) EXPECT_EQ(folder.read(name), "mine") << name;
-  EXPECT_EQ(folder.read("kept.obj"), "mine");
-}
-
-TEST_F(Drop, SaysHowMuchItWritesBeforeItDoes) {
-  folder.write("box.obj", boxObj());
-  const CommandResult result =
-      drop({"--mesh", "box.obj", "--tets", "3000", "--frames", "60", "--every", "30", "--write-cage", "--out", "o"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const std::size_t place = result.out.find("writing 2 frames, about ");
-  ASSERT_NE(place, std::string::npos) << result.out;
-  EXPECT_LT(place, result.out.find("simulating"));
-  const double written =
-      static_cast<double>(folder.read("o/frame_0000.obj").size() + folder.read("o/cage_0000.vtk").size() +
-                          folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size());
-  EXPECT_NEAR(std::stod(result.out.substr(place + 24)), 1e-3 * written, 1.0 + 0.1e-3 * written) << result.out;
-  EXPECT_NE(result.out.find("kB, to o\n"), std::string::npos) << result.out;
-}
-
-TEST_F(Drop, SpeaksOfOneFrameAndOfFewBytesAsTheyAre) {
-  folder.write("box.obj", boxObj());
-  const CommandResult result = drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--out", "o"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("writing 1 frame, about "), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find(" kB, to o\n"), std::string::npos) << result.out;
-}
-
 TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {
   folder.write("box.obj", boxObj());
   const auto run = [&](std::vector<std::string> more) {
@@ -255,37 +156,6 @@ TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {
   EXPECT_EQ(run({"--tets", "60", "--quiet"}), "");
   ASSERT_EQ(folder.run(TETSKIN_CAGE, {"--mesh", "box.obj", "--tets", "60", "-o", "c.vtk"}).status, 0);
   EXPECT_EQ(run({"--cage", "c.vtk"}).find("building"), std::string::npos) << "there is none to build";
-}
-
-TEST_F(Drop, RefusesContactsThatAReducedBodyDoesNotHave) {
-  test::expectRefused(drop({"--body", "reduced", "--contact", "surface", "--out", "o"}), "--contact surface");
-  EXPECT_FALSE(folder.exists("o"));
-}
-
-TEST_F(Drop, RefusesMoreThanTheDiskHasRoomFor) {
-  const CommandResult result = drop({"--tets", "60", "--triangles", "300000", "--frames", "1000000", "--out", "o"});
-  test::expectRefused(result, "--every");
-  EXPECT_NE(result.err.find("o: 1000000 frames take about "), std::string::npos) << result.err;
-  EXPECT_EQ(folder.count("o", ".obj"), 0u);
-  EXPECT_FALSE(folder.exists("o/.tetskin_frames"));
-}
-
-TEST_F(Drop, ColoursItsOwnModelsAndLeavesOthersTheirMaterials) {
-  ASSERT_EQ(drop({"--tets", "60", "--triangles", "3000", "--frames", "1", "--out", "o"}).status, 0);
-  EXPECT_EQ(folder.read("o/frame_0000.obj").rfind("mtllib tetskin_frames.mtl\nv ", 0), 0u);
-  const std::string library = folder.read("o/tetskin_frames.mtl");
-  for (const char* name : {"newmtl scales\n", "newmtl horn\n", "newmtl ivory\n", "newmtl eye\n", "newmtl pupil\n"}) {
-    EXPECT_NE(library.find(name), std::string::npos) << name;
-  }
-  EXPECT_EQ(folder.read("o/frame_0000.mtl"), library) << "f3d looks for the frame's name";
-  EXPECT_NE(folder.read("o/obstacles.mtl").find("newmtl ramp\n"), std::string::npos);
-  EXPECT_EQ(loadMesh(folder.path("o/frame_0000.obj")).value().groups.front().material, "horn");
-
-  folder.write("box.obj", boxObj());
-  ASSERT_EQ(drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--out", "o"}).status, 0);
-  EXPECT_EQ(folder.read("o/frame_0000.obj").rfind("# a box\nmtllib box.mtl\n", 0), 0u);
-  EXPECT_FALSE(folder.exists("o/tetskin_frames.mtl")) << "of the run before";
-  EXPECT_FALSE(folder.exists("o/frame_0000.mtl"));
 }
 
 TEST_F(Drop, NamesTheFarthestVertexOutside) {
@@ -341,112 +211,6 @@ TEST_F(Drop, HelpListsTheOptions) {
         "--every", "--out", "--json", "--quiet", "--write-cage", "--view", "--no-view"}) {
     EXPECT_NE(result.out.find(option), std::string::npos) << option;
   }
-}
-
-TEST_F(Drop, RefusesAMissingMesh) {
-  expectRefused({"--mesh", "nowhere.obj"}, {"nowhere.obj"});
-}
-
-TEST_F(Drop, RefusesAMissingCage) {
-  folder.write("box.obj", boxObj());
-  expectRefused({"--mesh", "box.obj", "--cage", "nowhere.vtk"}, {"nowhere.vtk"});
-}
-
-TEST_F(Drop, RefusesATruncatedCage) {
-  folder.write("box.obj", boxObj());
-  folder.write("cut.vtk", cubeVtk().substr(0, cubeVtk().find("4 0 6 4")));
-  expectRefused({"--mesh", "box.obj", "--cage", "cut.vtk"}, {"cut.vtk:18", "complete"});
-}
-
-TEST_F(Drop, RefusesATruncatedMesh) {
-  const std::string whole = boxObj();
-  folder.write("cut.obj", whole.substr(0, whole.find("v 0.4") + 8));
-  expectRefused({"--mesh", "cut.obj"}, {"cut.obj:"});
-}
-
-TEST_F(Drop, RefusesACageWithoutTets) {
-  folder.write("box.obj", boxObj());
-  std::string text = cubeVtk().substr(0, cubeVtk().find("CELLS"));
-  folder.write("none.vtk", text + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n");
-  expectRefused({"--mesh", "box.obj", "--cage", "none.vtk"}, {"none.vtk", "tet"});
-}
-
-TEST_F(Drop, RefusesATetIndexOutOfRange) {
-  folder.write("box.obj", boxObj());
-  std::string text = cubeVtk();
-  text.replace(text.find("4 0 2 6 7"), 9, "4 0 2 6 8");
-  folder.write("range.vtk", text);
-  expectRefused({"--mesh", "box.obj", "--cage", "range.vtk"}, {"range.vtk", "8"});
-}
-
-TEST_F(Drop, RefusesNanCoordinates) {
-  folder.write("nan.obj", boxObj(0.4, "nan"));
-  expectRefused({"--mesh", "nan.obj"}, {"nan.obj:3", "not finite"});
-}
-
-TEST_F(Drop, RefusesNanCoordinatesOfACage) {
-  folder.write("box.obj", boxObj());
-  std::string text = cubeVtk();
-  text.replace(text.find("-0.5 -0.5 -0.5"), 4, "nan ");
-  folder.write("nan.vtk", text);
-  expectRefused({"--mesh", "box.obj", "--cage", "nan.vtk"}, {"nan.vtk"});
-}
-
-TEST_F(Drop, RefusesAnEmptyMesh) {
-  folder.write("empty.obj", "# nothing\n");
-  expectRefused({"--mesh", "empty.obj"}, {"empty.obj", "no vertices"});
-}
-
-TEST_F(Drop, RefusesAMeshInOtherUnitsThanItsCage) {
-  folder.write("box.obj", boxObj(400.0));
-  folder.write("cube.vtk", cubeVtk());
-  expectRefused({"--mesh", "box.obj", "--cage", "cube.vtk"}, {"box.obj", "cube.vtk", "units"});
-}
-
-TEST_F(Drop, RefusesAnOutputFolderThatCannotBeWritten) {
-  folder.write("box.obj", boxObj());
-  folder.write("file", "in the way");
-  expectRefused({"--mesh", "box.obj", "--tets", "60", "--frames", "2", "--out", "file/o"}, {"file/o"});
-}
-
-TEST_F(Drop, RefusesASummaryThatCannotBeWritten) {
-  folder.write("box.obj", boxObj());
-  const CommandResult result =
-      drop({"--mesh", "box.obj", "--tets", "60", "--frames", "2", "--out", "o", "--json", "no/such/s.json"});
-  test::expectRefused(result, "no/such/s.json");
-  EXPECT_EQ(folder.count("o", ".obj"), 0u);
-}
-
-TEST_F(Drop, RefusesUnknownOptionsAndSenselessValues) {
-  expectRefused({"--mehs", "x.obj"}, {"--mehs"});
-  expectRefused({"--frames", "0"}, {"--frames"});
-  expectRefused({"--every", "-1"}, {"--every"});
-  expectRefused({"--tets", "0"}, {"--tets"});
-  expectRefused({"--tets", "many"}, {"--tets"});
-  expectRefused({"--outside", "somewhere"}, {"--outside", "nearest"});
-  expectRefused({"--interpolation", "cubic"}, {"--interpolation", "quadratic"});
-  expectRefused({"--normals", "bumpy"}, {"--normals", "transformed"});
-  expectRefused({"--max-distance", "-1"}, {"--max-distance", "negative"});
-}
-
-TEST(Hello, RunsWithoutAnyFile) {
-  const CommandFolder folder;
-  const CommandResult result = folder.run(TETSKIN_HELLO, {});
-  EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.out.find("20000 inside"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("frame 60"), std::string::npos) << result.out;
-}
-
-TEST(Hello, LinksNeitherAssimpNorTheCageBuilder) {
-  const CommandFolder folder;
-  const CommandResult libraries = folder.run("ldd", {TETSKIN_HELLO});
-  ASSERT_EQ(libraries.status, 0);
-  EXPECT_NE(libraries.out.find("libBulletSoftBody"), std::string::npos);
-  EXPECT_EQ(libraries.out.find("assimp"), std::string::npos);
-  const CommandResult symbols = folder.run("nm", {"-C", TETSKIN_HELLO});
-  ASSERT_EQ(symbols.status, 0);
-  EXPECT_NE(symbols.out.find("tetskin::SoftBodySkin::update"), std::string::npos);
-  EXPECT_EQ(symbols.out.find("buildCage"), std::string::npos);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/mesh_loader.h>
 
-#include "command.h"
+#include "drop_run.h"
 
 namespace tetskin {
 namespace {
@@ -47,6 +47,18 @@ TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
   EXPECT_EQ(folder.count("out/pile", ".mtl"), 2u + 2u);
   folder.write("out/pile/frame_0009.obj", "mine");
   test::expectRefused(run("2"), "frame_0009.obj");
+}
+
+TEST(Pile, TakesAMeshOfTheUsers) {
+  const CommandFolder folder;
+  folder.write("box.obj", test::boxObj());
+  const auto run = [&](const char* mesh) {
+    return folder.run(TETSKIN_PILE, {"--mesh", mesh, "--bodies", "2", "--tets", "60", "--frames", "2"});
+  };
+  ASSERT_EQ(run("box.obj").status, 0);
+  EXPECT_EQ(loadMesh(folder.path("out/pile/frame_0001.obj")).value().triangleCount(), 2u * 12u);
+  folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n");
+  test::expectRefused(run("sheet.obj"), "sheet.obj: ");
 }
 
 TEST(Pile, RefusesWhatMakesNoSense) {

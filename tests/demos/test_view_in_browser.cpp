@@ -70,6 +70,7 @@ TEST(ViewInBrowser, PlaysWhatTheFramesHaveWithEitherSkin) {
   EXPECT_GT(seen["cage"], 0.002);
   EXPECT_TRUE(seen["fits"]);
   EXPECT_TRUE(seen["clear"]) << "the header or the footer hides a body";
+  EXPECT_TRUE(seen["outside"]) << "the camera is under the floor, or in an obstacle";
   for (const std::string kind : {"linear", "quadratic"}) {
     for (const std::string frame : {"0", "100"}) {
       const auto expected =

@@ -71,10 +71,22 @@ function report(player) {
   document.getElementById('cage').value = 'all';
   document.getElementById('cage').onchange();
   found.cage = difference(images[3], pixels(player));
+  found.outside = staysOutside(player.stage);
   const bar = document.querySelector('footer').getBoundingClientRect();
   found.fits = bar.left >= 0 && bar.right <= innerWidth && bar.bottom <= innerHeight &&
     document.documentElement.scrollWidth <= innerWidth;
   return found;
+}
+
+/** Whether the camera, led under the floor and into each obstacle, comes out on top. */
+function staysOutside(stage) {
+  const box = new THREE.Box3(), places = [stage.centre.clone().setY(stage.floorY - stage.radius)];
+  for (const solid of stage.solids) places.push(box.setFromObject(solid).getCenter(new THREE.Vector3()));
+  return places.length > 2 && places.every(place => {
+    stage.camera.position.copy(place);
+    stage.draw();
+    return stage.camera.position.y > place.y && stage.camera.position.y >= stage.leastHeight(stage.camera.position);
+  });
 }
 
 function leave(text) {

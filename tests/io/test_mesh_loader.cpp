@@ -215,6 +215,7 @@ TEST(LoadMesh, NamesAMissingFileAndAFolder) {
   const TempFolder folder;
   expectError(loadMesh(folder.path("none.ply")).status(), StatusCode::FileNotFound, {folder.path("none.ply"), "check"});
   std::filesystem::create_directory(folder.path("dir.ply"));
+  expectError(loadMesh("").status(), StatusCode::FileNotFound, {"a file without a name"});
   expectError(loadMesh(folder.path("dir.ply")).status(), StatusCode::FileNotFound, {folder.path("dir.ply"), "folder"});
 }
 

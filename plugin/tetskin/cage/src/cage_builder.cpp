@@ -235,11 +235,14 @@ bool CageReport::targetMet() const {
 
 std::string CageReport::describe() const {
   std::ostringstream text;
-  text << tets << " tets, " << nodes << " nodes, spacing " << spacing;
+  const auto counted = [](std::size_t count, const char* one, const char* several) {
+    return std::to_string(count) + " " + (count == 1 ? one : several);
+  };
+  text << counted(tets, "tet", "tets") << ", " << nodes << " nodes, spacing " << spacing;
   if (!targetMet()) text << " (" << targetTets << " tets were asked for; no lattice comes nearer)";
-  text << "\n" << verticesOutside << " vertices outside\n";
+  text << "\n" << counted(verticesOutside, "vertex", "vertices") << " outside\n";
   text << "dihedral angles " << minDihedralDeg << " to " << maxDihedralDeg << " degrees\n";
-  text << meshComponents << " components of the mesh, " << parts << " of the cage";
+  text << counted(meshComponents, "component", "components") << " of the mesh, " << parts << " of the cage";
   if (fusedParts > 0) text << " (" << fusedParts << " lie so near to others that they have fused)";
   if (copies > 0) text << "; " << copies << " tets are copies, for what lies nearer than a tet";
   text << "\n";

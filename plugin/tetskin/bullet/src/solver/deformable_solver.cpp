@@ -24,12 +24,18 @@ void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
   }
 }
 
-/// Contacts with multibodies own memory: each must be destroyed.
+/// Destroys each, as contacts with multibodies own memory. resize(0) would do the same with a contact of no values, for
+/// which GCC warns.
+template <class Contact>
+void destroyAll(btAlignedObjectArray<Contact>& contacts) {
+  while (contacts.size() > 0) contacts.pop_back();
+}
+
 void clearContacts(btSoftBody& body) {
-  body.m_nodeRigidContacts.resize(0);
-  body.m_faceRigidContacts.resize(0);
-  body.m_faceNodeContacts.resize(0);
-  body.m_faceNodeContactsCCD.resize(0);
+  destroyAll(body.m_nodeRigidContacts);
+  destroyAll(body.m_faceRigidContacts);
+  destroyAll(body.m_faceNodeContacts);
+  destroyAll(body.m_faceNodeContactsCCD);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace tetskin {
@@ -146,8 +147,11 @@ std::string CalibrationReport::describe() const {
   if (refinements == 0) {
     text << "not calibrated: more tets than are ever refined; factor 1\n";
   } else {
-    text << "stiffness times " << factor << ", by " << refinements << " refinements, the finest of " << refinedTets
-         << " tets; some " << std::lround(100.0 * left) << " % of a displacement may be left\n";
+    text << "stiffness scaled by " << std::setprecision(2) << factor << " (" << refinements
+         << (refinements == 1 ? " refinement" : " refinements") << ", the finest of " << refinedTets
+         << " tets); estimated remaining error " << std::lround(100.0 * left)
+         << " % of a displacement, less with more tets\n"
+         << std::setprecision(6);
   }
   if (skippedModes > 0) text << skippedModes << " vibrations of loosely hanging parts were left out\n";
   text << milliseconds << " ms\n";

@@ -66,7 +66,8 @@ std::string withLineFeeds(std::string text) {
 }
 
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what) {
-  return {code, path + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + what};
+  const std::string name = path.empty() ? "a file without a name" : path;
+  return {code, name + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + what};
 }
 
 std::string lowerExtension(const std::string& path) {

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/playback.h"
+
+#include "scenes/progress.h"
+#include "scenes/timer.h"
+
+namespace tetskin::scenes {
+
+Playback playFrames(const char* doing, const OutputOptions& output, const FrameStep& step, const OfFrame& measure,
+                    const OfFrame& write) {
+  Playback run;
+  Progress progress(doing, output.frames, output.quiet);
+  for (int frame = 0; frame < output.frames; ++frame) {
+    run.finite = step(frame, run);
+    if (!run.finite) break;
+    measure(frame);
+    if (frame % output.every == 0) {
+      const WallTimer timer;
+      write(frame);
+      run.writeMs += timer.milliseconds();
+      ++run.written;
+    }
+    run.frames = frame + 1;
+    progress.show(frame + 1);
+  }
+  return run;
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""Does what the first page says, with the page's own blocks, as one who has just cloned the repository: builds and installs
+the library, builds and runs the first program against that, and then the lines after it. Prints each block and its time.
+
+readme.py --folder FOLDER --prefix PREFIX --generator GENERATOR
+
+Nothing of a developer's build is there: no joined files (unity builds), which hide an include that is missing, no compiler
+cache, nothing installed before. PREFIX is left for other tests.
+"""
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY / "tests/pages"))
+import page  # noqa: E402
+from run_commands import write_ring  # noqa: E402
+
+README = (REPOSITORY / "README.md").read_text()
+OF_DEVELOPERS = ("CMAKE_UNITY_BUILD", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_PREFIX_PATH", "CPATH", "CXXFLAGS")
+
+
+def block(language, words):
+    """The one block of the page with these words."""
+    found = [text for kind, text in page.blocks(README) if kind == language and words in text]
+    if len(found) != 1:
+        sys.exit(f"README.md: {len(found)} blocks of {language} have '{words}', not one: follow the page here")
+    return found[0]
+
+
+def copy_repository(folder):
+    """What a clone would have, and what is not committed yet."""
+    names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY,
+                           check=True, capture_output=True, text=True).stdout
+    for name in filter(None, names.split("\0")):
+        if (REPOSITORY / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(REPOSITORY / name, folder / name)
+
+
+def run(name, script, folder, environment):
+    begun = time.monotonic()
+    done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    print(f"{name}: {time.monotonic() - begun:.1f} s", flush=True)
+    if done.returncode != 0 or "warning:" in done.stdout:
+        sys.exit(f"FAILED, exit status {done.returncode}, or with a warning:\n{script}\n{done.stdout}")
+
+
+def with_lines(program, lines):
+    """The program with more lines at its end, which speak of a pointer `world`."""
+    end = "  return 0;\n}\n"
+    if not program.endswith(end):
+        sys.exit("README.md: the first program no longer ends as it did: follow it here")
+    call = f"  [&](btDeformableMultiBodyDynamicsWorld* world) {{\n{lines}std::puts(fit.status().message.c_str());\n"
+    return f"#include <tetskin/tetskin.h>\n{program[:-len(end)]}{call}if (!fit.ok()) std::exit(1);\n}}(&world);\n{end}"
+
+
+def run_program(name, program, libraries, prefix, folder, environment):
+    folder.mkdir()
+    (folder / "main.cpp").write_text(program)
+    text = block("cmake", "find_package(tetskin").replace("tetskin::tetskin)", f"tetskin::tetskin{libraries})")
+    (folder / "CMakeLists.txt").write_text(text)
+    write_ring(folder / "dragon.obj")
+    run(name, f"cmake -DCMAKE_PREFIX_PATH={prefix} -DCMAKE_BUILD_TYPE=Release -S . -B build && cmake --build build && build/app",
+        folder, environment)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--folder", type=Path, required=True)
+    parser.add_argument("--prefix", type=Path, required=True)
+    parser.add_argument("--generator", required=True)
+    arguments = parser.parse_args()
+    folder, prefix = arguments.folder, arguments.prefix
+
+    environment = {name: value for name, value in os.environ.items() if name not in OF_DEVELOPERS}
+    environment.update(CCACHE_DISABLE="1", CMAKE_GENERATOR=arguments.generator)
+    for old in (folder, prefix):
+        shutil.rmtree(old, ignore_errors=True)
+    copy_repository(folder / "tetskin")
+    run("build and install", block("sh", "cmake -S tetskin").replace("--prefix PREFIX", f"--prefix {prefix}"), folder,
+        environment)
+    program = block("cpp", "int main()")
+    run_program("first program", program, "", prefix, folder / "first", environment)
+    run_program("a mesh of yours", with_lines(program, block("cpp", "\"dragon.obj\"")), " tetskin::cage tetskin::io", prefix,
+                folder / "yours", environment)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+TEST(Hello, RunsWithoutAnyFile) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_HELLO, {});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("20000 inside"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("frame 60"), std::string::npos) << result.out;
+}
+
+TEST(Hello, LinksNeitherAssimpNorTheCageBuilder) {
+  const CommandFolder folder;
+  const CommandResult libraries = folder.run("ldd", {TETSKIN_HELLO});
+  ASSERT_EQ(libraries.status, 0);
+  EXPECT_NE(libraries.out.find("libBulletSoftBody"), std::string::npos);
+  EXPECT_EQ(libraries.out.find("assimp"), std::string::npos);
+  const CommandResult symbols = folder.run("nm", {"-C", TETSKIN_HELLO});
+  ASSERT_EQ(symbols.status, 0);
+  EXPECT_NE(symbols.out.find("tetskin::SoftBodySkin::update"), std::string::npos);
+  EXPECT_EQ(symbols.out.find("buildCage"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tetskin
