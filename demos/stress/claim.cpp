@@ -57,7 +57,7 @@ std::string nameOf(const Claim& claim) {
 
 std::vector<Claim> allClaims() {
   std::vector<Claim> claims{{}};
-  const auto forEach = [&](const auto& values, auto Claim::* member) {
+  const auto forEach = [&](const auto& values, auto Claim::*member) {
     std::vector<Claim> more;
     for (const Claim& claim : claims) {
       for (const auto& value : values) {

@@ -194,7 +194,8 @@ void giveVelocities(const Claim& claim, const ClaimModel& model, btSoftBody& bod
 }
 
 /// The largest that a free body becomes, from its centre to its farthest node.
-double referenceExtent(const Claim& claim, const ClaimModel& model, const SoftBodyOptions& options, const btSoftBody& body) {
+double referenceExtent(const Claim& claim, const ClaimModel& model, const SoftBodyOptions& options,
+                       const btSoftBody& body) {
   ElasticOptions elastic;
   elastic.youngsModulus = claim.youngsModulus;
   elastic.poissonRatio = kPoisson;
@@ -320,7 +321,8 @@ bool ClaimRun::look() {
   mostStored_ = std::max(mostStored_, now.elastic / put);
   if (claim_.event != ClaimEvent::Free) return true;
   const double linear = began_.momentum.norm(), angular = std::max(began_.spin.norm(), 0.01 * linear * model_.size);
-  lost_ = std::max({lost_, (now.momentum - began_.momentum).norm() / linear, (now.spin - began_.spin).norm() / angular});
+  lost_ =
+      std::max({lost_, (now.momentum - began_.momentum).norm() / linear, (now.spin - began_.spin).norm() / angular});
   return true;
 }
 

@@ -21,13 +21,13 @@ struct Verdict {
   /// RMS in diagonals of the mesh: how far the surface was from its rest shape, wherever it lay, when the event was
   /// over: whether the body has recovered.
   double shapeError = 0.0;
-  double lowest = 0.0;     ///< of the surface at the end, over the scene's floor, in sizes; 0 where there is none
+  double lowest = 0.0;        ///< of the surface at the end, over the scene's floor, in sizes; 0 where there is none
   double energy = 0.0;        ///< of a claim: the most there was, over what it began with and was given
   double energyStored = 0.0;  ///< the same of elastic energy alone, also in the steps of a landing
   double momentumLost = 0.0;  ///< likewise: the most of momentum and angular momentum, of a free body
-  double restSpeed = 0.0;  ///< root mean square of the nodes' in the last half second, in sizes a second
-  bool skinFinite = true;  ///< at every update
-  std::string status;      ///< the worst that `update` said, or why there is no skin
+  double restSpeed = 0.0;     ///< root mean square of the nodes' in the last half second, in sizes a second
+  bool skinFinite = true;     ///< at every update
+  std::string status;         ///< the worst that `update` said, or why there is no skin
   /// Largest over all updates of: the longest way of a vertex since bind, over the longest way of a node. Updates in
   /// which no node has gone a thousandth of the size do not count.
   double amplification = 0.0;

@@ -210,7 +210,7 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   none.density = 0;
   fails(good, none, StatusCode::InvalidOption);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
-  for (double SoftBodyOptions::* value :
+  for (double SoftBodyOptions::*value :
        {&SoftBodyOptions::mass, &SoftBodyOptions::density, &SoftBodyOptions::friction, &SoftBodyOptions::youngsModulus,
         &SoftBodyOptions::relativeStiffness, &SoftBodyOptions::damping, &SoftBodyOptions::timeStep,
         &SoftBodyOptions::poissonRatio, &SoftBodyOptions::solverTolerance}) {

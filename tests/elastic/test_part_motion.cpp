@@ -117,7 +117,8 @@ TEST(PartMotion, OfAHeldNodeTurnsAboutItAndKeepsTheAngularMomentumAboutIt) {
     const Points to = part.moved(part.motion());
     expectRigid(part.nodes, to);
     EXPECT_LT((to[5] - part.nodes[5] - kSeconds * led).norm(), 1e-14);
-    EXPECT_LT((part.spinOf(part.ratesTo(to), part.nodes[5]) - part.spinOf(part.velocities, part.nodes[5])).norm(), 1e-9);
+    EXPECT_LT((part.spinOf(part.ratesTo(to), part.nodes[5]) - part.spinOf(part.velocities, part.nodes[5])).norm(),
+              1e-9);
   }
 }
 

@@ -62,14 +62,14 @@ class TETSKIN_BULLET_API DeformableBody {
   double damping() const;       ///< seconds
 
   /// The body's material from the next step on; it wakes. As in SoftBodyOptions, but the stiffness must be above 0, and
-  /// is not bounded by the time step. Errors: InvalidOption, also for what is too stiff for the body's mass and size (in
-  /// float above 1e12 density size^2 / s^2, in double 1e16), and nothing is changed.
+  /// is not bounded by the time step. Errors: InvalidOption, also for what is too stiff for the body's mass and size
+  /// (in float above 1e12 density size^2 / s^2, in double 1e16), and nothing is changed.
   Status setYoungsModulus(double pressure);
   Status setPoissonRatio(double ratio);  ///< likewise
   Status setDamping(double seconds);     ///< likewise
 
-  /// Gravity follows the world's, also when that changes, until it is set here. The body wakes. Error: InvalidOption for
-  /// one that is not finite, or above 1e6 sizes per second squared; nothing is changed.
+  /// Gravity follows the world's, also when that changes, until it is set here. The body wakes. Error: InvalidOption
+  /// for one that is not finite, or above 1e6 sizes per second squared; nothing is changed.
   Status setGravity(const btVector3& gravity);
   void followWorldGravity();  ///< again, as at first
 

@@ -36,8 +36,9 @@ struct SolverLimits {
 ///
 /// Works in any deformable world with any btDeformableBodySolver; with a `DeformableSolver` it is solved for by that,
 /// at a fraction of the time, is stable in free motion from soft to a stiffness of 1e12 density size^2 / s^2 (in double
-/// 1e16), which is the most that is taken, at any spin below one radian per step, and is stable in contact. One object may have several bodies, of one material: that is
-/// what Bullet's `addForce` does with a second object of this type. `addTo` keeps each object to its own.
+/// 1e16), which is the most that is taken, at any spin below one radian per step, and is stable in contact. One object
+/// may have several bodies, of one material: that is what Bullet's `addForce` does with a second object of this type.
+/// `addTo` keeps each object to its own.
 ///
 /// Ownership  the application's, as of all of Bullet's forces: it must outlive its bodies' time in the world
 /// Cost       of a step, by itself: O(T) for T tets; memory about 700 bytes a tet in float

@@ -58,8 +58,9 @@ enum class ForceModel {
 /// deformable world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
   double mass = 0.0;  ///< total, in kg; 0: from density
-  /// Mass per volume, of the mesh if the cage knows it, else of the cage. The default, in kg / m^3, is that of foam, which
-  /// most of what is soft and of one's own size is nearer to than to water; where lengths are not metres, give a mass.
+  /// Mass per volume, of the mesh if the cage knows it, else of the cage. The default, in kg / m^3, is that of foam,
+  /// which most of what is soft and of one's own size is nearer to than to water; where lengths are not metres, give a
+  /// mass.
   double density = 100.0;
   /// nodeCount, above 0: instead of the two above, and of the floor under the masses of slivers' nodes. Empty: from
   /// those, distributed as the cage's masses are if it has any.

@@ -45,7 +45,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// At rest, where the cage is.
   /// cage    usable (see `usable`), without flat tets; any unit
   /// Cost    O(T log T) for T tets; memory about 700 bytes a tet in float
-  /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch; InvalidOption, also for a stiffness over density
+  /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch; InvalidOption, also for a stiffness over
+  /// density
   ///         and squared size (the cube root of the volume) above 1e12 in float or 1e16 in double, in 1 / s^2
   static Result<ElasticBody> make(const TetMesh& cage, const ElasticOptions& options);
 

@@ -20,7 +20,7 @@ constexpr double kMostOmegaDt = 1.6;
 
 /// What a reduced body is made of, beside its modes. Lengths are world lengths.
 struct ReducedBodyOptions {
-  int modes = 0;         ///< softest ones to take; 0: all that there are
+  int modes = 0;           ///< softest ones to take; 0: all that there are
   double mass = 0.0;       ///< total, in kg; 0: from density
   double density = 100.0;  ///< mass per volume of the tets that the modes are of; the default as in SoftBodyOptions
   /// As in SoftBodyOptions, and never bounded: modes that are too fast for timeStep are refused, or left out.

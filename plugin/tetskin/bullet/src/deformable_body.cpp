@@ -99,9 +99,10 @@ Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   const double size = std::cbrt(volume), length = static_cast<double>(gravity.length());
   if (length <= kMost * size) return {};
   char text[160];
-  std::snprintf(text, sizeof text,
-                "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 sizes per second squared)",
-                length, size, kMost * size);
+  std::snprintf(
+      text, sizeof text,
+      "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 sizes per second squared)",
+      length, size, kMost * size);
   return invalid(text);
 }
 

@@ -30,8 +30,8 @@ Status checkOptions(const SoftBodyOptions& options) {
     return {StatusCode::InvalidOption, "a soft body's friction must not be negative, and it and its margin be finite"};
   }
   if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
-      !(options.timeStep > 0.0) ||
-      !finite(options.youngsModulus) || !finite(options.relativeStiffness) || !finite(options.damping) || !finite(options.timeStep)) {
+      !(options.timeStep > 0.0) || !finite(options.youngsModulus) || !finite(options.relativeStiffness) ||
+      !finite(options.damping) || !finite(options.timeStep)) {
     return {StatusCode::InvalidOption,
             "a soft body's stiffness and damping must not be negative, and finite, and its time step must be above 0"};
   }

@@ -5,10 +5,10 @@
 //   v0, x0 = x + dt v0: as the body would move if it were rigid, see part_motion.h
 //   (M + alpha K) y = dt f(x0) + M (v - v0),   alpha = dt (damping + dt)
 //   v <- v0 + y,   x <- x + dt v
-// with f the corotated forces and K their stiffness at the rotations of x0: a backward Euler step, of first order, which
-// keeps linear and angular momentum. Only what deviates from rigid motion is solved for. A step that solves for all of
-// the velocity takes turning by an angle of phi for a strain of phi^2 / 2, and for more where K is of older rotations:
-// stiff bodies explode by it.
+// with f the corotated forces and K their stiffness at the rotations of x0: a backward Euler step, of first order,
+// which keeps linear and angular momentum. Only what deviates from rigid motion is solved for. A step that solves for
+// all of the velocity takes turning by an angle of phi for a strain of phi^2 / 2, and for more where K is of older
+// rotations: stiff bodies explode by it.
 //
 // This work is based on:
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
@@ -57,8 +57,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// After `predict`: the right side of the step, which is of the matrix's residual and of `startAgain`, too. The
   /// solution, a velocity beside the rigid motion's, has its start: of a soft body what it was, of a stiff one 0.
   void start(double seconds, ParallelFor* threads);
-  /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in the
-  /// residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
+  /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in
+  /// the residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
   double squaredDeviation() const { return squaredDeviation_; }
   /// Of the last `predict`.
   bool isStiff() const { return stiff_; }
@@ -82,7 +82,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// impulse  of a node, by what else has acted on it in the step; none: nothing has
   void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {});
   /// Where something else than elasticity has turned a part in this step, the solution has that turn as the chord of a
-  /// rotation: a stiff body would be stretched by a straight one. Nothing changes for soft bodies, which hardly feel it.
+  /// rotation: a stiff body would be stretched by a straight one. Nothing changes for soft bodies, which hardly feel
+  /// it.
   void bendTurns(double seconds);
   bool anyHeld() const { return held_ > 0; }
 
@@ -108,7 +109,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node
   std::vector<PartMotion> motions_;    ///< by part, of the last `predict`
   std::vector<double> stiffness_;      ///< by part: sum of V (2 mu + lambda) over its tets
-  double stiffnessOverInertia_ = 0.0;  ///< of the part where it is most: with dt^2, how much turning is taken for strain
+  double stiffnessOverInertia_ =
+      0.0;  ///< of the part where it is most: with dt^2, how much turning is taken for strain
   double squaredDeviation_ = 0.0;
 };
 

@@ -3,8 +3,8 @@
 //
 // The rigid motion of one part of a body over a step: nodes that tets connect, of which some may be held.
 //
-// Positions are moved along straight lines, x + dt v. A body that turns by dt omega x r swells so by (dt omega)^2 / 2 in
-// every step, which its stiffness has to take back. So the velocities of a rigid motion are taken as the chords of a
+// Positions are moved along straight lines, x + dt v. A body that turns by dt omega x r swells so by (dt omega)^2 / 2
+// in every step, which its stiffness has to take back. So the velocities of a rigid motion are taken as the chords of a
 // rotation Q: v = (Q - 1) r / dt, and Q is the one that has the angular momentum of the part,
 //   sum m r x Q r = dt L
 // which is what x + dt v keeps: angular momentum is exact, and a part that does not deform is not stretched.
@@ -25,7 +25,7 @@ class HeldNodes {
 
   Kind kind = Nothing;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), axis = Eigen::Vector3d::Zero();
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the centre
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< over the step, as closely as a rotation follows them
 
  private:

@@ -38,8 +38,8 @@ Status checkMaterial(double youngsModulus, double poissonRatio, double damping) 
 }
 
 /// A Young's modulus over a density, and over the square of a size, in 1 / s^2, above which positions of this precision
-/// store more energy by their last digits than a body that falls or turns has. Tested to be stable that far, in steps of
-/// 1/60 s.
+/// store more energy by their last digits than a body that falls or turns has. Tested to be stable that far, in steps
+/// of 1/60 s.
 template <class Scalar>
 constexpr double kMostStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
 
