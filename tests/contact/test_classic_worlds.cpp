@@ -8,6 +8,7 @@
 
 #include "../bullet/worlds.h"
 #include "support/odd_meshes.h"
+#include "support/one_kilogram.h"
 
 namespace tetskin::test {
 namespace {
@@ -29,7 +30,7 @@ btScalar lowestOf(const btSoftBody& body) {
 /// How high the upper of two bodies comes to lie: the lower one is 0.9 high.
 template <class World, class BulletsWorld>
 btScalar restingHeight(int collisions) {
-  SoftBodyOptions options;
+  SoftBodyOptions options = test::oneKilogram();
   options.forceModel = ForceModel::MassSpring;
   options.linkStiffness = 0.9;
   World world(cubeAbove(0.05), options);
