@@ -64,7 +64,7 @@ class TouchingProngs : public testing::TestWithParam<Setting> {
     contacts_ = SoftContacts::add(static_cast<btDeformableMultiBodyDynamicsWorld&>(world_.bullet())).value();
   }
   static SoftBodyOptions material(double youngsModulus) {
-    SoftBodyOptions options;
+    SoftBodyOptions options = scenes::oneKilogram();
     options.youngsModulus = youngsModulus;
     options.implicit = GetParam() == Setting::Implicit;
     return options;
