@@ -13,7 +13,7 @@ namespace {
 
 /// Of the errors that a solve may leave. Where something pushes they do work, always of the same sign: a landing gained
 /// up to 1 % of its energy. What a dynamic rigid body gets is known as well as they are small.
-constexpr double kCloserInContact = 0.3, kCloserWithRigids = 0.1;
+constexpr double kCloserInContact = 0.6, kCloserWithRigids = 0.1;
 /// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
 /// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
 constexpr double kWithForeignForces = 1e-6;
@@ -176,12 +176,12 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
   limits.tolerance = tolerance;
   limits.floor *= closer;
   limits.enough *= share * share;  // of squares
-  if (stiff) {
-    // The residual that a contact begins with is as large as the body is stiff: what may be left of it would move light
-    // nodes. What may be left is a share of what has been given.
+  // A share of how the velocities differ from rigid motion may be left, too. Of stiff bodies nothing else: the residual
+  // that a contact begins with is as large as the body is stiff, and what may be left of it would move light nodes.
+  if (inContact || stiff) {
     limits.enough = std::max(limits.enough, limits.tolerance * limits.tolerance * squaredStart);
-    limits.tolerance = 0.0;
   }
+  if (stiff) limits.tolerance = 0.0;
   return limits;
 }
 

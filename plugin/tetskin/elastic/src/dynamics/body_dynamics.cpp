@@ -141,17 +141,24 @@ void BodyDynamics<S>::findMotions(double seconds) {
   }
 }
 
-/// Velocities become those of the rigid motion; `relative_` what they are beside it.
+/// Velocities become those of the rigid motion; `relative_` what they are beside it. Forces do not depend on where
+/// parts are: without their translation, points have no other rounding in each step, which would be taken for strain.
 template <class S>
 void BodyDynamics<S>::moveRigidly(double seconds) {
   std::vector<RigidVelocity> rigid;
-  for (const PartMotion& motion : motions_) rigid.push_back(motion.velocities(seconds));
+  std::vector<Eigen::Vector3d> anchors;
+  for (const PartMotion& motion : motions_) {
+    rigid.push_back(motion.velocities(seconds));
+    anchors.push_back(motion.anchor());
+  }
   for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
     S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    const std::uint32_t part = partOf_[slot];
+    const double *anchor = anchors[part].data(), *translation = rigid[part].velocity;
     double v0[3];
-    rigid[partOf_[slot]].at(x, v0);
+    rigid[part].at(x, v0);
     for (std::size_t k = 0; k < 3; ++k) {
-      moved_[4 * slot + k] = static_cast<S>(x[k] + seconds * v0[k]);
+      moved_[4 * slot + k] = static_cast<S>(x[k] - anchor[k] + seconds * (v0[k] - translation[k]));
       relative_[4 * slot + k] = static_cast<S>(v[k] - v0[k]);
       v[k] = static_cast<S>(v0[k]);
     }

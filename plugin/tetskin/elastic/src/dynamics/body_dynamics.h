@@ -100,7 +100,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;
-  AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0
+  AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0, less where its part is
   AlignedVector<S> rightSide_, image_;                                ///< wide
   double damping_ = 0.0, alpha_ = 0.0;
   bool stiff_ = false;

@@ -170,6 +170,13 @@ RigidVelocity PartMotion::velocities(double seconds) const {
   return rigidVelocity(about_, velocity_, (turn_ - Matrix3d::Identity()) / seconds);
 }
 
+Vector3d PartMotion::anchor() const {
+  const double spread = mass_ > 0.0 ? std::sqrt(second_.trace() / mass_) : 0.0;
+  if (!(spread > 0.0)) return about_;
+  const double grid = std::exp2(std::ceil(std::log2(spread)));
+  return grid * (about_ / grid).array().round().matrix();
+}
+
 double PartMotion::reach() const {
   return mass_ > 0.0 ? about_.norm() + std::sqrt(second_.trace() / mass_) : about_.norm();
 }

@@ -91,6 +91,9 @@ class PartMotion {
   const Eigen::Vector3d& about() const { return about_; }
   /// The velocities of the rigid motion over the step, by where nodes are at its beginning.
   RigidVelocity velocities(double seconds) const;
+  /// Near `about()`, on a grid as wide as the part, so that it seldom changes: beside it positions have as many digits
+  /// as they can, and from step to step the same.
+  Eigen::Vector3d anchor() const;
   /// From the origin to about the farthest node.
   double reach() const;
   /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
