@@ -296,7 +296,7 @@ void ClaimRun::start() {
   if (claim_.event != ClaimEvent::Dragged) return;
   point_ = SurfaceTree(skin_.binding(), model_.mesh).pointOfVertex(body_, 0).value();
   spring_ = SurfaceSpring::add(world_.bullet(), point_).value();
-  spring_->setTarget(*point_.position() + btVector3(static_cast<btScalar>(model_.size), 0, 0));
+  (void)spring_->setTarget(*point_.position() + btVector3(static_cast<btScalar>(model_.size), 0, 0));
 }
 
 void ClaimRun::step() {
