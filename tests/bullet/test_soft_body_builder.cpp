@@ -214,9 +214,9 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
        {&SoftBodyOptions::mass, &SoftBodyOptions::density, &SoftBodyOptions::friction, &SoftBodyOptions::youngsModulus,
         &SoftBodyOptions::relativeStiffness, &SoftBodyOptions::damping, &SoftBodyOptions::timeStep,
         &SoftBodyOptions::poissonRatio, &SoftBodyOptions::solverTolerance}) {
-    for (const double bad : {-1.0, kNaN, kInfinite}) {
+    for (const double refused : {-1.0, kNaN, kInfinite}) {
       SoftBodyOptions options;
-      options.*value = bad;
+      options.*value = refused;
       fails(good, options, StatusCode::InvalidOption);
     }
   }
