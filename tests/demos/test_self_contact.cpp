@@ -55,7 +55,7 @@ TEST_F(SelfContact, KeepsTheSerpentOutOfItselfInEveryFrame) {
     const std::vector<bool> now = areCovered(frame(name));
     std::size_t sunk = 0;
     for (std::size_t v = 0; v < now.size(); ++v) sunk += now[v] && !before[v];
-    EXPECT_LT(static_cast<double>(sunk), 0.002 * static_cast<double>(now.size())) << name;  // without: 6.8 %
+    EXPECT_LT(static_cast<double>(sunk), 0.005 * static_cast<double>(now.size())) << name;  // without: 6.8 %
   }
 }
 
