@@ -131,9 +131,9 @@ TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4]
           x = c * before - s * y;
           y = s * before + c * y;
         };
-        for (int k = 0; k < 4; ++k) turn(a[k][i], a[k][j]);
+        for (auto& row : a) turn(row[i], row[j]);
         for (int k = 0; k < 4; ++k) turn(a[i][k], a[j][k]);
-        for (int k = 0; k < 4; ++k) turn(vectors[k][i], vectors[k][j]);
+        for (auto& row : vectors) turn(row[i], row[j]);
       }
     }
   }
@@ -144,7 +144,7 @@ TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4]
 /// 1987, doi 10.1364/JOSAA.4.000629). Some 1 us. Left as it is where F is 0 or not finite.
 TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) {
   double squared = 0.0;
-  for (int k = 0; k < 9; ++k) squared += f[k] * f[k];
+  for (const double x : f) squared += x * x;
   if (!(squared > 0.0 && squared < 1e300)) return;
   const double unit = 1 / squareRoot(squared);
   double m[9];
