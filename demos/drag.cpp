@@ -162,7 +162,7 @@ Drag::Drag(const DragOptions& options)
     : options_(options),
       model_(placedModel(options.model)),
       world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
-      body_(world_.add(model_.cage, {})),
+      body_(world_.add(model_.cage, oneKilogram())),
       binding_(bound(model_)),
       selfContact_(selfContactOf(model_.name, model_.cage, model_.mesh, options.selfContact, options.output.quiet)),
       tree_(binding_, model_.mesh) {

@@ -96,7 +96,7 @@ class ContactRun {
     rigid_->setWorldTransform(at);
     rigid_->setInterpolationWorldTransform(at);
     world_.bullet().addRigidBody(rigid_.get());
-    btSoftBody& body = world_.add(cage, {});
+    btSoftBody& body = world_.add(cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     const auto binding = SoftBodyBinding::make(cage, mesh).value();
     if (how == Contact::Surface) world_.touchBySurface(body, *binding, mesh);

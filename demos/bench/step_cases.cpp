@@ -146,7 +146,7 @@ void softPair(State& state, std::size_t tets, double apart, bool touch) {
     Cage placed = model.cage;
     const Eigen::AngleAxisd turn(1.1 * k, Eigen::Vector3d(0.3, 1.0, 0.2).normalized());
     for (Eigen::Vector3d& p : placed.nodes) p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
-    btSoftBody& body = world.add(placed, {});
+    btSoftBody& body = world.add(placed, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     if (touch) world.touchEachOther(body, model.shape);
   }

@@ -89,7 +89,7 @@ std::vector<std::array<btVector3, 2>> raysThrough(const SoftBodySkin& skin, std:
 void castRays(State& state, bool fits) {
   const TouchModel& model = serpent();
   scenes::World world(scenes::Force::Elastic, btVector3(0, 0, 0));
-  btSoftBody& body = world.add(model.cage, {});
+  btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
   SoftBodySkin skin;
   (void)skin.bind(body, model.binding);
   const SurfaceTree tree(model.binding, model.mesh);
@@ -150,7 +150,7 @@ void swing(State& state, Puller puller, scenes::Force force, double stiffness, i
   bool lost = false;
   for (auto _ : state) {
     scenes::World world(force, btVector3(0, btScalar(-9.81), 0));
-    btSoftBody& body = world.add(model.cage, {});
+    btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     const SurfaceTree tree(model.binding, model.mesh);
     const SurfacePoint point = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
@@ -188,7 +188,7 @@ void hang(State& state, bool welded, double mass, int rate) {
   double worst = 0;
   for (auto _ : state) {
     scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
-    btSoftBody& body = world.add(model.cage, {});
+    btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     const SurfaceTree tree(model.binding, model.mesh);
     const SurfacePoint top = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();

@@ -37,8 +37,8 @@ double moveNodes(btSoftBody& body, btScalar dt) {
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     btSoftBody::Node& node = body.m_nodes[n];
     node.m_v *= kept;
-    const double squared =
-        toEigen(node.m_v).squaredNorm();  // in double: the square of a speed may be out of float's range
+    // In double: the square of a speed may be out of float's range.
+    const double squared = toEigen(node.m_v).squaredNorm();
     const auto allowed = static_cast<double>(fastest);
     if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
     most = std::max(most, squared);
