@@ -101,7 +101,8 @@ void assemble(const RowWork<S>& work) {
       }
       const V real = wide<S, W>(work.masses + kGroup * c + lane);
       const V least = -work.leastMass * (rowSum[0] + rowSum[4] + rowSum[8]);
-      const V mass = (real > S(0)) & (real < least) ? least : real;
+      const auto light = (real > S(0)) & (real < least);
+      const V mass = light ? least : real;
       const V d[6] = {mass - rowSum[0], S(-0.5) * (rowSum[1] + rowSum[3]), S(-0.5) * (rowSum[2] + rowSum[6]),
                       mass - rowSum[4], S(-0.5) * (rowSum[5] + rowSum[7]), mass - rowSum[8]};
       for (int k = 0; k < 6; ++k) put<S, W>(d[k], work.diagonal + kWideSymmetric * c + k * kGroup + lane);
