@@ -11,9 +11,8 @@
 namespace tetskin {
 namespace {
 
-/// Of the errors that a solve may leave. Where something pushes they do work, always of the same sign: a landing gained
-/// up to 1 % of its energy. What a dynamic rigid body gets is known as well as they are small.
-constexpr double kCloserInContact = 0.6, kCloserWithRigids = 0.1;
+/// Of the errors that a solve may leave: what a dynamic rigid body gets is known as well as they are small.
+constexpr double kCloserWithRigids = 0.1;
 /// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
 /// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
 constexpr double kWithForeignForces = 1e-6;
@@ -165,7 +164,7 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
     squaredStart += of.dynamics->squaredSolution();
     anyElastic |= of.elastic != nullptr;
   }
-  const double closer = !system.rigids.empty() ? kCloserWithRigids : inContact ? kCloserInContact : 1.0;
+  const double closer = system.rigids.empty() ? 1.0 : kCloserWithRigids;
   double tolerance = closer * limits.tolerance;
   for (const btDeformableLagrangianForce* force : system.forces) {
     const auto* coupling = dynamic_cast<const CouplingForce*>(force);

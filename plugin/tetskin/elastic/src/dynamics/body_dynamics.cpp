@@ -130,9 +130,18 @@ void BodyDynamics<S>::findMotions(double seconds) {
   }
   // About where parts were before: one pass, and no digits lost far from the origin.
   std::vector<PartMoments> moments(motions_.size());
-  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
-    const std::uint32_t part = partOf_[slot];
-    moments[part].add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], motions_[part].about().data());
+  const auto add = [&](std::size_t slot, PartMoments& sums, const Eigen::Vector3d& about) {
+    sums.add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], about.data());
+  };
+  if (motions_.size() == 1) {  // nearly always: its sums stay in registers
+    PartMoments sums;
+    const Eigen::Vector3d about = motions_.front().about();
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) add(slot, sums, about);
+    moments.front() = sums;
+  } else {
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+      add(slot, moments[partOf_[slot]], motions_[partOf_[slot]].about());
+    }
   }
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     held[k].finish(seconds);
@@ -143,24 +152,36 @@ void BodyDynamics<S>::findMotions(double seconds) {
 
 /// Velocities become those of the rigid motion; `relative_` what they are beside it. Forces do not depend on where
 /// parts are: without their translation, points have no other rounding in each step, which would be taken for strain.
+/// All of it is beside an anchor near the part, where this precision does.
 template <class S>
 void BodyDynamics<S>::moveRigidly(double seconds) {
-  std::vector<RigidVelocity> rigid;
-  std::vector<Eigen::Vector3d> anchors;
+  struct Rigid {
+    S anchor[3], fromAnchor[3], velocity[3], field[9];
+  };
+  std::vector<Rigid> parts;
   for (const PartMotion& motion : motions_) {
-    rigid.push_back(motion.velocities(seconds));
-    anchors.push_back(motion.anchor());
+    const RigidVelocity exact = motion.velocities(seconds);
+    const Eigen::Vector3d anchor = motion.anchor();
+    Rigid& part = parts.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      part.anchor[k] = static_cast<S>(anchor[k]);
+      part.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
+      part.velocity[k] = static_cast<S>(exact.velocity[k]);
+    }
+    for (int k = 0; k < 9; ++k) part.field[k] = static_cast<S>(exact.field[k]);
   }
+  const auto dt = static_cast<S>(seconds);
   for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
-    S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
-    const std::uint32_t part = partOf_[slot];
-    const double *anchor = anchors[part].data(), *translation = rigid[part].velocity;
-    double v0[3];
-    rigid[part].at(x, v0);
+    const Rigid& part = parts[partOf_[slot]];
+    S *x = &points_[4 * slot], *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
+    const S place[3] = {x[0] - part.anchor[0], x[1] - part.anchor[1], x[2] - part.anchor[2]};
+    const S arm[3] = {place[0] - part.fromAnchor[0], place[1] - part.fromAnchor[1], place[2] - part.fromAnchor[2]};
     for (std::size_t k = 0; k < 3; ++k) {
-      moved_[4 * slot + k] = static_cast<S>(x[k] - anchor[k] + seconds * (v0[k] - translation[k]));
-      relative_[4 * slot + k] = static_cast<S>(v[k] - v0[k]);
-      v[k] = static_cast<S>(v0[k]);
+      const S turning = part.field[3 * k] * arm[0] + part.field[3 * k + 1] * arm[1] + part.field[3 * k + 2] * arm[2];
+      moved[k] = place[k] + dt * turning;
+      const S rigid = part.velocity[k] + turning;
+      beside[k] = v[k] - rigid;
+      v[k] = rigid;
     }
   }
 }

@@ -71,10 +71,17 @@ TETSKIN_INLINE WideMatrix<S, W> transposedProduct(const WideMatrix<S, W>& r, con
   return s;
 }
 
-/// One step of Newton's on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix
-/// is not safely positive, a step of the gradient's. Returns the squares of the angles.
+/// What a step towards the rotation has been, by tet.
 template <class S, int W>
-TETSKIN_INLINE Lanes<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
+struct RotationStep {
+  Lanes<S, W> squaredAngle;
+  Lanes<S, W> unsafe;  ///< 1 where it was the gradient's, 0 where it was Newton's
+};
+
+/// One step of Newton's on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix
+/// is not safely positive, a step of the gradient's.
+template <class S, int W>
+TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
   const V* a = s.at;
   const V bx = a[7] - a[5], by = a[2] - a[6], bz = a[3] - a[1];
@@ -98,7 +105,7 @@ TETSKIN_INLINE Lanes<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W
   const auto finite = (squared > S(0.5)) & (squared < S(1e18));
   const V unit = S(1) / squareRoots<S, W>(finite ? squared : all<S, W>(1));
   q = {finite ? w * unit : all<S, W>(1), finite ? x * unit : V{}, finite ? y * unit : V{}, finite ? z * unit : V{}};
-  return wx * wx + wy * wy + wz * wz;
+  return {wx * wx + wy * wy + wz * wz, good ? V{} : all<S, W>(1)};
 }
 
 /// 1 where the rotation is at a saddle or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue below 0.
@@ -210,13 +217,15 @@ TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& 
     s = transposedProduct<S, W>(r, f);
   };
   follow();
-  Lanes<S, W> squaredAngle{};
-  for (int k = 0; k < kMostSteps; ++k) {
-    squaredAngle = turnAlong<S, W>(q, s);
+  RotationStep<S, W> step{};
+  bool turning = true;
+  for (int k = 0; k < kMostSteps && turning; ++k) {
+    step = turnAlong<S, W>(q, s);
     follow();
-    if (!anyAbove<S, W>(squaredAngle, kLastStep<S>)) break;
+    turning = anyAbove<S, W>(step.squaredAngle, kLastStep<S>);
   }
-  const Lanes<S, W> stillTurning = (squaredAngle > kLastStep<S>) ? all<S, W>(1) : Lanes<S, W>{};
+  if (!turning && !anyAbove<S, W>(step.unsafe, S(0.5))) return;
+  const Lanes<S, W> stillTurning = (step.squaredAngle > kLastStep<S>) ? all<S, W>(1) : Lanes<S, W>{};
   const Lanes<S, W> lost = larger(atNoMaximum<S, W>(s), stillTurning);
   if (!anyAbove<S, W>(lost, S(0.5))) return;
   findRotations<S, W>(f, lost, q);
