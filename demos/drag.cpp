@@ -115,6 +115,7 @@ class Drag {
   explicit Drag(const DragOptions& options);
   /// False if the body has exploded.
   bool step(int frame);
+  const World& world() const { return world_; }
   const TriangleMesh& drawn() const { return drawn_; }
   std::vector<Vector3d> surface() const;
   const TriangleMesh& floor() const { return world_.obstacles(); }
@@ -332,7 +333,7 @@ int run(const DragOptions& options) {
     const std::vector<Vector3d> surface = drag.surface();
     writer.write(frame, surface, boundingBox(surface), {});
   };
-  const Playback run = playFrames("simulating", output, step, keep, write);
+  const Playback run = playFrames("simulating", output, drag.world(), step, keep, write);
   nlohmann::ordered_json json;
   drag.tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();

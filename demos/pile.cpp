@@ -100,6 +100,7 @@ class Pile {
     for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % models_.size()], k, options);
   }
 
+  const World& world() const { return world_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleMesh& obstacles() const { return world_.obstacles(); }
   /// False if a body has exploded.
@@ -218,7 +219,7 @@ int run(const PileOptions& options) {
     const std::vector<Vector3d> surface = pile.surface();
     writer.write(frame, surface, boundingBox(surface), {});
   };
-  const Playback run = playFrames("simulating", output, step, measure, write);
+  const Playback run = playFrames("simulating", output, pile.world(), step, measure, write);
   nlohmann::ordered_json json;
   json["bodies"] = options.bodies;
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";

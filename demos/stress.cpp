@@ -24,6 +24,7 @@ struct StressOptions {
   bool quick = false;
   bool lasting = false;
   bool quiet = false;
+  bool hash = false;
   std::string force;  ///< whose; empty: both
   std::string only;
   std::string json;
@@ -50,7 +51,7 @@ int run(const StressOptions& options) {
   std::vector<Row> rows;
   for (const StressCase& stressCase : cases) {
     rows.push_back({stressCase, runCase(stressCase)});
-    if (!options.quiet) printRow(rows.back());
+    if (!options.quiet) printRow(rows.back(), options.hash);
   }
   const auto broken = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.verdict.held(); });
   if (!options.json.empty()) writeJson(toJson(rows), options.json);
@@ -80,6 +81,7 @@ int main(int argc, char** argv) {
   line.addWord("--force", options.force, {"bullet", "tetskin"},
                "Only the cases of Bullet's forces, or of tetskin's force and solver (default: both)");
   line.addText("--only", options.only, "Only the cases with this in their names");
+  line.addFlag("--hash", options.hash, "Print of each case a hash of the nodes in all frames, which equal runs share");
   line.addSummaryOption(options.json, "File of the results, a list of cases");
   line.addOutput("--markdown", options.markdown, "File of the results, as tables");
   line.addQuietOption(options.quiet);

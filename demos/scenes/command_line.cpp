@@ -256,6 +256,7 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
             std::string("Write a page that plays the run in a browser") +
                 (options.viewByDefault ? " (default: view.html in the folder)" : ""));
   if (options.viewByDefault) addFlag("--no-view", options.noView, "Write no such page");
+  addFlag("--hash", options.hash, "Print a hash of the nodes in all frames, which equal runs share");
   addSummaryOption(options.json, "File of the summary (default: summary.json in the folder)");
   addQuietOption(options.quiet);
   addFiles([&options](NamedFiles& files) {

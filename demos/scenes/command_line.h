@@ -34,6 +34,7 @@ struct OutputOptions {
   std::string view = {};       ///< file of a page that plays the run; empty: none, unless by default
   bool viewByDefault = false;  ///< view.html in the folder, where a page can be made
   bool noView = false;         ///< none by default either
+  bool hash = false;           ///< print what the nodes of all frames hash to
 };
 
 /// A whole command line, and what it does.
@@ -110,8 +111,8 @@ class CommandLine {
   void addSummaryOption(std::string& path, const std::string& description);
   /// --quiet.
   void addQuietOption(bool& quiet);
-  /// --frames, --every, --out, --view, --json, --quiet; --no-view where there is a view by default. The defaults of
-  /// `options` are the demo's.
+  /// --frames, --every, --out, --view, --hash, --json, --quiet; --no-view where there is a view by default. The
+  /// defaults of `options` are the demo's.
   void addOutputOptions(OutputOptions& options);
 
   /// Whether an option was on the line that was parsed.

@@ -2,18 +2,22 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/playback.h"
 
+#include <cinttypes>
+#include <cstdio>
+
 #include "scenes/progress.h"
 #include "scenes/timer.h"
 
 namespace tetskin::scenes {
 
-Playback playFrames(const char* doing, const OutputOptions& output, const FrameStep& step, const OfFrame& measure,
-                    const OfFrame& write) {
+Playback playFrames(const char* doing, const OutputOptions& output, const World& world, const FrameStep& step,
+                    const OfFrame& measure, const OfFrame& write) {
   Playback run;
   Progress progress(doing, output.frames, output.quiet);
   for (int frame = 0; frame < output.frames; ++frame) {
     run.finite = step(frame, run);
     if (!run.finite) break;
+    if (output.hash) run.hash = world.hashOfNodes(run.hash);
     measure(frame);
     if (frame % output.every == 0) {
       const WallTimer timer;
@@ -24,6 +28,7 @@ Playback playFrames(const char* doing, const OutputOptions& output, const FrameS
     run.frames = frame + 1;
     progress.show(frame + 1);
   }
+  if (output.hash) std::printf("nodes of %d frames: %016" PRIx64 "\n", run.frames, run.hash);
   return run;
 }
 

@@ -111,7 +111,8 @@ bool Player::makeFrame(int frame, Playback& run) {
 
 Playback Player::play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write) {
   return playFrames(
-      doing, output, [this](int frame, Playback& run) { return makeFrame(frame, run); }, measure, write);
+      doing, output, scene_->world(), [this](int frame, Playback& run) { return makeFrame(frame, run); }, measure,
+      write);
 }
 
 }  // namespace tetskin::scenes

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
 
@@ -172,6 +173,19 @@ void World::setThreads(ParallelFor* threads) {
 
 int World::step(double seconds) {
   return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+}
+
+std::uint64_t World::hashOfNodes(std::uint64_t seed) const {
+  const btCollisionObjectArray& objects = world_->getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i) {
+    const btSoftBody* body = btSoftBody::upcast(objects[i]);
+    for (int n = 0; body && n < body->m_nodes.size(); ++n) {
+      const btVector3& x = body->m_nodes[n].m_x;
+      const float position[3] = {static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())};
+      seed = hashOf(position, sizeof position, seed);
+    }
+  }
+  return seed;
 }
 
 const ReductionReport* World::reduction() const {

@@ -8,6 +8,7 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/core/triangle_mesh.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -119,6 +120,9 @@ class World {
   const ReductionReport* reduction() const;
   /// Of the body added last, in the deformable world by a force of the library's.
   double youngsModulus() const;
+  /// All soft bodies' nodes as they are now, each position as three floats, hashed behind `seed`: equal runs have equal
+  /// hashes.
+  std::uint64_t hashOfNodes(std::uint64_t seed) const;
   /// All that is fixed, world space.
   const TriangleMesh& obstacles() const { return obstacles_; }
 

@@ -3,6 +3,7 @@
 #include "stress/report.h"
 
 #include <algorithm>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,12 @@ std::string joined(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all += (all.empty() ? "" : "; ") + word;
   return all;
+}
+
+std::string hashWord(const Verdict& verdict) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, verdict.hash);
+  return text;
 }
 
 std::string heldWord(const Verdict& verdict) {
@@ -89,6 +96,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["broken"] = verdict.broken;
     const std::optional<bool> cannot = bulletCannot(each, rows);
     row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();
+    row["hash"] = hashWord(verdict);
     row["milliseconds"] = verdict.milliseconds;
     row["force"] = toString(stressCase.force);
     row["implicit"] = stressCase.implicit;
@@ -129,17 +137,17 @@ std::string toMarkdown(const std::vector<Row>& rows) {
   return text;
 }
 
-void printRow(const Row& row) {
+void printRow(const Row& row, bool hash) {
   const Verdict& verdict = row.verdict;
+  const std::string end = (hash ? hashWord(verdict) + "  " : "") + heldWord(verdict);
   if (row.stressCase.claim) {
     std::printf("%-72s energy %7.4f  momentum %8.1e  extent %7.4g %7.0f ms  %s\n", row.stressCase.name.c_str(),
-                verdict.energy, verdict.momentumLost, verdict.extentMax, verdict.milliseconds,
-                heldWord(verdict).c_str());
+                verdict.energy, verdict.momentumLost, verdict.extentMax, verdict.milliseconds, end.c_str());
     return;
   }
   std::printf("%-48s %-10s %8.3g  %-10s %7.4f %9.1e %7.0f ms  %s\n", row.stressCase.name.c_str(),
               simulationWord(verdict).c_str(), verdict.extentMax, verdict.status.c_str(), verdict.amplification,
-              verdict.restError, verdict.milliseconds, heldWord(verdict).c_str());
+              verdict.restError, verdict.milliseconds, end.c_str());
 }
 
 void printMap(const std::vector<Row>& rows) {

@@ -25,8 +25,8 @@ std::optional<bool> bulletCannot(const Row& ours, const std::vector<Row>& rows);
 nlohmann::ordered_json toJson(const std::vector<Row>& rows);
 /// A table a group.
 std::string toMarkdown(const std::vector<Row>& rows);
-/// On standard output: a line a case, and the stability maps in letters.
-void printRow(const Row& row);
+/// On standard output: a line per case, if wished with the hash of its nodes, and the stability maps in letters.
+void printRow(const Row& row, bool hash);
 void printMap(const std::vector<Row>& rows);
 
 }  // namespace tetskin::stress

@@ -61,6 +61,7 @@ void simulate(const StressCase& stressCase, const StressModel& model, scenes::Sc
   for (int frame = 1; frame <= stressCase.frames; ++frame) {
     scene.step(frame, [&] { judge.update(); });
     judge.update();
+    verdict.hash = scene.world().hashOfNodes(verdict.hash);
     if (frame > stressCase.frames - last) squaredSpeed += scene.nodeSpeed() * scene.nodeSpeed() / last;
   }
   verdict.restSpeed = std::sqrt(squaredSpeed);

@@ -250,6 +250,7 @@ class ClaimRun {
   /// Whether it is all finite.
   bool look();
 
+  const scenes::World& world() const { return world_; }
   const SoftBodyOptions& options() const { return options_; }
   btSoftBody& body() { return body_; }
   double energy() const { return mostEnergy_; }  ///< the most so far, over what was there or put in
@@ -343,7 +344,9 @@ void runClaim(const Claim& claim, Verdict& verdict) {
   verdict.status = "updated";
   for (int step = 1; step <= steps && verdict.simulationFinite; ++step) {
     run.step();
-    if (step <= 40 || step % every == 0) verdict.simulationFinite = run.look();
+    if (step > 40 && step % every != 0) continue;
+    verdict.simulationFinite = run.look();
+    verdict.hash = run.world().hashOfNodes(verdict.hash);
   }
   verdict.extentMax = run.growth();
   verdict.energy = run.energy();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/files.h"
 #include "scenes/scene.h"
 #include "stress/models.h"
 
@@ -34,6 +35,7 @@ struct Verdict {
   double restError = 0.0;    ///< RMS in diagonals of the mesh, with all nodes back where they began
   double normalError = 0.0;  ///< largest difference of a normal's length from 1
   double weightError = 0.0;  ///< largest difference of a vertex' weights' sum from 1, over the largest weight
+  std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each step that is looked at
   double milliseconds = 0.0;
   std::vector<std::string> broken;  ///< the expectations that did not hold, in words
 

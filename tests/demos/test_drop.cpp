@@ -203,12 +203,25 @@ TEST_F(Drop, QuietPrintsNothing) {
   EXPECT_EQ(folder.json("s.json")["frames"], 2);
 }
 
+TEST_F(Drop, HashTellsRunsApart) {
+  const auto hashOf = [&](const char* tets, const char* every) {
+    const CommandResult result = drop(
+        {"--tets", tets, "--triangles", "4000", "--frames", "40", "--every", every, "--quiet", "--hash", "--no-view"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out.rfind("nodes of 40 frames: ", 0), 0u) << result.out;
+    return result.out;
+  };
+  const std::string hash = hashOf("100", "39");
+  EXPECT_EQ(hash, hashOf("100", "20"));
+  EXPECT_NE(hash, hashOf("120", "39"));
+}
+
 TEST_F(Drop, HelpListsTheOptions) {
   const CommandResult result = drop({"--help"});
   EXPECT_EQ(result.status, 0);
   for (const char* option :
        {"--mesh", "--cage", "--tets", "--outside", "--interpolation", "--normals", "--max-distance", "--frames",
-        "--every", "--out", "--json", "--quiet", "--write-cage", "--view", "--no-view"}) {
+        "--every", "--out", "--json", "--quiet", "--write-cage", "--view", "--no-view", "--hash"}) {
     EXPECT_NE(result.out.find(option), std::string::npos) << option;
   }
 }
