@@ -5,6 +5,8 @@
 // what skinning_kernels.h says of its header holds for this one too.
 #pragma once
 
+#include <tetskin/core/src/kernels/dispatch.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -30,17 +32,6 @@ constexpr std::size_t kMostLanes = 16;
 /// kMostLanes more may be written.
 using SelectEntries = std::size_t (*)(const FilterWork&, std::uint32_t* selected);
 
-namespace plain {
-extern const SelectEntries select;
-}
-namespace baseline {
-extern const SelectEntries select;
-}
-namespace avx2 {
-extern const SelectEntries select;
-}
-namespace avx512 {
-extern const SelectEntries select;
-}
+TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const SelectEntries select;)
 
 }  // namespace tetskin::kernels

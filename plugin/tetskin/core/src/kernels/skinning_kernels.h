@@ -8,6 +8,8 @@
 // linker keeps for everyone.
 #pragma once
 
+#include <tetskin/core/src/kernels/dispatch.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -106,21 +108,6 @@ struct Table {
   void (*pathNormals)(const PathWork<Scalar>&);
 };
 
-namespace plain {
-extern const Table<float> tableFloat;
-extern const Table<double> tableDouble;
-}  // namespace plain
-namespace baseline {
-extern const Table<float> tableFloat;
-extern const Table<double> tableDouble;
-}  // namespace baseline
-namespace avx2 {
-extern const Table<float> tableFloat;
-extern const Table<double> tableDouble;
-}  // namespace avx2
-namespace avx512 {
-extern const Table<float> tableFloat;
-extern const Table<double> tableDouble;
-}  // namespace avx512
+TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const Table<float> tableFloat; extern const Table<double> tableDouble;)
 
 }  // namespace tetskin::kernels

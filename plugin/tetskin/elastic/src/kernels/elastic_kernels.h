@@ -8,6 +8,8 @@
 // quantities is called wide. Points are four scalars, x y z and one that means nothing.
 #pragma once
 
+#include <tetskin/core/src/kernels/dispatch.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -111,22 +113,8 @@ struct ElasticTable {
   S (*lower)(const RowWork<S>&);
 };
 
-namespace plain {
-extern const ElasticTable<float> elasticFloat;
-extern const ElasticTable<double> elasticDouble;
-}  // namespace plain
-namespace baseline {
-extern const ElasticTable<float> elasticFloat;
-extern const ElasticTable<double> elasticDouble;
-}  // namespace baseline
-namespace avx2 {
-extern const ElasticTable<float> elasticFloat;
-extern const ElasticTable<double> elasticDouble;
-}  // namespace avx2
-namespace avx512 {
-extern const ElasticTable<float> elasticFloat;
-extern const ElasticTable<double> elasticDouble;
-}  // namespace avx512
+TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const ElasticTable<float> elasticFloat;
+                                 extern const ElasticTable<double> elasticDouble;)
 
 /// Those for this processor, of `instructionSet()`.
 template <class S>

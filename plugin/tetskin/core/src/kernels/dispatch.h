@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Kernels stand once in the namespace of each instruction set, of which a build has some. Nothing but macros: what the
+// kernels' headers include is compiled for processors that not everyone has.
+#pragma once
+
+/// Declares the same in all of them.
+#define TETSKIN_FOR_EACH_INSTRUCTION_SET(...) \
+  namespace plain {                           \
+  __VA_ARGS__                                 \
+  }                                           \
+  namespace baseline {                        \
+  __VA_ARGS__                                 \
+  }                                           \
+  namespace avx2 {                            \
+  __VA_ARGS__                                 \
+  }                                           \
+  namespace avx512 {                          \
+  __VA_ARGS__                                 \
+  }
+
+#ifdef TETSKIN_X86_KERNELS
+#define TETSKIN_RETURN_OF_X86(name)                                    \
+  if (instructionSet() == InstructionSet::Avx512) return avx512::name; \
+  if (instructionSet() == InstructionSet::Avx2) return avx2::name;
+#else
+#define TETSKIN_RETURN_OF_X86(name)
+#endif
+#ifdef TETSKIN_VECTOR_KERNELS
+#define TETSKIN_RETURN_OF_BASELINE(name) \
+  if (instructionSet() == InstructionSet::Baseline) return baseline::name;
+#else
+#define TETSKIN_RETURN_OF_BASELINE(name)
+#endif
+/// Returns what has this name in the namespace of `instructionSet()`.
+#define TETSKIN_RETURN_IN_USE(name) \
+  TETSKIN_RETURN_OF_X86(name)       \
+  TETSKIN_RETURN_OF_BASELINE(name)  \
+  return plain::name
