@@ -7,7 +7,6 @@
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
-#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
@@ -30,7 +29,7 @@ constexpr double kStableFrequency = 8.0;
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours held, over its mass.
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
-  const Lame unit(1.0, options.poissonRatio);
+  const elastic_detail::Lame unit = elastic_detail::lameOf(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     const Tet& tet = cage.tets[t];
@@ -82,7 +81,7 @@ void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
 }
 template <class Force>
 void setMaterial(Force& force, const ElasticMaterial& material) {
-  const Lame lame(material.youngsModulus, material.poissonRatio);
+  const elastic_detail::Lame lame = elastic_detail::lameOf(material.youngsModulus, material.poissonRatio);
   force.setLameParameters(static_cast<btScalar>(lame.mu), static_cast<btScalar>(lame.lambda));
   setDamping(force, static_cast<btScalar>(material.damping));
 }
