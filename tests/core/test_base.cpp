@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/core/src/base/hash.h>
-#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/base/median.h>
 
@@ -53,13 +52,6 @@ TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
   EXPECT_EQ(median({7.0}), 7.0);
   EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 3.0);
-}
-
-TEST(Lame, ParametersOfAKnownMaterial) {
-  const Lame quarter(1.0, 0.25);
-  EXPECT_DOUBLE_EQ(quarter.mu, 0.4);
-  EXPECT_DOUBLE_EQ(quarter.lambda, 0.4);
-  EXPECT_EQ(Lame(5.0, 0.0).lambda, 0.0);
 }
 
 }  // namespace

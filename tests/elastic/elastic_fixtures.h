@@ -24,7 +24,7 @@ namespace tetskin::test {
 using Points = std::vector<Eigen::Vector3d>;
 using elastic_detail::BlockMatrix;
 using elastic_detail::CorotatedTets;
-using elastic_detail::LameOfTet;
+using elastic_detail::Lame;
 
 /// Calls visit() with each instruction set that this processor has.
 template <class Visit>
@@ -73,10 +73,10 @@ inline Points scattered(Points points, double amount, unsigned seed) {
 }
 
 /// Of another stiffness and another Poisson's ratio in every tet.
-inline std::vector<LameOfTet> variedMaterial(std::size_t tets) {
+inline std::vector<Lame> variedMaterial(std::size_t tets) {
   Random random(31);
-  std::vector<LameOfTet> material(tets);
-  for (LameOfTet& m : material) {
+  std::vector<Lame> material(tets);
+  for (Lame& m : material) {
     m.mu = 2.0 + random();
     m.lambda = 1.5 * (1.0 + random());
   }
@@ -153,7 +153,7 @@ struct AssembledBody {
 
   TetMesh cage;
   Points nodes;
-  std::vector<LameOfTet> material;
+  std::vector<Lame> material;
   std::vector<double> masses;
   double alpha;
   BlockMatrix<S> matrix;

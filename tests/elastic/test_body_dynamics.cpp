@@ -89,7 +89,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
 
 TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
   AssembledBody<TypeParam> body(smallCage(), 0.0, kAlpha);
-  for (test::LameOfTet& lame : body.material) lame = {1e6, 1e6};
+  for (test::Lame& lame : body.material) lame = {1e6, 1e6};
   const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
   for (const bool held : {false, true}) {
     if (held) body.hold(3);
@@ -212,7 +212,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
     return kSeconds;
   }));
   EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body& body) {
-    dynamics.setMaterial(std::vector<test::LameOfTet>(body.cage.tetCount(), {5.0, 5.0}));
+    dynamics.setMaterial(std::vector<test::Lame>(body.cage.tetCount(), {5.0, 5.0}));
     return kSeconds;
   }));
   EXPECT_FALSE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 0.3); })) << "hardly";
@@ -226,7 +226,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenASingleTetHasTurnedFar) {
   for (const Vector3d& p : test::singleTet().nodes) cage.nodes.push_back(p + Vector3d(20, 0, 0));
   cage.tets.push_back({first, first + 1, first + 2, first + 3});
   BodyDynamics<double> dynamics(elastic_detail::restTets(cage), cage.nodeCount());
-  dynamics.setMaterial(std::vector<test::LameOfTet>(cage.tetCount(), {1.0, 1.0}));
+  dynamics.setMaterial(std::vector<test::Lame>(cage.tetCount(), {1.0, 1.0}));
   const auto place = [&](std::size_t n, const Vector3d& p) {
     for (std::size_t k = 0; k < 3; ++k) dynamics.point(n)[k] = p[static_cast<Eigen::Index>(k)];
   };

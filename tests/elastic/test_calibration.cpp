@@ -16,7 +16,6 @@
 namespace tetskin {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using elastic_detail::RestBody;
@@ -30,40 +29,6 @@ TetMesh beam(int cubes) {
 
 std::vector<double> ones(const TetMesh& mesh) {
   return std::vector<double>(mesh.tetCount(), 1.0);
-}
-
-VectorXd displacementBy(const TetMesh& mesh, const Matrix3d& gradient, const Vector3d& shift) {
-  VectorXd result(3 * mesh.nodeCount());
-  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) result.segment<3>(3 * n) = gradient * mesh.nodes[n] + shift;
-  return result;
-}
-
-TEST(LinearElasticity, EnergyOfAnEvenStrainIsExact) {
-  const TetMesh mesh = test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
-  const auto stiffness = elastic_detail::stiffnessMatrix(mesh, kPoisson, ones(mesh));
-  Matrix3d gradient;
-  gradient << 0.1, 0.3, -0.2, 0.0, -0.4, 0.1, 0.5, 0.2, 0.3;
-  const Matrix3d strain = 0.5 * (gradient + gradient.transpose());
-  const double mu = 1.0 / (2.0 * (1.0 + kPoisson)), lambda = kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
-  const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
-  const VectorXd u = displacementBy(mesh, gradient, Vector3d(1, 2, 3));
-  EXPECT_NEAR(0.5 * u.dot(stiffness.selfadjointView<Eigen::Lower>() * u), density * totalVolume(mesh), 1e-10);
-}
-
-TEST(LinearElasticity, RigidMotionsMeetNoResistanceAndAreTakenOutPartByPart) {
-  TetMesh mesh = test::latticeCage(2, 1, 1);
-  const TetMesh second = test::bodyCentredCage(2, 2, 2);  // apart from the first, and moving otherwise
-  const auto offset = static_cast<int>(mesh.nodeCount());
-  for (const Vector3d& p : second.nodes) mesh.nodes.push_back(p + Vector3d(10, 0, 0));
-  for (const Tet& t : second.tets) mesh.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
-  const RestBody body(mesh, kPoisson, ones(mesh), elastic_detail::lumpedVolumes(mesh, ones(mesh)));
-  Matrix3d turn;
-  turn << 0, -1, 2, 1, 0, -3, -2, 3, 0;
-  VectorXd u = displacementBy(mesh, turn, Vector3d(1, -2, 0.5));
-  u.tail(3 * second.nodeCount()) *= -2.0;
-  EXPECT_LT((body.stiffness.selfadjointView<Eigen::Lower>() * u).norm(), 1e-12 * u.norm());
-  body.rigid.removeFrom(u);
-  EXPECT_LT(u.norm(), 1e-10);
 }
 
 TEST(ElasticModes, AreTheSoftestOfADenseSolver) {
@@ -88,19 +53,6 @@ TEST(ElasticModes, AreTheSoftestOfADenseSolver) {
 double factorOf(Cage cage) {
   const Result<CalibrationReport> report = calibrate(cage);
   return report.ok() ? report.value().factor : 0.0;
-}
-
-TEST(BlockRows, MultiplyAsTheSparseMatrixDoes) {
-  const TetMesh mesh = test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
-  std::vector<double> scale = ones(mesh);
-  for (std::size_t t = 0; t < scale.size(); ++t) scale[t] = 0.1 + static_cast<double>(t % 7);
-  const auto sparse = elastic_detail::stiffnessMatrix(mesh, kPoisson, scale);
-  const elastic_detail::BlockRows rows(mesh, kPoisson, scale);
-  elastic_detail::Fields fields = elastic_detail::Fields::Random(sparse.rows(), 3), product = fields;
-  rows.multiply(fields, product);
-  const Eigen::MatrixXd right = sparse.selfadjointView<Eigen::Lower>() * Eigen::MatrixXd(fields);
-  EXPECT_LT((product - right).norm(), 1e-12 * right.norm());
-  EXPECT_LT((rows.diagonal() - sparse.diagonal()).norm(), 1e-12 * rows.diagonal().norm());
 }
 
 TEST(RefinedBodies, SolveAsADirectSolverDoes) {

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using elastic_detail::CorotatedTets;
-using elastic_detail::LameOfTet;
+using elastic_detail::Lame;
 using test::onEachInstructionSet;
 using test::Points;
 using test::turnBy;
@@ -25,7 +25,7 @@ using test::turnBy;
 template <class S>
 class Tets {
  public:
-  Tets(const TetMesh& cage, const std::vector<LameOfTet>& material)
+  Tets(const TetMesh& cage, const std::vector<Lame>& material)
       : slotOf_(slots(cage.nodeCount())), tets_(elastic_detail::restTets(cage), slotOf_, cage.nodeCount() + kSpare) {
     for (std::size_t t = 0; t < material.size(); ++t) tets_.setMaterial(t, material[t]);
   }
@@ -125,7 +125,7 @@ TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergy) {
 }
 
 /// By singular values: of the least strain that a rotation leaves.
-double exactEnergy(const TetMesh& cage, const std::vector<LameOfTet>& material, const Points& nodes) {
+double exactEnergy(const TetMesh& cage, const std::vector<Lame>& material, const Points& nodes) {
   double total = 0.0;
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     Matrix3d rest, now;
@@ -146,7 +146,7 @@ double exactEnergy(const TetMesh& cage, const std::vector<LameOfTet>& material, 
 /// A body at rest that is turned at once is free of force, and a deformed one has the energy that it had.
 TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
   const TetMesh cage = oddCage();
-  const std::vector<LameOfTet> material = test::variedMaterial(cage.tetCount());
+  const std::vector<Lame> material = test::variedMaterial(cage.tetCount());
   test::Random random(61);
   std::vector<Vector3d> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 2, 3}};
   for (int k = 0; k < 10; ++k) axes.push_back(random.vector());
@@ -170,7 +170,7 @@ TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
 
 TYPED_TEST(CorotatedTetsOf, FindTheRotationsOfAnyGradientFromAnyOther) {
   const TetMesh cage = test::singleTet();
-  const std::vector<LameOfTet> material = test::variedMaterial(1);
+  const std::vector<Lame> material = test::variedMaterial(1);
   onEachInstructionSet([&] {
     test::Random random(62);
     Tets<TypeParam> tets(cage, material);
@@ -262,10 +262,10 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
   ASSERT_EQ(inner.size(), 12u);
   Matrix3d strain;
   strain << 0.02, 0.01, -0.03, 0.01, -0.04, 0.02, -0.03, 0.02, 0.03;
-  const LameOfTet material{1.5, 2.5};
+  const Lame material{1.5, 2.5};
   const double density = material.mu * strain.squaredNorm() + 0.5 * material.lambda * strain.trace() * strain.trace();
   onEachInstructionSet([&] {
-    Tets<TypeParam> tets(cage, std::vector<LameOfTet>(cage.tetCount(), material));
+    Tets<TypeParam> tets(cage, std::vector<Lame>(cage.tetCount(), material));
     const Points nodes =
         test::mapped(cage.nodes, turnBy(70.0, {1, 2, 3}) * (Matrix3d::Identity() + strain), {0.1, 0.2, 0.3});
     tets.settle(nodes);
@@ -281,7 +281,7 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
 TYPED_TEST(CorotatedTetsOf, ForcesAreInProportionToTheStiffnessOfEachTet) {
   const TetMesh cage = oddCage();
   const Points nodes = test::scattered(cage.nodes, 0.2, 8);
-  const std::vector<LameOfTet> material = test::variedMaterial(cage.tetCount());
+  const std::vector<Lame> material = test::variedMaterial(cage.tetCount());
   onEachInstructionSet([&] {
     Tets<TypeParam> tets(cage, material);
     tets.settle(nodes);

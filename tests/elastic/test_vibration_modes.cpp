@@ -8,7 +8,7 @@
 //     33, 1966 (10 (1 + nu) / (12 + 11 nu) of a rectangle)
 #include <gtest/gtest.h>
 #include <support/bars.h>
-#include <tetskin/elastic/src/calibration/linear_elasticity.h>
+#include <tetskin/elastic/src/matrix/block_rows.h>
 #include <tetskin/elastic/vibration_modes.h>
 
 #include <Eigen/Eigenvalues>
@@ -23,7 +23,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using elastic_detail::stiffnessMatrix;
 using test::makeBox;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -64,8 +63,7 @@ MatrixXd shapesOf(const VibrationModes& modes) {
 }
 
 MatrixXd stiffnessOf(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale) {
-  const MatrixXd lower = stiffnessMatrix(mesh, poissonRatio, scale);
-  return lower.selfadjointView<Eigen::Lower>();
+  return elastic_detail::BlockRows(mesh, poissonRatio, scale).sparse();
 }
 
 /// Three translations and three rotations.

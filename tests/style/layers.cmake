@@ -3,7 +3,7 @@
 set(core_stages base mesh kernels search embedding skinning normals)
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets)
-set(elastic_stages calibration modes kernels tets matrix dynamics)
+set(elastic_stages kernels tets matrix modes calibration dynamics)
 set(bullet_stages bodies skins forces solver)
 set(contact_stages rigid soft)
 set(touch_stages points forces joints tree)

@@ -5,9 +5,9 @@
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/src/bodies/body_elements.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
-#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
@@ -30,7 +30,7 @@ constexpr double kStableFrequency = 8.0;
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours held, over its mass.
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
-  const Lame unit(1.0, options.poissonRatio);
+  const elastic_detail::Lame unit = elastic_detail::lameOf(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     const Tet& tet = cage.tets[t];
@@ -54,18 +54,14 @@ double weightPressure(const Cage& cage, const std::vector<double>& masses, doubl
   return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
 }
 
-/// bounded  by what explicit elastic forces can bear
-double defaultYoungsModulus(const Cage& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
-                            double gravity, bool bounded) {
-  const double wanted = options.relativeStiffness * weightPressure(cage, masses, gravity);
+/// pressure  see `weightPressure`
+/// bounded   by what explicit elastic forces can bear
+double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
+                            double pressure, bool bounded) {
+  const double wanted = options.relativeStiffness * pressure;
   if (!bounded) return wanted;
   const double frequency = medianSquaredFrequency(cage, options, masses);
   return std::min(wanted, kStableFrequency / (options.timeStep * options.timeStep * frequency));
-}
-
-std::vector<double> nodeMasses(const TetMesh& cage, const SoftBodyOptions& options) {
-  if (!options.nodeMasses.empty()) return options.nodeMasses;
-  return lumpedMasses(cage, options.mass > 0.0 ? options.mass : options.density * totalVolume(cage));
 }
 
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
@@ -82,7 +78,7 @@ void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
 }
 template <class Force>
 void setMaterial(Force& force, const ElasticMaterial& material) {
-  const Lame lame(material.youngsModulus, material.poissonRatio);
+  const elastic_detail::Lame lame = elastic_detail::lameOf(material.youngsModulus, material.poissonRatio);
   force.setLameParameters(static_cast<btScalar>(lame.mu), static_cast<btScalar>(lame.lambda));
   setDamping(force, static_cast<btScalar>(material.damping));
 }
@@ -171,9 +167,10 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
         "the body to a btSoftRigidDynamicsWorld");
   }
-  Result<std::unique_ptr<btSoftBody>> made = makeSoftBody(cage, world.getWorldInfo(), options);
-  if (!made.ok()) return made.status();
-  std::unique_ptr<btSoftBody> body = std::move(made).value();
+  Result<BuiltBody> built = buildBody(cage, world.getWorldInfo(), options);
+  if (!built.ok()) return built.status();
+  std::unique_ptr<btSoftBody>& body = built.value().body;
+  const std::vector<double>& masses = built.value().masses;
   const bool corotated = options.forceModel == ForceModel::Corotated;
   if (corotated) {
     if (Status status = checkTets(*body, options.stiffnessScale); !status.ok()) return status;
@@ -181,12 +178,11 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   // Only bodies in a world know its solver.
   world.addSoftBody(body.get());
   auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
-  const std::vector<double> masses = nodeMasses(cage, options);
-  const double gravity = static_cast<double>(world.getGravity().length());
+  const double pressure = weightPressure(cage, masses, static_cast<double>(world.getGravity().length()));
   const bool bounded = !(corotated && dynamic_cast<DeformableSolver*>(solver));
   const ElasticMaterial material{options.youngsModulus > 0.0
                                      ? options.youngsModulus
-                                     : defaultYoungsModulus(cage, options, masses, gravity, bounded),
+                                     : defaultYoungsModulus(cage, options, masses, pressure, bounded),
                                  options.poissonRatio, options.damping};
   Status status = checkMaterial(material);
   if (status.ok()) status = checkStiffness(*body, material);
@@ -210,7 +206,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
   parts->forceModel = options.forceModel;
   parts->material = material;
-  parts->weightPressure = weightPressure(cage, masses, gravity);
+  parts->weightPressure = pressure;
   parts->makeElasticity(options);
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {

@@ -30,7 +30,7 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
     return {StatusCode::InvalidOption,
             "a tolerance must be at least 0 and below 1, and there must be at least one iteration"};
   }
-  const Lame lame(options.youngsModulus, options.poissonRatio);
+  const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
   if (Status status = checkPositive<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet",
                                             lame.mu + lame.lambda);
       !status.ok()) {
@@ -68,7 +68,7 @@ struct ElasticBody<Scalar>::Parts {
     velocities.assign(positions.size(), Scalar(0));
     limits.tolerance = options.tolerance;
     limits.iterations = options.iterations;
-    const Lame lame(options.youngsModulus, options.poissonRatio);
+    const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
     dynamics.setMaterial(elastic_detail::lameOfTets(lame, cage.tetCount(), options.stiffnessScale));
     dynamics.setDamping(options.damping);
     if (masses.empty()) {

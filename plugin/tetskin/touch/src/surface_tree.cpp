@@ -5,8 +5,8 @@
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/corners.h>
 #include <tetskin/touch/src/tree/blast.h>
-#include <tetskin/touch/src/tree/fitted_surface.h>
 #include <tetskin/touch/src/tree/nearest_triangle.h>
+#include <tetskin/touch/src/tree/surface_ray_caster.h>
 
 #include <cmath>
 
@@ -36,7 +36,7 @@ struct SurfaceTree::Parts {
   TriangleMesh mesh;                     ///< positions and triangles
   std::vector<Eigen::Vector3d> normals;  ///< by vertex, at rest
   std::vector<double> areas;             ///< by vertex: its share of the surface at rest
-  touch_detail::FittedSurface fitted;
+  touch_detail::SurfaceRayCaster rays;
 
   Status checkBody(const btSoftBody& body) const {
     if (!status.ok()) return status;
@@ -80,7 +80,7 @@ SurfaceTree::SurfaceTree(std::shared_ptr<const SoftBodyBinding> binding, const T
   parts.mesh.triangles = mesh.triangles;
   parts.normals = restNormals(mesh);
   parts.areas = touch_detail::vertexAreas(mesh);
-  parts.fitted = touch_detail::FittedSurface(parts.binding, mesh);
+  parts.rays = touch_detail::SurfaceRayCaster(parts.binding, mesh);
 }
 
 SurfaceTree::~SurfaceTree() = default;
@@ -105,8 +105,8 @@ SurfaceHit SurfaceTree::raycast(const SoftBodySkin& skin, const btVector3& from,
     hit.status = TouchStatus::NonFinite;
     return hit;
   }
-  hit.status = parts().fitted.fit(skin);
-  if (hit.status == TouchStatus::Ok) hit = parts().fitted.cast(from, to, filter);
+  hit.status = parts().rays.fit(skin);
+  if (hit.status == TouchStatus::Ok) hit = parts().rays.cast(from, to, filter);
   if (hit) hit.body = skin.body();
   return hit;
 }

@@ -4,10 +4,24 @@
 // What bodies of any kind are made of.
 #pragma once
 
-#include <BulletSoftBody/btSoftBody.h>
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/bullet/soft_body.h>
+
+#include <memory>
+#include <vector>
 
 namespace tetskin {
+
+/// A body that is in no world yet, and what its cage gave it.
+struct BuiltBody {
+  std::unique_ptr<btSoftBody> body;
+  std::vector<double> masses;  ///< by node, of pinned ones, too: what they weigh when they are not
+};
+
+/// What `makeSoftBody` does once the cage has been checked.
+/// cage     `cage.check()` is ok
+/// options  with what the cage knows: see `withCage`
+/// Errors   those of `makeSoftBody`
+Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options);
 
 /// Ok, or that the cage is unusable, or has flat tets.
 TETSKIN_BULLET_API Status checkCage(const TetMesh& cage, const TetMeshReport& report);

@@ -72,9 +72,13 @@ btSoftBody::TetraScratch restScratch() {
   return scratch;
 }
 
-void setMasses(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
-  const double mass = options.mass > 0.0 ? options.mass : options.density * totalVolume(cage);
-  const std::vector<double> masses = options.nodeMasses.empty() ? lumpedMasses(cage, mass) : options.nodeMasses;
+std::vector<double> massesOf(const TetMesh& cage, const SoftBodyOptions& options) {
+  if (!options.nodeMasses.empty()) return options.nodeMasses;
+  return lumpedMasses(cage, options.mass > 0.0 ? options.mass : options.density * totalVolume(cage));
+}
+
+void setMasses(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
+               btSoftBody& body) {
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
     body.setMass(static_cast<int>(n), pinned ? btScalar(0) : static_cast<btScalar>(masses[n]));
@@ -173,11 +177,8 @@ SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options) {
   return options;
 }
 
-Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
-                                                 const SoftBodyOptions& given) {
-  if (Status status = checkOptions(given); !status.ok()) return status;
-  if (Status status = cage.check(); !status.ok()) return status;
-  const SoftBodyOptions options = withCage(cage, given);
+Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options) {
+  if (Status status = checkOptions(options); !status.ok()) return status;
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
   for (Status status : {checkPositive<btScalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"),
@@ -190,10 +191,19 @@ Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWor
   auto body = std::make_unique<BodyWithTrees>(worldInfo, nodes);
   configure(positive, options, *body);
   appendElements(positive, *body);
-  setMasses(positive, options, *body);
+  std::vector<double> masses = massesOf(positive, options);
+  setMasses(positive, options, masses, *body);
   if (options.forceModel != ForceModel::Corotated) scaleMeasures(options.stiffnessScale, *body);
   finish(options, *body);
-  return std::unique_ptr<btSoftBody>(std::move(body));
+  return BuiltBody{std::move(body), std::move(masses)};
+}
+
+Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                                 const SoftBodyOptions& options) {
+  if (Status status = cage.check(); !status.ok()) return status;
+  Result<BuiltBody> built = buildBody(cage, worldInfo, withCage(cage, options));
+  if (!built.ok()) return built.status();
+  return std::move(built.value().body);
 }
 
 }  // namespace tetskin

@@ -3,7 +3,6 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
-#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/src/base/positive_values.h>
 
 #include <cmath>
@@ -111,7 +110,7 @@ void ForcedBody::build(const ElasticMaterial& material) {
 }
 
 void ForcedBody::setMaterial(const ElasticMaterial& material) {
-  const Lame lame(material.youngsModulus, material.poissonRatio);
+  const elastic_detail::Lame lame = elastic_detail::lameOf(material.youngsModulus, material.poissonRatio);
   dynamics->setMaterial(elastic_detail::lameOfTets(lame, dynamics->tets()->count(), stiffnessScale));
   dynamics->setDamping(material.damping);
 }

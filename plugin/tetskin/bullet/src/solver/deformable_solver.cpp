@@ -132,7 +132,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     clearContacts(*of.body);
     // Bullet's own also refits the trees of faces.
     if (m_implicit || of.body->m_bUpdateRtCst || meetsByFaces(*of.body)) {
-      of.fittedTrees->ready = false;
+      of.paddedTrees->ready = false;
       predictDeformableMotion(of.body, dt);
     } else {
       parts.predictPositions(of);

@@ -117,9 +117,9 @@ void SolverBodies::lendKept() {
     Kept& kept = kept_[of.body];
     const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
     of.normalImpulses = &kept.normalImpulses;
-    of.fittedTrees = &kept.fittedTrees;
+    of.paddedTrees = &kept.paddedTrees;
     of.solve = &kept.solve;
-    if (kept.fittedTrees.points.size() != 3 * nodes) kept.fittedTrees.ready = false;
+    if (kept.paddedTrees.points.size() != 3 * nodes) kept.paddedTrees.ready = false;
     if (of.elastic) {
       kept.normalImpulses.resize(nodes, btScalar(0));
       of.dynamics = of.elastic->dynamics.get();

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/src/forces/body_forces.h>
-#include <tetskin/bullet/src/solver/fitted_trees.h>
+#include <tetskin/bullet/src/solver/padded_trees.h>
 
 #include <memory>
 #include <unordered_map>
@@ -26,7 +26,7 @@ struct SolvedBody {
   Dynamics* dynamics = nullptr;
   bool needsDeformation = false;                    ///< Bullet's own gradients
   std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
-  FittedTrees* fittedTrees = nullptr;
+  PaddedTrees* paddedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool constrained = false;  ///< by more than held nodes
@@ -87,7 +87,7 @@ class SolverBodies {
   struct Kept {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
     std::vector<btScalar> normalImpulses;
-    FittedTrees fittedTrees;
+    PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;
   };
 

@@ -142,7 +142,7 @@ void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
 void DeformableSolver::Parts::predictPositions(SolvedBody& of) const {
   prepareStep(*of.body, dt());
   const double squaredSpeed = moveNodes(*of.body, dt());
-  of.fittedTrees->fit(*of.body, *of.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
+  of.paddedTrees->fit(*of.body, *of.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
 }
 
 }  // namespace tetskin

@@ -88,6 +88,10 @@ struct BarycentricMap {
     return b;
   }
 
+  /// Of all four weights.
+  std::array<Eigen::Vector3d, 4> gradients() const {
+    return {rows[0], rows[1], rows[2], -(rows[0] + rows[1] + rows[2])};
+  }
   /// Length of the gradient of each weight: the inverse of the altitude over the opposite face.
   Eigen::Vector4d gradientLengths() const {
     return {rows[0].norm(), rows[1].norm(), rows[2].norm(), (rows[0] + rows[1] + rows[2]).norm()};

@@ -226,12 +226,10 @@ GradientStencil CageNeighbours::plainStencil(std::uint32_t node) const {
   for (std::uint32_t k = tets_.starts[node]; k < tets_.starts[node + 1]; ++k) {
     const Tet& tet = cage_.tets[tets_.values[k]];
     const TetCorners corners = cornersOf(cage_, tet);
-    const BarycentricMap map(corners);
+    const std::array<Eigen::Vector3d, 4> gradients = BarycentricMap(corners).gradients();
     const double v = std::abs(signedVolume(corners));
     volume += v;
-    const Eigen::Vector3d gradients[4] = {map.rows[0], map.rows[1], map.rows[2],
-                                          -(map.rows[0] + map.rows[1] + map.rows[2])};
-    for (int n = 0; n < 4; ++n) {
+    for (std::size_t n = 0; n < 4; ++n) {
       const auto [entry, isNew] = factors.try_emplace(static_cast<std::uint32_t>(tet[n]), Eigen::Vector3d::Zero());
       entry->second += v * gradients[n];
     }

@@ -93,15 +93,6 @@ RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
   }
 }
 
-void RefinedBodies::balance(std::size_t level, Fields& loads) const {
-  const RigidMotions& rigid = level == 0 ? coarsest_.rigid : at(level).rigid;
-  for (Eigen::Index k = 0; k < loads.cols(); ++k) {
-    Eigen::VectorXd load = loads.col(k);
-    rigid.balance(load);
-    loads.col(k) = load;
-  }
-}
-
 Fields RefinedBodies::refined(std::size_t level, const Fields& displacements) const {
   const std::vector<std::array<int, 2>>& edges = at(level + 1).refinement.edges;
   Fields result(displacements.rows() + 3 * static_cast<Eigen::Index>(edges.size()), displacements.cols());

@@ -4,7 +4,6 @@
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/mesh/uniform_refinement.h>
-#include <tetskin/elastic/src/calibration/block_rows.h>
 #include <tetskin/elastic/src/calibration/rest_body.h>
 
 #include <array>
@@ -31,8 +30,10 @@ class RefinedBodies {
   const RestBody& coarsest() const { return coarsest_; }
   const DirectSolver& direct() const { return direct_; }
   const Eigen::VectorXd& masses(std::size_t level) const { return level == 0 ? coarsest_.masses : at(level).masses; }
-  /// See RigidMotions, of each field.
-  void balance(std::size_t level, Fields& loads) const;
+  /// See RigidMotions.
+  void balance(std::size_t level, Fields& loads) const {
+    (level == 0 ? coarsest_.rigid : at(level).rigid).balance(loads);
+  }
 
   /// Displacements of `level` in terms of `level + 1`.
   Fields refined(std::size_t level, const Fields& displacements) const;

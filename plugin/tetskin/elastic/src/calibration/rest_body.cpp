@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/elastic/src/calibration/rest_body.h>
-#include <tetskin/elastic/src/calibration/start_vectors.h>
+#include <tetskin/elastic/src/modes/start_vectors.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -28,17 +28,20 @@ Eigen::SparseMatrix<double> shifted(const RestBody& body) {
 
 }  // namespace
 
-DirectSolver::DirectSolver(const RestBody& body) : body_(body), factors_(shifted(body)) {}
+RestBody::RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale,
+                   Eigen::VectorXd nodeMasses)
+    : stiffness(BlockRows(mesh, poissonRatio, scale).sparse().triangularView<Eigen::Lower>()),
+      masses(std::move(nodeMasses)),
+      rigid(mesh, masses) {}
 
-Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& load) const {
-  Eigen::VectorXd displacement = factors_.solve(load);
-  body_.rigid.removeFrom(displacement);
-  return displacement;
-}
+DirectSolver::DirectSolver(const RestBody& body) : body_(body), factors_(shifted(body)) {}
 
 Fields DirectSolver::solve(const Fields& loads) const {
   Fields displacements(loads.rows(), loads.cols());
-  for (Eigen::Index k = 0; k < loads.cols(); ++k) displacements.col(k) = solve(Eigen::VectorXd(loads.col(k)));
+  for (Eigen::Index k = 0; k < loads.cols(); ++k) {
+    displacements.col(k) = factors_.solve(Eigen::VectorXd(loads.col(k)));
+  }
+  body_.rigid.removeFrom(displacements);
   return displacements;
 }
 
@@ -49,11 +52,9 @@ Eigen::MatrixXd softestModes(const RestBody& body, const DirectSolver& solver, i
   Eigen::MatrixXd modes = startVectors(size, columns);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(wanted);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    for (Eigen::Index k = 0; k < columns; ++k) {
-      Eigen::VectorXd load = modes.col(k).cwiseProduct(body.masses);
-      body.rigid.balance(load);
-      modes.col(k) = solver.solve(load);
-    }
+    Fields loads = body.masses.asDiagonal() * modes;
+    body.rigid.balance(loads);
+    modes = solver.solve(loads);
     // Rayleigh-Ritz: the eigenvectors of the body within the subspace.
     const Eigen::MatrixXd forces = body.stiffness.selfadjointView<Eigen::Lower>() * modes;
     const Eigen::MatrixXd stiffness = modes.transpose() * forces;

@@ -61,7 +61,7 @@ void BodyDynamics<S>::findParts(const std::vector<Tet>& tets) {
 }
 
 template <class S>
-void BodyDynamics<S>::setMaterial(const std::vector<LameOfTet>& lame) {
+void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
   assert(tets_ && lame.size() == tets_->count());
   const RestTets& rest = tets_->rest();
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);

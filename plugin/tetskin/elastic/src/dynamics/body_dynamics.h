@@ -35,7 +35,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::size_t nodeCount() const { return matrix_.nodeCount(); }
 
   /// From the next `prepare` on. By tet; `damping` in seconds.
-  void setMaterial(const std::vector<LameOfTet>& lame);
+  void setMaterial(const std::vector<Lame>& lame);
   void setDamping(double damping) { damping_ = damping; }
   /// 0: held.
   void setMass(std::size_t node, S mass);

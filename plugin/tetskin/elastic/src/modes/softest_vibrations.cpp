@@ -7,8 +7,8 @@
 //   Ulrich Hetmaniuk, Rich Lehoucq, "Basis selection in LOBPCG", J. Comput. Phys. 218, 2006 (all bases orthonormal)
 //   Andreas Stathopoulos, Kesheng Wu, "A Block Orthogonalization Procedure with Constant Synchronization Requirements",
 //     SIAM J. Sci. Comput. 23, 2002 (by the eigenvectors of the products)
-#include <tetskin/elastic/src/calibration/start_vectors.h>
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
+#include <tetskin/elastic/src/modes/start_vectors.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -68,7 +68,7 @@ class Iteration {
   }
 
   static Eigen::Index widthFor(const VibrationProblem& problem, int wanted) {
-    const Eigen::Index all = problem.freedoms() - problem.rigid().cols();
+    const Eigen::Index all = problem.freedoms() - problem.rigidCount();
     return std::min<Eigen::Index>(wanted + std::max(kGuards, wanted / 4), all);
   }
 
@@ -147,7 +147,12 @@ class Iteration {
 Vibrations allAtOnce(const VibrationProblem& problem, int count) {
   // Rigid motions, which only a body has of which all is free, become the stiffest.
   Eigen::MatrixXd matrix = problem.dense();
-  if (problem.rigid().cols() > 0) matrix += 2.0 * matrix.norm() * problem.rigid() * problem.rigid().transpose();
+  if (problem.rigidCount() > 0) {
+    const Fields identity = Fields::Identity(problem.size(), problem.size());
+    Fields withoutRigid = identity;
+    problem.removeRigid(withoutRigid);
+    matrix += 2.0 * matrix.norm() * (identity - withoutRigid);
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
   Fields vectors = Fields::Zero(problem.size(), count);
   const std::vector<Eigen::Index> rows = problem.freeRows();
@@ -160,7 +165,7 @@ Vibrations allAtOnce(const VibrationProblem& problem, int count) {
 }  // namespace
 
 Vibrations softestVibrations(const VibrationProblem& problem, int count, const std::function<void(double)>& progress) {
-  assert(problem.ok() && count > 0 && count <= problem.freedoms() - problem.rigid().cols());
+  assert(problem.ok() && count > 0 && count <= problem.freedoms() - problem.rigidCount());
   const auto tell = [&](double share) {
     if (progress) progress(share);
   };

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/elastic/src/matrix/rigid_motions.h>
 #include <tetskin/elastic/src/modes/two_level_solver.h>
 
 #include <functional>
+#include <optional>
 
 namespace tetskin::elastic_detail {
 
@@ -12,9 +14,10 @@ namespace tetskin::elastic_detail {
 /// and stiffness alone is left.
 class VibrationProblem {
  public:
-  /// nodes, masses  by node, of a body in one part
-  /// free           by node: not pinned
-  VibrationProblem(BlockRows stiffness, const std::vector<Eigen::Vector3d>& nodes, const std::vector<double>& masses,
+  /// tets    of one part, rest space. Not referred to later
+  /// masses  by node
+  /// free    by node: not pinned
+  VibrationProblem(const TetMesh& tets, BlockRows stiffness, const std::vector<double>& masses,
                    const std::vector<char>& free);
   VibrationProblem(const VibrationProblem&) = delete;
 
@@ -27,9 +30,9 @@ class VibrationProblem {
   Fields times(const Fields& vectors) const;
   /// Roughly the inverse of `times`.
   Fields precondition(const Fields& vectors) const;
-  /// Orthonormal, of a body that nothing holds: 6 of them; otherwise none.
-  const Eigen::MatrixXd& rigid() const { return rigid_; }
-  void removeRigid(Fields& vectors) const { vectors -= rigid_ * (rigid_.transpose() * vectors); }
+  /// Of rigid motions: 6 of a body that nothing holds; otherwise none.
+  Eigen::Index rigidCount() const { return rigid_ ? rigid_->count() : 0; }
+  void removeRigid(Fields& vectors) const;
   /// Ascending, as many as freedoms.
   std::vector<Eigen::Index> freeRows() const;
   /// Of the free rows, for bodies of which few are.
@@ -41,7 +44,7 @@ class VibrationProblem {
   TwoLevelSolver solver_;
   Eigen::VectorXd roots_, inverseRoots_;  ///< of the masses; 0 where a node is pinned
   Eigen::Index freedoms_ = 0;
-  Eigen::MatrixXd rigid_;
+  std::optional<RigidMotions> rigid_;  ///< of a body that nothing holds
 };
 
 struct Vibrations {

@@ -6,8 +6,8 @@
 //     Elliptic Problems", Computing 56, 1996, doi 10.1007/BF02238511 (rigid motions of groups, smoothed)
 //   Mark Adams, Marian Brezina, Jonathan Hu, Ray Tuminaro, "Parallel multigrid smoothing: polynomial versus
 //     Gauss-Seidel", J. Comput. Phys. 188, 2003 (Chebyshev smoothing)
-#include <tetskin/elastic/src/calibration/start_vectors.h>
 #include <tetskin/elastic/src/modes/aggregates.h>
+#include <tetskin/elastic/src/modes/start_vectors.h>
 #include <tetskin/elastic/src/modes/two_level_solver.h>
 
 #include <Eigen/LU>

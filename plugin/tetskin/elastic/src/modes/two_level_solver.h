@@ -5,7 +5,7 @@
 // whole.
 #pragma once
 
-#include <tetskin/elastic/src/calibration/block_rows.h>
+#include <tetskin/elastic/src/matrix/block_rows.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCore>

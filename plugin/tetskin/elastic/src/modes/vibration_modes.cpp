@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/positive_values.h>
-#include <tetskin/elastic/src/calibration/linear_elasticity.h>
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
 #include <tetskin/elastic/vibration_modes.h>
 
@@ -125,8 +124,8 @@ Result<VibrationModes> vibrationModes(const TetMesh& tets, const VibrationOption
     if (!free[n]) modes.pinned.push_back(static_cast<int>(n));
   }
   const std::vector<double> ones(options.stiffnessScale.empty() ? tets.tetCount() : 0, 1.0);
-  const VibrationProblem problem(BlockRows(tets, options.poissonRatio, ones.empty() ? options.stiffnessScale : ones),
-                                 tets.nodes, modes.masses, free);
+  const VibrationProblem problem(
+      tets, BlockRows(tets, options.poissonRatio, ones.empty() ? options.stiffnessScale : ones), modes.masses, free);
   const Status hinged = {
       StatusCode::Degenerate,
       "the body can bend without resistance: parts of it hang together by a node or an edge alone, or "

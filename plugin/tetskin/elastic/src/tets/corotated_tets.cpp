@@ -28,16 +28,9 @@ RestTets restTets(const TetMesh& cage) {
   rest.tets = cage.tets;
   for (const Tet& tet : cage.tets) {
     const TetCorners corners = cornersOf(cage, tet);
-    const BarycentricMap map(corners);  // of the weights of nodes 0, 1 and 2
-    const Eigen::Vector3d third = -(map.rows[0] + map.rows[1] + map.rows[2]);
-    std::array<double, 9> g{};
-    for (int k = 0; k < 3; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      g[at] = map.rows[1][k];
-      g[3 + at] = map.rows[2][k];
-      g[6 + at] = third[k];
-    }
-    rest.gradients.push_back(g);
+    const std::array<Eigen::Vector3d, 4> gradients = BarycentricMap(corners).gradients();
+    std::array<double, 9>& g = rest.gradients.emplace_back();
+    for (std::size_t k = 0; k < 9; ++k) g[k] = gradients[1 + k / 3][static_cast<Eigen::Index>(k % 3)];
     rest.volumes.push_back(std::abs(signedVolume(corners)));
   }
   return rest;
@@ -71,7 +64,7 @@ CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>&
 }
 
 template <class S>
-void CorotatedTets<S>::setMaterial(std::size_t tet, const LameOfTet& lame) {
+void CorotatedTets<S>::setMaterial(std::size_t tet, const Lame& lame) {
   kernels::TetPack<S>& pack = packs_[tet / kGroup];
   pack.shear[tet % kGroup] = static_cast<S>(2.0 * lame.mu * rest_.volumes[tet]);
   pack.bulk[tet % kGroup] = static_cast<S>(lame.lambda * rest_.volumes[tet]);

@@ -41,7 +41,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     return (tets + kernels::kGroup - 1) / kernels::kGroup * kernels::kGroup;
   }
 
-  void setMaterial(std::size_t tet, const LameOfTet& lame);
+  void setMaterial(std::size_t tet, const Lame& lame);
 
   /// Elastic forces at `points`, both 4 scalars a slot; the tets' rotations are turned along.
   void forces(const S* points, S* out, ParallelFor* threads);

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/base/lame.h>
 #include <tetskin/core/types.h>
 
 #include <cmath>
@@ -11,11 +10,18 @@
 
 namespace tetskin::elastic_detail {
 
-/// Of one tet, in pressure units.
-struct LameOfTet {
+/// Lamé's parameters, in pressure units.
+struct Lame {
   double mu = 0.0;      ///< above 0
   double lambda = 0.0;  ///< at least 0
 };
+
+/// youngsModulus  in pressure units, above 0
+/// poissonRatio   0 to below 0.5
+inline Lame lameOf(double youngsModulus, double poissonRatio) {
+  return {youngsModulus / (2.0 * (1.0 + poissonRatio)),
+          youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio))};
+}
 
 /// Ok, or what of a material makes no sense, or is beyond the range of Scalar.
 /// damping  seconds
@@ -30,7 +36,7 @@ Status checkMaterial(double youngsModulus, double poissonRatio, double damping) 
     return invalid("a Poisson's ratio must be at least 0 and below 0.5");
   }
   if (!(damping >= 0.0 && std::isfinite(damping))) return invalid("damping must not be negative, and must be finite");
-  const Lame lame(youngsModulus, poissonRatio);
+  const Lame lame = lameOf(youngsModulus, poissonRatio);
   if (held(lame.mu) && held(lame.lambda) && held(damping) && held(lame.lambda * damping)) return {};
   return invalid(sizeof(Scalar) == sizeof(float)
                      ? "a material so stiff, or so strongly damped, is beyond the range of float"
@@ -60,9 +66,8 @@ Status checkStiffness(double youngsModulus, double damping, double mass, double 
 }
 
 /// stiffnessScale  by tet, or empty: 1
-inline std::vector<LameOfTet> lameOfTets(const Lame& lame, std::size_t tets,
-                                         const std::vector<double>& stiffnessScale) {
-  std::vector<LameOfTet> scaled(tets, {lame.mu, lame.lambda});
+inline std::vector<Lame> lameOfTets(const Lame& lame, std::size_t tets, const std::vector<double>& stiffnessScale) {
+  std::vector<Lame> scaled(tets, lame);
   for (std::size_t t = 0; t < stiffnessScale.size(); ++t) {
     scaled[t].mu *= stiffnessScale[t];
     scaled[t].lambda *= stiffnessScale[t];

@@ -94,9 +94,8 @@ Sparse bendingOf(const TetMesh& cage) {
       double volume = 0.0;
       for (const auto& [tet, sign] : {std::pair{a, 1.0}, std::pair{b, -1.0}}) {
         const TetCorners corners = cornersOf(cage, cage.tets[tet]);
-        const BarycentricMap map(corners);
-        const Eigen::Vector3d last = -(map.rows[0] + map.rows[1] + map.rows[2]);
-        for (int c = 0; c < 4; ++c) change.emplace_back(cage.tets[tet][c], sign * (c < 3 ? map.rows[c] : last));
+        const std::array<Eigen::Vector3d, 4> gradients = BarycentricMap(corners).gradients();
+        for (int c = 0; c < 4; ++c) change.emplace_back(cage.tets[tet][c], sign * gradients[c]);
         volume += 0.5 * std::abs(signedVolume(corners));
       }
       const double weight = volume * std::pow(volume, 2.0 / 3.0);

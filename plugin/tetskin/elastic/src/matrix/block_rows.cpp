@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/mesh/tets_around_nodes.h>
-#include <tetskin/elastic/src/calibration/block_rows.h>
-#include <tetskin/elastic/src/calibration/linear_elasticity.h>
+#include <tetskin/elastic/src/matrix/block_rows.h>
 
 #include <algorithm>
 #include <cassert>

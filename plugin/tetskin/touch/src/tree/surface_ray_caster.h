@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceTree: the surface of one body at a time, and a tree fitted to it.
+// Internal to SurfaceTree: rays against the surface of one body at a time, by a tree that is fitted to it.
 #pragma once
 
 #include <tetskin/touch/src/tree/ray_tree.h>
@@ -11,11 +11,11 @@
 
 namespace tetskin::touch_detail {
 
-class FittedSurface {
+class SurfaceRayCaster {
  public:
-  FittedSurface() = default;
+  SurfaceRayCaster() = default;
   /// Of each other; both good.
-  FittedSurface(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh);
+  SurfaceRayCaster(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh);
 
   /// Computes what the skin draws, and the tree, unless the last one had the same nodes. Ok, or Unbound, OtherBody,
   /// TopologyChanged, NonFinite: then there is nothing to cast against.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/solver/fitted_trees.h>
+#include <tetskin/bullet/src/solver/padded_trees.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ bool meetsByFaces(btSoftBody& body) {
   return (body.m_cfg.collisions & kFaces) != 0 || meetsSoftBodies(body);
 }
 
-void FittedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
+void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
   const btScalar margin = body.getCollisionShape()->getMargin();
   if (pad != kPadding * margin) ready = false;
   pad = kPadding * margin;
@@ -67,14 +67,14 @@ void FittedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
   keep(dynamics);
 }
 
-void FittedTrees::keep(Dynamics& dynamics) {
+void PaddedTrees::keep(Dynamics& dynamics) {
   points.resize(3 * dynamics.nodeCount());
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points[3 * n]);
   drift = 0;
   ready = true;
 }
 
-btScalar FittedTrees::furthest(Dynamics& dynamics) const {
+btScalar PaddedTrees::furthest(Dynamics& dynamics) const {
   btScalar most = 0;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     const btScalar* now = dynamics.point(n);
@@ -89,10 +89,10 @@ void HiddenBodies::hideLonely(const std::vector<SolvedBody>& bodies, btScalar dt
   findMeetings(boxes);
   for (const BodyBox& box : boxes) {
     btSoftBody& body = *box.of->body;
-    FittedTrees& fitted = *box.of->fittedTrees;
-    const bool held = fitted.holds(btSqrt(body.m_maxSpeedSquared) * dt);
+    PaddedTrees& trees = *box.of->paddedTrees;
+    const bool held = trees.holds(btSqrt(body.m_maxSpeedSquared) * dt);
     if (box.met || !held || !body.isActive() || meetsSoftBodies(body)) {
-      fitted.ready = false;  // Bullet fits them tightly
+      trees.ready = false;  // Bullet fits them tightly
       continue;
     }
     hidden_.emplace_back(&body, body.getActivationState());

@@ -21,7 +21,7 @@ bool meetsByFaces(btSoftBody& body);
 
 /// Where the nodes were when a body's trees were fitted. The leaves are padded: as long as nodes stay in them, contacts
 /// and rays find all there is.
-struct FittedTrees {
+struct PaddedTrees {
   std::vector<btScalar> points;  ///< 3 a node
   btScalar pad = 0;              ///< around them
   btScalar drift = 0;            ///< how far a node has moved since, at the beginning of this step

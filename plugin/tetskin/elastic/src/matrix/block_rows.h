@@ -3,24 +3,22 @@
 #pragma once
 
 #include <tetskin/core/src/base/lists.h>
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/elastic/src/matrix/linear_elasticity.h>
 
-#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <vector>
 
 namespace tetskin::elastic_detail {
 
-/// Several displacements, loads or accelerations at once: 3 nodeCount x count. A matrix is then read once for all of
-/// them, which is what a product takes its time for.
-using Fields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// A stiffness matrix as rows of 3x3 blocks, for products alone.
+/// The stiffness matrix of a mesh at rest as rows of 3x3 blocks: forces over displacements, 3N x 3N, symmetric,
+/// positive but for rigid motions.
 class BlockRows {
  public:
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+  /// mesh   rest space, no tet flat. Not referred to later
   /// scale  by tet: times the stiffness of a Young's modulus of 1
+  /// Cost   O(T log T) for T tets
   BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale);
 
   /// product  of the same size, overwritten
@@ -29,6 +27,7 @@ class BlockRows {
   const Block& diagonalBlock(std::size_t node) const;
   /// By node: itself and those that it shares a tet with, ascending.
   const Lists<>& neighbours() const { return columns_; }
+  /// All of it, both triangles.
   Eigen::SparseMatrix<double, Eigen::RowMajor> sparse() const;
 
  private:

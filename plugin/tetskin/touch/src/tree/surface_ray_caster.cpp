@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/touch/src/tree/fitted_surface.h>
+#include <tetskin/touch/src/tree/surface_ray_caster.h>
 
 #include <algorithm>
 #include <cassert>
@@ -24,7 +24,7 @@ Eigen::Vector3d pointAt(PointView<const btScalar> points, int place) {
 
 }  // namespace
 
-FittedSurface::FittedSurface(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh)
+SurfaceRayCaster::SurfaceRayCaster(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh)
     : binding_(std::move(binding)), triangles_(mesh.triangles) {
   const std::vector<std::uint32_t> places = placesOf(*binding_);
   tree_ = RayTree(mesh, places);
@@ -33,7 +33,7 @@ FittedSurface::FittedSurface(std::shared_ptr<const SoftBodyBinding> binding, con
   }
 }
 
-TouchStatus FittedSurface::fit(const SoftBodySkin& skin) {
+TouchStatus SurfaceRayCaster::fit(const SoftBodySkin& skin) {
   if (!skin.body()) return TouchStatus::Unbound;
   if (skin.binding() != binding_) return TouchStatus::OtherBody;
   const btSoftBody& body = *skin.body();
@@ -57,7 +57,7 @@ TouchStatus FittedSurface::fit(const SoftBodySkin& skin) {
   return TouchStatus::Ok;
 }
 
-bool FittedSurface::isFitted(const btSoftBody& body) const {
+bool SurfaceRayCaster::isFitted(const btSoftBody& body) const {
   if (nodes_.size() != 3 * static_cast<std::size_t>(body.m_nodes.size())) return false;
   const btScalar* kept = nodes_.data();
   bool same = true;
@@ -68,14 +68,14 @@ bool FittedSurface::isFitted(const btSoftBody& body) const {
   return same;
 }
 
-void FittedSurface::keepNodes(const btSoftBody& body) {
+void SurfaceRayCaster::keepNodes(const btSoftBody& body) {
   nodes_.reserve(3 * static_cast<std::size_t>(body.m_nodes.size()));
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     nodes_.insert(nodes_.end(), body.m_nodes[n].m_x.m_floats, body.m_nodes[n].m_x.m_floats + 3);
   }
 }
 
-SurfaceHit FittedSurface::cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const {
+SurfaceHit SurfaceRayCaster::cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const {
   assert(!nodes_.empty());
   const Ray ray{toEigen(from), toEigen(to) - toEigen(from)};
   SurfaceHit hit;

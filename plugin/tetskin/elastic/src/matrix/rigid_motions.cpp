@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/elastic/src/matrix/rigid_motions.h>
+
+#include <cassert>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+Eigen::Index rowOf(std::size_t item) {
+  return static_cast<Eigen::Index>(3 * item);
+}
+
+/// sums += arm x vectors, three rows each.
+template <class Vectors, class Sums>
+void addCross(const Eigen::Vector3d& arm, const Vectors& vectors, Sums&& sums) {
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sums.row(i) += arm[j] * vectors.row(k) - arm[k] * vectors.row(j);
+  }
+}
+
+}  // namespace
+
+RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) : partOf_(mesh.nodeCount()) {
+  assert(masses.size() == rowOf(mesh.nodeCount()));
+  DisjointSets sets(mesh.nodeCount());
+  for (const Tet& tet : mesh.tets) {
+    for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
+  }
+  std::vector<int> number(mesh.nodeCount(), -1);
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    int& part = number[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
+    if (part < 0) {
+      part = static_cast<int>(parts_.size());
+      parts_.emplace_back();
+    }
+    partOf_[n] = part;
+    masses_.push_back(masses[rowOf(n)]);
+    parts_[part].mass += masses_[n];
+    parts_[part].centroid += masses_[n] * mesh.nodes[n];
+  }
+  for (Part& part : parts_) part.centroid /= part.mass;
+  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+    Part& part = parts_[partOf_[n]];
+    arms_.emplace_back(mesh.nodes[n] - part.centroid);
+    part.inertia += masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
+  }
+  for (Part& part : parts_) part.inertiaFactors.compute(part.inertia);
+}
+
+void RigidMotions::removeFrom(Fields& displacements) const {
+  assert(displacements.rows() == rowOf(partOf_.size()));
+  // Momenta of the parts first, then the velocities of the rigid motions that have them.
+  Fields linear = Fields::Zero(rowOf(parts_.size()), displacements.cols()), angular = linear;
+  Fields momentum(3, displacements.cols()), motion = momentum;
+  for (std::size_t n = 0; n < partOf_.size(); ++n) {
+    const Eigen::Index part = 3 * partOf_[n];
+    momentum = masses_[n] * displacements.middleRows<3>(rowOf(n));
+    linear.middleRows<3>(part) += momentum;
+    addCross(arms_[n], momentum, angular.middleRows<3>(part));
+  }
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    linear.middleRows<3>(rowOf(p)) /= parts_[p].mass;
+    for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
+      const Eigen::Vector3d spin = angular.block<3, 1>(rowOf(p), k);
+      angular.block<3, 1>(rowOf(p), k) = parts_[p].inertiaFactors.solve(spin);
+    }
+  }
+  for (std::size_t n = 0; n < partOf_.size(); ++n) {
+    const Eigen::Index part = 3 * partOf_[n];
+    motion = linear.middleRows<3>(part);
+    addCross(-arms_[n], angular.middleRows<3>(part), motion);
+    displacements.middleRows<3>(rowOf(n)) -= motion;
+  }
+}
+
+void RigidMotions::balance(Fields& loads) const {
+  for (std::size_t n = 0; n < masses_.size(); ++n) loads.middleRows<3>(rowOf(n)) /= masses_[n];
+  removeFrom(loads);
+  for (std::size_t n = 0; n < masses_.size(); ++n) loads.middleRows<3>(rowOf(n)) *= masses_[n];
+}
+
+}  // namespace tetskin::elastic_detail

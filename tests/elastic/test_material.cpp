@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/elastic/src/tets/material.h>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+TEST(Lame, ParametersOfAKnownMaterial) {
+  const Lame quarter = lameOf(1.0, 0.25);
+  EXPECT_DOUBLE_EQ(quarter.mu, 0.4);
+  EXPECT_DOUBLE_EQ(quarter.lambda, 0.4);
+  EXPECT_EQ(lameOf(5.0, 0.0).lambda, 0.0);
+}
+
+TEST(Lame, AreScaledTetByTet) {
+  const std::vector<Lame> scaled = lameOfTets({2.0, 3.0}, 2, {0.5, 4.0});
+  EXPECT_EQ(scaled[0].mu, 1.0);
+  EXPECT_EQ(scaled[0].lambda, 1.5);
+  EXPECT_EQ(scaled[1].mu, 8.0);
+  EXPECT_EQ(scaled[1].lambda, 12.0);
+  const std::vector<Lame> all = lameOfTets({2.0, 3.0}, 2, {});
+  EXPECT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[1].lambda, 3.0);
+}
+
+}  // namespace
+}  // namespace tetskin::elastic_detail
