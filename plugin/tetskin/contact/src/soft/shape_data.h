@@ -7,6 +7,7 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/box_tree.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
+#include <tetskin/core/embedded_point.h>
 
 #include <array>
 #include <cstdint>
@@ -21,11 +22,10 @@ struct SampleRun {
 };
 
 /// A point of the surface.
-struct CarriedSample {
+struct ShapeSample {
   btVector3 rest{0, 0, 0};
-  btScalar weights[4] = {};  ///< of its tet's nodes: where it is; below 0 outside of the cage
-  btScalar acting[4] = {};   ///< the same of the closest point of the tet, none below 0: what impulses act by
-  int mainNode = 0;          ///< the node of the largest of these
+  EmbeddedPoint<btScalar> point;
+  int mainNode = 0;  ///< the node of the largest clamped weight
 };
 
 /// Which sixty-fourths of a tet, by its barycentric weights, belong to the part of the surface that the tet carries;
@@ -53,7 +53,7 @@ struct ShapeData {
   btScalar edge = 0;               ///< mean length, of the tets'
   DistanceGrid grid;
   std::vector<SampleRun> runs;  ///< ascending by tet
-  std::vector<CarriedSample> samples;
+  std::vector<ShapeSample> samples;
   std::vector<btScalar> weights[4];          ///< of the samples, once more: one after the other
   std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
   std::vector<FilledPart> filled;            ///< by tet
