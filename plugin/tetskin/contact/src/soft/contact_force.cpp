@@ -136,11 +136,11 @@ void ContactForce::detectPair(ContactBody& first, ContactBody& second) {
 }
 
 void ContactForce::addRow(ContactBody& first, ContactBody& second, const Touch& touch) {
-  const ShapeSample& sample = first.data().samples[static_cast<std::size_t>(touch.sample)];
+  const EmbeddedPoint<btScalar>& sample = first.data().samples[static_cast<std::size_t>(touch.sample)];
   ContactRow row;
-  row.sides[0].take(first, sample.point.nodes, sample.point.clamped.data(), 1);
+  row.sides[0].take(first, sample.nodes, sample.clamped.data(), 1);
   row.sides[1].take(second, second.data().tets[static_cast<std::size_t>(touch.tet)], touch.weights, -1);
-  row.node = sample.mainNode;
+  row.node = first.data().sampleNodes[static_cast<std::size_t>(touch.sample)];
   row.point = first.sampleAt(touch.sample);
   row.normal = touch.normal;
   row.distance = touch.distance;

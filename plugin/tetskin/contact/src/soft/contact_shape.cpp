@@ -91,10 +91,8 @@ std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samp
   return tets;
 }
 
-ShapeSample sampleIn(const TetMesh& cage, int tet, const Eigen::Vector3d& rest) {
-  ShapeSample sample;
-  sample.rest = toBullet(rest);
-  EmbeddedPoint<btScalar>& point = sample.point;
+void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, ShapeData& data) {
+  EmbeddedPoint<btScalar>& point = data.samples.emplace_back();
   point.tet = tet;
   point.nodes = cage.tets[static_cast<std::size_t>(tet)];
   const TetCorners corners = cornersOf(cage, point.nodes);
@@ -106,11 +104,12 @@ ShapeSample sampleIn(const TetMesh& cage, int tet, const Eigen::Vector3d& rest) 
     const auto i = static_cast<std::size_t>(k);
     point.weights[i] = static_cast<btScalar>(weights[k]);
     point.clamped[i] = static_cast<btScalar>(clamped[k] / clamped.sum());
+    data.weights[i].push_back(point.weights[i]);
   }
   int main = 0;
   clamped.maxCoeff(&main);
-  sample.mainNode = point.nodes[static_cast<std::size_t>(main)];
-  return sample;
+  data.sampleNodes.push_back(point.nodes[static_cast<std::size_t>(main)]);
+  data.sampleRest.push_back(toBullet(rest));
 }
 
 /// Samples tet by tet; those of flat tets, which nothing is known of, are left out.
@@ -123,9 +122,8 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     if (isFlat(cornersOf(cage, cage.tets[static_cast<std::size_t>(tets[s])]))) continue;
     const int place = static_cast<int>(data.samples.size());
     if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], place, place});
-    data.samples.push_back(sampleIn(cage, tets[s], samples[s].point));
+    appendSample(cage, tets[s], samples[s].point, data);
     data.runs.back().last = place + 1;
-    for (std::size_t k = 0; k < 4; ++k) data.weights[k].push_back(data.samples.back().point.weights[k]);
   }
 }
 

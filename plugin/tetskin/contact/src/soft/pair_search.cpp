@@ -96,7 +96,7 @@ void PairSearch::offer(int tet, int sample, int k) {
   place.rest = restPoint(data, tet, place.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
-    if ((place.rest - data.samples[static_cast<std::size_t>(sample)].rest).length2() < own * own) return;
+    if ((place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length2() < own * own) return;
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
@@ -113,7 +113,7 @@ void PairSearch::offer(int tet, int sample, int k) {
 /// By which the sample has moved in the body's rest space.
 btVector3 PairSearch::restMotion(int sample, const Place& place) const {
   const ShapeData& in = now_.second->data();
-  const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)].point;
+  const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
   const btVector3 velocity =
       point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(place.tet, place.weights);
   const DeformedTet& deformed = now_.second->deformed(place.tet);
@@ -145,7 +145,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   made.tet = place.tet;
   std::copy(place.weights, place.weights + 4, made.weights);
   made.normal = normal / length;
-  keepDeepest(made, now_.first->data().samples[static_cast<std::size_t>(sample)].mainNode);
+  keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {

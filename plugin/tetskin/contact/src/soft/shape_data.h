@@ -21,13 +21,6 @@ struct SampleRun {
   int first = 0, last = 0;
 };
 
-/// A point of the surface.
-struct ShapeSample {
-  btVector3 rest{0, 0, 0};
-  EmbeddedPoint<btScalar> point;
-  int mainNode = 0;  ///< the node of the largest clamped weight
-};
-
 /// Which sixty-fourths of a tet, by its barycentric weights, belong to the part of the surface that the tet carries;
 /// all of them, unless it has copies.
 struct CarriedCells {
@@ -52,9 +45,12 @@ struct ShapeData {
   std::vector<btVector3> middles;  ///< of the tets
   btScalar edge = 0;               ///< mean length, of the tets'
   DistanceGrid grid;
-  std::vector<SampleRun> runs;  ///< ascending by tet
-  std::vector<ShapeSample> samples;
-  std::vector<btScalar> weights[4];          ///< of the samples, once more: one after the other
+  std::vector<SampleRun> runs;                   ///< ascending by tet
+  std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
+  // Of the samples, what is read of many of them, one after the other.
+  std::vector<btVector3> sampleRest;
+  std::vector<int> sampleNodes;              ///< of the largest clamped weight
+  std::vector<btScalar> weights[4];          ///< once more
   std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
   std::vector<FilledPart> filled;            ///< by tet
   std::vector<std::vector<int>> otherParts;  ///< by run: see tetsOfOtherParts
