@@ -20,8 +20,8 @@ constexpr std::size_t kPatchesPerCluster = 12;
 /// Points that the same nodes carry, while patches are collected.
 struct LoosePatch {
   std::vector<int> nodes;
-  std::vector<btScalar> weights, acting;             ///< of the nodes, point by point
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< rest space
+  std::vector<btScalar> weights, acting;               ///< of the nodes, point by point
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< rest space
 
   std::size_t pointCount() const { return weights.size() / nodes.size(); }
 };
@@ -62,7 +62,7 @@ std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const Triangle
     }
     const auto count = static_cast<double>(points.size());
     patches.push_back(patchOf(std::move(points)));
-    patches.back().centre = sum / count;
+    patches.back().centroid = sum / count;
   }
   return patches;
 }
@@ -122,7 +122,7 @@ void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh,
     const EmbeddedTriangle triangle = embeddedTriangle(embedding, t);
     LoosePatch patch;
     patch.nodes = triangle.nodes;
-    for (const int v : t) patch.centre += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
+    for (const int v : t) patch.centroid += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
     appendSamples(triangle, static_cast<int>(steps), patch);
     patches.push_back(std::move(patch));
   }
@@ -133,14 +133,14 @@ void splitClusters(std::vector<LoosePatch>& patches, std::size_t first, std::siz
                    std::vector<std::size_t>& ends) {
   if (end - first <= kPatchesPerCluster) return ends.push_back(end);
   Box3 box;
-  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centre);
+  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centroid);
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const std::size_t middle = (first + end) / 2;
   const auto at = [&](std::size_t p) { return patches.begin() + static_cast<std::ptrdiff_t>(p); };
   // Sorted, not nth_element: the same everywhere, whoever's library it is.
   std::stable_sort(at(first), at(end),
-                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centre[axis] < b.centre[axis]; });
+                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centroid[axis] < b.centroid[axis]; });
   splitClusters(patches, first, middle, ends);
   splitClusters(patches, middle, end, ends);
 }
