@@ -109,7 +109,7 @@ class TETSKIN_CORE_API Embedding {
   /// Tets and weights by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
   std::vector<VertexBinding> bindings() const;
   /// How one vertex moves with the nodes of its tet.
-  /// Scalar  float or double: that of the nodes it is to be used with
+  /// In float or double, whichever the nodes are in that it is to be used with.
   /// vertex  of the mesh, below vertexCount(), whatever the order of its slots
   /// Cost    O(log tetCount), no allocation
   template <class Scalar = double>
