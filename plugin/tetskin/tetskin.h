@@ -14,6 +14,7 @@
   TETSKIN_TEXT(TETSKIN_VERSION_MAJOR) "." TETSKIN_TEXT(TETSKIN_VERSION_MINOR) "." TETSKIN_TEXT(TETSKIN_VERSION_PATCH)
 
 #include <tetskin/core/cage.h>
+#include <tetskin/core/embedded_point.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/parallel_for.h>

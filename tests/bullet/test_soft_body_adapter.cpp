@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/embedding.h>
 
 #include <memory>
 
@@ -32,6 +33,41 @@ TEST(SoftBodyAdapter, ViewsTheCurrentPositionsInPlace) {
   body->m_nodes[5].m_x.setValue(7, 8, 9);
   EXPECT_EQ(view[5][0], 7);
   EXPECT_EQ(view[5][2], 9);
+}
+
+TEST(SoftBodyAdapter, TellsEmbeddedPointsOfItsNodes) {
+  btSoftBodyWorldInfo info;
+  const TetMesh cage = test::latticeCage(2, 2, 2);
+  const std::vector<Eigen::Vector3d> vertices = test::randomPoints(50, test::around(cage, 1.2), 3);
+  const Embedding embedding = embed(cage, viewOf(vertices)).value();
+  const auto body = makeBody(cage, info);
+  body->rotate(btQuaternion(btVector3(0, 1, 0), btScalar(0.7)));
+  const btVector3 turning(0, 2, 0);  // about the origin
+  for (int n = 0; n < body->m_nodes.size(); ++n) body->m_nodes[n].m_v = turning.cross(body->m_nodes[n].m_x);
+  setMass(*body, 0, 0);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto point = embedding.at<btScalar>(v);
+    const btVector3 turned = toBullet(vertices[v]).rotate(btVector3(0, 1, 0), btScalar(0.7));
+    EXPECT_LT((point.position(positionsIn(*body)) - turned).length(), 1e-5) << v;
+    EXPECT_LT((point.velocity(velocitiesIn(*body)) - turning.cross(turned)).length(), 1e-5) << v;
+    btVector3 momentum(0, 0, 0), pinned(0, 0, 0);
+    const btVector3 before = point.clampedVelocity(velocitiesIn(*body));
+    point.applyImpulse(btVector3(1, 2, 3), inverseMassesIn(*body), [&](int node, const btVector3& change) {
+      body->m_nodes[node].m_v += change;
+      if (node > 0) momentum += change / body->m_nodes[node].m_im;
+    });
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (point.nodes[k] == 0) pinned = point.clamped[k] * btVector3(1, 2, 3);
+    }
+    EXPECT_LT((momentum + pinned - btVector3(1, 2, 3)).length(), 1e-5) << v;
+    const btVector3 gained = point.clampedVelocity(velocitiesIn(*body)) - before;
+    const btScalar inverseMass = point.inverseMass(inverseMassesIn(*body));
+    EXPECT_LT((gained - inverseMass * btVector3(1, 2, 3)).length(), 1e-5 * gained.length()) << v;
+    for (std::size_t k = 0; k < 4; ++k) {
+      btSoftBody::Node& node = body->m_nodes[point.nodes[k]];
+      node.m_v = turning.cross(node.m_x);
+    }
+  }
 }
 
 TEST(SoftBodyAdapter, BodyWithoutNodesIsEmpty) {

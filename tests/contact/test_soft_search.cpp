@@ -35,8 +35,7 @@ std::set<int> insideByBruteForce(const ContactBody& first, const ContactBody& se
   const ShapeData &of = first.data(), &in = second.data();
   for (const SampleRun& run : of.runs) {
     for (int s = run.first; s < run.last; ++s) {
-      btVector3 p(0, 0, 0);
-      for (int k = 0; k < 4; ++k) p += of.samples[s].weights[k] * first.positions[of.tets[run.tet][k]];
+      const btVector3 p = of.samples[s].position([&](int node) { return first.positions[node]; });
       for (const Tet& tet : in.tets) {
         TetCorners corners;
         for (int k = 0; k < 4; ++k) corners[k] = toEigen(second.positions[tet[k]]);

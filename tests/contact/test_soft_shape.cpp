@@ -84,15 +84,16 @@ TEST(ContactShape, CarriesEachSampleInItsTet) {
   std::size_t count = 0;
   for (const SampleRun& run : data.runs) {
     for (int s = run.first; s < run.last; ++s, ++count) {
-      const CarriedSample& sample = data.samples[s];
-      btVector3 p(0, 0, 0);
+      const EmbeddedPoint<btScalar>& sample = data.samples[s];
+      EXPECT_EQ(sample.tet, run.tet);
+      EXPECT_EQ(sample.nodes, data.tets[run.tet]);
+      const btVector3 p = sample.position([&](int node) { return data.nodes[node]; });
       btScalar sum = 0;
-      for (int k = 0; k < 4; ++k) {
-        p += sample.weights[k] * data.nodes[data.tets[run.tet][k]];
-        sum += sample.acting[k];
-        EXPECT_GE(sample.acting[k], 0);
+      for (const btScalar weight : sample.clamped) {
+        sum += weight;
+        EXPECT_GE(weight, 0);
       }
-      EXPECT_NEAR((p - sample.rest).length(), 0, 1e-5);
+      EXPECT_NEAR((p - data.sampleRest[s]).length(), 0, 1e-5);
       EXPECT_NEAR(sum, 1, 1e-5);
     }
   }
@@ -119,8 +120,8 @@ TEST(ContactShape, LeavesOutWhatIsHiddenInOtherParts) {
   mesh.positions.insert(mesh.positions.end(), inner.positions.begin(), inner.positions.end());
   for (const auto& [a, b, c] : inner.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
   const auto shape = makeContactShape(latticeCage(5, 5, 5, 0.2), mesh).value();
-  for (const CarriedSample& s : shape->data().samples) {
-    EXPECT_GT((s.rest - btVector3(0.5, 0.5, 0.5)).length(), 0.35);
+  for (const btVector3& rest : shape->data().sampleRest) {
+    EXPECT_GT((rest - btVector3(0.5, 0.5, 0.5)).length(), 0.35);
   }
   GridDistance at;
   ASSERT_TRUE(shape->data().grid.at(btVector3(0.7, 0.5, 0.5), at));

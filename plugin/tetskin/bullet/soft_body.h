@@ -46,6 +46,20 @@ inline btVector3 toBullet(const Eigen::Vector3d& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
+/// A body's nodes as the functions of `EmbeddedPoint` ask for them, world space: valid as long as the body is there.
+/// For instance `embedding.at<btScalar>(vertex).velocity(velocitiesIn(body))`.
+inline auto positionsIn(const btSoftBody& body) {
+  return [&body](int node) -> const btVector3& { return body.m_nodes[node].m_x; };
+}
+/// The same for velocities.
+inline auto velocitiesIn(const btSoftBody& body) {
+  return [&body](int node) -> const btVector3& { return body.m_nodes[node].m_v; };
+}
+/// The same for inverse masses, 0 where a node is pinned.
+inline auto inverseMassesIn(const btSoftBody& body) {
+  return [&body](int node) { return body.m_nodes[node].m_im; };
+}
+
 /// What holds a body together.
 enum class ForceModel {
   Corotated,         ///< deformable world: tetskin's own `ElasticForce`; any rotation, keeps spin

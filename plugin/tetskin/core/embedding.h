@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
+#include <tetskin/core/embedded_point.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
@@ -107,6 +108,12 @@ class TETSKIN_CORE_API Embedding {
   const std::vector<std::uint32_t>& vertexSlots() const;
   /// Tets and weights by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
   std::vector<VertexBinding> bindings() const;
+  /// How one vertex moves with the nodes of its tet.
+  /// In float or double, whichever the nodes are in that it is to be used with.
+  /// vertex  of the mesh, below vertexCount(), whatever the order of its slots
+  /// Cost    O(log tetCount), no allocation
+  template <class Scalar = double>
+  EmbeddedPoint<Scalar> at(std::size_t vertex) const;
 
   /// All of it as bytes, the same on every machine, so that an application may embed once and keep the result with its
   /// models. About 16 bytes a vertex, 12 more a vertex outside, 8 an occupied tet. Must not be empty.

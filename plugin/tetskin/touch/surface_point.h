@@ -6,6 +6,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/embedded_point.h>
 
 #include <array>
 #include <memory>
@@ -43,17 +44,8 @@ struct SurfaceFrame {
 
 namespace touch_detail {
 
-/// A corner of a point's triangle, and how it hangs on its tet.
-struct Corner {
-  int tet = -1;
-  std::array<int, 4> nodes{};
-  std::array<btScalar, 4> weights{};  ///< add up to 1; outside the tet they extrapolate
-  std::array<btScalar, 4> closest{};  ///< of the tet's closest point at rest; those of the vertex itself inside
-  bool outside = false;
-};
-
 struct PointData {
-  std::array<Corner, 3> corners;
+  std::array<EmbeddedPoint<btScalar>, 3> corners;
   std::array<btScalar, 3> shares{1, 0, 0};  ///< of the corners
   btVector3 restNormal{0, 0, 1};            ///< in the triangle's own axes: tangent, bitangent, normal
 };

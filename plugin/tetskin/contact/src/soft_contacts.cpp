@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/contact_force.h>
 
@@ -52,15 +53,6 @@ bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, 
   return false;
 }
 
-/// The others keep their order.
-void takeOut(btAlignedObjectArray<btDeformableLagrangianForce*>& list, const btDeformableLagrangianForce* force) {
-  int kept = 0;
-  for (int i = 0; i < list.size(); ++i) {
-    if (list[i] != force) list[kept++] = list[i];
-  }
-  list.resizeNoInitialize(kept);
-}
-
 }  // namespace
 
 struct SoftContacts::Parts {
@@ -76,7 +68,7 @@ struct SoftContacts::Parts {
 SoftContacts::SoftContacts(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 SoftContacts::~SoftContacts() {
-  takeOut(*parts_->solver.getLagrangianForceArray(), &parts_->force);
+  removeFromList(*parts_->solver.getLagrangianForceArray(), &parts_->force);
 }
 
 Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDynamicsWorld& world,

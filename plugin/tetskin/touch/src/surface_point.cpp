@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/core/src/skin_binding.h>
+#include <tetskin/core/src/skinning/quadratic_point.h>
 #include <tetskin/touch/src/forces/node_pushes.h>
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/src/points/corners.h>
 #include <tetskin/touch/src/points/lever.h>
 
 #include <cassert>
 
 namespace tetskin {
 
-using touch_detail::Corner;
 using touch_detail::Lever;
 using touch_detail::LeverNode;
-using touch_detail::NodeAt;
 using touch_detail::PointData;
 
 namespace {
@@ -33,6 +32,12 @@ SurfaceFrame frameOf(const btVector3 corners[3], const PointData& of) {
   return frame;
 }
 
+using Point = Eigen::Matrix<btScalar, 3, 1>;
+
+Point pointOf(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 /// How a skin draws a point's triangle; nothing if it is of another body.
 bool drawCorners(const SoftBodySkin& skin, btScalar alpha, const btSoftBody& body, const PointData& data,
                  btVector3 corners[3]) {
@@ -40,19 +45,20 @@ bool drawCorners(const SoftBodySkin& skin, btScalar alpha, const btSoftBody& bod
   if (skin.body() != &body || binding->embedding().tetCount() <= static_cast<std::size_t>(data.corners[0].tet)) {
     return false;
   }
-  const NodeAt nodeAt = [&](int node) { return skin.nodeAt(node, alpha); };
-  const bool bends = skin.interpolation() == Interpolation::Quadratic;
+  const auto& stencils = binding->parts().quadratic;
+  const bool bends = stencils && skin.interpolation() == Interpolation::Quadratic;
+  const NodePositions<btScalar> positionOf = [&](int node) { return pointOf(skin.nodeAt(node, alpha)); };
   for (std::size_t k = 0; k < 3; ++k) {
-    const Corner& corner = data.corners[k];
-    corners[k] = bends ? touch_detail::quadraticPosition(corner, *binding, nodeAt)
-                       : touch_detail::linearPosition(corner, nodeAt);
+    const EmbeddedPoint<btScalar>& corner = data.corners[k];
+    const Point drawn =
+        bends ? quadraticPosition(corner, binding->embedding(), *stencils, positionOf) : corner.position(positionOf);
+    corners[k] = btVector3(drawn.x(), drawn.y(), drawn.z());
   }
   return true;
 }
 
 void linearCorners(const btSoftBody& body, const PointData& data, btVector3 corners[3]) {
-  const NodeAt nodeAt = [&](int node) { return body.m_nodes[node].m_x; };
-  for (std::size_t k = 0; k < 3; ++k) corners[k] = touch_detail::linearPosition(data.corners[k], nodeAt);
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = data.corners[k].position(positionsIn(body));
 }
 
 }  // namespace
@@ -101,7 +107,7 @@ TouchStatus SurfacePoint::status() const {
   if (!body_) return TouchStatus::Released;
   if (watched_ && life_.expired()) return TouchStatus::Gone;
   if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return TouchStatus::TopologyChanged;
-  for (const Corner& corner : data_.corners) {
+  for (const EmbeddedPoint<btScalar>& corner : data_.corners) {
     for (const int node : corner.nodes) {
       if (!touch_detail::isFiniteVector(body_->m_nodes[node].m_x)) return TouchStatus::NonFinite;
     }
@@ -142,17 +148,9 @@ std::optional<SurfaceFrame> SurfacePoint::frame(const SoftBodySkin& skin, btScal
 
 std::optional<btVector3> SurfacePoint::velocity() const {
   if (status() != TouchStatus::Ok) return {};
+  const auto velocityOf = [&](int node) { return body_->m_nodes[node].m_v + body_->m_nodes[node].m_splitv; };
   btVector3 sum(0, 0, 0);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Corner& corner = data_.corners[c];
-    const auto of = [&](std::size_t k) {
-      const btSoftBody::Node& node = body_->m_nodes[corner.nodes[k]];
-      return node.m_v + node.m_splitv;
-    };
-    btVector3 here = of(3);
-    for (std::size_t k = 0; k < 3; ++k) here += corner.weights[k] * (of(k) - of(3));
-    sum += data_.shares[c] * here;
-  }
+  for (std::size_t c = 0; c < 3; ++c) sum += data_.shares[c] * data_.corners[c].velocity(velocityOf);
   return sum;
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/src/points/corners.h>
 #include <tetskin/touch/src/tree/blast.h>
 #include <tetskin/touch/src/tree/nearest_triangle.h>
 #include <tetskin/touch/src/tree/surface_ray_caster.h>
@@ -57,7 +55,7 @@ SurfacePoint SurfaceTree::Parts::pointOf(btSoftBody& body, std::size_t triangle,
   Eigen::Vector3d corners[3], normal = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const auto vertex = static_cast<std::size_t>(mesh.triangles[triangle][(firstCorner + k) % 3]);
-    data.corners[k] = touch_detail::cornerOf(binding->embedding(), vertex);
+    data.corners[k] = binding->embedding().at<btScalar>(vertex);
     corners[k] = mesh.positions[vertex];
     normal += static_cast<double>(shares[k]) * normals[vertex];
   }

@@ -88,6 +88,6 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
 /// Adds forces for a body to the list: gravity before all others, elasticity after them.
 void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForce& elasticity, btSoftBody& body);
 /// Takes them out again; the others keep their order.
-void removeFromList(ForceList& list, const btDeformableLagrangianForce* force);
+TETSKIN_BULLET_API void removeFromList(ForceList& list, const btDeformableLagrangianForce* force);
 
 }  // namespace tetskin

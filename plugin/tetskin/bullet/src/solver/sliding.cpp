@@ -19,7 +19,7 @@ btScalar normalImpulse(const SolvedBody& of, std::size_t node, const btVector3& 
 
 }  // namespace
 
-Sliding slidingOf(const SolvedBody& of, const btDeformableNodeRigidContactConstraint& contact) {
+SlidingFriction slidingOf(const SolvedBody& of, const btDeformableNodeRigidContactConstraint& contact) {
   const btSoftBody::Node& bullets = *contact.m_node;
   const btVector3 dv = contact.getDv(&bullets), normal = contact.m_contact->m_cti.m_normal;
   if (bullets.m_im == 0 || dv.isZero() || isNoNumber(dv) || contact.m_static) return {};

@@ -27,7 +27,7 @@ void resist(SolvedBody& of, const btDeformableNodeRigidContactConstraint& constr
   // Where it binds, the node's normal velocity is fixed.
   if (!constraint.m_binding) residual[bullets.index] += dv.dot(normal) / bullets.m_im * normal;
   of.touched = true;
-  const Sliding sliding = slidingOf(of, constraint);
+  const SlidingFriction sliding = slidingOf(of, constraint);
   if (!(sliding.resistance > 0)) return;
   const btMatrix3x3 w = resistanceAcross(normal, sliding.resistance);
   const btScalar block[6] = {w[0][0], w[0][1], w[0][2], w[1][1], w[1][2], w[2][2]};

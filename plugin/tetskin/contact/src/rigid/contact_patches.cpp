@@ -2,150 +2,128 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/rigid/contact_patches.h>
-#include <tetskin/core/src/embedding/embedding_data.h>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 namespace tetskin {
 namespace {
 
+using Point = EmbeddedPoint<btScalar>;
+
 /// Patches in a cluster: enough that passing over it pays, few enough that it is small.
 constexpr std::size_t kPatchesPerCluster = 12;
 
-/// A point with its weights, of the nodes of its patch, while patches are collected.
-struct CarriedPoint {
-  std::array<btScalar, kMostCarriers> weights{}, acting{};
-  bool operator==(const CarriedPoint& other) const { return weights == other.weights && acting == other.acting; }
-  bool operator<(const CarriedPoint& other) const {
-    return weights != other.weights ? weights < other.weights : acting < other.acting;
-  }
-};
-
+/// Points that the same nodes carry, while patches are collected.
 struct LoosePatch {
   std::vector<int> nodes;
-  std::vector<CarriedPoint> points;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< rest space
+  std::vector<btScalar> weights, acting;               ///< of the nodes, point by point
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< rest space
+
+  std::size_t pointCount() const { return weights.size() / nodes.size(); }
 };
 
-std::array<float, 4> withFourth(const std::array<std::vector<float>, 3>& planes, std::size_t at) {
-  const float a = planes[0][at], b = planes[1][at], c = planes[2][at];
-  return {a, b, c, 1.0F - a - b - c};
+void dropRepeated(std::vector<Point>& points) {
+  const auto key = [](const Point& point) { return std::tie(point.weights, point.clamped); };
+  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
+  points.erase(
+      std::unique(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) == key(b); }),
+      points.end());
 }
 
-/// Closest points' weights leave the tet by rounding alone.
-std::array<float, 4> actingWeights(const EmbeddingData& data, std::size_t slot) {
-  auto weights = slot < data.insideCount ? withFourth(data.weights, slot)
-                                         : withFourth(data.closestWeights, slot - data.insideCount);
-  for (float& w : weights) w = std::max(w, 0.0F);
-  return weights;
-}
-
-CarriedPoint carriedVertex(const EmbeddingData& data, std::size_t slot) {
-  CarriedPoint point;
-  const auto weights = withFourth(data.weights, slot), acting = actingWeights(data, slot);
-  for (std::size_t k = 0; k < 4; ++k) {
-    point.weights[k] = static_cast<btScalar>(weights[k]);
-    point.acting[k] = static_cast<btScalar>(acting[k]);
+/// points  of one tet
+LoosePatch patchOf(std::vector<Point> points) {
+  LoosePatch patch;
+  patch.nodes.assign(points.front().nodes.begin(), points.front().nodes.end());
+  dropRepeated(points);
+  for (const Point& point : points) {
+    patch.weights.insert(patch.weights.end(), point.weights.begin(), point.weights.end());
+    patch.acting.insert(patch.acting.end(), point.clamped.begin(), point.clamped.end());
   }
-  return point;
+  return patch;
 }
 
-void dropRepeated(std::vector<CarriedPoint>& points) {
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-}
-
-std::vector<LoosePatch> vertexPatches(const EmbeddingData& data, const TriangleMesh& mesh) {
+/// One for each tet with vertices inside, and one for each with vertices outside.
+std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const TriangleMesh& mesh) {
   std::vector<LoosePatch> patches;
-  for (std::size_t r = 0; r + 1 < data.runs.size(); ++r) {
-    const EmbeddingData::Run& run = data.runs[r];
-    const std::size_t end = data.runs[r + 1].firstSlot;
-    if (run.firstSlot == end) continue;
-    LoosePatch patch;
-    patch.nodes.assign(run.nodes, run.nodes + 4);
-    for (std::size_t slot = run.firstSlot; slot < end; ++slot) {
-      patch.points.push_back(carriedVertex(data, slot));
-      patch.centre += mesh.positions[data.slotVertices[slot]];
+  const std::vector<std::uint32_t>& vertices = embedding.slotVertices();
+  for (std::size_t slot = 0; slot < vertices.size();) {
+    const Point first = embedding.at<btScalar>(vertices[slot]);
+    std::vector<Point> points;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (; slot < vertices.size(); ++slot) {
+      const Point point = embedding.at<btScalar>(vertices[slot]);
+      if (point.tet != first.tet || point.inside != first.inside) break;
+      points.push_back(point);
+      sum += mesh.positions[vertices[slot]];
     }
-    patch.centre /= static_cast<double>(end - run.firstSlot);
-    dropRepeated(patch.points);
-    patches.push_back(std::move(patch));
+    const auto count = static_cast<double>(points.size());
+    patches.push_back(patchOf(std::move(points)));
+    patches.back().centroid = sum / count;
   }
   return patches;
 }
 
-/// By vertex: the run of its tet.
-std::vector<std::uint32_t> runsOfVertices(const EmbeddingData& data) {
-  std::vector<std::uint32_t> runs(data.vertexCount());
-  for (std::size_t r = 0; r + 1 < data.runs.size(); ++r) {
-    for (std::size_t slot = data.runs[r].firstSlot; slot < data.runs[r + 1].firstSlot; ++slot) {
-      runs[data.slotVertices[slot]] = static_cast<std::uint32_t>(r);
-    }
-  }
-  return runs;
-}
-
-/// A triangle's corners, by the nodes of them all.
-struct CarriedTriangle {
+/// A triangle's corners, and the nodes of them all.
+struct EmbeddedTriangle {
+  std::array<Point, 3> corners;
   std::vector<int> nodes;
-  std::array<CarriedPoint, 3> corners;
+  std::array<std::array<std::size_t, 4>, 3> indices{};  ///< by corner and node of its tet: in `nodes`
 };
 
-CarriedTriangle carriedTriangle(const EmbeddingData& data, const std::vector<std::uint32_t>& runs,
-                                const std::array<int, 3>& triangle) {
-  CarriedTriangle carried;
+EmbeddedTriangle embeddedTriangle(const Embedding& embedding, const std::array<int, 3>& vertices) {
+  EmbeddedTriangle triangle;
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto vertex = static_cast<std::size_t>(triangle[c]);
-    const CarriedPoint own = carriedVertex(data, data.vertexSlots[vertex]);
+    triangle.corners[c] = embedding.at<btScalar>(static_cast<std::size_t>(vertices[c]));
     for (std::size_t k = 0; k < 4; ++k) {
-      const int node = data.runs[runs[vertex]].nodes[k];
-      auto at = std::find(carried.nodes.begin(), carried.nodes.end(), node);
-      if (at == carried.nodes.end()) at = carried.nodes.insert(at, node);
-      const auto place = static_cast<std::size_t>(at - carried.nodes.begin());
-      carried.corners[c].weights[place] += own.weights[k];
-      carried.corners[c].acting[place] += own.acting[k];
+      const int node = triangle.corners[c].nodes[k];
+      const auto found = std::find(triangle.nodes.begin(), triangle.nodes.end(), node);
+      triangle.indices[c][k] = static_cast<std::size_t>(found - triangle.nodes.begin());
+      if (found == triangle.nodes.end()) triangle.nodes.push_back(node);
     }
   }
-  return carried;
+  return triangle;
 }
 
-CarriedPoint pointWithin(const CarriedTriangle& triangle, const std::array<btScalar, 3>& at) {
-  CarriedPoint point;
+/// shares  of the corners
+void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3>& shares, LoosePatch& patch) {
+  const std::size_t first = patch.weights.size();
+  patch.weights.resize(first + triangle.nodes.size(), 0);
+  patch.acting.resize(patch.weights.size(), 0);
   for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t k = 0; k < triangle.nodes.size(); ++k) {
-      point.weights[k] += at[c] * triangle.corners[c].weights[k];
-      point.acting[k] += at[c] * triangle.corners[c].acting[k];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t index = first + triangle.indices[c][k];
+      patch.weights[index] += shares[c] * triangle.corners[c].weights[k];
+      patch.acting[index] += shares[c] * triangle.corners[c].clamped[k];
     }
   }
-  return point;
 }
 
 /// At the corners of the small triangles into which each edge's `steps` cut it, but not at its own.
-void appendSamples(const CarriedTriangle& triangle, int steps, std::vector<CarriedPoint>& points) {
+void appendSamples(const EmbeddedTriangle& triangle, int steps, LoosePatch& patch) {
   for (int i = 0; i <= steps; ++i) {
     for (int j = 0; i + j <= steps; ++j) {
       const int k = steps - i - j;
       if (std::max({i, j, k}) == steps) continue;
       const auto share = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
-      points.push_back(pointWithin(triangle, {share(i), share(j), share(k)}));
+      appendSample(triangle, {share(i), share(j), share(k)}, patch);
     }
   }
 }
 
-void appendTrianglePatches(const EmbeddingData& data, const TriangleMesh& mesh, double spacing,
+void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing,
                            std::vector<LoosePatch>& patches) {
-  const std::vector<std::uint32_t> runs = runsOfVertices(data);
   for (const std::array<int, 3>& t : mesh.triangles) {
     const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
     if (!(steps > 1.0)) continue;
-    const CarriedTriangle triangle = carriedTriangle(data, runs, t);
+    const EmbeddedTriangle triangle = embeddedTriangle(embedding, t);
     LoosePatch patch;
     patch.nodes = triangle.nodes;
-    for (const int v : t) patch.centre += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
-    appendSamples(triangle, static_cast<int>(steps), patch.points);
+    for (const int v : t) patch.centroid += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
+    appendSamples(triangle, static_cast<int>(steps), patch);
     patches.push_back(std::move(patch));
   }
 }
@@ -155,23 +133,23 @@ void splitClusters(std::vector<LoosePatch>& patches, std::size_t first, std::siz
                    std::vector<std::size_t>& ends) {
   if (end - first <= kPatchesPerCluster) return ends.push_back(end);
   Box3 box;
-  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centre);
+  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centroid);
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const std::size_t middle = (first + end) / 2;
   const auto at = [&](std::size_t p) { return patches.begin() + static_cast<std::ptrdiff_t>(p); };
   // Sorted, not nth_element: the same everywhere, whoever's library it is.
   std::stable_sort(at(first), at(end),
-                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centre[axis] < b.centre[axis]; });
+                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centroid[axis] < b.centroid[axis]; });
   splitClusters(patches, first, middle, ends);
   splitClusters(patches, middle, end, ends);
 }
 
 btScalar spreadOf(const LoosePatch& patch) {
   btScalar spread = 1;
-  for (const CarriedPoint& point : patch.points) {
+  for (std::size_t p = 0; p < patch.weights.size(); p += patch.nodes.size()) {
     btScalar sum = 0;
-    for (const btScalar w : point.weights) sum += std::abs(w);
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k) sum += std::abs(patch.weights[p + k]);
     spread = std::max(spread, sum);
   }
   return spread;
@@ -182,15 +160,13 @@ void append(const LoosePatch& loose, ContactPatches& to) {
   patch.firstNode = static_cast<std::uint32_t>(to.nodes.size());
   patch.nodeCount = static_cast<std::uint32_t>(loose.nodes.size());
   patch.firstPoint = static_cast<std::uint32_t>(to.pointCount);
-  patch.pointCount = static_cast<std::uint32_t>(loose.points.size());
+  patch.pointCount = static_cast<std::uint32_t>(loose.pointCount());
   patch.firstWeight = static_cast<std::uint32_t>(to.weights.size());
   patch.spread = spreadOf(loose);
   to.nodes.insert(to.nodes.end(), loose.nodes.begin(), loose.nodes.end());
-  for (const CarriedPoint& point : loose.points) {
-    to.weights.insert(to.weights.end(), point.weights.begin(), point.weights.begin() + patch.nodeCount);
-    to.acting.insert(to.acting.end(), point.acting.begin(), point.acting.begin() + patch.nodeCount);
-  }
-  to.pointCount += loose.points.size();
+  to.weights.insert(to.weights.end(), loose.weights.begin(), loose.weights.end());
+  to.acting.insert(to.acting.end(), loose.acting.begin(), loose.acting.end());
+  to.pointCount += loose.pointCount();
   to.patches.push_back(patch);
 }
 
@@ -223,8 +199,8 @@ double countOfSamples(const TriangleMesh& mesh, double spacing) {
 
 ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing) {
   assert(embedding.vertexCount() == mesh.vertexCount() && spacing >= 0.0);
-  std::vector<LoosePatch> loose = vertexPatches(embedding.data(), mesh);
-  if (spacing > 0.0) appendTrianglePatches(embedding.data(), mesh, spacing, loose);
+  std::vector<LoosePatch> loose = vertexPatches(embedding, mesh);
+  if (spacing > 0.0) appendTrianglePatches(embedding, mesh, spacing, loose);
   std::vector<std::size_t> ends;
   if (!loose.empty()) splitClusters(loose, 0, loose.size(), ends);
   ContactPatches result;

@@ -136,12 +136,11 @@ void ContactForce::detectPair(ContactBody& first, ContactBody& second) {
 }
 
 void ContactForce::addRow(ContactBody& first, ContactBody& second, const Touch& touch) {
-  const CarriedSample& sample = first.data().samples[static_cast<std::size_t>(touch.sample)];
-  const int tet = first.data().runs[static_cast<std::size_t>(touch.run)].tet;
+  const EmbeddedPoint<btScalar>& sample = first.data().samples[static_cast<std::size_t>(touch.sample)];
   ContactRow row;
-  row.sides[0].take(first, tet, sample.acting, 1);
-  row.sides[1].take(second, touch.tet, touch.weights, -1);
-  row.node = sample.mainNode;
+  row.sides[0].take(first, sample.nodes, sample.clamped.data(), 1);
+  row.sides[1].take(second, second.data().tets[static_cast<std::size_t>(touch.tet)], touch.weights, -1);
+  row.node = first.data().sampleNodes[static_cast<std::size_t>(touch.sample)];
   row.point = first.sampleAt(touch.sample);
   row.normal = touch.normal;
   row.distance = touch.distance;

@@ -4,12 +4,11 @@
 
 namespace tetskin::contact_detail {
 
-void ContactNodes::take(ContactBody& body, int tet, const btScalar* weightsOf, btScalar sign) {
+void ContactNodes::take(ContactBody& body, const Tet& tet, const btScalar* nodeWeights, btScalar sign) {
   of = &body;
-  const Tet& n = body.data().tets[static_cast<std::size_t>(tet)];
   for (int k = 0; k < 4; ++k) {
-    nodes[k] = n[static_cast<std::size_t>(k)];
-    weights[k] = sign * weightsOf[k];
+    nodes[k] = tet[static_cast<std::size_t>(k)];
+    weights[k] = sign * nodeWeights[k];
     numbers[k] = body.movable(nodes[k]) ? body.body->m_nodes[nodes[k]].index : -1;
   }
 }

@@ -23,7 +23,8 @@ struct ContactNodes {
   /// In Bullet's vectors; below 0 for nodes that nothing moves.
   int numbers[4] = {};
 
-  void take(ContactBody& body, int tet, const btScalar* weightsOf, btScalar sign);
+  /// nodeWeights  of the four nodes, by which the contact acts
+  void take(ContactBody& body, const Tet& tet, const btScalar* nodeWeights, btScalar sign);
   /// Sum of weights squared over masses.
   btScalar inverseMass() const;
 };

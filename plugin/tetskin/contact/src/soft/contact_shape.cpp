@@ -91,21 +91,25 @@ std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samp
   return tets;
 }
 
-CarriedSample carriedBy(const TetMesh& cage, int tet, const Eigen::Vector3d& point) {
-  CarriedSample sample;
-  sample.rest = toBullet(point);
-  const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
+void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, ShapeData& data) {
+  EmbeddedPoint<btScalar>& point = data.samples.emplace_back();
+  point.tet = tet;
+  point.nodes = cage.tets[static_cast<std::size_t>(tet)];
+  const TetCorners corners = cornersOf(cage, point.nodes);
   const BarycentricMap map(corners);
-  const Eigen::Vector4d weights = map(point);
-  const Eigen::Vector4d acting = map(closestPointInTet(point, corners, weights)).cwiseMax(0.0);
-  int main = 0;
-  acting.maxCoeff(&main);
+  const Eigen::Vector4d weights = map(rest);
+  const Eigen::Vector4d clamped = map(closestPointInTet(rest, corners, weights)).cwiseMax(0.0);
+  point.inside = weights.minCoeff() >= 0.0;
   for (int k = 0; k < 4; ++k) {
-    sample.weights[k] = static_cast<btScalar>(weights[k]);
-    sample.acting[k] = static_cast<btScalar>(acting[k] / acting.sum());
+    const auto i = static_cast<std::size_t>(k);
+    point.weights[i] = static_cast<btScalar>(weights[k]);
+    point.clamped[i] = static_cast<btScalar>(clamped[k] / clamped.sum());
+    data.weights[i].push_back(point.weights[i]);
   }
-  sample.mainNode = cage.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(main)];
-  return sample;
+  int main = 0;
+  clamped.maxCoeff(&main);
+  data.sampleNodes.push_back(point.nodes[static_cast<std::size_t>(main)]);
+  data.sampleRest.push_back(toBullet(rest));
 }
 
 /// Samples tet by tet; those of flat tets, which nothing is known of, are left out.
@@ -118,9 +122,8 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     if (isFlat(cornersOf(cage, cage.tets[static_cast<std::size_t>(tets[s])]))) continue;
     const int place = static_cast<int>(data.samples.size());
     if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], place, place});
-    data.samples.push_back(carriedBy(cage, tets[s], samples[s].point));
+    appendSample(cage, tets[s], samples[s].point, data);
     data.runs.back().last = place + 1;
-    for (int k = 0; k < 4; ++k) data.weights[k].push_back(data.samples.back().weights[k]);
   }
 }
 

@@ -96,7 +96,7 @@ void PairSearch::offer(int tet, int sample, int k) {
   place.rest = restPoint(data, tet, place.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
-    if ((place.rest - data.samples[static_cast<std::size_t>(sample)].rest).length2() < own * own) return;
+    if ((place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length2() < own * own) return;
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
@@ -111,11 +111,11 @@ void PairSearch::offer(int tet, int sample, int k) {
 }
 
 /// By which the sample has moved in the body's rest space.
-btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const {
-  const ShapeData &of = now_.first->data(), &in = now_.second->data();
-  const int tet = of.runs[static_cast<std::size_t>(run)].tet;
-  const btVector3 velocity = now_.first->velocityAt(tet, of.samples[static_cast<std::size_t>(sample)].weights) -
-                             now_.second->velocityAt(place.tet, place.weights);
+btVector3 PairSearch::restMotion(int sample, const Place& place) const {
+  const ShapeData& in = now_.second->data();
+  const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
+  const btVector3 velocity =
+      point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(place.tet, place.weights);
   const DeformedTet& deformed = now_.second->deformed(place.tet);
   const Tet& n = in.tets[static_cast<std::size_t>(place.tet)];
   btVector3 motion(0, 0, 0);
@@ -129,7 +129,7 @@ btVector3 PairSearch::restMotion(int sample, int run, const Place& place) const 
 void PairSearch::touch(int sample, int run, const Place& place) {
   const ShapeData& in = now_.second->data();
   const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
-  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, run, place);
+  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, place);
   SideDistance found;
   if (!findSide(in.grid, place.rest, place.nearest, motion, before, found)) return;
   const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
@@ -145,7 +145,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   made.tet = place.tet;
   std::copy(place.weights, place.weights + 4, made.weights);
   made.normal = normal / length;
-  keepDeepest(made, now_.first->data().samples[static_cast<std::size_t>(sample)].mainNode);
+  keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {

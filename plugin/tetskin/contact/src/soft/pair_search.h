@@ -57,7 +57,7 @@ class PairSearch {
   void testTet(int tet, const SampleRun& run, const ContactBox& around);
   void offer(int tet, int sample, int k);
   void touch(int sample, int run, const Place& place);
-  btVector3 restMotion(int sample, int run, const Place& place) const;
+  btVector3 restMotion(int sample, const Place& place) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};

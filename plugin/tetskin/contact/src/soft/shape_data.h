@@ -7,6 +7,7 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/box_tree.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
+#include <tetskin/core/embedded_point.h>
 
 #include <array>
 #include <cstdint>
@@ -18,14 +19,6 @@ namespace tetskin::contact_detail {
 struct SampleRun {
   int tet = 0;
   int first = 0, last = 0;
-};
-
-/// A point of the surface.
-struct CarriedSample {
-  btVector3 rest{0, 0, 0};
-  btScalar weights[4] = {};  ///< of its tet's nodes: where it is; below 0 outside of the cage
-  btScalar acting[4] = {};   ///< the same of the closest point of the tet, none below 0: what impulses act by
-  int mainNode = 0;          ///< the node of the largest of these
 };
 
 /// Which sixty-fourths of a tet, by its barycentric weights, belong to the part of the surface that the tet carries;
@@ -52,9 +45,12 @@ struct ShapeData {
   std::vector<btVector3> middles;  ///< of the tets
   btScalar edge = 0;               ///< mean length, of the tets'
   DistanceGrid grid;
-  std::vector<SampleRun> runs;  ///< ascending by tet
-  std::vector<CarriedSample> samples;
-  std::vector<btScalar> weights[4];          ///< of the samples, once more: one after the other
+  std::vector<SampleRun> runs;                   ///< ascending by tet
+  std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
+  // Of the samples, what is read of many of them, one after the other.
+  std::vector<btVector3> sampleRest;
+  std::vector<int> sampleNodes;              ///< of the largest clamped weight
+  std::vector<btScalar> weights[4];          ///< once more
   std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
   std::vector<FilledPart> filled;            ///< by tet
   std::vector<std::vector<int>> otherParts;  ///< by run: see tetsOfOtherParts

@@ -4,6 +4,7 @@
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/embedding/mapped_vertices.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
@@ -13,6 +14,8 @@
 #include <tetskin/core/src/search/tet_search.h>
 #include <tetskin/core/src/search/tolerances.h>
 
+#include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cstdio>
 
@@ -143,6 +146,13 @@ Result<Embedding> timed(EmbedReport* report, Make&& make) {
   return made;
 }
 
+/// Of planes of three weights; the fourth is what they leave of 1.
+template <class Scalar>
+std::array<Scalar, 4> weightsAt(const std::array<std::vector<float>, 3>& planes, std::size_t index) {
+  const Scalar a = planes[0][index], b = planes[1][index], c = planes[2][index];
+  return {a, b, c, 1 - a - b - c};
+}
+
 }  // namespace
 
 bool EmbedReport::unitsDiffer() const {
@@ -224,13 +234,35 @@ std::vector<VertexBinding> Embedding::bindings() const {
   const EmbeddingData& d = *data_;
   for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
     for (std::uint32_t slot = d.runs[r].firstSlot; slot < d.runs[r + 1].firstSlot; ++slot) {
-      const float b0 = d.weights[0][slot], b1 = d.weights[1][slot], b2 = d.weights[2][slot];
-      result[d.slotVertices[slot]] = {
-          static_cast<int>(d.runs[r].tet), {b0, b1, b2, 1.0f - b0 - b1 - b2}, slot < d.insideCount};
+      result[d.slotVertices[slot]] = {static_cast<int>(d.runs[r].tet), weightsAt<float>(d.weights, slot),
+                                      slot < d.insideCount};
     }
   }
   return result;
 }
+
+template <class Scalar>
+EmbeddedPoint<Scalar> Embedding::at(std::size_t vertex) const {
+  const EmbeddingData& d = *data_;
+  assert(vertex < d.vertexCount());
+  const std::uint32_t slot = d.vertexSlots[vertex];
+  const auto next = std::upper_bound(d.runs.begin(), d.runs.end(), slot,
+                                     [](std::uint32_t s, const EmbeddingData::Run& run) { return s < run.firstSlot; });
+  const EmbeddingData::Run& run = *std::prev(next);
+  EmbeddedPoint<Scalar> point;
+  point.tet = static_cast<int>(run.tet);
+  std::copy_n(run.nodes, 4, point.nodes.begin());
+  point.inside = slot < d.insideCount;
+  point.weights = weightsAt<Scalar>(d.weights, slot);
+  point.clamped = point.inside ? point.weights : weightsAt<Scalar>(d.closestWeights, slot - d.insideCount);
+  for (Scalar& weight : point.clamped) weight = std::max(weight, Scalar(0));  // below it by rounding alone
+  return point;
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) \
+  template TETSKIN_CORE_API EmbeddedPoint<Scalar> Embedding::at<Scalar>(std::size_t) const;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
 
 Result<Embedding> embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                         EmbedReport* report) {

@@ -3,7 +3,6 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/src/points/corners.h>
 
 #include <Eigen/LU>
 #include <algorithm>

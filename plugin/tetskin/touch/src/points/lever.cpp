@@ -55,17 +55,17 @@ void addWeights(const std::array<int, 4>& nodes, const std::array<btScalar, 4>& 
   }
 }
 
-void addCorner(const Corner& corner, double share, const btSoftBody& body, Lever& lever) {
-  if (!corner.outside) return addWeights(corner.nodes, corner.weights, share, lever);
+void addCorner(const EmbeddedPoint<btScalar>& corner, double share, const btSoftBody& body, Lever& lever) {
+  if (corner.inside) return addWeights(corner.nodes, corner.weights, share, lever);
   std::vector<Vector3d> places;
   Vector3d beyond = Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k) {
     places.push_back(placeOf(body, corner.nodes[k]));
-    beyond += static_cast<double>(corner.weights[k] - corner.closest[k]) * (places[k] - places[0]);
+    beyond += static_cast<double>(corner.weights[k] - corner.clamped[k]) * (places[k] - places[0]);
   }
   const Turning turning(std::move(places));
   if (!turning.possible) return addWeights(corner.nodes, corner.weights, share, lever);
-  addWeights(corner.nodes, corner.closest, share, lever);
+  addWeights(corner.nodes, corner.clamped, share, lever);
   for (std::size_t k = 0; k < 4; ++k) {
     nodeIn(lever, corner.nodes[k]).linear -= share * crossMatrix(beyond) * turning.of(k);
   }
@@ -86,6 +86,13 @@ Lever leverOf(const PointData& point, const btSoftBody& body) {
   const Turning turning(placesOf(lever, body));
   for (std::size_t k = 0; k < lever.size(); ++k) lever[k].angular = turning.of(k);
   return lever;
+}
+
+btVector3 linearPosition(const PointData& point, const btSoftBody& body) {
+  const btVector3 first = point.corners[0].position(positionsIn(body));
+  btVector3 sum(0, 0, 0);
+  for (std::size_t c = 1; c < 3; ++c) sum += point.shares[c] * (point.corners[c].position(positionsIn(body)) - first);
+  return first + sum;
 }
 
 std::vector<Vector3d> placesOf(const Lever& lever, const btSoftBody& body) {

@@ -24,6 +24,9 @@ using Lever = std::vector<LeverNode>;  ///< 4 to 12, each node once
 /// and a couple, as weights that extrapolate would throw single nodes about.
 Lever leverOf(const PointData& point, const btSoftBody& body);
 
+/// Of a body's point, now, by its corners' weights: where it is acted at.
+btVector3 linearPosition(const PointData& point, const btSoftBody& body);
+
 /// Of the nodes now, with what contacts have added for this step.
 /// split  also of that by which they push apart what is too near
 Eigen::Vector3d velocityOf(const Lever& lever, const btSoftBody& body, bool split = true);

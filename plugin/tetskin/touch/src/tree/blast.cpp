@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/src/points/corners.h>
 #include <tetskin/touch/src/tree/blast.h>
 
 #include <cassert>
@@ -13,23 +12,23 @@ using Eigen::Vector3d;
 
 /// A vertex in reach, and its part.
 struct Reached {
-  std::size_t vertex = 0;
+  EmbeddedPoint<btScalar> vertex;
   Vector3d place, push;
 };
 
 std::vector<Reached> reachedBy(const SurfaceBlast& blast, const Embedding& embedding, const std::vector<double>& areas,
                                const btSoftBody& body) {
   std::vector<Reached> reached;
-  const NodeAt nodeAt = [&](int node) { return body.m_nodes[node].m_x; };
   const Vector3d centre = toEigen(blast.centre);
   const auto radius = static_cast<double>(blast.radius);
   double sum = 0.0;
   for (std::size_t v = 0; v < areas.size(); ++v) {
-    const Vector3d place = toEigen(linearPosition(cornerOf(embedding, v), nodeAt));
+    const auto vertex = embedding.at<btScalar>(v);
+    const Vector3d place = toEigen(vertex.position(positionsIn(body)));
     const Vector3d away = place - centre;
     const double distance = away.norm(), part = areas[v] * (1.0 - distance / radius);
     if (!(part > 0.0) || !(distance > 0.0)) continue;
-    reached.push_back({v, place, part / distance * away});
+    reached.push_back({vertex, place, part / distance * away});
     sum += part;
   }
   for (Reached& of : reached) of.push *= static_cast<double>(blast.strength) / sum;
@@ -63,7 +62,7 @@ SurfacePush pushesOf(const SurfaceBlast& blast, const Embedding& embedding, cons
   std::vector<Vector3d> ofNodes(static_cast<std::size_t>(body.m_nodes.size()), Vector3d::Zero());
   for (const Reached& of : reachedBy(blast, embedding, areas, body)) {
     PointData point;
-    point.corners[0] = cornerOf(embedding, of.vertex);
+    point.corners[0] = of.vertex;
     for (const LeverNode& node : leverOf(point, body)) {
       ofNodes[static_cast<std::size_t>(node.node)] += node.linear.transpose() * of.push;
     }
