@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/rigid/contact_patches.h>
+#include <tetskin/core/src/bvh/bvh.h>
 #include <tetskin/core/src/embedding/embedding_data.h>
+#include <tetskin/core/src/mesh/triangle_samples.h>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,7 @@ namespace tetskin {
 namespace {
 
 /// Patches in a cluster: enough that passing over it pays, few enough that it is small.
-constexpr std::size_t kPatchesPerCluster = 12;
+constexpr int kPatchesPerCluster = 12;
 
 /// A point with its weights, of the nodes of its patch, while patches are collected.
 struct CarriedPoint {
@@ -27,7 +28,7 @@ struct CarriedPoint {
 struct LoosePatch {
   std::vector<int> nodes;
   std::vector<CarriedPoint> points;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< rest space
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< rest space
 };
 
 std::array<float, 4> withFourth(const std::array<std::vector<float>, 3>& planes, std::size_t at) {
@@ -68,9 +69,9 @@ std::vector<LoosePatch> vertexPatches(const EmbeddingData& data, const TriangleM
     patch.nodes.assign(run.nodes, run.nodes + 4);
     for (std::size_t slot = run.firstSlot; slot < end; ++slot) {
       patch.points.push_back(carriedVertex(data, slot));
-      patch.centre += mesh.positions[data.slotVertices[slot]];
+      patch.centroid += mesh.positions[data.slotVertices[slot]];
     }
-    patch.centre /= static_cast<double>(end - run.firstSlot);
+    patch.centroid /= static_cast<double>(end - run.firstSlot);
     dropRepeated(patch.points);
     patches.push_back(std::move(patch));
   }
@@ -125,46 +126,33 @@ CarriedPoint pointWithin(const CarriedTriangle& triangle, const std::array<btSca
 
 /// At the corners of the small triangles into which each edge's `steps` cut it, but not at its own.
 void appendSamples(const CarriedTriangle& triangle, int steps, std::vector<CarriedPoint>& points) {
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; i + j <= steps; ++j) {
-      const int k = steps - i - j;
-      if (std::max({i, j, k}) == steps) continue;
-      const auto share = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
-      points.push_back(pointWithin(triangle, {share(i), share(j), share(k)}));
-    }
-  }
+  const auto weight = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
+  forEachSample(steps, [&](int i, int j, int k) {
+    if (std::max({i, j, k}) < steps) points.push_back(pointWithin(triangle, {weight(i), weight(j), weight(k)}));
+  });
 }
 
 void appendTrianglePatches(const EmbeddingData& data, const TriangleMesh& mesh, double spacing,
                            std::vector<LoosePatch>& patches) {
   const std::vector<std::uint32_t> runs = runsOfVertices(data);
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
+    const double steps = edgeDivisions(mesh, t, spacing);
     if (!(steps > 1.0)) continue;
     const CarriedTriangle triangle = carriedTriangle(data, runs, t);
     LoosePatch patch;
     patch.nodes = triangle.nodes;
-    for (const int v : t) patch.centre += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
+    for (const int v : t) patch.centroid += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
     appendSamples(triangle, static_cast<int>(steps), patch.points);
     patches.push_back(std::move(patch));
   }
 }
 
-/// Halves the patches along the longest side of their centres' box until few are left; the ends of the clusters.
-void splitClusters(std::vector<LoosePatch>& patches, std::size_t first, std::size_t end,
-                   std::vector<std::size_t>& ends) {
-  if (end - first <= kPatchesPerCluster) return ends.push_back(end);
-  Box3 box;
-  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centre);
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const std::size_t middle = (first + end) / 2;
-  const auto at = [&](std::size_t p) { return patches.begin() + static_cast<std::ptrdiff_t>(p); };
-  // Sorted, not nth_element: the same everywhere, whoever's library it is.
-  std::stable_sort(at(first), at(end),
-                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centre[axis] < b.centre[axis]; });
-  splitClusters(patches, first, middle, ends);
-  splitClusters(patches, middle, end, ends);
+/// Neighbouring patches are in one leaf.
+Bvh clustersOf(const std::vector<LoosePatch>& patches) {
+  Bvh::Centroids<double> centroids;
+  centroids.reserve(patches.size());
+  for (const LoosePatch& patch : patches) centroids.push_back(patch.centroid);
+  return {centroids, kPatchesPerCluster};
 }
 
 btScalar spreadOf(const LoosePatch& patch) {
@@ -215,7 +203,7 @@ void closeCluster(std::size_t firstPatch, ContactPatches& to) {
 double countOfSamples(const TriangleMesh& mesh, double spacing) {
   double count = 0.0;
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
+    const double steps = edgeDivisions(mesh, t, spacing);
     if (steps > 1.0) count += (steps + 1.0) * (steps + 2.0) / 2.0;
   }
   return count;
@@ -225,14 +213,12 @@ ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh
   assert(embedding.vertexCount() == mesh.vertexCount() && spacing >= 0.0);
   std::vector<LoosePatch> loose = vertexPatches(embedding.data(), mesh);
   if (spacing > 0.0) appendTrianglePatches(embedding.data(), mesh, spacing, loose);
-  std::vector<std::size_t> ends;
-  if (!loose.empty()) splitClusters(loose, 0, loose.size(), ends);
+  const Bvh clusters = clustersOf(loose);
   ContactPatches result;
-  std::size_t first = 0;
-  for (const std::size_t end : ends) {
-    for (std::size_t p = first; p < end; ++p) append(loose[p], result);
-    closeCluster(first, result);
-    first = end;
+  for (const Bvh::Node& node : clusters.nodes()) {
+    if (!node.isLeaf()) continue;
+    for (int k = node.first; k < node.last; ++k) append(loose[static_cast<std::size_t>(clusters.item(k))], result);
+    closeCluster(static_cast<std::size_t>(node.first), result);
   }
   return result;
 }
