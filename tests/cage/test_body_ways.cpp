@@ -23,11 +23,9 @@ using cage_detail::prepareSurface;
 using cage_detail::SeenTriangle;
 using cage_detail::Surface;
 using cage_detail::TetMaterial;
-using cage_detail::TriangleTree;
 using Eigen::Vector3d;
 
 constexpr std::size_t kWays = 500;
-constexpr double kSlack = 1e-4;
 
 struct Way {
   Vector3d from, along;
@@ -92,51 +90,6 @@ TEST(BodyWays, FindWhatATestOfAllTrianglesFinds) {
       met += exit >= 0 ? 1 : 0;
     }
     EXPECT_GT(met, kWays / 10);
-  }
-}
-
-/// What made cages of few tets slow: every triangle of a tet sends out ways, and each was tested against all.
-TEST(TriangleTree, ShowsAWayFewTriangles) {
-  for (const int rings : {50, 100, 200}) {
-    const Surface surface = prepareSurface(unitSphere(rings));
-    const std::vector<std::uint32_t> all = allTriangles(surface);
-    const TriangleTree tree(surface, all.data(), all.size(), kSlack);
-    std::size_t shown = 0;
-    for (const Way& way : someWays()) {
-      tree.along(way.from, way.along, [&](std::size_t, double&) { ++shown; });
-    }
-    EXPECT_GT(all.size(), static_cast<std::size_t>(rings * rings));
-    EXPECT_LT(shown, 40 * kWays) << "of " << all.size() << " triangles";
-  }
-}
-
-TEST(TriangleTree, ShowsAllThatAWayCrosses) {
-  const Surface surface = prepareSurface(figurineMesh(60));
-  const std::vector<std::uint32_t> all = allTriangles(surface);
-  const TriangleTree tree(surface, all.data(), all.size(), kSlack);
-  for (const Way& way : someWays()) {
-    std::vector<char> shown(all.size(), 0);
-    tree.along(way.from, way.along, [&](std::size_t k, double&) { ++shown[k]; });
-    for (std::size_t t = 0; t < all.size(); ++t) {
-      EXPECT_LE(shown[t], 1);
-      EXPECT_TRUE(shown[t] == 1 || !crossingOf(surface, t, way).within());
-    }
-  }
-}
-
-/// Such a way runs within planes of boxes: no share of it tells where it meets those.
-TEST(TriangleTree, ShowsWhatAWayAlongAnAxisCrosses) {
-  const Surface surface = prepareSurface(joined(unitSphere(30), boxMesh({1, 1, 1})));
-  const std::vector<std::uint32_t> all = allTriangles(surface);
-  const TriangleTree tree(surface, all.data(), all.size(), kSlack);
-  for (const double offset : {0.0, 0.13, 0.5, 0.6}) {
-    const Way way{{offset, 0.21, -2.0}, {0.0, 0.0, 4.0}};
-    std::size_t crossed = 0, expected = 0;
-    tree.along(way.from, way.along,
-               [&](std::size_t k, double&) { crossed += crossingOf(surface, k, way).within() ? 1 : 0; });
-    for (std::size_t t = 0; t < all.size(); ++t) expected += crossingOf(surface, t, way).within() ? 1 : 0;
-    EXPECT_EQ(crossed, expected);
-    EXPECT_GE(crossed, 2u);
   }
 }
 

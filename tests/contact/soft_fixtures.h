@@ -5,9 +5,9 @@
 #include "../bullet/deformable_test.h"
 
 #include <tetskin/contact/soft_contacts.h>
-#include <tetskin/contact/src/soft/triangle_tree.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/mesh/triangle_bvh.h>
 #include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <gtest/gtest.h>
@@ -108,8 +108,7 @@ inline btVector3 centreOf(const btSoftBody& body) {
 /// both are `mesh` in `cage`.
 inline double deepest(const btSoftBody& body, const TetMesh& cage, const TriangleMesh& mesh, const btSoftBody& other,
                       const TetMesh& otherCage, const TriangleMesh& otherMesh) {
-  using contact_detail::TriangleTree;
-  const TriangleTree surface(otherMesh);
+  const TriangleBvh surface(otherMesh);
   const WindingTree solid(otherMesh);
   const std::vector<VertexBinding> bindings = embed(cage, viewOf(mesh.positions)).value().bindings();
   double depth = 0.0;

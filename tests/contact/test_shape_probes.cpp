@@ -15,9 +15,7 @@ double bruteDistance(const TriangleMesh& mesh, const btVector3& point) {
   double least = HUGE_VAL;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d p = toEigen(point);
-    least = std::min(
-        least,
-        (closestPointOnTriangle(p, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]) - p).norm());
+    least = std::min(least, (closestPointOnTriangle(p, cornersOf(mesh, t)).point - p).norm());
   }
   return least;
 }

@@ -19,28 +19,11 @@ std::vector<int> all(const TriangleMesh& mesh) {
   return triangles;
 }
 
-TEST(TriangleTree, FindsTheNearestPointAsTestingAllTrianglesDoes) {
-  const TriangleMesh mesh = sphere(12, 0.4, Eigen::Vector3d(0.5, 0.5, 0.5));
-  const TriangleTree tree(mesh);
-  for (const Eigen::Vector3d& p : randomPoints(300, Box3(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(2, 2, 2)), 3)) {
-    double least = HUGE_VAL;
-    for (const auto& [a, b, c] : mesh.triangles) {
-      least = std::min(
-          least,
-          (p - closestPointOnTriangle(p, mesh.positions[a], mesh.positions[b], mesh.positions[c])).squaredNorm());
-    }
-    const NearestPoint found = tree.nearest(p);
-    EXPECT_EQ(found.squaredDistance, least);
-    EXPECT_NEAR((found.point - p).squaredNorm(), least, 1e-12);
-    EXPECT_EQ(tree.nearest(p, least).triangle, -1) << "nothing is nearer than the nearest";
-  }
-}
-
 TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
   const Ball& model = ball();
   const DistanceGrid& grid = model.shape->data().grid;
   const Eigen::Vector3d centre(0.5, 0.5, 0.5);
-  const TriangleTree tree(model.mesh);
+  const TriangleBvh tree(model.mesh);
   const WindingTree solid(model.mesh);
   for (const Eigen::Vector3d& p : randomPoints(500, around(model.cage, 1.0), 5)) {
     GridDistance at;
@@ -67,7 +50,7 @@ TEST(SurfaceSamples, AreAboutAsManyAsWishedForAndOnTheSurface) {
     const std::vector<SurfaceSample> samples = sampleSurface(mesh, all(mesh), 1000);
     EXPECT_GT(samples.size(), 660u) << rings;
     EXPECT_LT(samples.size(), 1500u) << rings;
-    const TriangleTree tree(mesh);
+    const TriangleBvh tree(mesh);
     for (const SurfaceSample& s : samples) EXPECT_LT(tree.nearest(s.point).squaredDistance, 1e-20);
   }
 }

@@ -101,18 +101,6 @@ TEST(TetGeometry, DistanceIsZeroInsideAndOnTheSurface) {
   }
 }
 
-TEST(TetGeometry, ClosestPointOnATriangleCoversItsSevenRegions) {
-  const Eigen::Vector3d a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-  const auto closest = [&](double x, double y) { return closestPointOnTriangle(Eigen::Vector3d(x, y, 2), a, b, c); };
-  EXPECT_EQ(closest(-1, -1), a);
-  EXPECT_EQ(closest(3, -1), b);
-  EXPECT_EQ(closest(-1, 3), c);
-  EXPECT_EQ(closest(0.25, -1), Eigen::Vector3d(0.25, 0, 0));
-  EXPECT_EQ(closest(-1, 0.25), Eigen::Vector3d(0, 0.25, 0));
-  EXPECT_LT((closest(1, 1) - Eigen::Vector3d(0.5, 0.5, 0)).norm(), 1e-15);
-  EXPECT_LT((closest(0.2, 0.3) - Eigen::Vector3d(0.2, 0.3, 0)).norm(), 1e-15);
-}
-
 TEST(ClosestPointInTet, IsAPointOfTheTetFromHoweverFar) {
   // Found by fuzzing: from so far away, nothing was left of a face but a division of zero by zero.
   const TetCorners p = {Eigen::Vector3d(2e-12, 1.5e-12, 1.75e-12), Eigen::Vector3d(1.5e-12, 1.5e-12, 2e-12),

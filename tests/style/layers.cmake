@@ -1,6 +1,6 @@
 # Includes go one way: from a library to core, from bullet to elastic, contact, touch and reduced to bullet, and from a stage to
 # those before it.
-set(core_stages base mesh kernels search embedding skinning normals)
+set(core_stages base bvh mesh kernels search embedding skinning normals)
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets)
 set(elastic_stages kernels tets matrix modes calibration dynamics)

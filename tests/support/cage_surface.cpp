@@ -69,7 +69,7 @@ BoundaryFollower::BoundaryFollower(const TetMesh& cage, const Points& vertices) 
     double squared = std::numeric_limits<double>::infinity();
     for (const auto& face : faces) {
       const Eigen::Vector3d &a = cage.nodes[face[0]], &b = cage.nodes[face[1]], &c = cage.nodes[face[2]];
-      const Eigen::Vector3d q = closestPointOnTriangle(v, a, b, c);
+      const Eigen::Vector3d q = closestPointOnTriangle(v, a, b, c).point;
       if ((v - q).squaredNorm() >= squared) continue;
       squared = (v - q).squaredNorm();
       const Eigen::Vector3d normal = (b - a).cross(c - a);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "touch_test.h"
 
-#include <tetskin/touch/src/tree/ray_tree.h>
+#include <tetskin/touch/src/tree/ray_triangle.h>
 
 #include <random>
 
@@ -231,18 +231,20 @@ TEST(SurfaceTree, ThatWasMovedFromIsEmpty) {
   EXPECT_NE(empty.applyForce(of.body(), {btVector3(0, 0, 0), 1, 1}).status, TouchStatus::Ok);
 }
 
-TEST(RayTree, FindsTheOnlyTriangleAndSkipsFlatOnes) {
-  TriangleMesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}};
-  mesh.triangles = {{0, 3, 1}, {0, 1, 2}};
-  touch_detail::RayTree tree(mesh, {0, 1, 2, 3});
-  const std::vector<Eigen::Matrix<btScalar, 3, 1>> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {btScalar(0.5), 0, 0}};
-  tree.fit(viewOf(points));
-  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, -2}}, {}).triangle, 1);
-  EXPECT_NEAR(tree.cast({{0.2, 0.3, 1}, {0, 0, -2}}, {}).at, 0.5, 1e-12);
-  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, -0.9}}, {}).triangle, -1);
-  EXPECT_EQ(tree.cast({{0.2, 0.3, 1}, {0, 0, 2}}, {}).triangle, -1);
-  EXPECT_EQ(tree.cast({{0.25, 0, 1}, {0, 0, -2}}, {}).triangle, 1);  // on its edge
+TEST(RayTriangle, IsMetFromBothSidesWithinTheRayUnlessItIsFlat) {
+  const TriangleCorners triangle = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)};
+  const TriangleCorners flat = {triangle[0], Eigen::Vector3d(0.5, 0, 0), triangle[1]};
+  const auto meetsIt = [](const touch_detail::Ray& ray, const TriangleCorners& corners) {
+    touch_detail::RayHit hit;
+    return touch_detail::meets(ray, corners, hit) ? hit.at : -1.0;
+  };
+  EXPECT_NEAR(meetsIt({{0.2, 0.3, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12);
+  EXPECT_NEAR(meetsIt({{0.2, 0.3, -1}, {0, 0, 2}}, triangle), 0.5, 1e-12);
+  EXPECT_EQ(meetsIt({{0.2, 0.3, 1}, {0, 0, -0.9}}, triangle), -1.0);
+  EXPECT_EQ(meetsIt({{0.2, 0.3, 1}, {0, 0, 2}}, triangle), -1.0);
+  EXPECT_EQ(meetsIt({{0.8, 0.3, 1}, {0, 0, -2}}, triangle), -1.0);
+  EXPECT_NEAR(meetsIt({{0.25, 0, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12) << "on its edge";
+  EXPECT_EQ(meetsIt({{0.25, 0, 1}, {0, 0, -2}}, flat), -1.0);
 }
 
 }  // namespace

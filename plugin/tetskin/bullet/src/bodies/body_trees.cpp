@@ -2,18 +2,23 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyInternals.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/core/src/bvh/bvh.h>
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace tetskin {
 namespace {
 
-/// A leaf to be, and where it belongs.
-struct Leaf {
-  btDbvtNode* node;
-  btVector3 centre;
+/// The leaves of a tree to be, and where they belong.
+struct Leaves {
+  std::vector<btDbvtNode*> nodes;
+  Bvh::Centroids<btScalar> centroids;
+
+  explicit Leaves(int count) {
+    nodes.reserve(static_cast<std::size_t>(count));
+    centroids.reserve(static_cast<std::size_t>(count));
+  }
+  btDbvtNode* add(void* data, const btVector3& centroid);
 };
 
 /// As Bullet makes them, which deletes them.
@@ -21,39 +26,33 @@ btDbvtNode* newNode() {
   return new (btAlignedAlloc(sizeof(btDbvtNode), 16)) btDbvtNode();
 }
 
-Leaf makeLeaf(void* data, const btVector3& centre) {
+btDbvtNode* Leaves::add(void* data, const btVector3& centroid) {
   btDbvtNode* node = newNode();
   node->parent = nullptr;
   node->data = data;
   node->childs[1] = nullptr;  // which is how Bullet tells leaves
-  // Nodes of an exploded body cannot be sorted; anywhere will do for them.
-  const bool finite = std::isfinite(centre.x()) && std::isfinite(centre.y()) && std::isfinite(centre.z());
-  return {node, finite ? centre : btVector3(0, 0, 0)};
+  nodes.push_back(node);
+  centroids.emplace_back(centroid.x(), centroid.y(), centroid.z());
+  return node;
 }
 
-/// The tree of the leaves [first, last), of which there is at least one. Boxes are for the caller to compute.
-btDbvtNode* join(Leaf* first, Leaf* last) {
-  if (last - first == 1) return first->node;
-  btVector3 lowest = first->centre, highest = first->centre;
-  for (const Leaf* leaf = first; leaf != last; ++leaf) {
-    lowest.setMin(leaf->centre);
-    highest.setMax(leaf->centre);
-  }
-  const int axis = (highest - lowest).maxAxis();
-  Leaf* middle = first + (last - first) / 2;
-  std::nth_element(first, middle, last, [&](const Leaf& a, const Leaf& b) { return a.centre[axis] < b.centre[axis]; });
+/// The tree of a hierarchy with one item in a leaf, as Bullet links it. Boxes are for the caller to compute.
+btDbvtNode* linkNodes(const Bvh& bvh, const std::vector<btDbvtNode*>& leaves, int index = 0) {
+  const Bvh::Node& from = bvh.nodes()[static_cast<std::size_t>(index)];
+  if (from.isLeaf()) return leaves[static_cast<std::size_t>(bvh.item(from.first))];
   btDbvtNode* node = newNode();
   node->parent = nullptr;
-  node->childs[0] = join(first, middle);
-  node->childs[1] = join(middle, last);
+  node->childs[0] = linkNodes(bvh, leaves, index + 1);
+  node->childs[1] = linkNodes(bvh, leaves, from.right);
   node->childs[0]->parent = node->childs[1]->parent = node;
   return node;
 }
 
-void setTree(btDbvt& tree, std::vector<Leaf>& leaves) {
+void setTree(btDbvt& tree, const Leaves& leaves) {
   tree.clear();
-  tree.m_root = leaves.empty() ? nullptr : join(leaves.data(), leaves.data() + leaves.size());
-  tree.m_leaves = static_cast<int>(leaves.size());
+  const Bvh bvh(leaves.centroids, 1);
+  tree.m_root = bvh.empty() ? nullptr : linkNodes(bvh, leaves.nodes);
+  tree.m_leaves = static_cast<int>(leaves.nodes.size());
 }
 
 /// By `new`: btSoftBody deletes it so.
@@ -66,31 +65,27 @@ btDbvntNode* copyWithNormals(const btDbvtNode* node) {
   return copy;
 }
 
-void setFaceTree(btSoftBody& body, std::vector<Leaf>& leaves) {
+void setFaceTree(btSoftBody& body, const Leaves& leaves) {
   setTree(body.m_fdbvt, leaves);
   delete body.m_fdbvnt;
   body.m_fdbvnt = copyWithNormals(body.m_fdbvt.m_root);
 }
 
 void buildNodeTree(btSoftBody& body) {
-  std::vector<Leaf> leaves;
-  leaves.reserve(static_cast<std::size_t>(body.m_nodes.size()));
+  Leaves leaves(body.m_nodes.size());
   for (int i = 0; i < body.m_nodes.size(); ++i) {
     btSoftBody::Node& node = body.m_nodes[i];
-    leaves.push_back(makeLeaf(&node, node.m_x));
-    node.m_leaf = leaves.back().node;
+    node.m_leaf = leaves.add(&node, node.m_x);
   }
   setTree(body.m_ndbvt, leaves);
   body.updateNodeTree(false, false);
 }
 
 void buildFaceTree(btSoftBody& body) {
-  std::vector<Leaf> leaves;
-  leaves.reserve(static_cast<std::size_t>(body.m_faces.size()));
+  Leaves leaves(body.m_faces.size());
   for (int i = 0; i < body.m_faces.size(); ++i) {
     btSoftBody::Face& face = body.m_faces[i];
-    leaves.push_back(makeLeaf(&face, (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3));
-    face.m_leaf = leaves.back().node;
+    face.m_leaf = leaves.add(&face, (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3);
   }
   setFaceTree(body, leaves);
   body.updateFaceTree(false, false);
@@ -187,11 +182,12 @@ void BodyWithTrees::makeTrees(bool faces) {
 
 void BodyWithTrees::renewFaceTree() {
   if (kind_ == Kind::Faces) return buildFaceTree(*this);
-  std::vector<Leaf> leaves = {makeLeaf(nowhere(), btVector3(0, 0, 0))};
+  Leaves leaves(1);
+  btDbvtNode* const leaf = leaves.add(nowhere(), btVector3(0, 0, 0));
   // In the classic worlds Bullet moves the leaf of each face in which the face no longer fits: all fit into this one.
   const btVector3 everywhere(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
-  leaves[0].node->volume = btDbvtVolume::FromMM(-everywhere, everywhere);
-  for (int i = 0; i < m_faces.size(); ++i) m_faces[i].m_leaf = leaves[0].node;
+  leaf->volume = btDbvtVolume::FromMM(-everywhere, everywhere);
+  for (int i = 0; i < m_faces.size(); ++i) m_faces[i].m_leaf = leaf;
   setFaceTree(*this, leaves);
 }
 

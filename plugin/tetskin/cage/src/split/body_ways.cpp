@@ -15,6 +15,8 @@ constexpr std::size_t kFewElements = 32;
 /// see smallestSpacing: a tree finds what a test of all triangles would, but for what only rounding makes a crossing,
 /// as with a triangle without area.
 constexpr double kBoxSlack = 1e-4;
+/// Of a tree: a triangle costs little more than a box.
+constexpr int kLeafSize = 4;
 
 }  // namespace
 
@@ -28,12 +30,26 @@ Crossing BodyWays::crossingOf(std::size_t element, const Eigen::Vector3d& from, 
   return SeenTriangle(surface_.points[a] - from, surface_.points[b] - from, surface_.points[c] - from).crossing(way);
 }
 
-const TriangleTree& BodyWays::treeOf(int tet) const {
+BodyWays::ElementTree BodyWays::makeTree(int tet) const {
+  const std::size_t first = firstElement(tet), last = lastElement(tet);
+  std::vector<BvhBox<double>> boxes(last - first);
+  Bvh::Centroids<double> centroids;
+  for (std::size_t e = first; e < last; ++e) {
+    BvhBox<double>& box = boxes[e - first];
+    for (const int point : surface_.triangles[triangleOf(e)]) box.extend(surface_.points[point].data());
+    centroids.emplace_back(box.low[0] + box.high[0], box.low[1] + box.high[1], box.low[2] + box.high[2]);
+    box = box.grownBy(kBoxSlack * frame_.half);
+  }
+  ElementTree tree{Bvh(centroids, kLeafSize), {}};
+  tree.bvh.fit(tree.boxes, [&](int index) { return boxes[static_cast<std::size_t>(tree.bvh.item(index))]; });
+  return tree;
+}
+
+const BodyWays::ElementTree& BodyWays::treeOf(int tet) const {
   int& tree = treeOf_[tet];
   if (tree < 0) {
-    const std::size_t first = firstElement(tet), count = lastElement(tet) - first;
     tree = static_cast<int>(trees_.size());
-    trees_.emplace_back(surface_, material_.triangles.values.data() + first, count, kBoxSlack * frame_.half);
+    trees_.push_back(makeTree(tet));
   }
   return trees_[tree];
 }
@@ -42,8 +58,10 @@ template <class Visit>
 void BodyWays::forElementsAlong(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way, Visit&& visit) const {
   const std::size_t first = firstElement(tet), last = lastElement(tet);
   if (last - first > kFewElements) {
-    treeOf(tet).along(from, way, [&](std::size_t k, double& most) { visit(first + k, most); });
-    return;
+    const ElementTree& tree = treeOf(tet);
+    return tree.bvh.visitAlong(tree.boxes, from, way, 1.0, [&](int index, double& end) {
+      visit(first + static_cast<std::size_t>(tree.bvh.item(index)), end);
+    });
   }
   double most = 1.0;
   for (std::size_t e = first; e < last; ++e) visit(e, most);

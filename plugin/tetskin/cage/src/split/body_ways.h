@@ -4,8 +4,8 @@
 
 #include <tetskin/cage/src/material/tet_material.h>
 #include <tetskin/cage/src/split/lattice_links.h>
-#include <tetskin/cage/src/split/triangle_tree.h>
 #include <tetskin/cage/src/surface/triangle_crossing.h>
+#include <tetskin/core/src/bvh/bvh.h>
 
 #include <deque>
 #include <tuple>
@@ -53,8 +53,14 @@ class BodyWays {
   Crossing crossingOf(std::size_t element, const Eigen::Vector3d& from, const Eigen::Vector3d& way) const;
   int firstCrossing(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way, bool leaving) const;
 
-  const TriangleTree& treeOf(int tet) const;
-  /// Calls visit(element, most) for all that the way crosses in a tet, and more, see TriangleTree.
+  /// Of a tet's elements.
+  struct ElementTree {
+    Bvh bvh;
+    std::vector<BvhBox<double>> boxes;
+  };
+  ElementTree makeTree(int tet) const;
+  const ElementTree& treeOf(int tet) const;
+  /// Calls visit(element, most) for all that the way crosses in a tet, and more, see Bvh::visitAlong.
   template <class Visit>
   void forElementsAlong(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& way, Visit&& visit) const;
 
@@ -63,7 +69,7 @@ class BodyWays {
   const LatticeFrame& frame_;
   const LatticeLinks& links_;
   mutable std::vector<int> treeOf_;                            ///< by tet: where in `trees_`, or -1 until it is needed
-  mutable std::deque<TriangleTree> trees_;                     ///< of tets with many elements
+  mutable std::deque<ElementTree> trees_;                      ///< of tets with many elements
   mutable std::vector<std::tuple<double, int, int>> crossed_;  ///< scratch memory: share, triangle, change
 };
 

@@ -9,7 +9,8 @@
 
 namespace tetskin::cage_detail {
 
-/// Points of a surface that stand for all of it.
+/// Points of a surface that stand for all of it. Not those of core's `forEachSample`, which know no neighbours, and of
+/// which a long thin triangle takes many more.
 struct SurfaceSamples {
   /// Those of the surface first, then points on those of its triangles that are longer than a step, in rows a step
   /// apart.

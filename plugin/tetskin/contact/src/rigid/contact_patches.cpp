@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/rigid/contact_patches.h>
+#include <tetskin/core/src/bvh/bvh.h>
+#include <tetskin/core/src/mesh/triangle_samples.h>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@ namespace {
 using Point = EmbeddedPoint<btScalar>;
 
 /// Patches in a cluster: enough that passing over it pays, few enough that it is small.
-constexpr std::size_t kPatchesPerCluster = 12;
+constexpr int kPatchesPerCluster = 12;
 
 /// Points that the same nodes carry, while patches are collected.
 struct LoosePatch {
@@ -104,20 +105,16 @@ void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3
 
 /// At the corners of the small triangles into which each edge's `steps` cut it, but not at its own.
 void appendSamples(const EmbeddedTriangle& triangle, int steps, LoosePatch& patch) {
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; i + j <= steps; ++j) {
-      const int k = steps - i - j;
-      if (std::max({i, j, k}) == steps) continue;
-      const auto share = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
-      appendSample(triangle, {share(i), share(j), share(k)}, patch);
-    }
-  }
+  const auto weight = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
+  forEachSample(steps, [&](int i, int j, int k) {
+    if (std::max({i, j, k}) < steps) appendSample(triangle, {weight(i), weight(j), weight(k)}, patch);
+  });
 }
 
 void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing,
                            std::vector<LoosePatch>& patches) {
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
+    const double steps = edgeDivisions(mesh, t, spacing);
     if (!(steps > 1.0)) continue;
     const EmbeddedTriangle triangle = embeddedTriangle(embedding, t);
     LoosePatch patch;
@@ -128,21 +125,12 @@ void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh,
   }
 }
 
-/// Halves the patches along the longest side of their centres' box until few are left; the ends of the clusters.
-void splitClusters(std::vector<LoosePatch>& patches, std::size_t first, std::size_t end,
-                   std::vector<std::size_t>& ends) {
-  if (end - first <= kPatchesPerCluster) return ends.push_back(end);
-  Box3 box;
-  for (std::size_t p = first; p < end; ++p) box.extend(patches[p].centroid);
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const std::size_t middle = (first + end) / 2;
-  const auto at = [&](std::size_t p) { return patches.begin() + static_cast<std::ptrdiff_t>(p); };
-  // Sorted, not nth_element: the same everywhere, whoever's library it is.
-  std::stable_sort(at(first), at(end),
-                   [&](const LoosePatch& a, const LoosePatch& b) { return a.centroid[axis] < b.centroid[axis]; });
-  splitClusters(patches, first, middle, ends);
-  splitClusters(patches, middle, end, ends);
+/// Neighbouring patches are in one leaf.
+Bvh clustersOf(const std::vector<LoosePatch>& patches) {
+  Bvh::Centroids<double> centroids;
+  centroids.reserve(patches.size());
+  for (const LoosePatch& patch : patches) centroids.push_back(patch.centroid);
+  return {centroids, kPatchesPerCluster};
 }
 
 btScalar spreadOf(const LoosePatch& patch) {
@@ -191,7 +179,7 @@ void closeCluster(std::size_t firstPatch, ContactPatches& to) {
 double countOfSamples(const TriangleMesh& mesh, double spacing) {
   double count = 0.0;
   for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = std::ceil(contact_detail::longestEdge(mesh, t) / spacing);
+    const double steps = edgeDivisions(mesh, t, spacing);
     if (steps > 1.0) count += (steps + 1.0) * (steps + 2.0) / 2.0;
   }
   return count;
@@ -201,14 +189,12 @@ ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh
   assert(embedding.vertexCount() == mesh.vertexCount() && spacing >= 0.0);
   std::vector<LoosePatch> loose = vertexPatches(embedding, mesh);
   if (spacing > 0.0) appendTrianglePatches(embedding, mesh, spacing, loose);
-  std::vector<std::size_t> ends;
-  if (!loose.empty()) splitClusters(loose, 0, loose.size(), ends);
+  const Bvh clusters = clustersOf(loose);
   ContactPatches result;
-  std::size_t first = 0;
-  for (const std::size_t end : ends) {
-    for (std::size_t p = first; p < end; ++p) append(loose[p], result);
-    closeCluster(first, result);
-    first = end;
+  for (const Bvh::Node& node : clusters.nodes()) {
+    if (!node.isLeaf()) continue;
+    for (int k = node.first; k < node.last; ++k) append(loose[static_cast<std::size_t>(clusters.item(k))], result);
+    closeCluster(static_cast<std::size_t>(node.first), result);
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btConvexHullComputer.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/contact/src/rigid/hull_probe.h>
 
 #include <algorithm>
@@ -72,7 +73,9 @@ void HullFaces::addFace(const std::vector<btVector3>& corners) {
   btScalar offset = -BT_LARGE_FLOAT;
   for (const btVector3& corner : corners) offset = std::max(offset, normal.dot(corner));
   planes_.add(normal, offset);
-  for (std::size_t k = 2; k < corners.size(); ++k) triangles_.push_back({corners[0], corners[k - 1], corners[k]});
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    triangles_.push_back({toEigen(corners[0]), toEigen(corners[k - 1]), toEigen(corners[k])});
+  }
   firstTriangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
 }
 
@@ -83,18 +86,14 @@ bool HullFaces::fits(const btConvexHullShape& shape) const {
                     [](const btVector3& a, const btVector3& b) { return a == b; });
 }
 
-btVector3 HullFaces::closest(std::size_t face, const btVector3& point) const {
-  btVector3 best(0, 0, 0);
-  btScalar least = BT_LARGE_FLOAT;
+btVector3 HullFaces::offsetFrom(std::size_t face, const btVector3& point) const {
+  const Eigen::Vector3d p = toEigen(point);
+  Eigen::Vector3d nearest = Eigen::Vector3d::Constant(static_cast<double>(BT_LARGE_FLOAT));
   for (std::uint32_t t = firstTriangle_[face]; t < firstTriangle_[face + 1]; ++t) {
-    const btVector3 on = closestOnTriangle(triangles_[t], point);
-    const btScalar squared = (on - point).length2();
-    if (squared < least) {
-      least = squared;
-      best = on;
-    }
+    const Eigen::Vector3d offset = p - closestPointOnTriangle(p, triangles_[t]).point;
+    if (offset.squaredNorm() < nearest.squaredNorm()) nearest = offset;
   }
-  return best;
+  return toBullet(nearest);
 }
 
 bool HullProbe::take(const btConvexHullShape& shape) {
@@ -158,7 +157,7 @@ ShapeDistance HullProbe::outside(const btVector3& point, const ShapeDistance& hi
   btVector3 away = highest.normal;
   for (const std::size_t face : narrowed_) {
     if (!(faces_->planes().height(face, point) > 0)) continue;
-    const btVector3 from = point - faces_->closest(face, point);
+    const btVector3 from = faces_->offsetFrom(face, point);
     if (from.length2() < least) {
       least = from.length2();
       away = from;

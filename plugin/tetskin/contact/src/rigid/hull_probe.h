@@ -6,7 +6,7 @@
 
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <tetskin/contact/src/rigid/shape_probe.h>
-#include <tetskin/contact/src/rigid/triangle_distance.h>
+#include <tetskin/core/src/mesh/triangle_geometry.h>
 
 #include <cstdint>
 #include <unordered_map>
@@ -37,7 +37,8 @@ class HullFaces {
 
   bool empty() const { return planes_.offsets.empty(); }
   const FacePlanes& planes() const { return planes_; }
-  btVector3 closest(std::size_t face, const btVector3& point) const;
+  /// From the closest point of a face.
+  btVector3 offsetFrom(std::size_t face, const btVector3& point) const;
 
  private:
   void addFace(const std::vector<btVector3>& corners);

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
+#include <tetskin/core/src/mesh/triangle_geometry.h>
 
 #include <algorithm>
 
@@ -41,6 +43,13 @@ bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar di
     if (triangle.low[k] - point[k] > distance || point[k] - triangle.high[k] > distance) return false;
   }
   return true;
+}
+
+/// From the closest point of the triangle. In double: near the triangle little is left of it.
+btVector3 offsetFrom(const ProbeTriangle& triangle, const btVector3& point) {
+  const Eigen::Vector3d p = toEigen(point);
+  const auto& [a, b, c] = triangle.corners;
+  return toBullet(p - closestPointOnTriangle(p, toEigen(a), toEigen(b), toEigen(c)).point);
 }
 
 void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
@@ -114,7 +123,7 @@ ShapeDistance MeshProbe::at(const btVector3& point) const {
     const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
     if (height > std::min(least, reach_) || -height > std::min(least, thickness_)) continue;
     if (!isBeside(triangle, point, height < 0 ? std::min(least, thickness_) : std::min(least, reach_))) continue;
-    const btVector3 away = point - closestOnTriangle(triangle.corners, point);
+    const btVector3 away = offsetFrom(triangle, point);
     const btScalar distance = away.length();
     if (distance > least * (1 + kSame) || (distance > least * (1 - kSame) && btFabs(height) <= facing)) continue;
     least = std::min(least, distance);

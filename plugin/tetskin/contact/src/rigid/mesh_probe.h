@@ -6,15 +6,15 @@
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <tetskin/contact/src/rigid/shape_probe.h>
-#include <tetskin/contact/src/rigid/triangle_distance.h>
 
+#include <array>
 #include <vector>
 
 namespace tetskin {
 
 /// A triangle, with what tells quickly that it is far.
 struct ProbeTriangle {
-  TriangleCorners corners;
+  std::array<btVector3, 3> corners;
   btVector3 normal;  ///< of unit length, outwards
   btVector3 low, high;
 };

@@ -107,8 +107,8 @@ void ContactBody::fit() {
   const ShapeData& of = data();
   for (std::size_t t = 0; t < of.tets.size(); ++t) around(static_cast<int>(t));
   for (std::size_t r = 0; r < of.runs.size(); ++r) carry(static_cast<int>(r));
-  runTree.fit(of.runTree, runBoxes_);
-  tetTree.fit(of.tetTree, boxes_);
+  of.runTree.fit(runTreeBoxes, [&](int index) { return runBox(of.runTree.item(index)); });
+  of.tetTree.fit(tetTreeBoxes, [&](int index) { return tetBox(of.tetTree.item(index)); });
 }
 
 const ContactBox& ContactBody::around(int tet) {

@@ -44,6 +44,9 @@ class ContactBody {
   /// Around the tet's filled part, likewise.
   const ContactBox& around(int tet);
   const ContactBox& carry(int run);
+  /// The boxes that these return, after `fit`.
+  const ContactBox& runBox(int run) const { return runBoxes_[static_cast<std::size_t>(run)]; }
+  const ContactBox& tetBox(int tet) const { return boxes_[static_cast<std::size_t>(tet)]; }
   /// After some positions have changed a little: the nodes get them.
   void writePositions();
 
@@ -67,9 +70,9 @@ class ContactBody {
   ContactBox box;
   btVector3 middle{0, 0, 0};  ///< of the nodes
   double travelled = 0;       ///< in all steps so far, of the nodes against their middle: no less than the furthest has
-  std::vector<btVector3> positions, velocities;  ///< by node; velocities are the solver's to fill
-  FittedTree runTree, tetTree;
-  std::vector<btScalar> samples[3];  ///< coordinates, one after the other
+  std::vector<btVector3> positions, velocities;        ///< by node; velocities are the solver's to fill
+  std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, after `fit`
+  std::vector<btScalar> samples[3];                    ///< coordinates, one after the other
 
  private:
   void measureTravel(const btVector3& newMiddle);

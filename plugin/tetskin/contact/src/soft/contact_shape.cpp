@@ -18,6 +18,8 @@ namespace {
 constexpr double kOverTriangle = 1e-4;
 /// Parts of a tet along each weight: 64 cells.
 constexpr int kCellsAlong = 4;
+/// Of the trees: few enough that a leaf's box is tight, many enough that fitting is cheap.
+constexpr int kLeafSize = 4;
 
 Status checkOptions(const ContactShapeOptions& options) {
   if (options.samples < 1 || options.samples > 10'000'000) {
@@ -169,8 +171,8 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
   }
   for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
   std::iota(runs.begin(), runs.end(), 0);
-  data.runTree = BoxTree(std::move(runs), runBoxes);
-  data.tetTree = BoxTree(std::move(filled), tetBoxes);
+  data.runTree = Bvh(runBoxes, runs, kLeafSize);
+  data.tetTree = Bvh(tetBoxes, filled, kLeafSize);
 }
 
 /// The numbers of tets that are at one place with others.
@@ -195,7 +197,7 @@ Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Ve
 
 /// The cells of a tet in some point of which the nearest triangle hangs together with the tet.
 CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator, const TriangleMesh& mesh,
-                          const TriangleTree& surface) {
+                          const TriangleBvh& surface) {
   CarriedCells cells{0};
   const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
   for (int cell = 0; cell < kCellsAlong * kCellsAlong * kCellsAlong; ++cell) {
@@ -211,7 +213,7 @@ CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator,
   return cells;
 }
 
-void findCopies(const Cage& cage, const TriangleMesh& mesh, const TriangleTree& surface, ShapeData& data) {
+void findCopies(const Cage& cage, const TriangleMesh& mesh, const TriangleBvh& surface, ShapeData& data) {
   if (cage.vertexTets.empty() || !cage.split()) return;
   const CageLocator locator(cage);
   data.carried.assign(cage.tetCount(), {});
@@ -254,7 +256,7 @@ Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, c
   if (Status status = checkInput(cage, mesh, options); !status.ok()) return status;
   const WindingTree solid(mesh);
   const std::vector<int> visible = visibleTriangles(mesh, solid);
-  const TriangleTree surface(mesh, visible);
+  const TriangleBvh surface(mesh, visible);
   auto data = std::make_unique<ShapeData>();
   if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.nodes), options.cells);
   if (!data->grid.hasInside()) {

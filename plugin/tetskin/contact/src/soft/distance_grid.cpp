@@ -19,7 +19,7 @@ btScalar between(btScalar a, btScalar b, btScalar t) {
 
 }  // namespace
 
-DistanceGrid::DistanceGrid(const TriangleTree& outside, const WindingTree& solid, const Box3& box, int cells) {
+DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid, const Box3& box, int cells) {
   assert(!box.isEmpty() && cells > 0);
   const double spacing = box.sizes().maxCoeff() / cells;
   const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(kGridBorder * spacing);
@@ -39,18 +39,19 @@ DistanceGrid::DistanceGrid(const TriangleTree& outside, const WindingTree& solid
   }
 }
 
-/// From one corner to the next, the distance changes by a step at most; so does the sign only near the surface.
-void DistanceGrid::fillRow(const TriangleTree& outside, const WindingTree& solid, const Eigen::Vector3d& first,
+/// From one corner to the next, the nearest triangle is the same or near it; and the distance changes by a step at
+/// most, and so the sign only near the surface.
+void DistanceGrid::fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first,
                            double spacing, float* row) const {
-  double reach = std::numeric_limits<double>::infinity();
+  NearestPoint nearest;
   bool inside = false, known = false;
   for (int x = 0; x < counts_[0]; ++x) {
     const Eigen::Vector3d p = first + Eigen::Vector3d(x * spacing, 0, 0);
-    const double distance = std::sqrt(outside.nearest(p, reach * reach).squaredDistance);
+    nearest = outside.nearest(p, nearest);
+    const double distance = std::sqrt(nearest.squaredDistance);
     if (!known || distance <= 2.0 * spacing) inside = solid.windingNumber(p) > kInside;
     known = true;
     row[x] = static_cast<float>(inside ? -distance : distance);
-    reach = 1.001 * (distance + spacing);
   }
 }
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
-#include <tetskin/contact/src/soft/triangle_tree.h>
+#include <tetskin/core/src/mesh/triangle_bvh.h>
 #include <tetskin/core/src/mesh/winding_tree.h>
 
 #include <array>
@@ -28,7 +28,7 @@ class DistanceGrid {
   /// box      to be covered, a few cubes around it too
   /// cells    along its longest side, at least 1
   /// Cost     some microseconds a corner
-  DistanceGrid(const TriangleTree& outside, const WindingTree& solid, const Box3& box, int cells);
+  DistanceGrid(const TriangleBvh& outside, const WindingTree& solid, const Box3& box, int cells);
 
   /// False, and nothing written, beyond the grid.
   bool at(const btVector3& point, GridDistance& result) const;
@@ -42,7 +42,7 @@ class DistanceGrid {
     return static_cast<std::size_t>(x) + stride_[1] * static_cast<std::size_t>(y) +
            stride_[2] * static_cast<std::size_t>(z);
   }
-  void fillRow(const TriangleTree& outside, const WindingTree& solid, const Eigen::Vector3d& first, double spacing,
+  void fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first, double spacing,
                float* row) const;
 
   btVector3 low_{0, 0, 0};

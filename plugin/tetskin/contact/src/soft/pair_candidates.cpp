@@ -34,44 +34,34 @@ void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slac
   runs_.clear();
   links_.clear();
   heads_.resize(first.data().runs.size(), -1);
-  if (first.runTree.empty() || second.tetTree.empty()) return;
-  const ContactBox overlap = first.runTree.box(0).grownBy(slack).cutBy(second.tetTree.box(0));
-  descend({&first, &second, overlap, slack}, 0, 0);
+  const Bvh &runs = first.data().runTree, &tets = second.data().tetTree;
+  if (runs.empty() || tets.empty()) return;
+  const std::vector<ContactBox>&runBoxes = first.runTreeBoxes, &tetBoxes = second.tetTreeBoxes;
+  const ContactBox overlap = runBoxes[0].grownBy(slack).intersection(tetBoxes[0]);
+  const auto meet = [&](int run, int tet) {
+    const ContactBox a = runBoxes[static_cast<std::size_t>(run)].grownBy(slack);
+    const ContactBox& b = tetBoxes[static_cast<std::size_t>(tet)];
+    return a.meets(b) && a.meets(overlap) && b.meets(overlap);
+  };
+  const Pair pair{&first, &second, overlap, slack};
+  visitPairs(runs, tets, meet, [&](const Bvh::Node& a, const Bvh::Node& b) { meetLeaves(pair, a, b); });
   std::sort(runs_.begin(), runs_.end());
 }
 
-void PairCandidates::descend(const Pair& pair, int firstNode, int secondNode) {
-  const FittedTree &firstTree = pair.first->runTree, &secondTree = pair.second->tetTree;
-  const ContactBox a = firstTree.box(firstNode).grownBy(pair.slack);
-  const ContactBox& b = secondTree.box(secondNode);
-  if (!a.meets(b) || !a.meets(pair.overlap) || !b.meets(pair.overlap)) return;
-  const BoxTree::Node& first = firstTree.tree().nodes()[static_cast<std::size_t>(firstNode)];
-  const BoxTree::Node& second = secondTree.tree().nodes()[static_cast<std::size_t>(secondNode)];
-  if (first.right == 0 && second.right == 0) return meetLeaves(pair, first, second);
-  // The one of more items is split.
-  if (second.right == 0 || (first.right != 0 && first.last - first.first > second.last - second.first)) {
-    descend(pair, firstNode + 1, secondNode);
-    descend(pair, first.right, secondNode);
-  } else {
-    descend(pair, firstNode, secondNode + 1);
-    descend(pair, firstNode, second.right);
-  }
-}
-
-void PairCandidates::meetLeaves(const Pair& pair, const BoxTree::Node& a, const BoxTree::Node& b) {
-  const FittedTree &runs = pair.first->runTree, &tets = pair.second->tetTree;
+void PairCandidates::meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets) {
+  const ShapeData &first = pair.first->data(), &second = pair.second->data();
   const bool same = pair.first == pair.second;
-  for (int i = a.first; i < a.last; ++i) {
-    const ContactBox around = runs.itemBox(i).grownBy(pair.slack);
+  for (int i = runs.first; i < runs.last; ++i) {
+    const int run = first.runTree.item(i);
+    const ContactBox around = pair.first->runBox(run).grownBy(pair.slack);
     if (!around.meets(pair.overlap)) continue;
-    const int run = runs.tree().items()[static_cast<std::size_t>(i)];
-    for (int j = b.first; j < b.last; ++j) {
-      if (!around.meets(tets.itemBox(j))) continue;
-      const int tet = tets.tree().items()[static_cast<std::size_t>(j)];
+    for (int j = tets.first; j < tets.last; ++j) {
+      const int tet = second.tetTree.item(j);
+      if (!around.meets(pair.second->tetBox(tet))) continue;
       // Whatever nodes move by until candidates are found anew is in the box's slack.
       const DeformedTet& deformed = pair.second->deformed(tet);
       if (!deformed.flat && isOutside(around, deformed)) continue;
-      if (!same || !nearAtRest(pair.first->data(), run, tet)) add(run, tet);
+      if (!same || !nearAtRest(first, run, tet)) add(run, tet);
     }
   }
 }

@@ -40,8 +40,7 @@ class PairCandidates {
     ContactBox overlap;
     btScalar slack;
   };
-  void descend(const Pair& pair, int firstNode, int secondNode);
-  void meetLeaves(const Pair& pair, const BoxTree::Node& a, const BoxTree::Node& b);
+  void meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets);
   void add(int run, int tet);
 
   btVector3 apart_{0, 0, 0};  ///< the bodies' middles, when it was done; and what nodes had travelled by then

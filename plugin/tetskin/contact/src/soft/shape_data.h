@@ -5,15 +5,17 @@
 #pragma once
 
 #include <tetskin/contact/soft_contacts.h>
-#include <tetskin/contact/src/soft/box_tree.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
 #include <tetskin/core/embedded_point.h>
+#include <tetskin/core/src/bvh/bvh.h>
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tetskin::contact_detail {
+
+using ContactBox = BvhBox<btScalar>;
 
 /// The samples [first, last) are carried by one tet.
 struct SampleRun {
@@ -54,8 +56,8 @@ struct ShapeData {
   std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
   std::vector<FilledPart> filled;            ///< by tet
   std::vector<std::vector<int>> otherParts;  ///< by run: see tetsOfOtherParts
-  BoxTree runTree;                           ///< of numbers of runs
-  BoxTree tetTree;                           ///< of numbers of tets that hold, or are near, something inside
+  Bvh runTree;                               ///< of all runs
+  Bvh tetTree;                               ///< of the tets that hold, or are near, something inside
 };
 
 }  // namespace tetskin::contact_detail

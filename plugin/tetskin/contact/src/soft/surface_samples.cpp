@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/longest_edge.h>
 #include <tetskin/contact/src/soft/surface_samples.h>
+#include <tetskin/core/src/mesh/triangle_samples.h>
 #include <tetskin/core/src/mesh/weld.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 /// Cubes that a flat surface passes through, over its area in faces of a cube: 1 along the axes, 1.73 across.
 constexpr double kCubesPerFace = 1.3;
 /// A triangle is divided so often at most: one as long as the whole model has no need of more.
-constexpr int kMostDivisions = 256;
+constexpr int kMaxDivisions = 256;
 
 /// Keeps the first point that comes to each cube of a lattice.
 class CubeSieve {
@@ -44,16 +44,14 @@ double areaOf(const TriangleMesh& mesh, const std::array<int, 3>& t) {
 
 void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, double spacing, CubeSieve& sieve,
                     std::vector<SurfaceSample>& samples) {
-  const double steps = std::ceil(longestEdge(mesh, t) / spacing);
-  const int divisions = static_cast<int>(std::min<double>(steps, kMostDivisions));
-  for (int i = 0; i <= divisions; ++i) {
-    for (int j = 0; i + j <= divisions; ++j) {
-      const double u = static_cast<double>(i) / divisions, v = static_cast<double>(j) / divisions;
-      const Eigen::Vector3d p =
-          (1.0 - u - v) * mesh.positions[t[0]] + u * mesh.positions[t[1]] + v * mesh.positions[t[2]];
-      if (sieve.takes(p)) samples.push_back({p, -1, t});
-    }
-  }
+  const int divisions = static_cast<int>(std::min<double>(edgeDivisions(mesh, t, spacing), kMaxDivisions));
+  if (divisions < 2) return;
+  forEachSample(divisions, [&](int i, int j, int) {
+    const double u = static_cast<double>(i) / divisions, v = static_cast<double>(j) / divisions;
+    const Eigen::Vector3d p =
+        (1.0 - u - v) * mesh.positions[t[0]] + u * mesh.positions[t[1]] + v * mesh.positions[t[2]];
+    if (sieve.takes(p)) samples.push_back({p, -1, t});
+  });
 }
 
 /// By vertex: how far it stands out from its neighbours in these triangles, over their distance.
@@ -115,9 +113,7 @@ std::vector<SurfaceSample> sampleSurface(const TriangleMesh& mesh, const std::ve
   for (const SurfaceSample& vertex : verticesByProminence(mesh, triangles)) {
     if (sieve.takes(vertex.point)) samples.push_back(vertex);
   }
-  for (const int t : triangles) {
-    if (longestEdge(mesh, mesh.triangles[t]) > side) sampleTriangle(mesh, mesh.triangles[t], side, sieve, samples);
-  }
+  for (const int t : triangles) sampleTriangle(mesh, mesh.triangles[t], side, sieve, samples);
   return samples;
 }
 

@@ -5,9 +5,9 @@
 //
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022 (barycentric distance)
-//   Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5 (closest point on a triangle)
 #pragma once
 
+#include <tetskin/core/src/mesh/triangle_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
@@ -108,30 +108,6 @@ inline double largestWeight(const Eigen::Vector4d& weights) {
   return weights.cwiseAbs().maxCoeff();
 }
 
-/// Closest point of triangle abc to p.
-inline Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                              const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  const Eigen::Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
-  const Eigen::Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  }
-  const double scale = 1.0 / (va + vb + vc);
-  return a + ab * (vb * scale) + ac * (vc * scale);
-}
-
 /// Closest point of the tet to v: v itself inside. `weights` are v's barycentric weights in it: only faces that v lies
 /// beyond can hold the closest point.
 inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorners& p,
@@ -148,7 +124,7 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
   for (int i = 0; i < 4; ++i) {
     if (weights[i] >= 0.0) continue;
     inside = false;
-    take(closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]));
+    take(closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]).point);
   }
   if (inside || squared < std::numeric_limits<double>::infinity()) return closest;
   // Seen from 1e20 sizes away, rounding may leave nothing of a face; a corner is as near.

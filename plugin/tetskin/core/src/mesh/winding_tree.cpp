@@ -51,84 +51,69 @@ WindingTree::WindingTree(const TriangleMesh& mesh) {
 
 WindingTree::WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count) {
   assert(count <= triangles.size());
-  std::vector<Item> items(count);
+  Bvh::Centroids<float> centroids(count);
   const Box3 box = boundingBox(points);
   const Eigen::Vector3d centre = box.center();
   const double scale = 1.0 / box.sizes().maxCoeff();
   for (std::size_t t = 0; t < count; ++t) {
     const auto& [a, b, c] = triangles[t];
-    const Eigen::Vector3d middle = (points[a] + points[b] + points[c]) / 3.0;
-    items[t] = {((middle - centre) * scale).cast<float>(), static_cast<int>(t)};
+    const Eigen::Vector3d centroid = (points[a] + points[b] + points[c]) / 3.0;
+    centroids[t] = ((centroid - centre) * scale).cast<float>();
   }
+  bvh_ = Bvh(centroids, kLeafSize);
   triangles_.reserve(count);
-  if (count > 0) build(points, triangles, items, 0, static_cast<int>(count));
-}
-
-void WindingTree::build(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles,
-                        std::vector<Item>& items, int first, int last) {
-  const std::size_t index = nodes_.size();
-  nodes_.emplace_back();
-  nodes_[index].first = first;
-  nodes_[index].last = last;
-  if (last - first <= kLeafSize) {
-    for (int i = first; i < last; ++i) {
-      const auto& [a, b, c] = triangles[items[i].triangle];
-      triangles_.push_back({points[a], points[b], points[c]});
-    }
-    fillLeaf(nodes_[index]);
-    return;
+  for (const int t : bvh_.items()) {
+    const auto& [a, b, c] = triangles[t];
+    triangles_.push_back({points[a], points[b], points[c]});
   }
-  Eigen::AlignedBox3f box;
-  for (int i = first; i < last; ++i) box.extend(items[i].middle);
-  int axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const int middle = first + (last - first) / 2;
-  std::nth_element(items.begin() + first, items.begin() + middle, items.begin() + last,
-                   [axis](const Item& a, const Item& b) { return a.middle[axis] < b.middle[axis]; });
-  build(points, triangles, items, first, middle);
-  nodes_[index].right = static_cast<int>(nodes_.size());
-  build(points, triangles, items, middle, last);
-  fillFromChildren(index);
+  bvh_.fill(
+      dipoles_, [this](const Bvh::Node& leaf) { return ofLeaf(leaf); }, ofChildren);
 }
 
-void WindingTree::fillLeaf(Node& node) {
-  for (int t = node.first; t < node.last; ++t) {
+WindingTree::Dipole WindingTree::ofLeaf(const Bvh::Node& leaf) const {
+  Dipole dipole;
+  for (int t = leaf.first; t < leaf.last; ++t) {
     const Corners& c = triangles_[t];
     const Eigen::Vector3d normal = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
     const double area = normal.norm();
-    node.dipole += normal;
-    node.area += area;
-    node.centre += area * (c[0] + c[1] + c[2]) / 3.0;
+    dipole.moment += normal;
+    dipole.area += area;
+    dipole.centroid += area * (c[0] + c[1] + c[2]) / 3.0;
   }
-  node.centre /= node.area;
-  for (int t = node.first; t < node.last; ++t) {
-    for (const Eigen::Vector3d& p : triangles_[t]) node.radius = std::max(node.radius, (p - node.centre).norm());
+  dipole.centroid /= dipole.area;
+  for (int t = leaf.first; t < leaf.last; ++t) {
+    for (const Eigen::Vector3d& p : triangles_[t]) {
+      dipole.radius = std::max(dipole.radius, (p - dipole.centroid).norm());
+    }
   }
+  return dipole;
 }
 
-void WindingTree::fillFromChildren(std::size_t index) {
-  Node& node = nodes_[index];
-  const Node &a = nodes_[index + 1], &b = nodes_[node.right];
-  node.dipole = a.dipole + b.dipole;
-  node.area = a.area + b.area;
-  node.centre = (a.area * a.centre + b.area * b.centre) / node.area;
-  node.radius = std::max((a.centre - node.centre).norm() + a.radius, (b.centre - node.centre).norm() + b.radius);
+WindingTree::Dipole WindingTree::ofChildren(const Dipole& a, const Dipole& b) {
+  Dipole both;
+  both.moment = a.moment + b.moment;
+  both.area = a.area + b.area;
+  both.centroid = (a.area * a.centroid + b.area * b.centroid) / both.area;
+  both.radius =
+      std::max((a.centroid - both.centroid).norm() + a.radius, (b.centroid - both.centroid).norm() + b.radius);
+  return both;
 }
 
 double WindingTree::walk(int index, const Eigen::Vector3d& p) const {
-  const Node& node = nodes_[index];
-  const Eigen::Vector3d offset = node.centre - p;
+  const Dipole& dipole = dipoles_[static_cast<std::size_t>(index)];
+  const Eigen::Vector3d offset = dipole.centroid - p;
   const double squared = offset.squaredNorm();
-  const double far = kFarRadii * node.radius;
-  if (squared > far * far) return node.dipole.dot(offset) / (4.0 * kPi * squared * std::sqrt(squared));
-  if (node.right > 0) return walk(index + 1, p) + walk(node.right, p);
+  const double far = kFarRadii * dipole.radius;
+  if (squared > far * far) return dipole.moment.dot(offset) / (4.0 * kPi * squared * std::sqrt(squared));
+  const Bvh::Node& node = bvh_.nodes()[static_cast<std::size_t>(index)];
+  if (!node.isLeaf()) return walk(index + 1, p) + walk(node.right, p);
   double sum = 0.0;
   for (int t = node.first; t < node.last; ++t) sum += halfSolidAngle(triangles_[t], p);
   return sum / (2.0 * kPi);
 }
 
 double WindingTree::windingNumber(const Eigen::Vector3d& p) const {
-  return nodes_.empty() ? 0.0 : walk(0, p);
+  return bvh_.empty() ? 0.0 : walk(0, p);
 }
 
 }  // namespace tetskin

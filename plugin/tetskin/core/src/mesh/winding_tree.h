@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/bvh/bvh.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <array>
@@ -28,29 +29,22 @@ class TETSKIN_CORE_API WindingTree {
   double windingNumber(const Eigen::Vector3d& p) const;
 
  private:
-  struct Node {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< area-weighted
-    Eigen::Vector3d dipole = Eigen::Vector3d::Zero();  ///< sum of the area vectors
+  /// Of a node's triangles, as seen from afar.
+  struct Dipole {
+    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< area-weighted
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();    ///< sum of the area vectors
     double area = 0.0;
-    double radius = 0.0;      ///< of a ball about the centre that holds all corners
-    int first = 0, last = 0;  ///< triangles
-    int right = 0;            ///< second child, 0 in a leaf; the first child is the next node
+    double radius = 0.0;  ///< of a ball about the centroid that holds all corners
   };
   using Corners = std::array<Eigen::Vector3d, 3>;
-  /// What the splits look at: small, because it is moved about a lot.
-  struct Item {
-    Eigen::Vector3f middle;
-    int triangle = 0;
-  };
 
-  void build(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::vector<Item>& items,
-             int first, int last);
-  void fillLeaf(Node& node);
-  void fillFromChildren(std::size_t index);
+  Dipole ofLeaf(const Bvh::Node& leaf) const;
+  static Dipole ofChildren(const Dipole& a, const Dipole& b);
   double walk(int node, const Eigen::Vector3d& p) const;
 
-  std::vector<Node> nodes_;
+  Bvh bvh_;
   std::vector<Corners> triangles_;  ///< in the order of the leaves
+  std::vector<Dipole> dipoles_;     ///< by node
 };
 
 }  // namespace tetskin

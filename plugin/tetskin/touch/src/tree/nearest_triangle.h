@@ -14,7 +14,8 @@ struct NearestTriangle {
   int firstCorner = 0;                     ///< which of its corners was asked for
 };
 
-/// mesh  with triangles
+/// A scan, since it is asked for once a point that is attached, and a hierarchy at rest would be kept for it alone.
+/// mesh  with triangles. Cost O(triangles)
 NearestTriangle nearestTriangle(const TriangleMesh& mesh, const Eigen::Vector3d& to);
 
 /// The one of largest area around a vertex.

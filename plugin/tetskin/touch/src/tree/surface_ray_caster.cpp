@@ -9,6 +9,9 @@
 namespace tetskin::touch_detail {
 namespace {
 
+/// Few enough that few are tested in vain, many enough that fitting is cheap.
+constexpr int kLeafSize = 4;
+
 /// By vertex: where a skin of this order writes it.
 std::vector<std::uint32_t> placesOf(const SoftBodyBinding& binding) {
   if (binding.options().order == VertexOrder::Sorted) return binding.embedding().vertexSlots();
@@ -25,12 +28,27 @@ Eigen::Vector3d pointAt(PointView<const btScalar> points, int place) {
 }  // namespace
 
 SurfaceRayCaster::SurfaceRayCaster(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh)
-    : binding_(std::move(binding)), triangles_(mesh.triangles) {
-  const std::vector<std::uint32_t> places = placesOf(*binding_);
-  tree_ = RayTree(mesh, places);
-  for (auto& triangle : triangles_) {
-    for (int& corner : triangle) corner = static_cast<int>(places[static_cast<std::size_t>(corner)]);
+    : binding_(std::move(binding)) {
+  assert(!mesh.triangles.empty());
+  Bvh::Centroids<double> centroids;
+  centroids.reserve(mesh.triangleCount());
+  for (const auto& triangle : mesh.triangles) {
+    const TriangleCorners t = cornersOf(mesh, triangle);
+    centroids.emplace_back(t[0] + t[1] + t[2]);
   }
+  bvh_ = Bvh(centroids, kLeafSize);
+  const std::vector<std::uint32_t> places = placesOf(*binding_);
+  triangles_.reserve(mesh.triangleCount());
+  for (const int t : bvh_.items()) {
+    triangles_.push_back(mesh.triangles[static_cast<std::size_t>(t)]);
+    for (int& corner : triangles_.back()) corner = static_cast<int>(places[static_cast<std::size_t>(corner)]);
+  }
+}
+
+TriangleCorners SurfaceRayCaster::cornersAt(int index) const {
+  const auto& corners = triangles_[static_cast<std::size_t>(index)];
+  const PointView<const btScalar> points = skin_.positions();
+  return {pointAt(points, corners[0]), pointAt(points, corners[1]), pointAt(points, corners[2])};
 }
 
 TouchStatus SurfaceRayCaster::fit(const SoftBodySkin& skin) {
@@ -52,9 +70,18 @@ TouchStatus SurfaceRayCaster::fit(const SoftBodySkin& skin) {
     options.bounds = false;
     if (!skin_.bind(binding_, nodePositions(body), options).ok()) return TouchStatus::NonFinite;
   }
-  tree_.fit(skin_.positions());
+  fitBoxes();
   keepNodes(body);
   return TouchStatus::Ok;
+}
+
+void SurfaceRayCaster::fitBoxes() {
+  const PointView<const btScalar> points = skin_.positions();
+  bvh_.fit(boxes_, [&](int index) {
+    BvhBox<btScalar> box;
+    for (const int p : triangles_[static_cast<std::size_t>(index)]) box.extend(points[static_cast<std::size_t>(p)]);
+    return box;
+  });
 }
 
 bool SurfaceRayCaster::isFitted(const btSoftBody& body) const {
@@ -75,24 +102,37 @@ void SurfaceRayCaster::keepNodes(const btSoftBody& body) {
   }
 }
 
+RayHit SurfaceRayCaster::nearestHit(Ray ray, const TriangleFilter& filter) const {
+  RayHit best;
+  bvh_.visitAlong(boxes_, ray.start, ray.direction, ray.end, [&](int index, double& end) {
+    ray.end = end;
+    RayHit hit;
+    if (!meets(ray, cornersAt(index), hit)) return;
+    hit.triangle = bvh_.item(index);
+    hit.index = index;
+    if (best.triangle >= 0 && hit.at == best.at && hit.triangle > best.triangle) return;
+    if (filter && !filter(hit.triangle)) return;
+    best = hit;
+    end = hit.at;
+  });
+  return best;
+}
+
 SurfaceHit SurfaceRayCaster::cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const {
   assert(!nodes_.empty());
   const Ray ray{toEigen(from), toEigen(to) - toEigen(from)};
   SurfaceHit hit;
-  const RayHit found = tree_.cast(ray, filter);
+  const RayHit found = nearestHit(ray, filter);
   if (found.triangle < 0) return hit;
   hit.status = TouchStatus::Ok;
   hit.triangle = found.triangle;
   hit.weights[1] = static_cast<btScalar>(found.second);
   hit.weights[2] = static_cast<btScalar>(found.third);
   hit.weights[0] = 1 - hit.weights[1] - hit.weights[2];
-  hit.distance = static_cast<btScalar>(found.at * ray.along.norm());
-  hit.point = toBullet(ray.start + found.at * ray.along);
-  const auto& corners = triangles_[static_cast<std::size_t>(found.triangle)];
-  const Eigen::Vector3d a = pointAt(skin_.positions(), corners[0]);
-  const Eigen::Vector3d area =
-      (pointAt(skin_.positions(), corners[1]) - a).cross(pointAt(skin_.positions(), corners[2]) - a);
-  hit.normal = toBullet(area.normalized());
+  hit.distance = static_cast<btScalar>(found.at * ray.direction.norm());
+  hit.point = toBullet(ray.start + found.at * ray.direction);
+  const auto& [a, b, c] = cornersAt(found.index);
+  hit.normal = toBullet((b - a).cross(c - a).normalized());
   return hit;
 }
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SurfaceTree: where a ray meets a triangle.
+//
+// This work is based on:
+//   Tomas Möller and Ben Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2,
+//   1997, doi 10.1080/10867651.1997.10487468
+#pragma once
+
+#include <tetskin/core/src/mesh/triangle_geometry.h>
+
+namespace tetskin::touch_detail {
+
+/// A part of a line: from `start` on, up to `end` times `direction`.
+struct Ray {
+  Eigen::Vector3d start, direction;
+  double end = 1.0;
+};
+
+struct RayHit {
+  int triangle = -1;                 ///< of the mesh; -1: none
+  int index = -1;                    ///< of the triangle in the hierarchy
+  double at = 0.0;                   ///< in units of the ray's direction
+  double second = 0.0, third = 0.0;  ///< weights of these corners
+};
+
+/// Where a ray meets a triangle, from either side, but for its numbers; false, and nothing written, if it does not, or
+/// the triangle has no area.
+inline bool meets(const Ray& ray, const TriangleCorners& triangle, RayHit& hit) {
+  // A ray that passes between two triangles by rounding meets both.
+  constexpr double kEdge = 1e-12;
+  const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
+  const Eigen::Vector3d first = b - a, second = c - a, across = ray.direction.cross(second), from = ray.start - a;
+  const double volume = first.dot(across);
+  if (!(volume * volume > 0.0)) return false;
+  const double u = from.dot(across) / volume;
+  if (!(u >= -kEdge && u <= 1.0 + kEdge)) return false;
+  const Eigen::Vector3d turned = from.cross(first);
+  const double v = ray.direction.dot(turned) / volume;
+  if (!(v >= -kEdge && u + v <= 1.0 + kEdge)) return false;
+  const double at = second.dot(turned) / volume;
+  if (!(at >= 0.0 && at <= ray.end)) return false;
+  hit.at = at;
+  hit.second = u;
+  hit.third = v;
+  return true;
+}
+
+}  // namespace tetskin::touch_detail
