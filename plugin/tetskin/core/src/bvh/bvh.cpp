@@ -122,7 +122,7 @@ Bvh::Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items
 #define TETSKIN_INSTANTIATE(Scalar)                                                           \
   template TETSKIN_CORE_API Bvh::Bvh(const Centroids<Scalar>&, int);                          \
   template TETSKIN_CORE_API Bvh::Bvh(const Centroids<Scalar>&, const std::vector<int>&, int); \
-  template TETSKIN_CORE_API Bvh::Bvh(const std::vector<BvhBox<Scalar>>&, const std::vector<int>&, int);
+  template TETSKIN_CORE_API Bvh::Bvh(const std::vector<BvhBox<Scalar>>&, const std::vector<int>&, int);  // NOLINT
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
