@@ -25,8 +25,21 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 /// where they are, so that Bullet may be walking over it.
 TETSKIN_BULLET_API void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
-/// Whether it is what `replaceByNothing` puts there.
-bool isNoForce(const btDeformableLagrangianForce& force);
+/// One that gives Bullet nothing, and joins nobody's body.
+class SilentForce : public btDeformableLagrangianForce {
+ public:
+  void addScaledForces(btScalar, TVStack&) override {}
+  void addScaledExplicitForce(btScalar, TVStack&) override {}
+  void addScaledDampingForce(btScalar, TVStack&) override {}
+  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
+  btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
+};
+
+inline bool isSilent(const btDeformableLagrangianForce& force) {
+  return dynamic_cast<const SilentForce*>(&force) != nullptr;
+}
 
 /// Whether a force needs what Bullet keeps for each tet and updates in every step.
 bool needsDeformation(btDeformableLagrangianForce& force);

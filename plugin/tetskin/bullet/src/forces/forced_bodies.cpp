@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/core/src/base/positive_values.h>
@@ -115,11 +114,6 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   dynamics->setDamping(material.damping);
 }
 
-void ForcedBody::know(btDeformableMultiBodyDynamicsWorld& in) {
-  world = &in;
-  worldInfo = &in.getWorldInfo();
-}
-
 bool ForcedBody::hasItsCounts() const {
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
          dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());
@@ -127,17 +121,6 @@ bool ForcedBody::hasItsCounts() const {
 
 bool ForcedBody::hasItsRestShapes() const {
   return hasItsCounts() && restMeasureOf(*body) == restMeasure;
-}
-
-void ForcedBody::hideTets() {
-  if (hiddenTets >= 0 || !alone || solved || body->m_tetras.size() == 0) return;
-  hiddenTets = body->m_tetras.size();
-  body->m_tetras.resizeNoInitialize(0);
-}
-
-void ForcedBody::showTets() {
-  if (hiddenTets >= 0) body->m_tetras.resizeNoInitialize(hiddenTets);
-  hiddenTets = -1;
 }
 
 }  // namespace tetskin
