@@ -86,13 +86,13 @@ Status invalid(const std::string& message) {
   return {StatusCode::InvalidOption, message};
 }
 
-Status checkSolver(btDeformableMultiBodyDynamicsWorld& world, const SoftBodyOptions& options) {
+Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& options) {
   if (options.forceModel != ForceModel::Corotated) {
-    if (!solverOf(world).isReducedSolver()) return {};
+    if (!solver.isReducedSolver()) return {};
     return refusal("a full body", {kUseDeformableSolver});
   }
   std::vector<std::string> changes;
-  if (!deformableSolverOf(world)) {
+  if (!dynamic_cast<DeformableSolver*>(&solver)) {
     changes.push_back(std::string(kUseDeformableSolver) + ", or choose one of Bullet's force models");
   }
   if (options.implicit.value_or(false)) {
@@ -140,12 +140,14 @@ struct DeformableBody::Parts {
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
 
   template <class Force, class... Arguments>
-  void makeElasticity(Arguments... arguments) {
-    auto force = std::make_unique<OwnForce<Force>>(list, arguments...);
+  void makeElasticity(Arguments&&... arguments) {
+    auto force = std::make_unique<OwnForce<Force>>(list, std::forward<Arguments>(arguments)...);
     applyMaterial = [to = static_cast<Force*>(force.get())](const ElasticMaterial& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
   }
-  void makeElasticity(const SoftBodyOptions& options);
+  /// Of the body's material.
+  /// rest  its tets; of no use to Bullet's forces
+  void makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest);
   void apply(const ElasticMaterial& now) {
     material = now;
     applyMaterial(now);
@@ -179,62 +181,58 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
         "the body to a btSoftRigidDynamicsWorld");
   }
-  if (Status status = checkSolver(world, options); !status.ok()) return status;
+  btDeformableBodySolver& solver = solverOf(world);
+  if (Status status = checkSolver(solver, options); !status.ok()) return status;
   Result<BuiltBody> built = buildBody(cage, world.getWorldInfo(), options);
   if (!built.ok()) return built.status();
   std::unique_ptr<btSoftBody>& body = built.value().body;
   const std::vector<double>& masses = built.value().masses;
   const bool corotated = options.forceModel == ForceModel::Corotated;
-  if (corotated) {
-    if (Status status = checkTets(*body, options.stiffnessScale); !status.ok()) return status;
-  }
-  // Only bodies in a world know its solver.
-  world.addSoftBody(body.get());
-  auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
+  Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
+  if (!rest.ok()) return rest.status();
   const double pressure = weightPressure(cage, masses, static_cast<double>(world.getGravity().length()));
   const ElasticMaterial material{options.youngsModulus > 0.0
                                      ? options.youngsModulus
                                      : defaultYoungsModulus(cage, options, masses, pressure, !corotated),
                                  options.poissonRatio, options.damping};
-  Status status = checkMaterial(material);
-  if (status.ok()) status = checkStiffness(*body, material);
-  if (status.ok()) status = checkGravity(world.getGravity(), *body);
-  if (!status.ok()) {
-    world.removeSoftBody(body.get());
-    return status;
-  }
+  if (Status status = checkMaterial(material); !status.ok()) return status;
+  if (Status status = checkStiffness(*body, material); !status.ok()) return status;
+  if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
+
+  world.addSoftBody(body.get());
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
     if (options.implicit) world.setImplicit(*options.implicit);
   }
 
-  auto parts = std::make_unique<Parts>(world, *solver, std::move(body));
+  auto parts = std::make_unique<Parts>(world, solver, std::move(body));
   for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
   parts->forceModel = options.forceModel;
   parts->material = material;
   parts->weightPressure = pressure;
-  parts->makeElasticity(options);
+  parts->makeElasticity(options, std::move(rest).value());
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
-    force->setIndices(solver->getIndices());
+    force->setIndices(solver.getIndices());
   }
   addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
-  if (corotated) static_cast<DeformableSolver*>(solver)->solveAlways();
-  parts->apply(material);
+  if (corotated) static_cast<DeformableSolver&>(solver).solveAlways();
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(parts)));
 }
 
-void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options) {
+void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest) {
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
+      applyMaterial(material);
       return;
     case ForceModel::NeoHookean:
       makeElasticity<btDeformableNeoHookeanForce>();
+      applyMaterial(material);
       return;
     default:
-      makeElasticity<ElasticForce>(&world, body.get(), material, options.stiffnessScale,
+      makeElasticity<ElasticForce>(world, *body, std::move(rest), material, options.stiffnessScale,
                                    SolverLimits{options.solverTolerance, options.maxIterations});
   }
 }

@@ -13,6 +13,7 @@
 #include <tetskin/export.h>
 
 #include <optional>
+#include <utility>
 
 namespace tetskin {
 
@@ -50,7 +51,8 @@ template <class Force>
 class OwnForce : public Force {
  public:
   template <class... Arguments>
-  explicit OwnForce(ForceList& list, Arguments... arguments) : Force(arguments...), list_(list) {}
+  explicit OwnForce(ForceList& list, Arguments&&... arguments)
+      : Force(std::forward<Arguments>(arguments)...), list_(list) {}
 
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
   void removeSoftBody(btSoftBody* body) override {

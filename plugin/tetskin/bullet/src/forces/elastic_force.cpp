@@ -6,16 +6,18 @@
 
 namespace tetskin {
 
-ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld* world, btSoftBody* body, const ElasticMaterial& material,
-                           std::vector<double> stiffnessScale, const SolverLimits& limits)
+ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
+                           const ElasticMaterial& material, std::vector<double> stiffnessScale,
+                           const SolverLimits& limits)
     : material_(material), limits_(limits) {
-  assert(checkMaterial(material).ok() && checkTets(*body, stiffnessScale).ok());
+  assert(checkMaterial(material).ok() && rest.count() == static_cast<std::size_t>(body.m_tetras.size()));
+  assert(stiffnessScale.empty() || stiffnessScale.size() == rest.count());
   assert(limits.tolerance >= 0.0 && limits.tolerance < 1.0 && limits.iterations >= 1);
-  body_.body = body;
-  body_.world = world;
-  body_.worldInfo = &world->getWorldInfo();
+  body_.body = &body;
+  body_.world = &world;
+  body_.worldInfo = &world.getWorldInfo();
   body_.stiffnessScale = std::move(stiffnessScale);
-  body_.build(material);
+  body_.build(std::move(rest), material);
 }
 
 void ElasticForce::setMaterial(const ElasticMaterial& material) {
@@ -26,8 +28,8 @@ void ElasticForce::setMaterial(const ElasticMaterial& material) {
 
 void ElasticForce::reinitialize(bool) {
   if (m_softBodies.size() == 0 || body_.hasItsRestShapes()) return;
-  if (checkTets(*body_.body, {}).ok()) {
-    body_.build(material_);
+  if (Result<elastic_detail::RestTets> rest = restTetsOf(*body_.body); rest.ok()) {
+    body_.build(std::move(rest).value(), material_);
   } else if (!body_.hasItsCounts()) {
     removeSoftBody(body_.body);
   }

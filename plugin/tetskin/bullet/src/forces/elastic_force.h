@@ -12,14 +12,15 @@ namespace tetskin {
 /// A `DeformableSolver` finds the body here, and solves for it: the force itself gives Bullet nothing. It is in the
 /// list so that Bullet tells when the body leaves the world, and asks for its energy.
 ///
-/// Corotated linear elasticity: every tet's rotation is taken out of its deformation, so that it resists neither turning
-/// nor, like linear elasticity, gets fatter by it; it comes back from being flat or inside out.
+/// Corotated linear elasticity: every tet's rotation is taken out of its deformation, so that it resists neither
+/// turning nor, like linear elasticity, gets fatter by it; it comes back from being flat or inside out.
 class ElasticForce : public SilentForce {
  public:
-  /// The material and the body's tets are checked: see `checkMaterial`, `checkTets`.
-  /// stiffnessScale  tetCount, or empty
-  ElasticForce(btDeformableMultiBodyDynamicsWorld* world, btSoftBody* body, const ElasticMaterial& material,
-               std::vector<double> stiffnessScale, const SolverLimits& limits);
+  /// rest            the body's: see `restTetsOf`
+  /// material        checked: see `checkMaterial`
+  /// stiffnessScale  tetCount, above 0; or empty: 1
+  ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
+               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverLimits& limits);
 
   void setMaterial(const ElasticMaterial& material);
   const SolverLimits& limits() const { return limits_; }

@@ -31,8 +31,10 @@ using Dynamics = elastic_detail::BodyDynamics<btScalar>;
 /// The state of a body's nodes; `predicted`: at m_q instead of m_x.
 void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics);
 
-/// Ok, or why nothing can be made of the body's tets.
-Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale);
+/// The body's tets at rest, by Bullet's numbers: the same whether the body has just been made or scaled since.
+/// Cost    O(nodes + tets)
+/// Errors  Degenerate: why nothing elastic can be made of them
+Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
 Status checkMaterial(const ElasticMaterial& material);
 /// Whether it is not too stiff for the body's mass: see elastic_detail::checkStiffness.
 Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
@@ -48,7 +50,8 @@ struct ForcedBody {
   const btSoftBodyWorldInfo* worldInfo = nullptr;
 
   /// Makes, or makes anew, what is derived from the body's tets.
-  void build(const ElasticMaterial& material);
+  /// rest  see `restTetsOf`
+  void build(elastic_detail::RestTets rest, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
   /// Whether that was derived from as many nodes and tets as there are, and from the same rest shapes.
   bool hasItsCounts() const;
