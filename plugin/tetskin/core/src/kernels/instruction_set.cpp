@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/kernels/instruction_set.h>
+#include <tetskin/core/src/kernels/dispatch.h>
 #include <tetskin/core/src/kernels/kernel_tables.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <type_traits>
 
 namespace tetskin {
 namespace {
@@ -32,15 +33,6 @@ bool available(InstructionSet set) {
 std::atomic<InstructionSet>& chosen() {
   static std::atomic<InstructionSet> set(availableInstructionSets().back());
   return set;
-}
-
-template <class Scalar>
-const kernels::Table<Scalar>& pick(const kernels::Table<float>& single, const kernels::Table<double>& twice) {
-  if constexpr (std::is_same_v<Scalar, float>) {
-    return single;
-  } else {
-    return twice;
-  }
 }
 
 }  // namespace
@@ -79,25 +71,15 @@ void setInstructionSet(InstructionSet set) {
 
 template <class Scalar>
 const kernels::Table<Scalar>& kernels::tableInUse() {
-#ifdef TETSKIN_X86_KERNELS
-  if (instructionSet() == InstructionSet::Avx512) return pick<Scalar>(avx512::tableFloat, avx512::tableDouble);
-  if (instructionSet() == InstructionSet::Avx2) return pick<Scalar>(avx2::tableFloat, avx2::tableDouble);
-#endif
-#ifdef TETSKIN_VECTOR_KERNELS
-  if (instructionSet() == InstructionSet::Baseline) return pick<Scalar>(baseline::tableFloat, baseline::tableDouble);
-#endif
-  return pick<Scalar>(plain::tableFloat, plain::tableDouble);
+  if constexpr (std::is_same_v<Scalar, float>) {
+    return TETSKIN_KERNELS_IN_USE(tableFloat);
+  } else {
+    return TETSKIN_KERNELS_IN_USE(tableDouble);
+  }
 }
 
 kernels::SelectEntries kernels::selectInUse() {
-#ifdef TETSKIN_X86_KERNELS
-  if (instructionSet() == InstructionSet::Avx512) return avx512::select;
-  if (instructionSet() == InstructionSet::Avx2) return avx2::select;
-#endif
-#ifdef TETSKIN_VECTOR_KERNELS
-  if (instructionSet() == InstructionSet::Baseline) return baseline::select;
-#endif
-  return plain::select;
+  return TETSKIN_KERNELS_IN_USE(select);
 }
 
 template const kernels::Table<float>& kernels::tableInUse();

@@ -46,10 +46,12 @@ BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std
 }
 
 template <class S>
-kernels::RowWork<S> BlockMatrix<S>::work() const {
+kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t lastChunk) const {
   // The kernels that write get their targets from members that are not const where they are called.
   const auto writable = [](const AlignedVector<S>& v) { return const_cast<S*>(v.data()); };
   kernels::RowWork<S> work;
+  work.firstChunk = firstChunk;
+  work.lastChunk = lastChunk;
   work.starts = pattern_.starts.data();
   work.neighbours = pattern_.neighbours.data();
   work.blocks = writable(blocks_);
@@ -107,13 +109,11 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
   assert(corners || pattern_.neighbours.empty());
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work();
+    auto part = work(first, last);
     part.corners = corners;
     part.leastMass = kLeastMass<S>;
     part.diagonal = freeDiagonal_.data();
     part.inverse = freeInverse_.data();
-    part.firstChunk = first;
-    part.lastChunk = last;
     table.assemble(part);
   });
   free();
@@ -197,11 +197,9 @@ template <class S>
 void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work();
+    auto part = work(first, last);
     part.stepPoints = const_cast<S*>(points);
     part.rest = wide;
-    part.firstChunk = first;
-    part.lastChunk = last;
     table.multiply(part);
   });
 }
@@ -229,10 +227,7 @@ template <class S>
 double BlockMatrix<S>::lower(ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
-    auto part = work();
-    part.firstChunk = first;
-    part.lastChunk = last;
-    partial_[task] = table.lower(part);
+    partial_[task] = table.lower(work(first, last));
   });
   return summed();
 }
@@ -241,10 +236,8 @@ template <class S>
 void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   byColours(false, threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work();
+    auto part = work(first, last);
     part.factor = factor;
-    part.firstChunk = first;
-    part.lastChunk = last;
     table.backward(part);
   });
 }
@@ -253,10 +246,8 @@ template <class S>
 double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
-    auto part = work();
+    auto part = work(first, last);
     part.extra = extra;
-    part.firstChunk = first;
-    part.lastChunk = last;
     partial_[task] = table.forward(part);
   });
   return summed();
@@ -271,10 +262,8 @@ template <class S>
 double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t task, std::size_t first, std::size_t last) {
-    auto part = work();
+    auto part = work(first, last);
     part.factor = factor;
-    part.firstChunk = first;
-    part.lastChunk = last;
     partial_[task] = table.advance(part);
   });
   return summed();

@@ -93,7 +93,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   const S* stepPoints() const { return stepPoints_.data(); }
 
  private:
-  kernels::RowWork<S> work() const;
+  kernels::RowWork<S> work(std::size_t firstChunk, std::size_t lastChunk) const;
   template <class Kernel>
   void everywhere(ParallelFor* threads, Kernel&& kernel) const;
   template <class Kernel>
