@@ -12,8 +12,8 @@ namespace tetskin {
 /// A `DeformableSolver` finds the body here, and solves for it: the force itself gives Bullet nothing. It is in the
 /// list so that Bullet tells when the body leaves the world, and asks for its energy.
 ///
-/// Corotated linear elasticity: every tet's rotation is taken out of its deformation, so that it resists neither turning
-/// nor, like linear elasticity, gets fatter by it; it comes back from being flat or inside out.
+/// Corotated linear elasticity: every tet's rotation is taken out of its deformation, so that it resists neither
+/// turning nor, like linear elasticity, gets fatter by it; it comes back from being flat or inside out.
 class ElasticForce : public SilentForce {
  public:
   /// The material and the body's tets are checked: see `checkMaterial`, `checkTets`.
