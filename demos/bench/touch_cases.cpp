@@ -240,7 +240,8 @@ void registerSwings() {
   for (const auto& [pullerName, puller] : pullers) {
     for (const double stiffness : {1.0, 10.0, 1000.0}) {
       for (const int rate : {60, 240, 1000}) {
-        const std::string name = std::string("Touch/") + pullerName + named("stiffness", stiffness) + named("rate", rate);
+        const std::string name =
+            std::string("Touch/") + pullerName + named("stiffness", stiffness) + named("rate", rate);
         benchmark::RegisterBenchmark(name.c_str(),
                                      [=, pulls = puller](State& state) { swing(state, pulls, stiffness, rate); })
             ->Iterations(1)

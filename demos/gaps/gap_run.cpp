@@ -34,9 +34,7 @@ class Watched {
     if (contact == Contact::Surface) scene_.world().touchBySurface(soft_, *body.binding, body.mesh);
   }
 
-  void throwDown(double speed) {
-    soft_.setVelocity(btVector3(0, static_cast<btScalar>(-speed * kSize), 0));
-  }
+  void throwDown(double speed) { soft_.setVelocity(btVector3(0, static_cast<btScalar>(-speed * kSize), 0)); }
   bool step() {
     scene_.world().step(scene_.options().substep());
     skin_.markMoved();

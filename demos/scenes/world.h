@@ -54,9 +54,9 @@ enum class Force {
   MassSpring,        ///< Bullet's classic world
   LinearElasticity,  ///< the deformable world, as all that follow
   NeoHookean,
-  BulletCorotated,   ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
-  Elastic,           ///< the library's, in its solver
-  Reduced,           ///< no force: vibrations of fine tets, in Bullet's reduced solver
+  BulletCorotated,  ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
+  Elastic,          ///< the library's, in its solver
+  Reduced,          ///< no force: vibrations of fine tets, in Bullet's reduced solver
 };
 
 /// What of a soft body meets rigid ones.

@@ -10,10 +10,10 @@
 namespace tetskin {
 namespace {
 
-using test::TetskinWorld;
 using test::added;
 using test::smallCageAbove;
 using test::step;
+using test::TetskinWorld;
 using test::twoParts;
 
 struct Ray {

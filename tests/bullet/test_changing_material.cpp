@@ -7,13 +7,13 @@
 namespace tetskin {
 namespace {
 
-using test::EmptyWorld;
-using test::TetskinWorld;
 using test::added;
 using test::cageAbove;
+using test::EmptyWorld;
 using test::lowest;
 using test::rmsSpeed;
 using test::step;
+using test::TetskinWorld;
 
 /// A beam in the air, held at one end.
 std::unique_ptr<DeformableBody> heldBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {

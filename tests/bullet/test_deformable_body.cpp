@@ -12,13 +12,13 @@
 namespace tetskin {
 namespace {
 
-using test::EmptyWorld;
-using test::TetskinWorld;
 using test::added;
 using test::cageAbove;
+using test::EmptyWorld;
 using test::lowest;
 using test::rmsSpeed;
 using test::step;
+using test::TetskinWorld;
 using test::twoParts;
 
 struct Material {

@@ -75,8 +75,8 @@ TEST(DeformableSolver, SolvesWhateverTheWorldsSettingsOfBulletsSolveAre) {
 }
 
 TEST(DeformableSolver, LeavesAWorldOfBulletsForcesAloneToBulletsCode) {
-  for (const Settings& settings : {Settings{true, false, true}, Settings{true, true, true},
-                                   Settings{false, false, false}}) {
+  for (const Settings& settings :
+       {Settings{true, false, true}, Settings{true, true, true}, Settings{false, false, false}}) {
     TetskinWorld ours;
     EmptyWorld bullets;
     std::vector<btVector3> positions[2];

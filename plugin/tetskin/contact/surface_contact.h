@@ -61,8 +61,8 @@ class TETSKIN_CONTACT_API SurfaceContact {
   /// binding  of the mesh in the body's cage, as a skin's; read here only
   /// mesh     that of the binding
   /// Errors   InvalidOption: options out of range, a world with another solver, or a dispatcher that is no
-  ///          btCollisionDispatcher, a body that is not in the world, or has a contact already, or was not made as said;
-  ///          Empty: no vertices; SizeMismatch: binding, mesh and body do not belong together
+  ///          btCollisionDispatcher, a body that is not in the world, or has a contact already, or was not made as
+  ///          said; Empty: no vertices; SizeMismatch: binding, mesh and body do not belong together
   static Result<std::unique_ptr<SurfaceContact>> add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                      const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                                      const SurfaceContactOptions& options = {});

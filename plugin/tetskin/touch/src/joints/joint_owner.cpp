@@ -11,9 +11,10 @@ Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoin
   }
   const auto* deformable = dynamic_cast<const btDeformableMultiBodyDynamicsWorld*>(&world);
   if (!deformable) {
-    return {StatusCode::InvalidOption,
-            "springs and welds need a deformable world, made with a DeformableSolver; in the classic ones, use impulses, "
-            "or Bullet's own anchors"};
+    return {
+        StatusCode::InvalidOption,
+        "springs and welds need a deformable world, made with a DeformableSolver; in the classic ones, use impulses, "
+        "or Bullet's own anchors"};
   }
   const auto& inWorld = deformable->getSoftBodyArray();
   if (inWorld.findLinearSearch(point.body()) == inWorld.size()) {
