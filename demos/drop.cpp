@@ -33,19 +33,22 @@ struct DropOptions {
   bool writeCage = false;
 
   bool reduced() const { return body == "reduced"; }
-  /// Bullet's reduced bodies are touched at their nodes alone.
-  Contact contactPossible() const { return reduced() ? Contact::Cage : contact; }
+  /// What Bullet solves for is touched at its nodes alone.
+  bool touchesBySurface() const { return !reduced() && force == Force::Elastic; }
+  Contact contactPossible() const { return touchesBySurface() ? contact : Contact::Cage; }
 };
 
-/// What is asked for is done or refused: only the default gives way to what a reduced body can do.
+/// What is asked for is done or refused: only the default gives way to what a body of Bullet's can do.
 void requireContact(const DropOptions& options, bool given) {
-  if (!options.reduced()) return;
-  const char* fault = ": a reduced body is touched at its cage's nodes alone; ";
+  if (options.touchesBySurface()) return;
+  const std::string fault = options.reduced() ? ": a reduced body is touched at its cage's nodes alone; "
+                                              : ": a body of --force bullet is touched at its cage's nodes alone; ";
+  const std::string cure = options.reduced() ? ", or --body elastic" : ", or --force tetskin";
   if (given && options.contact == Contact::Surface) {
-    throw InputError(std::string("--contact surface") + fault + "take --contact cage, or --body elastic");
+    throw InputError("--contact surface" + fault + "take --contact cage" + cure);
   }
   if (options.selfContact == SelfContactWish::On) {
-    throw InputError(std::string("--self-contact on") + fault + "take --self-contact off, or --body elastic");
+    throw InputError("--self-contact on" + fault + "take --self-contact off" + cure);
   }
 }
 

@@ -22,7 +22,6 @@ namespace {
 struct GapOptions {
   std::vector<std::string> bodies = bodyNames();
   std::vector<std::string> obstacles;
-  std::vector<std::string> settings = {"solver", "explicit", "implicit"};
   std::vector<std::size_t> tets = {300, 1000, 3000};
   std::size_t triangles = 20000;
   double seconds = 6.0;
@@ -32,27 +31,19 @@ struct GapOptions {
   std::string markdown;
 };
 
-Setting settingNamed(const std::string& name) {
-  if (name == "solver") return Setting::Solver;
-  if (name == "explicit") return Setting::Explicit;
-  if (name == "implicit") return Setting::Implicit;
-  throw InputError("there is no setting '" + name + "'; there are: solver, explicit, implicit");
-}
-
 GapRow measured(const GapOptions& options, const GapObstacle& obstacle, const GapBody& body, GapRow row) {
-  const GapRun surface{settingNamed(row.setting), Contact::Surface}, cage{settingNamed(row.setting), Contact::Cage};
-  row.surface = restOn(obstacle, body, surface, options.seconds);
-  row.cage = restOn(obstacle, body, cage, options.seconds);
-  row.deepest = deepestAt(options.speed, obstacle, body, surface);
-  row.deepestByCage = deepestAt(options.speed, obstacle, body, cage);
+  row.surface = restOn(obstacle, body, Contact::Surface, options.seconds);
+  row.cage = restOn(obstacle, body, Contact::Cage, options.seconds);
+  row.deepest = deepestAt(options.speed, obstacle, body, Contact::Surface);
+  row.deepestByCage = deepestAt(options.speed, obstacle, body, Contact::Cage);
   return row;
 }
 
 void print(const GapRow& row) {
   const auto word = [](const Rest& rest) { return !rest.touches() ? "off" : rest.still() ? "still" : "moves"; };
-  std::printf("%-9s %-7s %-8s %5zu   rest %+.4f %-5s  cage %+.4f %-5s   impact %+.4f  cage %+.4f  %s\n",
-              row.setting.c_str(), row.obstacle.c_str(), row.body.c_str(), row.tets, row.surface.gap, word(row.surface),
-              row.cage.gap, word(row.cage), row.deepest, row.deepestByCage, holds(row) ? "" : "NOT HELD");
+  std::printf("%-7s %-8s %5zu   rest %+.4f %-5s  cage %+.4f %-5s   impact %+.4f  cage %+.4f  %s\n",
+              row.obstacle.c_str(), row.body.c_str(), row.tets, row.surface.gap, word(row.surface), row.cage.gap,
+              word(row.cage), row.deepest, row.deepestByCage, holds(row) ? "" : "NOT HELD");
   std::fflush(stdout);
 }
 
@@ -63,15 +54,12 @@ std::vector<GapRow> measureAll(const GapOptions& options, const std::vector<cons
       const GapBody body = makeGapBody(name, tets, options.triangles);
       for (const GapObstacle* obstacle : obstacles) {
         if (obstacle->roundOnly && name != "round") continue;
-        for (const std::string& setting : options.settings) {
-          GapRow row;
-          row.setting = setting;
-          row.obstacle = obstacle->name;
-          row.body = name;
-          row.tets = tets;
-          rows.push_back(measured(options, *obstacle, body, row));
-          if (!options.quiet) print(rows.back());
-        }
+        GapRow row;
+        row.obstacle = obstacle->name;
+        row.body = name;
+        row.tets = tets;
+        rows.push_back(measured(options, *obstacle, body, row));
+        if (!options.quiet) print(rows.back());
       }
     }
   }
@@ -79,7 +67,6 @@ std::vector<GapRow> measureAll(const GapOptions& options, const std::vector<cons
 }
 
 int run(const GapOptions& options) {
-  for (const std::string& setting : options.settings) (void)settingNamed(setting);
   std::vector<const GapObstacle*> obstacles;
   for (const std::string& name : options.obstacles) obstacles.push_back(&obstacleNamed(name));
   for (const GapObstacle& obstacle : gapObstacles()) {
@@ -103,12 +90,10 @@ int main(int argc, char** argv) {
   CommandLine line(
       "Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.",
       {{{"tetskin_gaps --markdown gaps.md", "all bodies on all obstacles: minutes"},
-        {"tetskin_gaps --bodies serpent --obstacles floor --settings solver --tets 300", "one body on the floor"}},
+        {"tetskin_gaps --bodies serpent --obstacles floor --tets 300", "one body on the floor"}},
        "a surface rests farther from what it lies on than it may"});
   line.addWords("--bodies", options.bodies, "serpent, round, legs (default: all)");
   line.addWords("--obstacles", options.obstacles, "floor, edge, sphere, pole, hull, mesh, ball (default: all)");
-  line.addWords("--settings", options.settings,
-                "solver (tetskin's), explicit, implicit (Bullet's solver, tetskin's force; default: all)");
   line.addCounts("--tets", options.tets, "Tets of the cages");
   line.addCount("--triangles", options.triangles, "Triangles of the bodies", 500000);
   line.addPositive("--seconds", options.seconds, "Until a body is taken to be at rest");

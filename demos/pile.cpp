@@ -34,7 +34,6 @@ struct PileOptions {
   ModelOptions model;  ///< without a mesh: what all of kModels have in common
   Contact contact = Contact::Surface;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
-  Setting setting = Setting::Solver;
   OutputOptions output{"out/pile", "", 600, 1, false};
 
   bool touchThemselves() const { return wishBeside(contact, selfContact) != SelfContactWish::Off; }
@@ -129,9 +128,7 @@ class Pile {
 };
 
 void Pile::add(const PileModel& of, int k, const PileOptions& options) {
-  SoftBodyOptions how = oneKilogram();
-  how.implicit = options.setting == Setting::Implicit;
-  btSoftBody& body = world_.add(placedAt(of.model.cage, k), how);
+  btSoftBody& body = world_.add(placedAt(of.model.cage, k), oneKilogram());
   if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
   world_.touchEachOther(body, of.shape, options.touchThemselves());
   bodies_.push_back(&body);
@@ -257,7 +254,6 @@ int main(int argc, char** argv) {
   line.addCount("--triangles", options.model.triangles, "Triangles of each built-in model", 500000);
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
-  line.addSettingOption(options.setting);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] {
     options.model.quiet = options.output.quiet;

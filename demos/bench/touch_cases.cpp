@@ -144,12 +144,12 @@ std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, co
 
 /// The serpent hangs by its top, and is swung. The lag is the largest distance between point and target after a frame,
 /// from half a second on.
-void swing(State& state, Puller puller, scenes::Force force, double stiffness, int rate) {
+void swing(State& state, Puller puller, double stiffness, int rate) {
   const TouchModel& model = serpent();
   double lag = 0;
   bool lost = false;
   for (auto _ : state) {
-    scenes::World world(force, btVector3(0, btScalar(-9.81), 0));
+    scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
     btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     const SurfaceTree tree(model.binding, model.mesh);
@@ -236,21 +236,14 @@ std::string named(const std::string& what, double value) {
 }
 
 void registerSwings() {
-  struct Case {
-    const char* name;
-    Puller puller;
-    scenes::Force force;
-  };
-  const Case cases[] = {{"spring", Puller::Spring, scenes::Force::Elastic},
-                        {"spring_in_bullets_solver", Puller::Spring, scenes::Force::ElasticForceOnly},
-                        {"bullets_picking", Puller::Bullets, scenes::Force::Elastic},
-                        {"bullets_picking_in_bullets_solver", Puller::Bullets, scenes::Force::ElasticForceOnly}};
-  for (const Case& of : cases) {
+  const std::pair<const char*, Puller> pullers[] = {{"spring", Puller::Spring}, {"bullets_picking", Puller::Bullets}};
+  for (const auto& [pullerName, puller] : pullers) {
     for (const double stiffness : {1.0, 10.0, 1000.0}) {
       for (const int rate : {60, 240, 1000}) {
-        const std::string name = std::string("Touch/") + of.name + named("stiffness", stiffness) + named("rate", rate);
+        const std::string name =
+            std::string("Touch/") + pullerName + named("stiffness", stiffness) + named("rate", rate);
         benchmark::RegisterBenchmark(name.c_str(),
-                                     [=](State& state) { swing(state, of.puller, of.force, stiffness, rate); })
+                                     [=, pulls = puller](State& state) { swing(state, pulls, stiffness, rate); })
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);
       }

@@ -25,20 +25,16 @@ constexpr double kWatched = 0.25;  ///< seconds of an impact
 /// A body over an obstacle.
 class Watched {
  public:
-  Watched(const GapObstacle& obstacle, const GapBody& body, const GapRun& how)
+  Watched(const GapObstacle& obstacle, const GapBody& body, Contact contact)
       : obstacle_(obstacle),
-        scene_(optionsOf(how), kEarth),
+        scene_(sceneOptions(), kEarth),
         soft_(scene_.add(body.cage, {}, Vector3d(0, -boundingBox(body.mesh.positions).min().y() + kAbove * kSize, 0))) {
     obstacle.addTo(scene_.world());
     require(skin_.bind(soft_, body.binding));
-    if (how.contact == Contact::Surface) scene_.world().touchBySurface(soft_, *body.binding, body.mesh);
+    if (contact == Contact::Surface) scene_.world().touchBySurface(soft_, *body.binding, body.mesh);
   }
 
-  void throwDown(double speed) {
-    soft_.setVelocity(btVector3(0, static_cast<btScalar>(-speed * kSize), 0));
-    // Implicit steps begin with the velocities after the last one.
-    for (int n = 0; n < soft_.m_nodes.size(); ++n) soft_.m_nodes[n].m_vn = soft_.m_nodes[n].m_v;
-  }
+  void throwDown(double speed) { soft_.setVelocity(btVector3(0, static_cast<btScalar>(-speed * kSize), 0)); }
   bool step() {
     scene_.world().step(scene_.options().substep());
     skin_.markMoved();
@@ -56,10 +52,9 @@ class Watched {
   double substep() const { return scene_.options().substep(); }
 
  private:
-  static SceneOptions optionsOf(const GapRun& how) {
+  static SceneOptions sceneOptions() {
     SceneOptions options;
-    options.force = forceOf(how.setting);
-    options.body.implicit = how.setting == Setting::Implicit;
+    options.force = Force::Elastic;
     options.body.damping = kDamping;
     return options;
   }
@@ -79,9 +74,9 @@ bool Rest::still() const {
   return speed < kStill;
 }
 
-Rest restOn(const GapObstacle& obstacle, const GapBody& body, const GapRun& how, double seconds) {
+Rest restOn(const GapObstacle& obstacle, const GapBody& body, Contact contact, double seconds) {
   constexpr double kLast = 0.5, kBetween = 1.0 / 60;
-  Watched watched(obstacle, body, how);
+  Watched watched(obstacle, body, contact);
   Rest rest;
   double squared = 0.0, next = seconds - kLast;
   int count = 0;
@@ -98,8 +93,8 @@ Rest restOn(const GapObstacle& obstacle, const GapBody& body, const GapRun& how,
   return rest;
 }
 
-double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, const GapRun& how) {
-  Watched watched(obstacle, body, how);
+double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, Contact contact) {
+  Watched watched(obstacle, body, contact);
   watched.throwDown(speed);
   double deepest = HUGE_VAL;
   for (double time = 0.0; time < kWatched; time += watched.substep()) {

@@ -7,11 +7,6 @@
 
 namespace tetskin::gaps {
 
-struct GapRun {
-  scenes::Setting setting = scenes::Setting::Solver;
-  scenes::Contact contact = scenes::Contact::Surface;
-};
-
 /// How a body lies at the end.
 struct Rest {
   double gap = 0.0;    ///< least of the surface's vertices, in sizes, the one farthest from 0 in the last half second
@@ -23,9 +18,9 @@ struct Rest {
 };
 
 /// From just above the obstacle, for so long.
-Rest restOn(const GapObstacle& obstacle, const GapBody& body, const GapRun& how, double seconds);
+Rest restOn(const GapObstacle& obstacle, const GapBody& body, scenes::Contact contact, double seconds);
 
 /// Least gap of all substeps, in sizes, of a body that hits the obstacle at so many sizes a second.
-double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, const GapRun& how);
+double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, scenes::Contact contact);
 
 }  // namespace tetskin::gaps

@@ -35,9 +35,6 @@ void appendNew(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-std::string lineOf(const GapRow& row) {
-  return row.obstacle + " | " + row.setting;
-}
 std::string columnOf(const GapRow& row) {
   return row.body + " " + std::to_string(row.tets);
 }
@@ -45,10 +42,10 @@ std::string columnOf(const GapRow& row) {
 std::string tableOf(const std::vector<GapRow>& rows, const std::function<std::string(const GapRow&)>& cell) {
   std::vector<std::string> lines, columns;
   for (const GapRow& row : rows) {
-    appendNew(lines, lineOf(row));
+    appendNew(lines, row.obstacle);
     appendNew(columns, columnOf(row));
   }
-  std::string text = "| obstacle | setting |", rule = "|---|---|";
+  std::string text = "| obstacle |", rule = "|---|";
   for (const std::string& column : columns) {
     text += " " + column + " |";
     rule += "---|";
@@ -58,7 +55,7 @@ std::string tableOf(const std::vector<GapRow>& rows, const std::function<std::st
     text += "| " + line + " |";
     for (const std::string& column : columns) {
       const auto found = std::find_if(
-          rows.begin(), rows.end(), [&](const GapRow& row) { return lineOf(row) == line && columnOf(row) == column; });
+          rows.begin(), rows.end(), [&](const GapRow& row) { return row.obstacle == line && columnOf(row) == column; });
       text += " " + (found == rows.end() ? std::string() : cell(*found)) + " |";
     }
     text += "\n";
@@ -86,7 +83,6 @@ nlohmann::ordered_json toJson(const std::vector<GapRow>& rows) {
   auto json = nlohmann::ordered_json::array();
   for (const GapRow& row : rows) {
     nlohmann::ordered_json one;
-    one["setting"] = row.setting;
     one["obstacle"] = row.obstacle;
     one["body"] = row.body;
     one["tets"] = row.tets;

@@ -13,7 +13,7 @@ namespace tetskin::gaps {
 
 /// One body on one obstacle, by its surface and by its cage's nodes.
 struct GapRow {
-  std::string setting, obstacle, body;
+  std::string obstacle, body;
   std::size_t tets = 0;  ///< as asked for
   Rest surface, cage;
   double deepest = 0.0, deepestByCage = 0.0;  ///< of the impact

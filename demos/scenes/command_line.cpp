@@ -202,7 +202,7 @@ void CommandLine::addModelOptions(ModelOptions& options) {
 
 void CommandLine::addForceOption(Force& force) {
   addChoice(parser_->app, "--force", force, {{"bullet", Force::NeoHookean}, {"tetskin", Force::Elastic}},
-            "Whose elastic forces and solver: the library's, or Bullet's neo-Hookean ones");
+            "Whose elastic forces and solver: the library's, or Bullet's neo-Hookean ones (--contact cage)");
 }
 
 void CommandLine::addContactOption(Contact& contact) {
@@ -213,12 +213,6 @@ void CommandLine::addContactOption(Contact& contact) {
 void CommandLine::addSelfContactOption(SelfContactWish& wish) {
   addChoice(parser_->app, "--self-contact", wish, {{"on", SelfContactWish::On}, {"off", SelfContactWish::Off}},
             "Whether a body meets itself at its surface (default: with --contact surface, unless the mesh is open)");
-}
-
-void CommandLine::addSettingOption(Setting& setting) {
-  addChoice(parser_->app, "--setting", setting,
-            {{"solver", Setting::Solver}, {"explicit", Setting::Explicit}, {"implicit", Setting::Implicit}},
-            "What solves the library's force: its own solver, or Bullet's in explicit or implicit steps");
 }
 
 void CommandLine::addInterpolationOption(SkinOptions& options) {

@@ -101,8 +101,6 @@ class CommandLine {
   void addContactOption(Contact& contact);
   /// --self-contact: on or off.
   void addSelfContactOption(SelfContactWish& wish);
-  /// --setting: solver, explicit or implicit.
-  void addSettingOption(Setting& setting);
   /// --interpolation.
   void addInterpolationOption(SkinOptions& options);
   /// --normals, --outside, --max-distance.

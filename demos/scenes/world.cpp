@@ -40,7 +40,6 @@ ForceModel modelOf(Force force) {
     case Force::BulletCorotated:
       return ForceModel::NeoHookean;
     case Force::Elastic:
-    case Force::ElasticForceOnly:
     case Force::Reduced:
       break;
   }

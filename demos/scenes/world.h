@@ -55,17 +55,10 @@ enum class Force {
   MassSpring,        ///< Bullet's classic world
   LinearElasticity,  ///< the deformable world, as all that follow
   NeoHookean,
-  BulletCorotated,   ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
-  Elastic,           ///< the library's force and its solver
-  ElasticForceOnly,  ///< the library's force with Bullet's solver
-  Reduced,           ///< no force: vibrations of fine tets, in Bullet's reduced solver
+  BulletCorotated,  ///< Bullet's own, which the library does not offer: it has no damping, and no implicit form
+  Elastic,          ///< the library's, in its solver
+  Reduced,          ///< no force: vibrations of fine tets, in Bullet's reduced solver
 };
-
-/// What solves the library's force: its solver, or Bullet's in explicit or implicit steps.
-enum class Setting { Solver, Explicit, Implicit };
-inline Force forceOf(Setting setting) {
-  return setting == Setting::Solver ? Force::Elastic : Force::ElasticForceOnly;
-}
 
 /// What of a soft body meets rigid ones.
 enum class Contact { Surface, Cage };
@@ -85,12 +78,12 @@ class World {
   /// The same of vibrations, for Force::Reduced.
   btSoftBody& add(const Cage& cage, const VibrationModes& modes, const ReducedBodyOptions& options);
 
-  /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; in the deformable world. Throws
-  /// InputError if they do not fit.
+  /// Rigid bodies meet this mesh in the body from now on, not the cage's nodes; of Force::Elastic. Throws InputError if
+  /// they do not fit.
   void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
 
-  /// Soft bodies for which this was called meet each other at their visual surfaces, in the deformable world; and
-  /// perhaps themselves. Throws InputError if body and shape do not fit.
+  /// Soft bodies for which this was called meet each other at their visual surfaces, and perhaps themselves; of
+  /// Force::Elastic. Throws InputError if body and shape do not fit.
   void touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself = false);
   /// Of the last substep; none where nothing was to touch.
   std::vector<SoftContact> softContacts() const;
@@ -151,7 +144,7 @@ class World {
   std::unique_ptr<SoftContacts> softContacts_;
 };
 
-/// The stiffness that the library gives a body of this cage by default with Bullet's solver, under the earth's gravity.
+/// The stiffness that the library gives a body of this cage by default with Bullet's forces, under the earth's gravity.
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
 
 /// Sends a box made by `addMovingBox` elsewhere, in the next step.

@@ -42,14 +42,6 @@ constexpr Touch kTouches[] = {{"land", 0, ""},
                               {"body_goes", 1, "/in_step"},
                               {"body_goes", 2, "/between_steps"}};
 
-/// What does not hold by the surface in Bullet's implicit steps: heavy boxes, and many that press on nodes that touch
-/// the floor as well, throw the body away. By the cage's nodes, in explicit steps and with the library's solver they do
-/// not.
-bool isThrownAway(const StressCase& made) {
-  const bool heavy = made.scene == "heavy_box" && (made.harshness == 0 || made.harshness >= 100);
-  return made.implicit && made.touchesBySurface && (heavy || made.scene == "hail");
-}
-
 /// A box of a thousand times the body's mass leaves so little of the body that it is pressed into the floor.
 bool isPressedIntoTheFloor(const StressCase& made) {
   return made.scene == "heavy_box" && made.harshness == 0;
@@ -61,69 +53,51 @@ bool endsBullet(const StressCase& made) {
   return made.force == Force::NeoHookean && made.implicit && made.scene == "heavy_box" && made.harshness > 0;
 }
 
-/// Bullet's force, and the library's in each of the settings in which contact is promised.
-std::vector<Method> methodsOfContact() {
-  std::vector<Method> methods = methodsOf({Force::NeoHookean});
-  methods.push_back({Force::ElasticForceOnly, false});
-  methods.push_back({Force::ElasticForceOnly, true});
-  return methods;
-}
-
-/// Obstacles that are hard to meet, by the surface and by the cage. Nothing is promised of Bullet's forces here.
+/// Obstacles that are hard to meet, by the surface and by the cage. Nothing is promised of Bullet's forces, which meet
+/// them by the cage alone.
 void addContacts(Cases& cases) {
-  for (const Method& method : methodsOfContact()) {
+  for (const Method& method : methodsOf({Force::NeoHookean})) {
     for (const Touch& touch : kTouches) {
       for (const bool surface : {true, false}) {
+        if (surface && !isOurs(method.force)) continue;
         const std::string scene = touch.scene;
         StressCase made = named("contact", method, {scene + touch.word, surface ? "surface" : "cage"});
         made.scene = scene;
         made.harshness = touch.harshness;
         made.frames = 60;
         made.touchesBySurface = surface;
-        const bool promised = isOurs(method.force) && !isThrownAway(made);
-        made.simulation = promised ? Simulation::Bounded : Simulation::Either;
-        made.staysAbove = promised && surface && !isPressedIntoTheFloor(made);
-        made.quick = method.force == Force::Elastic;
+        made.simulation = isOurs(method.force) ? Simulation::Bounded : Simulation::Either;
+        made.staysAbove = surface && !isPressedIntoTheFloor(made);
+        made.quick = isOurs(method.force);
         if (!endsBullet(made)) cases.push_back(made);
       }
     }
   }
 }
 
-const std::vector<Method>& methodsOfSoftContact() {
-  static const std::vector<Method> methods = {
-      {Force::Elastic, false}, {Force::ElasticForceOnly, false}, {Force::ElasticForceOnly, true}};
-  return methods;
-}
-
-/// Bodies that meet each other, with each solver.
+/// Bodies that meet each other.
 void addSoftContacts(Cases& cases) {
-  for (const Method& method : methodsOfSoftContact()) {
-    for (const char* scene : {"soft_stack", "soft_removed", "soft_squeezed", "soft_pile"}) {
-      StressCase made = named("soft_contact", method, {scene});
-      made.scene = scene;
-      made.frames = 120;
-      made.quick = !method.implicit && scene != std::string("soft_pile");
-      cases.push_back(made);
-    }
+  for (const char* scene : {"soft_stack", "soft_removed", "soft_squeezed", "soft_pile"}) {
+    StressCase made = named("soft_contact", {Force::Elastic, false}, {scene});
+    made.scene = scene;
+    made.frames = 120;
+    made.quick = scene != std::string("soft_pile");
+    cases.push_back(made);
   }
 }
 
-/// A minute each; what moves is stopped after 50 seconds. Bullet's implicit steps leave a body that is squeezed
-/// trembling.
+/// A minute each; what moves is stopped after 50 seconds.
 void addLongContacts(Cases& cases) {
   constexpr int kFrames = 3600;
-  for (const Method& method : methodsOfSoftContact()) {
-    for (const char* scene : {"soft_pile", "squeeze", "mill"}) {
-      StressCase made = named("long", method, {scene});
-      made.scene = scene;
-      made.frames = kFrames;
-      made.touchesBySurface = true;
-      made.staysAbove = true;
-      made.rests = !(method.implicit && made.scene == "squeeze");
-      made.lasts = true;
-      cases.push_back(made);
-    }
+  for (const char* scene : {"soft_pile", "squeeze", "mill"}) {
+    StressCase made = named("long", {Force::Elastic, false}, {scene});
+    made.scene = scene;
+    made.frames = kFrames;
+    made.touchesBySurface = true;
+    made.staysAbove = true;
+    made.rests = true;
+    made.lasts = true;
+    cases.push_back(made);
   }
 }
 

@@ -18,7 +18,7 @@ const char* nameIn(const char* const (&names)[N], Enum value) {
 }  // namespace
 
 bool isOurs(scenes::Force force) {
-  return force == scenes::Force::Elastic || force == scenes::Force::ElasticForceOnly;
+  return force == scenes::Force::Elastic;
 }
 
 bool areTwins(const StressCase& ours, const StressCase& bullets) {
@@ -30,8 +30,8 @@ bool areTwins(const StressCase& ours, const StressCase& bullets) {
 }
 
 const char* toString(scenes::Force force) {
-  static const char* const kNames[] = {"mass_spring", "linear_elasticity",  "neo_hookean", "corotated",
-                                       "tetskin",     "tetskin_force_only", "reduced"};
+  static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean",
+                                       "corotated",   "tetskin",           "reduced"};
   return nameIn(kNames, force);
 }
 

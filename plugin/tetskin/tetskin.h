@@ -26,7 +26,6 @@
 #include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/bullet/elastic_force.h>
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>

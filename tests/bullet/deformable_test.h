@@ -29,6 +29,12 @@ class TetskinWorld : public EmptyWorld {
   DeformableSolver& bodySolver() { return static_cast<DeformableSolver&>(*softSolver); }
 };
 
+/// With the library's solver where the force needs it, else with Bullet's.
+inline std::unique_ptr<EmptyWorld> worldFor(ForceModel model) {
+  if (model == ForceModel::Corotated) return std::make_unique<TetskinWorld>();
+  return std::make_unique<EmptyWorld>();
+}
+
 inline std::unique_ptr<DeformableBody> added(EmptyWorld& world, const TetMesh& cage,
                                              const SoftBodyOptions& options = {}) {
   Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, oneKilogram(options));

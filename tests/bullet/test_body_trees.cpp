@@ -11,9 +11,9 @@ namespace tetskin {
 namespace {
 
 using test::added;
-using test::EmptyWorld;
 using test::smallCageAbove;
 using test::step;
+using test::TetskinWorld;
 using test::twoParts;
 
 struct Ray {
@@ -66,7 +66,7 @@ void expectRaysAsByBruteForce(const btCollisionWorld& world, const btSoftBody& b
 }
 
 TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(smallCageAbove(0.5)));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 1);
   step(world, 3);
@@ -76,7 +76,7 @@ TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
 }
 
 TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(smallCageAbove(0.5)));
   step(world, 10);
   body->body().translate(btVector3(5, 1, 0));
@@ -88,7 +88,7 @@ TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
 }
 
 TEST(BodyTrees, AreRightForASleeperAlsoOnceItIsMoved) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(smallCageAbove(0.05)));
   for (int frame = 0; body->body().isActive() && frame < 900; ++frame) step(world, 1);
   ASSERT_FALSE(body->body().isActive());
@@ -130,7 +130,7 @@ TEST(BodyTrees, StayThroughNewMassesSoThatTheNextStepDoesNotHang) {
 }
 
 TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
-  EmptyWorld world;
+  TetskinWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 1.2; };
   const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
@@ -145,7 +145,7 @@ TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
 }
 
 TEST(BodyTrees, AreBuiltAnewForFacesAndNodesThatWereAdded) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(smallCageAbove(0.5)));
   btSoftBody& soft = body->body();
   const btDbvtNode* root = soft.m_fdbvt.m_root;
@@ -162,7 +162,7 @@ TEST(BodyTrees, AreBuiltAnewForFacesAndNodesThatWereAdded) {
 TEST(BodyTrees, LeftOutLetRaysMissAndNothingHang) {
   SoftBodyOptions options;
   options.faceTree = false;
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
   const auto expectMisses = [&] {
     for (const Ray& ray : raysAround(body->body(), 1)) EXPECT_EQ(hitIn(world.deformable(), body->body(), ray), 1.0);

@@ -13,6 +13,7 @@ using test::EmptyWorld;
 using test::lowest;
 using test::rmsSpeed;
 using test::step;
+using test::TetskinWorld;
 
 /// A beam in the air, held at one end.
 std::unique_ptr<DeformableBody> heldBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {
@@ -70,7 +71,7 @@ TEST_P(Models, PoissonsRatioDecidesHowMuchVolumeACompressionTakes) {
 }
 
 TEST(DeformableBody, RefusesAMaterialThatMakesNoSenseAndKeepsItsOwn) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, cageAbove(1));
   const double stiffness = body->youngsModulus();
   for (const double bad : {0.0, -1.0, HUGE_VAL, std::nan("")}) {
@@ -91,7 +92,7 @@ TEST(DeformableBody, RefusesAMaterialThatMakesNoSenseAndKeepsItsOwn) {
 }
 
 TEST(DeformableBody, IsNotMadeOfAMaterialBeyondBulletsNumbers) {
-  EmptyWorld world;
+  TetskinWorld world;
   SoftBodyOptions options;
   options.youngsModulus = HUGE_VAL;
   EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
@@ -101,9 +102,16 @@ TEST(DeformableBody, IsNotMadeOfAMaterialBeyondBulletsNumbers) {
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
-TEST(DeformableBody, GravityFollowsTheWorldsUnlessSet) {
-  EmptyWorld world;
-  const auto body = added(world, cageAbove(20));
+/// Of Bullet's forces in Bullet's solver, and of the library's in its own.
+class Gravity : public testing::TestWithParam<ForceModel> {};
+INSTANTIATE_TEST_SUITE_P(DeformableBody, Gravity, testing::Values(ForceModel::NeoHookean, ForceModel::Corotated));
+
+TEST_P(Gravity, FollowsTheWorldsUnlessSet) {
+  const auto made = test::worldFor(GetParam());
+  EmptyWorld& world = *made;
+  SoftBodyOptions options;
+  options.forceModel = GetParam();
+  const auto body = added(world, cageAbove(20), options);
   const auto acceleration = [&] {
     const btScalar before = body->body().m_nodes[0].m_v.y();
     step(world, 6);
@@ -121,7 +129,7 @@ TEST(DeformableBody, GravityFollowsTheWorldsUnlessSet) {
 }
 
 TEST(DeformableBody, NodesArePinnedAndLetGoWhileItMoves) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, test::smallCageAbove(2));
   step(world, 10);
   const btVector3 where = body->body().m_nodes[0].m_x;
@@ -142,7 +150,7 @@ TEST(DeformableBody, NodesArePinnedAndLetGoWhileItMoves) {
 }
 
 TEST(DeformableBody, LetsGoOfNodesThatWerePinnedFromTheStart) {
-  EmptyWorld world;
+  TetskinWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d&) { return true; };
   options.mass = 3.0;
@@ -155,6 +163,12 @@ TEST(DeformableBody, LetsGoOfNodesThatWerePinnedFromTheStart) {
 }
 
 /// What the world's solver was told in the last substep.
+SoftBodyOptions neoHookean() {
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  return options;
+}
+
 struct Told : btDeformableBodySolver {
   static bool implicit(const btSoftBodySolver& solver) {
     return static_cast<const btDeformableBodySolver&>(solver).*(&Told::m_implicit);
@@ -172,7 +186,7 @@ TEST(DeformableBody, LeavesAnImplicitWorldImplicit) {
   world.deformable().setImplicit(true);
   world.deformable().setLineSearch(true);
   world.deformable().setUseProjection(false);
-  const auto body = added(world, cageAbove(5));
+  const auto body = added(world, cageAbove(5), neoHookean());
   step(world, 1);
   EXPECT_TRUE(Told::implicit(*world.softSolver));
   EXPECT_TRUE(Told::lineSearch(*world.softSolver));
@@ -183,7 +197,7 @@ TEST(DeformableBody, MakesTheWorldWhatIsAskedFor) {
   EmptyWorld world;
   world.deformable().setLineSearch(true);
   for (const bool implicit : {true, false}) {
-    SoftBodyOptions options;
+    SoftBodyOptions options = neoHookean();
     options.implicit = implicit;
     const auto body = added(world, cageAbove(5), options);
     step(world, 1);
@@ -198,7 +212,7 @@ TEST(DeformableBody, SetsNothingOfAWorldThatItMustNotConfigure) {
   world.deformable().setImplicit(true);
   world.deformable().setLineSearch(true);
   world.deformable().getWorldInfo().m_gravity.setValue(1, 2, 3);
-  SoftBodyOptions options;
+  SoftBodyOptions options = neoHookean();
   options.configureWorld = false;
   options.implicit = false;
   const auto body = added(world, cageAbove(5), options);

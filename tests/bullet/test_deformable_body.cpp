@@ -18,6 +18,7 @@ using test::EmptyWorld;
 using test::lowest;
 using test::rmsSpeed;
 using test::step;
+using test::TetskinWorld;
 using test::twoParts;
 
 struct Material {
@@ -67,7 +68,7 @@ TEST(DeformableBody, FallsFreelyWithoutDampingItsFall) {
 
 TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
   // Bullet's addForce would give the second body the first one's.
-  EmptyWorld world;
+  TetskinWorld world;
   const Box3 left(Eigen::Vector3d(-0.1, 0, -9), Eigen::Vector3d(0.1, 9, 9));
   SoftBodyOptions firm, limp;
   firm.pinned = limp.pinned = pinnedIn(left);
@@ -85,7 +86,7 @@ TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
 }
 
 TEST(DeformableBody, PinnedNodesStayWhereTheyAre) {
-  EmptyWorld world;
+  TetskinWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
   const TetMesh cage = cageAbove(3.0);
@@ -99,7 +100,7 @@ TEST(DeformableBody, PinnedNodesStayWhereTheyAre) {
 }
 
 TEST(DeformableBody, LeavesTheWorldWithItsForces) {
-  EmptyWorld world;
+  TetskinWorld world;
   {
     const auto first = added(world, cageAbove(0.5));
     const auto second = added(world, cageAbove(3.0));
@@ -113,8 +114,7 @@ TEST(DeformableBody, LeavesTheWorldWithItsForces) {
 }
 
 TEST(DeformableBody, LeavesItsBodyToAnotherWorldThatItWasMovedTo) {
-  EmptyWorld first;
-  test::TetskinWorld second;
+  TetskinWorld first, second;
   auto body = added(first, test::smallCageAbove(3));
   btSoftBody& moved = body->body();
   first.deformable().removeSoftBody(&moved);
@@ -131,10 +131,11 @@ TEST(DeformableBody, LeavesItsBodyToAnotherWorldThatItWasMovedTo) {
 }
 
 TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
-  EmptyWorld bullets;
-  test::TetskinWorld ours;
-  for (EmptyWorld* world : {&bullets, static_cast<EmptyWorld*>(&ours)}) {
-    const auto body = added(*world, test::smallCageAbove(3));
+  for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::Corotated}) {
+    const auto world = test::worldFor(model);
+    SoftBodyOptions options;
+    options.forceModel = model;
+    const auto body = added(*world, test::smallCageAbove(3), options);
     EXPECT_NE(body->solverPath(), SolverPath::None);
     world->deformable().removeSoftBody(&body->body());
     EXPECT_EQ(body->solverPath(), SolverPath::None);
@@ -145,7 +146,7 @@ TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
 
 /// As the guide says.
 TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
-  test::TetskinWorld world;
+  TetskinWorld world;
   const TetMesh cage = test::smallCageAbove(1);
   TetMesh aside = cage;
   for (Eigen::Vector3d& p : aside.nodes) p.x() += 5;
@@ -170,7 +171,7 @@ TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
 }
 
 TEST(DeformableBody, StiffnessScalesWithSizeSoThatBodiesOfAllSizesSagAlike) {
-  EmptyWorld world;
+  TetskinWorld world;
   const auto sag = [&](double scale) {
     TetMesh beam = test::latticeCage(8, 2, 2, 0.25 * scale);
     for (Eigen::Vector3d& p : beam.nodes) p.y() += 20.0;
@@ -191,6 +192,7 @@ TEST(DeformableBody, DefaultStiffnessIsBoundedByTheTimeStepForFineCages) {
   const auto stiffness = [&](int cells, double timeStep) {
     SoftBodyOptions options;
     options.timeStep = timeStep;
+    options.forceModel = ForceModel::NeoHookean;
     return added(world, test::latticeCage(cells, cells, cells, 1.0 / cells), options)->youngsModulus();
   };
   const double wanted = 50.0 * 1.0 * 10.0 * 1.0;  // relative stiffness x density x gravity x size
@@ -221,7 +223,9 @@ TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
     table.tets.push_back(tet);
   }
   EmptyWorld world;
-  const auto body = added(world, table);
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  const auto body = added(world, table, options);
   step(world, 180);
   EXPECT_LT(rmsSpeed(body->body()), 0.05);
   EXPECT_GT(lowest(body->body()), -0.03);
@@ -229,7 +233,7 @@ TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
 
 TEST(DeformableBody, PartsThatShareNoNodeFallAndRest) {
   // With its tree of faces, Bullet 3.24 would never come back from the first step.
-  EmptyWorld world;
+  TetskinWorld world;
   const auto body = added(world, twoParts(cageAbove(0.3)));
   step(world, 240);
   EXPECT_GT(lowest(body->body()), -0.05);
@@ -238,7 +242,7 @@ TEST(DeformableBody, PartsThatShareNoNodeFallAndRest) {
 }
 
 TEST(DeformableBody, RefusesMassSpringAndBadOptions) {
-  EmptyWorld world;
+  TetskinWorld world;
   SoftBodyOptions options;
   options.forceModel = ForceModel::MassSpring;
   EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);

@@ -64,20 +64,33 @@ ForceList& forcesOf(EmptyWorld& world) {
   return *static_cast<btDeformableBodySolver*>(world.softSolver.get())->getLagrangianForceArray();
 }
 
-SoftBodyOptions with(bool implicit) {
+/// Bullet's solver in explicit worlds, and in implicit ones, in which it takes one gravity for all; and ours.
+enum class Kind { Explicit, Implicit, Tetskin };
+
+const char* toString(Kind kind) {
+  return kind == Kind::Explicit ? "Explicit" : kind == Kind::Implicit ? "Implicit" : "Tetskin";
+}
+
+std::unique_ptr<EmptyWorld> worldOf(Kind kind) {
+  auto world = test::worldFor(kind == Kind::Tetskin ? ForceModel::Corotated : ForceModel::NeoHookean);
+  world->deformable().setImplicit(kind == Kind::Implicit);
+  return world;
+}
+
+SoftBodyOptions optionsOf(Kind kind) {
   SoftBodyOptions options;
-  options.implicit = implicit;
+  if (kind != Kind::Tetskin) options.forceModel = ForceModel::NeoHookean;
   return options;
 }
 
-/// Explicit worlds, and implicit ones, in which Bullet takes one gravity for all.
-class ForeignForces : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Worlds, ForeignForces, testing::Bool(),
-                         [](const auto& instance) { return instance.param ? "Implicit" : "Explicit"; });
+class ForeignForces : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Worlds, ForeignForces, testing::Values(Kind::Explicit, Kind::Implicit, Kind::Tetskin),
+                         [](const auto& instance) { return std::string(toString(instance.param)); });
 
 TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
-  EmptyWorld world;
-  auto ours = added(world, smallCageAbove(20), with(GetParam()));
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
+  auto ours = added(world, smallCageAbove(20), optionsOf(GetParam()));
   OwnBody own(world.deformable());
   EXPECT_EQ(own.gravity.m_softBodies.size(), 1);
   EXPECT_EQ(own.elasticity.m_softBodies.size(), 1);
@@ -88,9 +101,10 @@ TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
 }
 
 TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
-  EmptyWorld world;
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
   OwnBody own(world.deformable());
-  auto ours = added(world, smallCageAbove(20), with(GetParam()));
+  auto ours = added(world, smallCageAbove(20), optionsOf(GetParam()));
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
   EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
   ours.reset();
@@ -99,9 +113,10 @@ TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
 }
 
 TEST_P(ForeignForces, DoNotJoinOursBetweenARemovalAndTheNextStep) {
-  EmptyWorld world;
-  auto first = added(world, smallCageAbove(20), with(GetParam()));
-  auto second = added(world, smallCageAbove(40), with(GetParam()));
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
+  auto first = added(world, smallCageAbove(20), optionsOf(GetParam()));
+  auto second = added(world, smallCageAbove(40), optionsOf(GetParam()));
   step(world, 2);
   second.reset();
   OwnBody own(world.deformable());
@@ -111,8 +126,9 @@ TEST_P(ForeignForces, DoNotJoinOursBetweenARemovalAndTheNextStep) {
 }
 
 TEST_P(ForeignForces, OfAnotherBodyGoWithoutHarm) {
-  EmptyWorld world;
-  auto ours = added(world, smallCageAbove(20), with(GetParam()));
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
+  auto ours = added(world, smallCageAbove(20), optionsOf(GetParam()));
   {
     OwnBody own(world.deformable());
     step(world, 2);
@@ -122,9 +138,10 @@ TEST_P(ForeignForces, OfAnotherBodyGoWithoutHarm) {
 }
 
 TEST_P(ForeignForces, AndOursMayEachHaveAGravityOfTheirOwn) {
-  EmptyWorld world;
-  auto mars = added(world, smallCageAbove(20), with(GetParam()));
-  auto earth = added(world, smallCageAbove(40), with(GetParam()));
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
+  auto mars = added(world, smallCageAbove(20), optionsOf(GetParam()));
+  auto earth = added(world, smallCageAbove(40), optionsOf(GetParam()));
   EXPECT_TRUE(mars->setGravity(btVector3(0, btScalar(-3.7), 0)).ok());
   EXPECT_NEAR(fallsAt(world, *mars), 3.7, 0.02);
   EXPECT_NEAR(fallsAt(world, *earth), 10.0, 0.05);
@@ -135,15 +152,16 @@ TEST_P(ForeignForces, AndOursMayEachHaveAGravityOfTheirOwn) {
 }
 
 TEST_P(ForeignForces, AreLeftAloneWhenTheApplicationTakesOurBodyOut) {
-  EmptyWorld world;
-  auto ours = added(world, smallCageAbove(20), with(GetParam()));
+  const auto made = worldOf(GetParam());
+  EmptyWorld& world = *made;
+  auto ours = added(world, smallCageAbove(20), optionsOf(GetParam()));
   OwnBody own(world.deformable());
   step(world, 2);
   world.deformable().removeSoftBody(&ours->body());
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
   ours.reset();
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
-  ours = added(world, smallCageAbove(40), with(GetParam()));
+  ours = added(world, smallCageAbove(40), optionsOf(GetParam()));
   EXPECT_EQ(forcesOf(world).size(), 4);  // the places that were kept are gone
   EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
 }
@@ -151,7 +169,7 @@ TEST_P(ForeignForces, AreLeftAloneWhenTheApplicationTakesOurBodyOut) {
 TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
   // A beam held at one end; beside it, ours, of a hundredth of its stiffness.
   const auto tip = [](bool besideOurs) {
-    EmptyWorld world;
+    test::TetskinWorld world;
     TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
     for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
     SoftBodyOptions options;
@@ -179,7 +197,7 @@ TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
 TEST(DeformableBody, MayOutliveItsWorld) {
   std::unique_ptr<DeformableBody> body;
   {
-    EmptyWorld world;
+    test::TetskinWorld world;
     body = added(world, smallCageAbove(1));
     step(world, 2);
   }

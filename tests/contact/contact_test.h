@@ -128,21 +128,4 @@ inline btTransform placeAt(const btVector3& at, const btQuaternion& turned = btQ
   return btTransform(turned, at);
 }
 
-/// Bullet's solver explicit and implicit, and ours.
-enum class Setting { Explicit, Implicit, OwnSolver };
-inline std::string settingName(const ::testing::TestParamInfo<Setting>& of) {
-  const char* names[] = {"Explicit", "Implicit", "OwnSolver"};
-  return names[static_cast<int>(of.param)];
-}
-inline std::unique_ptr<EmptyWorld> worldOf(Setting setting) {
-  std::unique_ptr<EmptyWorld> world;
-  if (setting == Setting::OwnSolver) {
-    world = std::make_unique<TetskinWorld>();
-  } else {
-    world = std::make_unique<EmptyWorld>();
-  }
-  world->deformable().setImplicit(setting == Setting::Implicit);
-  return world;
-}
-
 }  // namespace tetskin::test

@@ -69,16 +69,8 @@ inline const Plate& plate() {
   return made;
 }
 
-enum class Setting { Explicit, Implicit, Solver };
-
-inline std::string nameOf(Setting setting) {
-  return setting == Setting::Explicit ? "explicit" : setting == Setting::Implicit ? "implicit" : "solver";
-}
-
-inline std::unique_ptr<EmptyWorld> worldOf(Setting setting, const btVector3& gravity = btVector3(0, -10, 0)) {
-  std::unique_ptr<EmptyWorld> world =
-      setting == Setting::Solver ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
-  world->deformable().setImplicit(setting == Setting::Implicit);
+inline std::unique_ptr<TetskinWorld> worldWith(const btVector3& gravity) {
+  auto world = std::make_unique<TetskinWorld>();
   world->deformable().setGravity(gravity);
   world->deformable().getWorldInfo().m_gravity = gravity;
   return world;

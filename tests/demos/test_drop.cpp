@@ -146,6 +146,17 @@ TEST_F(Drop, AReducedBodyFallsStaysAboveTheFloorAndRests) {
   EXPECT_NE(result.out.find("reduced, 8 modes"), std::string::npos) << result.out;
 }
 
+TEST_F(Drop, ABodyOfBulletsForcesIsTouchedByItsCage) {
+  const CommandResult result = drop(
+      {"--force", "bullet", "--tets", "100", "--triangles", "3000", "--frames", "60", "--every", "59", "--out", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto summary = folder.json("out/summary.json");
+  EXPECT_EQ(summary.at("force"), "bullet");
+  EXPECT_EQ(summary.at("contact"), "cage");
+  EXPECT_EQ(summary.at("self_contact"), "off");
+  EXPECT_EQ(summary.at("finite"), true);
+}
+
 TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {
   folder.write("box.obj", boxObj());
   const auto run = [&](std::vector<std::string> more) {

@@ -20,6 +20,12 @@ TEST_F(DropRefuses, ContactsThatAReducedBodyDoesNotHave) {
   EXPECT_FALSE(folder.exists("o"));
 }
 
+TEST_F(DropRefuses, ContactsThatABodyOfBulletsForcesDoesNotHave) {
+  test::expectRefused(drop({"--force", "bullet", "--contact", "surface", "--out", "o"}), "--contact surface");
+  test::expectRefused(drop({"--force", "bullet", "--self-contact", "on", "--out", "o"}), "--self-contact on");
+  EXPECT_FALSE(folder.exists("o"));
+}
+
 TEST_F(DropRefuses, AMissingMesh) {
   expectRefused({"--mesh", "nowhere.obj"}, {"nowhere.obj"});
 }

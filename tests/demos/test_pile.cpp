@@ -11,14 +11,10 @@ namespace {
 using test::CommandFolder;
 using test::CommandResult;
 
-class PileIn : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(EachSetting, PileIn, testing::Values("solver", "explicit", "implicit"),
-                         [](const auto& of) { return std::string(of.param); });
-
-TEST_P(PileIn, BodiesFallIntoTheBowlAndLieOnEachOther) {
+TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   const CommandFolder folder;
-  const CommandResult result = folder.run(TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000",
-                                                         "--frames", "181", "--every", "180", "--setting", GetParam()});
+  const CommandResult result = folder.run(
+      TETSKIN_PILE, {"--bodies", "5", "--tets", "200", "--triangles", "4000", "--frames", "181", "--every", "180"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/pile/summary.json");
   EXPECT_TRUE(json["finite"]);
@@ -65,7 +61,6 @@ TEST(Pile, RefusesWhatMakesNoSense) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");
   test::expectRefused(folder.run(TETSKIN_PILE, {"--contact", "nothing"}), "--contact");
-  test::expectRefused(folder.run(TETSKIN_PILE, {"--setting", "nothing"}), "--setting");
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ const Models& models() {
   return made;
 }
 
-class TouchingProngs : public testing::TestWithParam<Setting> {
+class TouchingProngs : public testing::Test {
  protected:
-  TouchingProngs() : world_(forceOf(GetParam()), btVector3(0, 0, 0)) {
+  TouchingProngs() : world_(scenes::Force::Elastic, btVector3(0, 0, 0)) {
     SoftBodyOptions options = material(2e3);
     options.pinned = [](const Vector3d& p) { return p.dot(models().along) < kRoot - 0.3; };
     beam_ = &world_.add(models().cage, options);
@@ -66,7 +66,6 @@ class TouchingProngs : public testing::TestWithParam<Setting> {
   static SoftBodyOptions material(double youngsModulus) {
     SoftBodyOptions options = scenes::oneKilogram();
     options.youngsModulus = youngsModulus;
-    options.implicit = GetParam() == Setting::Implicit;
     return options;
   }
   void addBall() {
@@ -176,27 +175,20 @@ class TouchingProngs : public testing::TestWithParam<Setting> {
   std::unique_ptr<SoftContacts> contacts_;
 };
 
-std::string nameOfSetting(const testing::TestParamInfo<Setting>& of) {
-  const char* const names[] = {"Solver", "Explicit", "Implicit"};
-  return names[static_cast<int>(of.param)];
-}
-INSTANTIATE_TEST_SUITE_P(EachSetting, TouchingProngs,
-                         testing::Values(Setting::Solver, Setting::Explicit, Setting::Implicit), nameOfSetting);
-
-TEST_P(TouchingProngs, CloseAboutABall) {
+TEST_F(TouchingProngs, CloseAboutABall) {
   addBall();
   ASSERT_TRUE(contacts_->include(*ball_, models().ballShape).ok());
   EXPECT_LT(deepestWhileTheyClose(), 0.2 * kBall);
   EXPECT_FALSE(contacts_->contacts().empty());
 }
 
-TEST_P(TouchingProngs, PassThroughABallThatWasNotIncluded) {
+TEST_F(TouchingProngs, PassThroughABallThatWasNotIncluded) {
   addBall();
   EXPECT_GT(deepestWhileTheyClose(), 0.4 * kBall);
 }
 
 /// The prongs are 0.04 apart.
-TEST_P(TouchingProngs, MeetEachOther) {
+TEST_F(TouchingProngs, MeetEachOther) {
   double crossed[2];
   for (const bool meets : {false, true}) {
     if (meets) {
@@ -215,7 +207,7 @@ TEST_P(TouchingProngs, MeetEachOther) {
 }
 
 /// Though each is, all along, in copies of the other's tets.
-TEST_P(TouchingProngs, DoNotTouchEachOtherAtRest) {
+TEST_F(TouchingProngs, DoNotTouchEachOtherAtRest) {
   ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
   step(10);
   EXPECT_TRUE(contacts_->contacts().empty());

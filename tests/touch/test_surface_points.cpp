@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(, SurfacePoints, testing::Values(0.38, 0.55),
                          [](const auto& of) { return of.param < 0.4 ? "Inside" : "Outside"; });
 
 TEST_P(SurfacePoints, AreWhereALinearSkinDrawsTheirVertices) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(GetParam()));
   deform(of.body());
   ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
@@ -32,7 +32,7 @@ TEST_P(SurfacePoints, AreWhereALinearSkinDrawsTheirVertices) {
 }
 
 TEST_P(SurfacePoints, AreWhereAQuadraticSkinDrawsThem) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   BindingOptions quadratic;
   quadratic.interpolation = Interpolation::Quadratic;
   quadratic.order = VertexOrder::Sorted;
@@ -50,7 +50,7 @@ TEST_P(SurfacePoints, AreWhereAQuadraticSkinDrawsThem) {
 }
 
 TEST_P(SurfacePoints, FollowAQuadraticSkinWhoseBendsAreBounded) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   BindingOptions quadratic;
   quadratic.interpolation = Interpolation::Quadratic;
   TouchedBody of(*world, TouchModel(GetParam()), {}, quadratic);
@@ -63,7 +63,7 @@ TEST_P(SurfacePoints, FollowAQuadraticSkinWhoseBendsAreBounded) {
 }
 
 TEST(SurfacePoint, IsBetweenStepsWhereTheSkinDrawsIt) {
-  auto world = deformableWorld(Solving::Tetskin, 10);
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 2.0));
   for (int s = 0; s < 3; ++s) {
     substep(*world);
@@ -79,7 +79,7 @@ TEST(SurfacePoint, IsBetweenStepsWhereTheSkinDrawsIt) {
 }
 
 TEST(SurfacePoint, IsReadOfHiddenSkinsAndOfThoseWithAnOrigin) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   of.skin.setVisible(false);
   ASSERT_TRUE(of.skin.setOrigin(btVector3(5, 6, 7)).ok());
@@ -89,7 +89,7 @@ TEST(SurfacePoint, IsReadOfHiddenSkinsAndOfThoseWithAnOrigin) {
 }
 
 TEST(SurfacePoint, OfARestPositionIsTheNearestOfTheSurface) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(0.38));
   const Vector3d centre(0.5, 0.4, 0.5);
   for (const Vector3d& rest : randomPoints(20, Box3(Vector3d(0, 0, 0), Vector3d(1, 1, 1)), 5)) {
@@ -108,7 +108,7 @@ void turn(btSoftBody& body, const Eigen::AngleAxisd& by) {
 }
 
 TEST(SurfacePoint, HasAFrameThatTurnsAsTheBodyDoes) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   const SurfacePoint point = of.vertex(40);
   const SurfaceFrame before = *point.frame();
@@ -124,7 +124,7 @@ TEST(SurfacePoint, HasAFrameThatTurnsAsTheBodyDoes) {
 }
 
 TEST(SurfacePoint, HasATangentThatTurnsLittleWhereTheBodyDeformsLittle) {
-  auto world = deformableWorld(Solving::Tetskin, 10);
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 0.5));
   const SurfacePoint point = of.vertex(100);
   btVector3 before = point.frame()->tangent;
@@ -136,12 +136,8 @@ TEST(SurfacePoint, HasATangentThatTurnsLittleWhereTheBodyDeformsLittle) {
   }
 }
 
-class PointsIn : public testing::TestWithParam<Solving> {};
-INSTANTIATE_TEST_SUITE_P(, PointsIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
-                         testing::PrintToStringParamName());
-
-TEST_P(PointsIn, MoveByTheirVelocity) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfacePoint, MovesByItsVelocity) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.55, 0.3));
   const SurfacePoint point = of.vertex(60);
   double most = 0;
@@ -156,9 +152,9 @@ TEST_P(PointsIn, MoveByTheirVelocity) {
   EXPECT_GT(most, 1.0);
 }
 
-TEST_P(PointsIn, GiveTheBodyTheMomentumOfAnImpulse) {
+TEST(SurfacePoint, GivesTheBodyTheMomentumOfAnImpulse) {
   for (const double radius : {0.38, 0.55}) {
-    auto world = deformableWorld(GetParam());
+    auto world = deformableWorld();
     TouchedBody of(*world, TouchModel(radius));
     deform(of.body());
     for (const int v : {5, 200, 500}) {
@@ -173,8 +169,8 @@ TEST_P(PointsIn, GiveTheBodyTheMomentumOfAnImpulse) {
   }
 }
 
-TEST_P(PointsIn, KeepTheMomentumOfAnImpulseThroughSteps) {
-  auto world = deformableWorld(GetParam());
+TEST(SurfacePoint, LeavesTheMomentumOfAnImpulseThroughSteps) {
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   SurfacePoint point = of.vertex(200);
   const btVector3 impulse(btScalar(0.3), btScalar(-0.1), btScalar(0.2));
@@ -184,7 +180,7 @@ TEST_P(PointsIn, KeepTheMomentumOfAnImpulseThroughSteps) {
 }
 
 TEST(SurfacePoint, LosesToPinnedNodesWhatTheyTake) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   SoftBodyOptions pinned;
   pinned.pinned = [](const Vector3d& rest) { return rest.y() < 0.3; };
   TouchedBody of(*world, TouchModel(), pinned);
@@ -197,7 +193,7 @@ TEST(SurfacePoint, LosesToPinnedNodesWhatTheyTake) {
 }
 
 TEST(SurfacePoint, WakesWhatItPushes) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   of.body().forceActivationState(ISLAND_SLEEPING);
   SurfacePoint point = of.vertex(0);
@@ -209,7 +205,7 @@ TEST(SurfacePoint, WakesWhatItPushes) {
 }
 
 TEST(SurfacePoint, HasTheMassThatItsVelocityTells) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   SurfacePoint point = of.vertex(77);
   const double mass = static_cast<double>(point.mass());

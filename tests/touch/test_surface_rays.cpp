@@ -62,7 +62,7 @@ void compare(TouchedBody& of, int rays, unsigned seed) {
 }
 
 TEST(SurfaceTree, MeetsWhatBruteForceMeetsAtDeformedStates) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   for (int state = 0; state < 5; ++state) {
     deform(of.body(), 0.06);
@@ -72,7 +72,7 @@ TEST(SurfaceTree, MeetsWhatBruteForceMeetsAtDeformedStates) {
 }
 
 TEST(SurfaceTree, MeetsQuadraticSurfacesAsTheyAreDrawn) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   BindingOptions quadratic;
   quadratic.interpolation = Interpolation::Quadratic;
   TouchedBody of(*world, TouchModel(0.55), {}, quadratic);
@@ -88,7 +88,7 @@ TEST(SurfaceTree, MeetsQuadraticSurfacesAsTheyAreDrawn) {
 }
 
 TEST(SurfaceTree, TellsThePointTheNormalAndTheWeights) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   deform(of.body());
   const btVector3 from(btScalar(0.41), 3, btScalar(0.57)), to(btScalar(0.45), -3, btScalar(0.52));
@@ -103,7 +103,7 @@ TEST(SurfaceTree, TellsThePointTheNormalAndTheWeights) {
 }
 
 TEST(SurfaceTree, ServesHiddenSkinsOtherTargetsOrdersAndOrigins) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   BindingOptions sorted;
   sorted.order = VertexOrder::Sorted;
   TouchedBody of(*world, TouchModel(), {}, sorted);
@@ -126,7 +126,7 @@ TEST(SurfaceTree, ServesHiddenSkinsOtherTargetsOrdersAndOrigins) {
 }
 
 TEST(SurfaceTree, FollowsBodiesOfOneBindingInTurn) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody first(*world);
   const auto second = added(*world, first.model.cage);
   for (int n = 0; n < second->body().m_nodes.size(); ++n)
@@ -144,7 +144,7 @@ TEST(SurfaceTree, FollowsBodiesOfOneBindingInTurn) {
 }
 
 TEST(SurfaceTree, LetsRaysPassWhatAFilterLeavesOut) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   const btVector3 from(btScalar(0.51), 3, btScalar(0.52)), to(btScalar(0.51), -3, btScalar(0.52));
   const SurfaceHit first = of.tree.raycast(of.skin, from, to);
@@ -156,7 +156,7 @@ TEST(SurfaceTree, LetsRaysPassWhatAFilterLeavesOut) {
 }
 
 TEST(SurfaceTree, SaysWhyARayMeetsNothing) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   const btVector3 from(btScalar(0.5), 3, btScalar(0.5)), to(btScalar(0.5), -3, btScalar(0.5));
   EXPECT_EQ(of.tree.raycast(of.skin, from, btVector3(3, 3, 3)).status, TouchStatus::Miss);
@@ -184,7 +184,7 @@ TEST(SurfaceTree, RefusesWhatIsNoSurface) {
 }
 
 TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   EXPECT_EQ(of.tree.pointOfVertex(of.body(), -1).status().code, StatusCode::IndexOutOfRange);
   EXPECT_EQ(of.tree.pointOfVertex(of.body(), 1 << 30).status().code, StatusCode::IndexOutOfRange);
@@ -196,7 +196,7 @@ TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
 }
 
 TEST(SurfaceTree, MakesNoPointsOfWeightsThatDoNotAddUp) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   SurfaceHit hit;
   hit.status = TouchStatus::Ok;
@@ -217,7 +217,7 @@ TEST(SurfaceTree, MakesNoPointsOfWeightsThatDoNotAddUp) {
 }
 
 TEST(SurfaceTree, ThatWasMovedFromIsEmpty) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   const SurfaceTree elsewhere(std::move(of.tree));
   EXPECT_TRUE(elsewhere.check().ok());

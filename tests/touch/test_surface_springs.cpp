@@ -26,13 +26,9 @@ double worstLag(EmptyWorld& world, const SurfacePoint& point, SurfaceSpring& spr
   return worst;
 }
 
-class SpringsIn : public testing::TestWithParam<Solving> {};
-INSTANTIATE_TEST_SUITE_P(, SpringsIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
-                         testing::PrintToStringParamName());
-
-TEST_P(SpringsIn, KeepAPointNearItsTarget) {
+TEST(SurfaceSprings, KeepAPointNearItsTarget) {
   for (const double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
-    auto world = deformableWorld(GetParam(), 10);
+    auto world = deformableWorld(10);
     TouchedBody of(*world, TouchModel(0.38, 3.0));
     const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
     auto spring = SurfaceSpring::add(world->deformable(), point).value();
@@ -41,11 +37,11 @@ TEST_P(SpringsIn, KeepAPointNearItsTarget) {
   }
 }
 
-TEST_P(SpringsIn, AreStableAtAnyStiffness) {
+TEST(SurfaceSprings, AreStableAtAnyStiffness) {
   for (const double radius : {0.38, 0.55}) {
     for (const double stiffness : {1e-3, 1.0, 1e3, 1e6}) {
       for (const double dt : {1.0 / 60, 1.0 / 1000}) {
-        auto world = deformableWorld(GetParam(), 10);
+        auto world = deformableWorld(10);
         TouchedBody of(*world, TouchModel(radius, 3.0));
         const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
         SurfaceSpringOptions options;
@@ -63,8 +59,8 @@ TEST_P(SpringsIn, AreStableAtAnyStiffness) {
   }
 }
 
-TEST_P(SpringsIn, CarryTheBodysWeight) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceSprings, CarryTheBodysWeight) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
@@ -76,8 +72,8 @@ TEST_P(SpringsIn, CarryTheBodysWeight) {
   EXPECT_LT((mean - Vector3d(0, 10, 0)).norm(), 0.2);
 }
 
-TEST_P(SpringsIn, NeverPullHarderThanAllowed) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceSprings, NeverPullHarderThanAllowed) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
   SurfaceSpringOptions options;
@@ -107,9 +103,9 @@ TEST_P(SpringsIn, NeverPullHarderThanAllowed) {
   EXPECT_TRUE(isFinite(of.body()));
 }
 
-TEST_P(SpringsIn, HangABodyOnARigidOneThatFeelsIt) {
+TEST(SurfaceSprings, HangABodyOnARigidOneThatFeelsIt) {
   for (const double mass : {0.1, 1.0, 10.0}) {
-    auto world = deformableWorld(GetParam(), 10);
+    auto world = deformableWorld(10);
     SoftBodyOptions held;
     held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
     TouchedBody of(*world, TouchModel(0.38, 3.0), held);
@@ -129,8 +125,8 @@ TEST_P(SpringsIn, HangABodyOnARigidOneThatFeelsIt) {
   }
 }
 
-TEST_P(SpringsIn, ExchangeMomentumWithARigidBody) {
-  auto world = deformableWorld(GetParam());
+TEST(SurfaceSprings, ExchangeMomentumWithARigidBody) {
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
   RigidBox box(*world, 0.5, *point.position() + btVector3(btScalar(0.15), 0, 0));
@@ -143,8 +139,8 @@ TEST_P(SpringsIn, ExchangeMomentumWithARigidBody) {
   EXPECT_GT(Momentum(of.body()).linear.y(), 0.1);
 }
 
-TEST_P(SpringsIn, HoldARigidBodyByManyPointsAtOnce) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceSprings, HoldARigidBodyByManyPointsAtOnce) {
+  auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
   TouchedBody of(*world, TouchModel(0.38, 3.0), held);
@@ -162,8 +158,8 @@ TEST_P(SpringsIn, HoldARigidBodyByManyPointsAtOnce) {
 }
 
 /// Unbounded ones threw it at hundreds of sizes per second, and stretched it to twenty.
-TEST_P(SpringsIn, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
-  auto world = deformableWorld(GetParam());
+TEST(SurfaceSprings, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
@@ -187,7 +183,7 @@ TEST_P(SpringsIn, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
 }
 
 TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   const SurfacePoint point = of.vertex(0);
   const auto codeOf = [&](double stiffness, double damping, double maxForce) {
@@ -206,7 +202,7 @@ TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
   EXPECT_EQ(codeOf(10, 0, -1), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(10, 0, NAN), StatusCode::InvalidOption);
   EXPECT_EQ(SurfaceSpring::add(world->deformable(), {}).status().code, StatusCode::InvalidOption);
-  auto other = deformableWorld(Solving::Tetskin);
+  auto other = deformableWorld();
   EXPECT_EQ(SurfaceSpring::add(other->deformable(), point).status().code, StatusCode::InvalidOption);
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
   EXPECT_EQ(spring->setTarget(btVector3(NAN, 0, 0)), TouchStatus::NonFinite);
@@ -216,7 +212,7 @@ TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
 }
 
 TEST(SurfaceSpring, LeavesCollisionsAsTheyWere) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   RigidBox box(*world, 1, btVector3(3, 3, 3));
   const auto& hidden = of.body().m_collisionDisabledObjects;
@@ -237,7 +233,7 @@ TEST(SurfaceSpring, LeavesCollisionsAsTheyWere) {
 }
 
 TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   world->deformable().setGravity(btVector3(0, 0, 0));
   TouchedBody of(*world);
   RigidBox platform(*world, 0, btVector3(0, 3, 0));
@@ -255,7 +251,7 @@ TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
 }
 
 TEST(SurfaceSpring, RefusesPivotsThatAreNoPlaces) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   RigidBox box(*world, 1, btVector3(3, 3, 3));
   const btVector3 bad(0, std::numeric_limits<btScalar>::quiet_NaN(), 0);

@@ -10,13 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-class WeldsIn : public testing::TestWithParam<Solving> {};
-INSTANTIATE_TEST_SUITE_P(, WeldsIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
-                         testing::PrintToStringParamName());
-
-TEST_P(WeldsIn, KeepAHangingBodyAtItsPlace) {
+TEST(SurfaceWelds, KeepAHangingBodyAtItsPlace) {
   for (const double mass : {0.01, 0.1, 1.0, 10.0}) {
-    auto world = deformableWorld(GetParam(), 10);
+    auto world = deformableWorld(10);
     SoftBodyOptions held;
     held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
     TouchedBody of(*world, TouchModel(0.38, 3.0), held);
@@ -38,8 +34,8 @@ TEST_P(WeldsIn, KeepAHangingBodyAtItsPlace) {
   }
 }
 
-TEST_P(WeldsIn, FollowABodyThatIsSwung) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceWelds, FollowABodyThatIsSwung) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint top = of.vertex(of.furthest(Vector3d::UnitY())), low = of.vertex(of.furthest(-Vector3d::UnitY()));
   RigidBox box(*world, 0.2, *low.position() - btVector3(0, btScalar(0.2), 0),
@@ -60,8 +56,8 @@ TEST_P(WeldsIn, FollowABodyThatIsSwung) {
   EXPECT_TRUE(isFinite(of.body()));
 }
 
-TEST_P(WeldsIn, TurnTheBodyWithWhatIsFixedToIt) {
-  auto world = deformableWorld(GetParam());
+TEST(SurfaceWelds, TurnTheBodyWithWhatIsFixedToIt) {
+  auto world = deformableWorld();
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
   RigidBox box(*world, 1.0, *point.position() + btVector3(btScalar(0.1), 0, 0));
@@ -80,8 +76,8 @@ TEST_P(WeldsIn, TurnTheBodyWithWhatIsFixedToIt) {
   EXPECT_LT(weld->separation(), 1e-4);
 }
 
-TEST_P(WeldsIn, FixAPointToWhatCannotMove) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceWelds, FixAPointToWhatCannotMove) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world, TouchModel(0.38, 3.0));
   const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
   RigidBox wall(*world, 0, *point.position() + btVector3(0, btScalar(0.2), 0));
@@ -96,8 +92,8 @@ TEST_P(WeldsIn, FixAPointToWhatCannotMove) {
   EXPECT_TRUE(isFinite(of.body()));
 }
 
-TEST_P(WeldsIn, MoveTheLinkOfAMultibody) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(SurfaceWelds, MoveTheLinkOfAMultibody) {
+  auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
   TouchedBody of(*world, TouchModel(0.38, 3.0), held);

@@ -13,7 +13,7 @@ int forceCount(TouchedBody& of) {
 }
 
 TEST(TouchLifetime, PointsSayThatTheirBodyIsGone) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   auto of = std::make_unique<TouchedBody>(*world);
   SurfacePoint point = of->vertex(5);
   of.reset();
@@ -32,7 +32,7 @@ TEST(TouchLifetime, PointsOfNobodySaySo) {
   EXPECT_EQ(point.status(), TouchStatus::Released);
   EXPECT_FALSE(point.position());
   EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Released);
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   point = of.vertex(3);
   EXPECT_EQ(point.status(), TouchStatus::Ok);
@@ -42,7 +42,7 @@ TEST(TouchLifetime, PointsOfNobodySaySo) {
 }
 
 TEST(TouchLifetime, PointsSayThatTheTopologyHasChanged) {
-  auto world = deformableWorld(Solving::Explicit);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   SurfacePoint point = of.vertex(5);
   auto own = makeSoftBody(of.model.cage, world->deformable().getWorldInfo()).value();
@@ -54,7 +54,7 @@ TEST(TouchLifetime, PointsSayThatTheTopologyHasChanged) {
 }
 
 TEST(TouchLifetime, PointsSayThatTheirNodesAreNoNumbers) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody of(*world);
   SurfacePoint point = of.vertex(5);
   of.body().m_nodes[point.data().corners[0].nodes[2]].m_x.setY(INFINITY);
@@ -63,19 +63,15 @@ TEST(TouchLifetime, PointsSayThatTheirNodesAreNoNumbers) {
 }
 
 TEST(TouchLifetime, PointsAreNotReadOfSkinsOfOtherBodies) {
-  auto world = deformableWorld(Solving::Tetskin);
+  auto world = deformableWorld();
   TouchedBody first(*world), second(*world);
   EXPECT_FALSE(first.vertex(5).position(second.skin));
   EXPECT_FALSE(first.vertex(5).position(SoftBodySkin()));
   EXPECT_TRUE(first.vertex(5).position(first.skin));
 }
 
-class LifetimesIn : public testing::TestWithParam<Solving> {};
-INSTANTIATE_TEST_SUITE_P(, LifetimesIn, testing::Values(Solving::Explicit, Solving::Implicit, Solving::Tetskin),
-                         testing::PrintToStringParamName());
-
-TEST_P(LifetimesIn, SpringsLeaveNothingInTheWorld) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(TouchLifetime, SpringsLeaveNothingInTheWorld) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world);
   substep(*world);
   RigidBox box(*world, 1, btVector3(0, 3, 0));
@@ -95,8 +91,8 @@ TEST_P(LifetimesIn, SpringsLeaveNothingInTheWorld) {
   EXPECT_TRUE(isFinite(of.body()));
 }
 
-TEST_P(LifetimesIn, BodiesMayGoBeforeTheirSpringsAndWelds) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
+  auto world = deformableWorld(10);
   auto first = std::make_unique<TouchedBody>(*world),
        second = std::make_unique<TouchedBody>(*world, TouchModel(0.38, 3));
   RigidBox box(*world, 1, btVector3(0, 6, 0));
@@ -118,8 +114,8 @@ TEST_P(LifetimesIn, BodiesMayGoBeforeTheirSpringsAndWelds) {
   for (int s = 0; s < 3; ++s) substep(*world);
 }
 
-TEST_P(LifetimesIn, WorldsMayGoWithForcesPending) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(TouchLifetime, WorldsMayGoWithForcesPending) {
+  auto world = deformableWorld(10);
   auto of = std::make_unique<TouchedBody>(*world);
   auto spring = SurfaceSpring::add(world->deformable(), of->vertex(5)).value();
   substep(*world);
@@ -131,8 +127,8 @@ TEST_P(LifetimesIn, WorldsMayGoWithForcesPending) {
   EXPECT_EQ(spring->status(), TouchStatus::Gone);
 }
 
-TEST_P(LifetimesIn, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(TouchLifetime, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
+  auto world = deformableWorld(10);
   TouchedBody of(*world);
   auto spring = SurfaceSpring::add(world->deformable(), of.vertex(5)).value();
   ASSERT_EQ(of.vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
@@ -144,8 +140,8 @@ TEST_P(LifetimesIn, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
   substep(*world);
 }
 
-TEST_P(LifetimesIn, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
-  auto world = deformableWorld(GetParam(), 0);
+TEST(TouchLifetime, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
+  auto world = deformableWorld(0);
   const TouchModel model(0.38, 3);
   const auto binding = model.bind();
   const SurfaceTree tree(binding, model.mesh);
@@ -179,8 +175,8 @@ TEST_P(LifetimesIn, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   substep(*world);
 }
 
-TEST_P(LifetimesIn, WhatHangsFallsAsleepAndWakesTogether) {
-  auto world = deformableWorld(GetParam(), 10);
+TEST(TouchLifetime, WhatHangsFallsAsleepAndWakesTogether) {
+  auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.5; };
   held.damping = 0.1;

@@ -62,6 +62,41 @@ TYPED_TEST(ClassicWorlds, RefuseContinuousForcesSpringsAndWelds) {
   EXPECT_EQ(SurfaceWeld::add(*world.world, point, ball).status().code, StatusCode::InvalidOption);
 }
 
+/// Bullet's forces in Bullet's solver, explicit and implicit.
+TEST(BulletsSolver, LetsPointsBeReadAndPushedAtOnceAndNothingElse) {
+  for (const bool implicit : {false, true}) {
+    const TouchModel model(0.38, 3.0);
+    EmptyWorld world;
+    world.deformable().setGravity(btVector3(0, 0, 0));
+    SoftBodyOptions options;
+    options.forceModel = ForceModel::NeoHookean;
+    options.implicit = implicit;
+    TouchedBody of(world, model, options);
+    substep(world);
+    SurfacePoint point = of.vertex(250);
+    ASSERT_TRUE(of.tree.raycast(of.skin, *point.position() * 2, btVector3(0.5, 3.4, 0.5)));
+    const Vector3d given(0.1, -0.2, 0.05);
+    ASSERT_EQ(point.applyImpulse(toBullet(given)), TouchStatus::Ok);
+    for (int s = 0; s < 5; ++s) substep(world);
+    EXPECT_LT((Momentum(of.body()).linear - given).norm(), 0.02 * given.norm()) << implicit;
+    const Vector3d before = toEigen(*point.position());
+    substep(world);
+    const Vector3d moved = (toEigen(*point.position()) - before) * 240;
+    EXPECT_LT((moved - toEigen(*point.velocity())).norm(), 1e-3 * moved.norm() + 1e-4);
+
+    EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), TouchStatus::InvalidOption);
+    EXPECT_EQ(of.tree.applyForce(of.body(), {*point.position(), 1, 1}).status, TouchStatus::InvalidOption);
+    btSphereShape shape(1);
+    btRigidBody ball(1, nullptr, &shape);
+    for (const Status& status : {SurfaceSpring::add(*world.world, point).status(),
+                                 SurfaceSpring::add(*world.world, point, ball, btVector3(0, 0, 0)).status(),
+                                 SurfaceWeld::add(*world.world, point, ball).status()}) {
+      EXPECT_EQ(status.code, StatusCode::InvalidOption);
+      EXPECT_NE(status.message.find("DeformableSolver"), std::string::npos) << status.message;
+    }
+  }
+}
+
 TEST(ReducedWorlds, LetPointsBeReadAndNotPushed) {
   const TouchModel model(0.38, 2.0);
   ReducedWorld world(model.cage);

@@ -32,17 +32,8 @@ struct TouchModel {
   }
 };
 
-/// The three ways a deformable world solves.
-enum class Solving { Explicit, Implicit, Tetskin };
-
-inline void PrintTo(Solving solving, std::ostream* out) {
-  *out << (solving == Solving::Explicit ? "Explicit" : solving == Solving::Implicit ? "Implicit" : "Tetskin");
-}
-
-inline std::unique_ptr<EmptyWorld> deformableWorld(Solving solving, double gravity = 0.0) {
-  std::unique_ptr<EmptyWorld> world =
-      solving == Solving::Tetskin ? std::make_unique<TetskinWorld>() : std::make_unique<EmptyWorld>();
-  world->deformable().setImplicit(solving == Solving::Implicit);
+inline std::unique_ptr<TetskinWorld> deformableWorld(double gravity = 0.0) {
+  auto world = std::make_unique<TetskinWorld>();
   const btVector3 down(0, -static_cast<btScalar>(gravity), 0);
   world->deformable().setGravity(down);
   world->deformable().getWorldInfo().m_gravity = down;

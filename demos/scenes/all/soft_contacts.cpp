@@ -28,7 +28,7 @@ TriangleMesh surfaceOf(const Cage& cage) {
 }
 
 void meetEachOther(Scene& scene, const Cage& cage) {
-  if (scene.options().force == Force::MassSpring) return;
+  if (scene.options().force != Force::Elastic) return;
   ContactShapeOptions options;
   options.samples = kSamples;
   options.cells = kCells;

@@ -12,7 +12,8 @@ namespace tetskin {
 
 /// A force between bodies, which are others in each step. It reads positions and velocities of nodes, not what Bullet
 /// keeps for each tet, so that a `DeformableSolver` need not have that updated, and solves for those bodies together
-/// that it couples in a step. To Bullet it is a force as any other.
+/// that it couples in a step. What that solver asks for is `addScaledExplicitForce`, `addScaledDampingForce` and
+/// `addScaledDampingForceDifferential`; it is nothing to Bullet's own.
 class TETSKIN_BULLET_API CouplingForce : public btDeformableLagrangianForce {
  public:
   ~CouplingForce() override;
@@ -27,6 +28,11 @@ class TETSKIN_BULLET_API CouplingForce : public btDeformableLagrangianForce {
 
   /// Whether it moves this rigid body, too, in this step: then nobody else solves for it.
   virtual bool moves(const btCollisionObject& object) const;
+
+  // Of implicit worlds, which a `DeformableSolver` does not solve so.
+  void addScaledForces(btScalar, TVStack&) override {}
+  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
 
   /// None of Bullet's, so that `addForce` joins nobody's body to it.
   btDeformableLagrangianForceType getForceType() override;

@@ -11,10 +11,9 @@ namespace tetskin {
 
 /// Whose force a body has, and whose solve.
 enum class SolverPath {
-  Bullet,     ///< Bullet's force
-  ForceOnly,  ///< an ElasticForce in Bullet's solve
-  Solver,     ///< an ElasticForce in the solve of a DeformableSolver
-  None,       ///< no force: the body has been taken out of its world
+  Bullet,  ///< Bullet's force
+  Solver,  ///< ForceModel::Corotated, which a DeformableSolver solves for
+  None,    ///< no force: the body has been taken out of its world
 };
 
 /// A soft body in a deformable world, with gravity and elastic forces of its own: what Bullet leaves to the application
@@ -34,11 +33,13 @@ class TETSKIN_BULLET_API DeformableBody {
   /// what `options.implicit` says, if it is given; nothing else in the world is changed. Step it with
   /// `stepSimulation(dt, 4, dt / 4)` for 60 frames a second; one substep a frame is too few.
   ///
-  /// world   made with a `DeformableSolver`, or else with a btDeformableBodySolver; its gravity now serves as the scale
-  ///         of the default stiffness
+  /// world   made with a `DeformableSolver`; for Bullet's own forces a btDeformableBodySolver does, too. Its gravity
+  /// now
+  ///         serves as the scale of the default stiffness
   /// cage    where the body shall be, world space; its fill, factor and masses count where the options leave them out
-  /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, and
-  ///         for the worlds of reduced bodies
+  /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, for
+  ///         ForceModel::Corotated in a world without a `DeformableSolver`, or with `options.implicit`, and for the
+  ///         worlds of reduced bodies
   static Result<std::unique_ptr<DeformableBody>> add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
                                                      const SoftBodyOptions& options = {});
   ~DeformableBody();
@@ -49,7 +50,7 @@ class TETSKIN_BULLET_API DeformableBody {
   const btSoftBody& body() const;  ///< the same
 
   ForceModel forceModel() const;  ///< what holds it together
-  /// By the world's solver, and its settings in the last step: see `DeformableSolver::solves`.
+  /// By its force model, as long as it is in its world.
   SolverPath solverPath() const;
 
   /// The stiffness in use, in pressure units: the last one set, or that of the options, or the default for this cage,

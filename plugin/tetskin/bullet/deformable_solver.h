@@ -3,7 +3,7 @@
 #pragma once
 
 #include <BulletSoftBody/btDeformableBodySolver.h>
-#include <tetskin/bullet/elastic_force.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/parallel_for.h>
 
 #include <memory>
@@ -13,10 +13,12 @@ namespace tetskin {
 /// Bullet's solver of deformable bodies, with a solve of our own: what the application makes instead of a
 /// `btDeformableBodySolver`, and gives to its world and to its constraint solver just as that.
 ///
-/// Bodies with an `ElasticForce` are solved for implicitly before contacts are looked for, and again under the contacts
-/// that Bullet finds and solves; all others as Bullet does, with its forces. Bodies asleep cost nothing here. A world
-/// without projection of contacts (Bullet's default; `setUseProjection(true)` switches it on, and so does
-/// `DeformableBody::add`) or with line search is solved by Bullet's own code, see `solves`.
+/// Bodies of `ForceModel::Corotated` are solved for implicitly before contacts are looked for, and again under the
+/// contacts that Bullet finds and solves; all others as Bullet does in an explicit world with projection of contacts,
+/// with its forces. Bodies asleep cost nothing here. `ForceModel::Corotated`, tetskin::contact and tetskin::touch need
+/// this solver, and a world with any of them is solved here whatever its settings of Bullet's solve are. A world of
+/// Bullet's forces alone that is implicit, has line search, or no projection (Bullet's default;
+/// `setUseProjection(true)` switches it on, and so does `DeformableBody::add`) is solved by Bullet's own code.
 ///
 /// A body whose collision flags let it meet no soft body (as `makeSoftBody` makes them) is marked as sleeping between
 /// the solve and its integration, so that Bullet does not look for such meetings; that is seen in a world's solver
@@ -35,7 +37,11 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// Bullet's m_n of the nodes, which drawing a body's own faces needs and a skin does not. On at first.
   void setNodeNormals(bool on);
 
-  /// Whether this solver's own solve is in use, by the world's settings of the last step; true before the first.
+  /// From now on every step is solved here, whatever settings of Bullet's solve the world has: implicit, line search,
+  /// projection. What `DeformableBody::add` with ForceModel::Corotated, and contacts and joints call.
+  void solveAlways();
+  /// Whether this solver's own solve is in use: always after `solveAlways`, else by the world's settings of the last
+  /// step; true before the first.
   bool solves() const;
   /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code has solved it.
   int iterations() const;
@@ -47,6 +53,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
+  void setupDeformableSolve(bool implicit) override;
+  void setLagrangeMultiplier() override;
   void solveDeformableConstraints(btScalar dt) override;
   void applyTransforms(btScalar dt) override;
   void updateSoftBodies() override;

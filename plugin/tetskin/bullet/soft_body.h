@@ -62,7 +62,7 @@ inline auto inverseMassesIn(const btSoftBody& body) {
 
 /// What holds a body together.
 enum class ForceModel {
-  Corotated,         ///< deformable world: tetskin's own `ElasticForce`; any rotation, keeps spin
+  Corotated,         ///< deformable world with a `DeformableSolver`: tetskin's own; any rotation, keeps spin
   NeoHookean,        ///< deformable world: Bullet's; large deformations, loses all spin
   LinearElasticity,  ///< deformable world: Bullet's; cheaper, loses some
   MassSpring,        ///< the classic worlds: the body's links, solved as constraints
@@ -86,11 +86,11 @@ struct SoftBodyOptions {
 
   /// Also chooses how the body meets rigid ones: MassSpring as the classic worlds expect, the others as the deformable.
   ForceModel forceModel = ForceModel::Corotated;
-  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size. Without a `DeformableSolver` that is
-  /// no more than is stable for timeStep: fine cages are softer by default then, and need shorter steps to be stiff.
+  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size. Of Bullet's own forces that is no
+  /// more than is stable for timeStep: fine cages are softer by default then, and need shorter steps to be stiff.
   /// For MassSpring Bullet has no such unit: there `linkStiffness` counts.
   double youngsModulus = 0.0;
-  /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded by timeStep as said above.
+  /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded as said above.
   double relativeStiffness = 50.0;
   /// tetCount, above 0: times the stiffness, tet by tet; not for MassSpring. Of Bullet's own forces, by
   /// `Tetra::m_element_measure`, which the body's `scale` sets anew. Empty: the cage's, by its fill and factor.
@@ -98,8 +98,8 @@ struct SoftBodyOptions {
   double poissonRatio = 0.3;      ///< 0 to below 0.5
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
-  double solverTolerance = 5e-3;  ///< Corotated with a DeformableSolver: see SolverLimits in elastic_force.h
-  int maxIterations = 100;        ///< the same
+  double solverTolerance = 5e-3;  ///< Corotated: of the residual over that without elasticity, 0 to below 1
+  int maxIterations = 100;        ///< Corotated: of the conjugate gradient in a step, at most
   double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every
   /// other soft body with trees, in each substep. Without them rays in the deformable world miss the body, those in the
@@ -109,8 +109,8 @@ struct SoftBodyOptions {
   /// For DeformableBody, the next two: may it set what is a property of the whole world? If so, projection is switched
   /// on, without which bodies do not land; and nothing else, except by `implicit`. If not, nothing is set.
   bool configureWorld = true;
-  /// One Newton step an update (true) or explicit elastic forces (false), both without line search; not given: as the
-  /// world is.
+  /// Of Bullet's own forces in a world of these alone: one Newton step an update (true) or explicit elastic forces
+  /// (false), both without line search; not given: as the world is. True is refused for Corotated.
   std::optional<bool> implicit;
 };
 

@@ -98,9 +98,8 @@ struct SoftContact {
 /// `DeformableBody`.
 class TETSKIN_CONTACT_API SoftContacts {
  public:
-  /// world   with Bullet's solver, explicit or implicit, or a `DeformableSolver`
-  /// Errors  InvalidOption for options out of range, for worlds of reduced bodies, and for worlds that had line search
-  ///         in their last step, which needs energies that contacts have not
+  /// world   made with a `DeformableSolver`
+  /// Errors  InvalidOption for options out of range, and for worlds with another solver
   static Result<std::unique_ptr<SoftContacts>> add(btDeformableMultiBodyDynamicsWorld& world,
                                                    const SoftContactOptions& options = {});
   ~SoftContacts();

@@ -37,7 +37,7 @@ struct SurfaceContactPoint {
 
 /// A soft body meets rigid ones by its visual surface, instead of by the nodes of its cage, which lie outside of it.
 ///
-/// In any deformable world with any of its solvers. Nothing else need be done: static, kinematic and dynamic bodies and
+/// In a deformable world with a `DeformableSolver`. Nothing else need be done: static, kinematic and dynamic bodies and
 /// the links of multibodies are met in whatever order they were added, as their groups, their masks, their flags
 /// (CF_NO_CONTACT_RESPONSE) and the body's `m_cfg.collisions` (any of RVSmask) allow. A world's contactTest finds
 /// nothing of the body, and leaves its contacts as they are. Planes, boxes, spheres, capsules and cylinders are met
@@ -56,13 +56,13 @@ class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// From the next substep on. Sets the margin of the body's shape, until this object goes.
   ///
-  /// world    deformable, and the body in it
+  /// world    made with a `DeformableSolver`, and the body in it
   /// body     by `makeSoftBody` or of a `DeformableBody`, in which no other SurfaceContact is
   /// binding  of the mesh in the body's cage, as a skin's; read here only
   /// mesh     that of the binding
-  /// Errors   InvalidOption: options out of range, a world of reduced bodies, a body that is not in the world, or has a
-  ///          contact already, or was not made as said, or a dispatcher that is no btCollisionDispatcher; Empty: no
-  ///          vertices; SizeMismatch: binding, mesh and body do not belong together
+  /// Errors   InvalidOption: options out of range, a world with another solver, or a dispatcher that is no
+  ///          btCollisionDispatcher, a body that is not in the world, or has a contact already, or was not made as
+  ///          said; Empty: no vertices; SizeMismatch: binding, mesh and body do not belong together
   static Result<std::unique_ptr<SurfaceContact>> add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                      const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                                      const SurfaceContactOptions& options = {});

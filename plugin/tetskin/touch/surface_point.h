@@ -100,8 +100,7 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// that `makeSoftBody` has not made, the point must live until then.
   /// force   world space; forces add up
   /// steps   of Bullet's, that is substeps, 1 or more
-  /// Errors  OutOfWorld; InvalidOption outside the deformable world, and for reduced bodies; those of `status`;
-  ///         NonFinite
+  /// Errors  OutOfWorld; InvalidOption but in a world with a `DeformableSolver`; those of `status`; NonFinite
   TouchStatus applyForce(const btVector3& force, int steps = 1);
 
   /// Null if it is gone, or released.

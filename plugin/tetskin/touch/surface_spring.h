@@ -30,8 +30,8 @@ struct SurfaceSpringOptions {
 };
 
 /// Pulls a point of a surface to a point in space, which the application moves, or to one of a rigid body or a link of
-/// a multibody, which feels it: a ball joint. In the deformable world, solved for with the body, and with the other's
-/// mass, at once.
+/// a multibody, which feels it: a ball joint. In a deformable world with a `DeformableSolver`, which solves for it with
+/// the body, and with the other's mass, at once.
 ///
 ///     auto spring = tetskin::SurfaceSpring::add(*world, point).value();   // picked
 ///     spring->setTarget(mouse);                                           // dragged; let go by deleting it
@@ -44,8 +44,8 @@ class TETSKIN_TOUCH_API SurfaceSpring {
   using Options = SurfaceSpringOptions;  ///< how it pulls
 
   /// To where the point is now.
-  /// Errors  InvalidOption for options out of range, for other worlds than the deformable one, for reduced bodies, and
-  ///         for points that are not Ok
+  /// world   deformable, made with a `DeformableSolver`
+  /// Errors  InvalidOption for options out of range, for other worlds, and for points that are not Ok
   static Result<std::unique_ptr<SurfaceSpring>> add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                     const Options& options = {});
   /// To a point of a rigid body, or of a link.

@@ -4,10 +4,10 @@
 #include <BulletSoftBody/btDeformableLinearElasticityForce.h>
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/bodies/body_elements.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
-#include <tetskin/bullet/src/forces/forced_bodies.h>
+#include <tetskin/bullet/src/forces/elastic_force.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/mesh/tet_geometry.h>
 
@@ -73,8 +73,7 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
 }
 
 void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
-  [[maybe_unused]] const Status status = force.setMaterial(material);
-  assert(status.ok());
+  force.setMaterial(material);
 }
 template <class Force>
 void setMaterial(Force& force, const ElasticMaterial& material) {
@@ -85,6 +84,21 @@ void setMaterial(Force& force, const ElasticMaterial& material) {
 
 Status invalid(const std::string& message) {
   return {StatusCode::InvalidOption, message};
+}
+
+Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& options) {
+  if (options.forceModel != ForceModel::Corotated) {
+    if (!solver.isReducedSolver()) return {};
+    return refusal("a full body", {kUseDeformableSolver});
+  }
+  std::vector<std::string> changes;
+  if (!dynamic_cast<DeformableSolver*>(&solver)) {
+    changes.push_back(std::string(kUseDeformableSolver) + ", or choose one of Bullet's force models");
+  }
+  if (options.implicit.value_or(false)) {
+    changes.emplace_back("leave SoftBodyOptions::implicit out: it is about Bullet's own forces");
+  }
+  return refusal("ForceModel::Corotated", changes);
 }
 
 /// What moves farther in a step than numbers of this precision tell apart is not simulated, it is lost.
@@ -126,14 +140,14 @@ struct DeformableBody::Parts {
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
 
   template <class Force, class... Arguments>
-  Force& makeElasticity(Arguments... arguments) {
-    auto force = std::make_unique<OwnForce<Force>>(list, arguments...);
-    Force& made = *force;
-    applyMaterial = [to = &made](const ElasticMaterial& now) { setMaterial(*to, now); };
+  void makeElasticity(Arguments&&... arguments) {
+    auto force = std::make_unique<OwnForce<Force>>(list, std::forward<Arguments>(arguments)...);
+    applyMaterial = [to = static_cast<Force*>(force.get())](const ElasticMaterial& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
-    return made;
   }
-  void makeElasticity(const SoftBodyOptions& options);
+  /// Of the body's material.
+  /// rest  its tets; of no use to Bullet's forces
+  void makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest);
   void apply(const ElasticMaterial& now) {
     material = now;
     applyMaterial(now);
@@ -167,72 +181,59 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
         "the body to a btSoftRigidDynamicsWorld");
   }
+  btDeformableBodySolver& solver = solverOf(world);
+  if (Status status = checkSolver(solver, options); !status.ok()) return status;
   Result<BuiltBody> built = buildBody(cage, world.getWorldInfo(), options);
   if (!built.ok()) return built.status();
   std::unique_ptr<btSoftBody>& body = built.value().body;
   const std::vector<double>& masses = built.value().masses;
   const bool corotated = options.forceModel == ForceModel::Corotated;
-  if (corotated) {
-    if (Status status = checkTets(*body, options.stiffnessScale); !status.ok()) return status;
-  }
-  // Only bodies in a world know its solver.
-  world.addSoftBody(body.get());
-  auto* solver = static_cast<btDeformableBodySolver*>(body->getSoftBodySolver());
+  Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
+  if (!rest.ok()) return rest.status();
   const double pressure = weightPressure(cage, masses, static_cast<double>(world.getGravity().length()));
-  const bool bounded = !(corotated && dynamic_cast<DeformableSolver*>(solver));
   const ElasticMaterial material{options.youngsModulus > 0.0
                                      ? options.youngsModulus
-                                     : defaultYoungsModulus(cage, options, masses, pressure, bounded),
+                                     : defaultYoungsModulus(cage, options, masses, pressure, !corotated),
                                  options.poissonRatio, options.damping};
-  Status status = checkMaterial(material);
-  if (status.ok()) status = checkStiffness(*body, material);
-  if (status.ok()) status = checkGravity(world.getGravity(), *body);
-  if (solver->isReducedSolver()) {
-    status = invalid(
-        "a world made with a btReducedDeformableBodySolver holds reduced bodies alone; make it with a "
-        "DeformableSolver");
-  }
-  if (!status.ok()) {
-    world.removeSoftBody(body.get());
-    return status;
-  }
+  if (Status status = checkMaterial(material); !status.ok()) return status;
+  if (Status status = checkStiffness(*body, material); !status.ok()) return status;
+  if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
+
+  world.addSoftBody(body.get());
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
     if (options.implicit) world.setImplicit(*options.implicit);
   }
 
-  auto parts = std::make_unique<Parts>(world, *solver, std::move(body));
+  auto parts = std::make_unique<Parts>(world, solver, std::move(body));
   for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
   parts->forceModel = options.forceModel;
   parts->material = material;
   parts->weightPressure = pressure;
-  parts->makeElasticity(options);
+  parts->makeElasticity(options, std::move(rest).value());
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
-    force->setIndices(solver->getIndices());
+    force->setIndices(solver.getIndices());
   }
   addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
-  if (corotated) {
-    status = static_cast<ElasticForce&>(*parts->elasticity).addTo(world, *parts->body, options.stiffnessScale);
-    assert(status.ok());
-  }
-  parts->apply(material);
+  if (corotated) static_cast<DeformableSolver&>(solver).solveAlways();
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(parts)));
 }
 
-void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options) {
+void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest) {
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
+      applyMaterial(material);
       return;
     case ForceModel::NeoHookean:
       makeElasticity<btDeformableNeoHookeanForce>();
+      applyMaterial(material);
       return;
     default:
-      ElasticForce& force = makeElasticity<ElasticForce>(material);
-      [[maybe_unused]] const Status status = force.setLimits({options.solverTolerance, options.maxIterations});
-      assert(status.ok());
+      makeElasticity<ElasticForce>(world, *body, std::move(rest), material, options.stiffnessScale,
+                                   SolverLimits{options.solverTolerance, options.maxIterations});
   }
 }
 
@@ -242,9 +243,7 @@ ForceModel DeformableBody::forceModel() const {
 
 SolverPath DeformableBody::solverPath() const {
   if (!parts_->isActedOn()) return SolverPath::None;
-  if (parts_->forceModel != ForceModel::Corotated) return SolverPath::Bullet;
-  const auto* own = dynamic_cast<const DeformableSolver*>(&parts_->solver);
-  return own && own->solves() ? SolverPath::Solver : SolverPath::ForceOnly;
+  return parts_->forceModel == ForceModel::Corotated ? SolverPath::Solver : SolverPath::Bullet;
 }
 
 DeformableBody::~DeformableBody() {

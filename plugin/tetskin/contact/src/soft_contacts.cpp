@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableBodySolver.h>
-#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/contact_force.h>
 
@@ -27,22 +26,6 @@ Status checkSoftOptions(const SoftContactOptions& options) {
   return {};
 }
 
-/// Bullet tells it to soft bodies alone: an empty one is added for as long as it takes, where there is none.
-btDeformableBodySolver* solverOfWorld(btDeformableMultiBodyDynamicsWorld& world) {
-  const auto solverOf = [](btSoftBody& body) { return static_cast<btDeformableBodySolver*>(body.getSoftBodySolver()); };
-  if (world.getSoftBodyArray().size() > 0) return solverOf(*world.getSoftBodyArray()[0]);
-  btSoftBody nothing(&world.getWorldInfo());
-  world.addSoftBody(&nothing);
-  btDeformableBodySolver* solver = solverOf(nothing);
-  world.removeSoftBody(&nothing);
-  return solver;
-}
-
-/// Bullet lets solvers alone look at this.
-struct SearchingSolver : btDeformableBodySolver {
-  static bool searches(const btDeformableBodySolver& solver) { return solver.*&SearchingSolver::m_lineSearch; }
-};
-
 /// Whether contacts of the world, but these, have the body: each would push it as if it were alone.
 bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const ContactForce& own,
                 const btSoftBody& body) {
@@ -56,12 +39,11 @@ bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, 
 }  // namespace
 
 struct SoftContacts::Parts {
-  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver,
-        const SoftContactOptions& options)
+  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, DeformableSolver& ofSolver, const SoftContactOptions& options)
       : world(ofWorld), solver(ofSolver), force(ofSolver, ofWorld.getWorldInfo(), options) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
-  btDeformableBodySolver& solver;
+  DeformableSolver& solver;
   ContactForce force;
 };
 
@@ -74,15 +56,9 @@ SoftContacts::~SoftContacts() {
 Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDynamicsWorld& world,
                                                         const SoftContactOptions& options) {
   if (Status status = checkSoftOptions(options); !status.ok()) return status;
-  btDeformableBodySolver* solver = solverOfWorld(world);
-  if (solver->isReducedSolver()) {
-    return invalidContact(
-        "soft contacts need full bodies; make the world with a DeformableSolver, or a "
-        "btDeformableBodySolver");
-  }
-  if (SearchingSolver::searches(*solver)) {
-    return invalidContact("contacts have no energy, which a line search needs; call setLineSearch(false) of the world");
-  }
+  DeformableSolver* solver = deformableSolverOf(world);
+  if (!solver) return refusal("contact among soft bodies", {kUseDeformableSolver});
+  solver->solveAlways();
   auto parts = std::make_unique<Parts>(world, *solver, options);
   parts->force.setIndices(solver->getIndices());
   solver->getLagrangianForceArray()->push_back(&parts->force);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableBodySolver.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
 #include <tetskin/contact/src/rigid/contact_registry.h>
 #include <tetskin/contact/surface_contact.h>
@@ -69,11 +69,11 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
   if (world.getSoftBodyArray().findLinearSearch(&body) == world.getSoftBodyArray().size()) {
     return refused(StatusCode::InvalidOption, "the body is not in this world: add it there first");
   }
-  if (static_cast<btDeformableBodySolver*>(body.getSoftBodySolver())->isReducedSolver()) {
-    return refused(StatusCode::InvalidOption, "a world of reduced bodies has no surface contact");
-  }
+  std::vector<std::string> changes;
+  if (!deformableSolverOf(body)) changes.emplace_back(kUseDeformableSolver);
   const auto* dispatcher = dynamic_cast<const btCollisionDispatcher*>(world.getDispatcher());
-  if (!dispatcher) return refused(StatusCode::InvalidOption, "surface contact needs a btCollisionDispatcher");
+  if (!dispatcher) changes.emplace_back("make the world with a btCollisionDispatcher");
+  if (Status status = refusal("surface contact", changes); !status.ok()) return status;
   const ContactRegistry* registry = ContactRegistry::find(dispatcher);
   if (registry && registry->find(body)) {
     return refused(StatusCode::InvalidOption, "the body has surface contact already: destroy that first");
@@ -156,6 +156,7 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
                                        TouchSearch(std::move(patches), margin, static_cast<btScalar>(options.share),
                                                    static_cast<btScalar>(kSearchSlack * size)),
                                        static_cast<btScalar>(kMeshThickness * size));
+  deformableSolverOf(body)->solveAlways();
   parts->begin(world, reach);
   return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));
 }

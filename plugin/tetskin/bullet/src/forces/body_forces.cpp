@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/coupling_force.h>
-#include <tetskin/bullet/elastic_force.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
 
@@ -10,31 +9,16 @@
 namespace tetskin {
 namespace {
 
-class NoForce : public btDeformableLagrangianForce {
- public:
-  void addScaledForces(btScalar, TVStack&) override {}
-  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
-  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
-  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
-  void addScaledExplicitForce(btScalar, TVStack&) override {}
-  void addScaledDampingForce(btScalar, TVStack&) override {}
-  btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
-};
-
 btDeformableLagrangianForce* noForce() {
-  static NoForce force;
+  static SilentForce force;
   return &force;
 }
 
 }  // namespace
 
-bool isNoForce(const btDeformableLagrangianForce& force) {
-  return &force == noForce();
-}
-
 bool needsDeformation(btDeformableLagrangianForce& force) {
-  if (isNoForce(force) || dynamic_cast<ElasticForce*>(&force)) return false;
-  if (dynamic_cast<btDeformableGravityForce*>(&force) || dynamic_cast<CouplingForce*>(&force)) return false;
+  if (isSilent(force) || dynamic_cast<CouplingForce*>(&force)) return false;
+  if (dynamic_cast<btDeformableGravityForce*>(&force)) return false;
   const btDeformableLagrangianForceType type = force.getForceType();
   return type != BT_GRAVITY_FORCE && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;
 }

@@ -13,6 +13,7 @@
 #include <tetskin/export.h>
 
 #include <optional>
+#include <utility>
 
 namespace tetskin {
 
@@ -25,8 +26,21 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 /// where they are, so that Bullet may be walking over it.
 TETSKIN_BULLET_API void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
-/// Whether it is what `replaceByNothing` puts there.
-bool isNoForce(const btDeformableLagrangianForce& force);
+/// One that gives Bullet nothing, and joins nobody's body.
+class SilentForce : public btDeformableLagrangianForce {
+ public:
+  void addScaledForces(btScalar, TVStack&) override {}
+  void addScaledExplicitForce(btScalar, TVStack&) override {}
+  void addScaledDampingForce(btScalar, TVStack&) override {}
+  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
+  btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
+};
+
+inline bool isSilent(const btDeformableLagrangianForce& force) {
+  return dynamic_cast<const SilentForce*>(&force) != nullptr;
+}
 
 /// Whether a force needs what Bullet keeps for each tet and updates in every step.
 bool needsDeformation(btDeformableLagrangianForce& force);
@@ -37,7 +51,8 @@ template <class Force>
 class OwnForce : public Force {
  public:
   template <class... Arguments>
-  explicit OwnForce(ForceList& list, Arguments... arguments) : Force(arguments...), list_(list) {}
+  explicit OwnForce(ForceList& list, Arguments&&... arguments)
+      : Force(std::forward<Arguments>(arguments)...), list_(list) {}
 
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
   void removeSoftBody(btSoftBody* body) override {

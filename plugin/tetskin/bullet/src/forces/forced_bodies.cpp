@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
-#include <tetskin/core/src/base/positive_values.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -19,22 +18,6 @@ bool hasRestShape(const btSoftBody::Tetra& tet) {
   btScalar size = 0;
   for (int i = 0; i < 3; ++i) size += tet.m_Dm_inverse[i].length2();
   return tet.m_element_measure > 0 && size > 0 && std::isfinite(size);
-}
-
-elastic_detail::RestTets restTetsOf(const btSoftBody& body) {
-  elastic_detail::RestTets rest;
-  rest.tets = tetMeshOf(body).tets;
-  for (int t = 0; t < body.m_tetras.size(); ++t) {
-    const btSoftBody::Tetra& tetra = body.m_tetras[t];
-    std::array<double, 9> gradients{};
-    for (std::size_t k = 0; k < gradients.size(); ++k) {
-      const btVector3& row = tetra.m_Dm_inverse[static_cast<int>(k / 3)];
-      gradients[k] = static_cast<double>(row[static_cast<int>(k % 3)]);
-    }
-    rest.gradients.push_back(gradients);
-    rest.volumes.push_back(static_cast<double>(tetra.m_element_measure));
-  }
-  return rest;
 }
 
 /// Of some of the tets: another one if the body has been scaled, or given another rest shape.
@@ -61,26 +44,33 @@ void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics) {
   }
 }
 
-Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale) {
+Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body) {
   if (body.m_tetras.size() == 0) {
-    return {StatusCode::Degenerate,
-            "the body has no tets to be elastic; Bullet's mass-spring force serves cloth and ropes"};
+    return Status{StatusCode::Degenerate,
+                  "the body has no tets to be elastic; Bullet's mass-spring force serves cloth and ropes"};
   }
-  const std::vector<Tet> tets = tetMeshOf(body).tets;
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    for (const int n : tets[t]) {
-      if (n >= 0) continue;
+  elastic_detail::RestTets rest;
+  rest.tets = tetMeshOf(body).tets;
+  for (std::size_t t = 0; t < rest.count(); ++t) {
+    const btSoftBody::Tetra& tetra = body.m_tetras[static_cast<int>(t)];
+    if (std::count(rest.tets[t].begin(), rest.tets[t].end(), -1) > 0) {
       return badTet(t,
                     " names no node of the body: Bullet leaves tets dangling when nodes are appended after them; "
                     "append the nodes first");
     }
-    if (!hasRestShape(body.m_tetras[static_cast<int>(t)])) {
+    if (!hasRestShape(tetra)) {
       return badTet(t,
                     " of the body has no volume at rest, or no rest shape; call the body's initializeDmInverse() after "
                     "its tets have been appended");
     }
+    std::array<double, 9>& gradients = rest.gradients.emplace_back();
+    for (std::size_t k = 0; k < gradients.size(); ++k) {
+      const btVector3& row = tetra.m_Dm_inverse[static_cast<int>(k / 3)];
+      gradients[k] = static_cast<double>(row[static_cast<int>(k % 3)]);
+    }
+    rest.volumes.push_back(static_cast<double>(tetra.m_element_measure));
   }
-  return checkPositive<btScalar>(stiffnessScale, tets.size(), "stiffnessScale", "tet");
+  return rest;
 }
 
 Status checkMaterial(const ElasticMaterial& material) {
@@ -102,9 +92,9 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
   return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, whole, volume);
 }
 
-void ForcedBody::build(const ElasticMaterial& material) {
+void ForcedBody::build(elastic_detail::RestTets rest, const ElasticMaterial& material) {
   if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
-  dynamics = std::make_unique<Dynamics>(restTetsOf(*body), static_cast<std::size_t>(body->m_nodes.size()));
+  dynamics = std::make_unique<Dynamics>(std::move(rest), static_cast<std::size_t>(body->m_nodes.size()));
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
 }
@@ -115,11 +105,6 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   dynamics->setDamping(material.damping);
 }
 
-void ForcedBody::know(btDeformableMultiBodyDynamicsWorld& in) {
-  world = &in;
-  worldInfo = &in.getWorldInfo();
-}
-
 bool ForcedBody::hasItsCounts() const {
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
          dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());
@@ -127,17 +112,6 @@ bool ForcedBody::hasItsCounts() const {
 
 bool ForcedBody::hasItsRestShapes() const {
   return hasItsCounts() && restMeasureOf(*body) == restMeasure;
-}
-
-void ForcedBody::hideTets() {
-  if (hiddenTets >= 0 || !alone || solved || body->m_tetras.size() == 0) return;
-  hiddenTets = body->m_tetras.size();
-  body->m_tetras.resizeNoInitialize(0);
-}
-
-void ForcedBody::showTets() {
-  if (hiddenTets >= 0) body->m_tetras.resizeNoInitialize(hiddenTets);
-  hiddenTets = -1;
 }
 
 }  // namespace tetskin

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::bullet: the bodies of an ElasticForce, and how their nodes are read.
+// Internal to tetskin::bullet: the bodies of `ForceModel::Corotated`, and how their nodes are read.
 #pragma once
 
-#include <tetskin/bullet/elastic_force.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/dynamics/body_dynamics.h>
 
 #include <memory>
@@ -12,42 +13,49 @@
 
 namespace tetskin {
 
+/// What a body resists deformation with.
+struct ElasticMaterial {
+  double youngsModulus = 0.0;  ///< in pressure units, above 0
+  double poissonRatio = 0.3;   ///< 0 to below 0.5
+  double damping = 0.02;       ///< seconds: damping forces are this times the rate of the elastic ones
+};
+
+/// How closely the velocities of a step are solved for.
+struct SolverLimits {
+  double tolerance = 5e-3;  ///< of the residual over that without elasticity; 0 to below 1
+  int iterations = 100;     ///< of the conjugate gradient in a step, at most; at least 1
+};
+
 using Dynamics = elastic_detail::BodyDynamics<btScalar>;
 
 /// The state of a body's nodes; `predicted`: at m_q instead of m_x.
 void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics);
 
-/// Ok, or why nothing can be made of the body's tets.
-Status checkTets(const btSoftBody& body, const std::vector<double>& stiffnessScale);
+/// The body's tets at rest, by Bullet's numbers: the same whether the body has just been made or scaled since.
+/// Cost    O(nodes + tets)
+/// Errors  Degenerate: why nothing elastic can be made of them
+Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
 Status checkMaterial(const ElasticMaterial& material);
 /// Whether it is not too stiff for the body's mass: see elastic_detail::checkStiffness.
 Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
 
-/// One body under an ElasticForce.
+/// One body, and what is derived from it.
 struct ForcedBody {
   btSoftBody* body = nullptr;
   std::vector<double> stiffnessScale;  ///< by tet, or empty
   std::unique_ptr<Dynamics> dynamics;
   btScalar restMeasure = 0;  ///< of some tets: another one has been scaled
-  /// That it was added in, and what the body would have another of in another world; null: not known.
+  /// That it was added in, and what the body would have another of in another world.
   btDeformableMultiBodyDynamicsWorld* world = nullptr;
   const btSoftBodyWorldInfo* worldInfo = nullptr;
-  bool solved = false;  ///< by a DeformableSolver: the force keeps out of it
-  bool alone = false;   ///< no other force needs Bullet's own deformation gradients
-  int hiddenTets = -1;  ///< how many are kept from Bullet; -1: none
 
   /// Makes, or makes anew, what is derived from the body's tets.
-  void build(const ElasticMaterial& material);
+  /// rest  see `restTetsOf`
+  void build(elastic_detail::RestTets rest, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
-  void know(btDeformableMultiBodyDynamicsWorld& in);
   /// Whether that was derived from as many nodes and tets as there are, and from the same rest shapes.
   bool hasItsCounts() const;
   bool hasItsRestShapes() const;
-
-  /// Bullet updates deformation gradients of its own between `reinitialize` and the first force of a step, which takes
-  /// as long as all that we do, and only its own forces read them. It finds no tets then.
-  void hideTets();
-  void showTets();
 };
 
 }  // namespace tetskin

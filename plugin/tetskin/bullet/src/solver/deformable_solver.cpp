@@ -54,8 +54,17 @@ bool DeformableSolver::Parts::collect(const btAlignedObjectArray<btSoftBody*>& w
 }
 
 void DeformableSolver::Parts::assign() {
-  solving ? bodies.assign(forces()) : bodies.release(forces());
-  if (!solving || implicit()) resetEffectiveMasses(solver.m_softBodies);
+  if (solving) return bodies.assign(forces());
+  bodies.clear();
+  resetEffectiveMasses(solver.m_softBodies);
+}
+
+/// The world tells its own in each step.
+void DeformableSolver::Parts::useOwnSettings() {
+  solver.setImplicit(false);
+  solver.setLineSearch(false);
+  solver.m_useProjection = true;
+  solver.setStrainLimiting(true);
 }
 
 void DeformableSolver::Parts::forEachBody(void (Parts::*task)(SolvedBody&, ParallelFor*)) {
@@ -66,7 +75,8 @@ void DeformableSolver::Parts::forEachBody(void (Parts::*task)(SolvedBody&, Paral
 
 DeformableSolver::DeformableSolver() : parts_(std::make_unique<Parts>(*this)) {
   m_useProjection = true;
-  m_implicit = false;
+  setImplicit(false);
+  setLineSearch(false);
   m_dt = 0;
 }
 DeformableSolver::~DeformableSolver() = default;
@@ -77,8 +87,11 @@ void DeformableSolver::setThreads(ParallelFor* threads) {
 void DeformableSolver::setNodeNormals(bool on) {
   parts_->nodeNormals = on;
 }
+void DeformableSolver::solveAlways() {
+  parts_->always = true;
+}
 bool DeformableSolver::solves() const {
-  return m_useProjection && !m_lineSearch;
+  return parts_->always || (m_useProjection && !m_lineSearch && !m_implicit);
 }
 int DeformableSolver::iterations() const {
   return parts_->iterations;
@@ -123,6 +136,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     parts.assign();
   }
   if (!parts.solving) return btDeformableBodySolver::predictMotion(dt);
+  parts.useOwnSettings();
 
   parts.applyOthers();
   for (SolvedBody& of : parts.bodies.bodies()) readNodes(*of.body, false, *of.dynamics);
@@ -131,13 +145,22 @@ void DeformableSolver::predictMotion(btScalar dt) {
     parts.writePrediction(of);
     clearContacts(*of.body);
     // Bullet's own also refits the trees of faces.
-    if (m_implicit || of.body->m_bUpdateRtCst || meetsByFaces(*of.body)) {
+    if (of.body->m_bUpdateRtCst || meetsByFaces(*of.body)) {
       of.paddedTrees->ready = false;
       predictDeformableMotion(of.body, dt);
     } else {
       parts.predictPositions(of);
     }
   }
+}
+
+void DeformableSolver::setupDeformableSolve(bool implicit) {
+  btDeformableBodySolver::setupDeformableSolve(implicit && !parts_->solving);
+}
+
+/// What a world without projection asks for.
+void DeformableSolver::setLagrangeMultiplier() {
+  parts_->solving ? setProjection() : btDeformableBodySolver::setLagrangeMultiplier();
 }
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {

@@ -86,9 +86,9 @@ const btCollisionObject* objectOf(const btDeformableRigidContactConstraint& cont
   return contact.m_contact->m_cti.m_colObj;
 }
 
-/// Null where it is not known: a body whose force was not added by `ElasticForce::addTo`, or that has been moved since.
+/// Null where it is not known: of a body that is not elastic, or has been moved since.
 btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
-  if (!of.elastic || !of.elastic->world) return nullptr;
+  if (!of.elastic) return nullptr;
   return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
 }
 

@@ -62,12 +62,7 @@ void SolverBodies::number(btDeformableBackwardEulerObjective& objective) {
   }
 }
 
-void SolverBodies::release(const ForceList& forces) {
-  for (int i = 0; i < forces.size(); ++i) {
-    const auto* elastic = dynamic_cast<const ElasticForce*>(forces[i]);
-    if (!elastic) continue;
-    for (const auto& of : elastic->bodies()) of->solved = false;
-  }
+void SolverBodies::clear() {
   bodies_.clear();
   systems_.clear();
 }
@@ -99,16 +94,12 @@ std::size_t SolverBodies::placeOf(const btSoftBody* body) const {
 
 void SolverBodies::takeElastic(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
-    const auto* elastic = dynamic_cast<const ElasticForce*>(forces[i]);
-    if (!elastic) continue;
-    for (const auto& of : elastic->bodies()) {
-      const std::size_t k = placeOf(of->body);
-      // A second elastic force of one body acts by itself.
-      of->solved = k < bodies_.size() && !bodies_[k].elastic;
-      if (!of->solved) continue;
-      bodies_[k].elastic = of.get();
-      bodies_[k].limits = &elastic->limits();
-    }
+    auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
+    if (!elastic || elastic->m_softBodies.size() == 0) continue;
+    const std::size_t k = placeOf(elastic->body().body);
+    if (k == bodies_.size()) continue;
+    bodies_[k].elastic = &elastic->body();
+    bodies_[k].limits = &elastic->limits();
   }
 }
 
@@ -147,15 +138,11 @@ std::vector<std::vector<std::size_t>> SolverBodies::coupledBy(const btDeformable
 
 std::vector<std::size_t> SolverBodies::actedOnBy(const btDeformableLagrangianForce& force) const {
   std::vector<std::size_t> places;
-  if (isGravity(force) || isNoForce(force)) return places;
+  if (isGravity(force) || isSilent(force)) return places;
   const auto add = [&](const btSoftBody* body) {
     if (const std::size_t k = placeOf(body); k < bodies_.size()) places.push_back(k);
   };
-  if (const auto* elastic = dynamic_cast<const ElasticForce*>(&force)) {
-    for (const auto& of : elastic->bodies()) {
-      if (!of->solved) add(of->body);
-    }
-  } else if (force.m_softBodies.size() > 0) {
+  if (force.m_softBodies.size() > 0) {
     for (int b = 0; b < force.m_softBodies.size(); ++b) add(force.m_softBodies[b]);
   } else {
     // Forces that say of no body that they act on it may act on any.

@@ -4,7 +4,7 @@
 // Internal to DeformableSolver: the bodies of a step, numbered, and which of them are solved for together.
 #pragma once
 
-#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/solver/padded_trees.h>
 
 #include <memory>
@@ -60,8 +60,8 @@ class SolverBodies {
   /// Makes one system of those that bodies are in.
   /// places  in `bodies`; not empty
   SolvedSystem& join(const std::vector<std::size_t>& places);
-  /// No body is solved for here: elastic forces act by themselves.
-  void release(const ForceList& forces);
+  /// No body is solved for here.
+  void clear();
 
   std::vector<SolvedBody>& bodies() { return bodies_; }
   const std::vector<SolvedBody>& bodies() const { return bodies_; }

@@ -19,20 +19,19 @@ struct DeformableSolver::Parts {
   explicit Parts(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
   ForceList& forces() { return solver.m_objective->m_lf; }
-  bool implicit() const { return solver.m_implicit; }
   btScalar dt() const { return solver.m_dt; }
 
   // Which bodies, and which forces on them: deformable_solver.cpp.
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
+  /// Of what is left to Bullet's code in a step that is solved here.
+  void useOwnSettings();
   /// Several bodies side by side, or one in pieces.
   void forEachBody(void (Parts::*task)(SolvedBody&, ParallelFor*));
 
   // Before contacts: solver_prediction.cpp.
   /// The impulses of other forces.
   void applyOthers();
-  void applyOthersExplicitly();
-  void applyOthersImplicitly();
   /// The elastic solve before contacts.
   void predict(SolvedBody& of, ParallelFor* inner);
   void writePrediction(SolvedBody& of) const;
@@ -51,7 +50,6 @@ struct DeformableSolver::Parts {
   void multiplyOthers(const SolvedSystem& system);
   /// The same times the matrices' own steps, and what ties add, for the conjugate gradient.
   void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
-  void removeMomentum(const SolvedBody& of) const;
   void writeVelocities(SolvedBody& of) const;
 
   DeformableSolver& solver;
@@ -61,6 +59,7 @@ struct DeformableSolver::Parts {
   HiddenBodies hidden;
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;
+  bool always = false;  ///< see DeformableSolver::solveAlways
   bool solving = true;  ///< in this step
   int iterations = 0;
   btAlignedObjectArray<btSoftBody*> all;

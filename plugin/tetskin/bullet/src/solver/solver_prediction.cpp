@@ -51,19 +51,11 @@ double moveNodes(btSoftBody& body, btScalar dt) {
 
 }  // namespace
 
+/// As btDeformableBackwardEulerObjective::applyExplicitForce, where elastic forces are explicit.
 void DeformableSolver::Parts::applyOthers() {
   for (SolvedBody& of : bodies.bodies()) {
-    for (int n = 0; implicit() && n < of.body->m_nodes.size(); ++n) {
-      btSoftBody::Node& node = of.body->m_nodes[n];
-      node.m_q = node.m_x + dt() * node.m_v;
-    }
     if (of.needsDeformation) of.body->advanceDeformation();
   }
-  implicit() ? applyOthersImplicitly() : applyOthersExplicitly();
-}
-
-/// As btDeformableBackwardEulerObjective::applyExplicitForce, where elastic forces are explicit.
-void DeformableSolver::Parts::applyOthersExplicitly() {
   VectorStack& impulses = solver.m_residual;
   for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledExplicitForce(dt(), impulses);
   for (SolvedBody& of : bodies.bodies()) {
@@ -76,37 +68,8 @@ void DeformableSolver::Parts::applyOthersExplicitly() {
   }
 }
 
-/// The same where they are implicit: gravity is the last force's of that type, for all bodies.
-void DeformableSolver::Parts::applyOthersImplicitly() {
-  VectorStack& impulses = solver.m_residual;
-  btVector3 gravity(0, 0, 0);
-  for (int i = 0; i < forces().size(); ++i) {
-    if (forces()[i]->getForceType() == BT_GRAVITY_FORCE) {
-      gravity = static_cast<btDeformableGravityForce*>(forces()[i])->m_gravity;
-    } else {
-      forces()[i]->addScaledForces(dt(), impulses);
-    }
-  }
-  for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledHessian(dt());
-  for (SolvedBody& of : bodies.bodies()) {
-    for (int n = 0; n < of.body->m_nodes.size(); ++n) {
-      btSoftBody::Node& node = of.body->m_nodes[n];
-      node.m_effectiveMass_inv =
-          node.m_im > 0 ? node.m_effectiveMass.inverse() : btMatrix3x3::getIdentity() * btScalar(0);
-      node.m_v += node.m_effectiveMass_inv * impulses[of.first + n] + dt() * of.body->m_gravityFactor * gravity;
-      impulses[of.first + n].setZero();
-    }
-  }
-}
-
 void DeformableSolver::Parts::predict(SolvedBody& of, ParallelFor* inner) {
   Dynamics& dynamics = *of.dynamics;
-  if (implicit() && of.elastic) {
-    // From where the step began: other forces, gravity too, act again in its one solve.
-    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-      toPoint(of.body->m_nodes[static_cast<int>(n)].m_vn, dynamics.velocity(n));
-    }
-  }
   const auto seconds = static_cast<double>(dt());
   dynamics.predict(seconds, inner);
   dynamics.matrix().free();
@@ -127,10 +90,8 @@ void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
   const auto& matrix = of.dynamics->matrix();
   for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-    // Implicitly, what other forces do comes on top: the solve began with the velocities from before them.
-    const btVector3 others = implicit() ? node.m_v - node.m_vn : btVector3(0, 0, 0);
     if (node.m_im > 0) {
-      node.m_v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) + others;
+      node.m_v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
     }
     btScalar inverse[6];
     matrix.freeInverse(n, inverse);

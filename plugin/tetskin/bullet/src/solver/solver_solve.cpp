@@ -40,25 +40,18 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
     of.touched |= !dv.isZero();
     if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
-    // Beside the rigid motion: what the solution has been; implicitly, what the step has begun with.
-    btVector3 own(0, 0, 0);
-    if (of.elastic) own = implicit() ? before - fromPoint(dynamics.velocity(n)) : fromWide(solution);
+    // Beside the rigid motion: what the solution has been.
+    const btVector3 own = of.elastic ? fromWide(solution) : btVector3(0, 0, 0);
     toPoint(before - own, dynamics.velocity(n));
     toWide(own + dv, solution);
-    if (implicit()) {
-      btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-      node.m_v = before + dv;
-      node.m_q = node.m_x + dt() * (node.m_v + node.m_splitv);
-    }
   }
-  if (implicit() && of.needsDeformation) of.body->updateDeformation();
 }
 
 /// As btDeformableBackwardEulerObjective::computeResidual.
 void DeformableSolver::Parts::addOthers() {
   for (int i = 0; i < forces().size(); ++i) {
     btDeformableLagrangianForce& force = *forces()[i];
-    if (implicit() || force.getForceType() == BT_MOUSE_PICKING_FORCE) {
+    if (force.getForceType() == BT_MOUSE_PICKING_FORCE) {
       force.addScaledForces(dt(), solver.m_residual);
     } else {
       force.addScaledDampingForce(dt(), solver.m_residual);
@@ -92,7 +85,7 @@ void DeformableSolver::Parts::solveSystems() {
 
 void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inner) {
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
-  bool again = implicit() || !system.forces.empty();
+  bool again = !system.forces.empty();
   for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
   if (again) {
     solveAgain(system, inner);
@@ -102,16 +95,7 @@ void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inn
     first.iterations = first.solve->iterations();
   }
   const bool free = system.forces.empty() && system.rigids.empty() && !first.constrained && !first.touched;
-  if (free && first.elastic) removeMomentum(first);
-}
-
-/// Of a body that nothing touches. Implicitly, other forces, such as gravity, act in this solve.
-void DeformableSolver::Parts::removeMomentum(const SolvedBody& of) const {
-  if (!implicit()) return of.dynamics->removeMomentum();
-  of.dynamics->removeMomentum([&](std::size_t n) -> std::array<double, 3> {
-    const btVector3& impulse = solver.m_residual[of.first + static_cast<int>(n)];
-    return {static_cast<double>(impulse.x()), static_cast<double>(impulse.y()), static_cast<double>(impulse.z())};
-  });
+  if (free && first.elastic) first.dynamics->removeMomentum();
 }
 
 void DeformableSolver::Parts::solveAgain(const SolvedSystem& system, ParallelFor* inner) {
@@ -186,8 +170,8 @@ elastic_detail::SolveLimits DeformableSolver::Parts::limitsOf(const SolvedSystem
 
 /// The residuals of what contacts have done, and of what other forces do.
 void DeformableSolver::Parts::startAgain(const SolvedSystem& system, ParallelFor* inner) {
-  const bool explicitly = !system.forces.empty() && !implicit();
-  if (explicitly) {
+  const bool withForces = !system.forces.empty();
+  if (withForces) {
     for (const std::size_t b : system.bodies) {
       const SolvedBody& of = bodies.bodies()[b];
       const int end = of.first + static_cast<int>(of.dynamics->nodeCount());
@@ -204,7 +188,7 @@ void DeformableSolver::Parts::startAgain(const SolvedSystem& system, ParallelFor
       const std::size_t wide = matrix.wideOf(n);
       btVector3 residual = fromWide(matrix.residual() + wide);
       residual += solver.m_residual[of.first + static_cast<int>(n)];
-      if (explicitly) residual -= fromWide(&extras[b][wide]);
+      if (withForces) residual -= fromWide(&extras[b][wide]);
       toWide(residual, matrix.residual() + wide);
     }
   }
@@ -217,7 +201,7 @@ void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
   }
   for (btDeformableLagrangianForce* force : system.forces) {
     force->addScaledDampingForceDifferential(-dt(), step, image);
-    if (implicit() || force->getForceType() == BT_MOUSE_PICKING_FORCE) {
+    if (force->getForceType() == BT_MOUSE_PICKING_FORCE) {
       force->addScaledElasticForceDifferential(-dt() * dt(), step, image);
     }
   }
@@ -237,7 +221,7 @@ void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
   for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
-    if (node.m_im > 0) node.m_v = implicit() ? v : v - node.m_splitv;
+    if (node.m_im > 0) node.m_v = v - node.m_splitv;
     of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, movingPart(node, dt()).length2());
   }
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
-#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
 #include <tetskin/contact/src/rigid/node_contacts.h>
 
@@ -25,19 +23,6 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   const btTransform place = object.getWorldTransform().inverse() * rigid.getWorldTransform();
   return {rigid.getWorldTransform(), predictedOf(object) * place};
-}
-
-const DeformableSolver* ownSolverOf(const btSoftBody& body) {
-  auto* solver = static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
-  const auto* own = dynamic_cast<const DeformableSolver*>(solver);
-  return own && own->solves() ? own : nullptr;
-}
-
-/// Bullet's implicit steps add elastic forces to velocities as if they were explicit, which overshoots, before they
-/// look for contacts, and drop them afterwards.
-bool velocitiesAreUnsolved(const btSoftBody& body) {
-  auto* solver = static_cast<btDeformableBodySolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
-  return solver->m_objective->m_implicit && !ownSolverOf(body);
 }
 
 }  // namespace
@@ -64,14 +49,11 @@ void BodyContacts::readNodes() {
   if (nodesRead_) return;
   nodesRead_ = true;
   nodes_.resize(static_cast<std::size_t>(body_.m_nodes.size()));
-  // Not m_q: implicit worlds leave that where the step began.
-  const bool unsolved = velocitiesAreUnsolved(body_);
   for (int n = 0; n < body_.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body_.m_nodes[n];
-    nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * (unsolved ? node.m_vn : node.m_v)};
+    nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
   }
-  // Bullet's own solver throws nodes away that are stopped from opposite sides.
-  search_.begin(nodes_, ownSolverOf(body_) != nullptr);
+  search_.begin(nodes_);
 }
 
 /// By the boxes that Bullet keeps, and for shapes of one piece by the distance of the body's.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
-#include <BulletSoftBody/btDeformableBodySolver.h>
-#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
 
 #include <algorithm>
@@ -40,19 +39,18 @@ std::vector<btVector3> bulletsImpulses(const btSoftBody& body) {
   return impulses;
 }
 
-/// By contact of the body. What a DeformableSolver's own solve has found a node to be pushed with, its first contact
-/// has.
+/// By contact of the body. What the solver has found a node to be pushed with, its first contact has.
 std::vector<btVector3> impulsesOn(const btSoftBody& body) {
-  const auto* own = dynamic_cast<const DeformableSolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+  const DeformableSolver* solver = deformableSolverOf(body);
   std::vector<btVector3> impulses = bulletsImpulses(body);
-  if (!own || !own->solves() || !body.isActive()) return impulses;
+  if (!solver || !body.isActive()) return impulses;
   std::unordered_set<const btSoftBody::Node*> told;
   for (int k = 0; k < body.m_nodeRigidContacts.size(); ++k) {
     const auto& contact = body.m_nodeRigidContacts[k];
     btVector3& impulse = impulses[static_cast<std::size_t>(k)];
     const bool pushes = !impulse.isZero() && told.insert(contact.m_node).second;
     const int node = static_cast<int>(contact.m_node - &body.m_nodes[0]);
-    impulse = (pushes ? own->normalImpulse(body, node) : btScalar(0)) * contact.m_cti.m_normal;
+    impulse = (pushes ? solver->normalImpulse(body, node) : btScalar(0)) * contact.m_cti.m_normal;
   }
   return impulses;
 }

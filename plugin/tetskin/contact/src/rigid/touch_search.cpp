@@ -79,9 +79,8 @@ TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
-void TouchSearch::begin(const std::vector<NodePath>& nodes, bool several) {
+void TouchSearch::begin(const std::vector<NodePath>& nodes) {
   nodes_ = &nodes;
-  several_ = several;
   clustersRead_ = false;
   placeOf_.resize(nodes.size(), -1);
   local_.resize(nodes.size());
@@ -317,11 +316,11 @@ void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const Nod
   }
 }
 
-/// One for each way in which the node is stopped; in one way at most, if it cannot be in several.
+/// One for each direction in which the node is stopped: at an edge, by its two sides.
 void TouchSearch::keepAt(int node, const NodeTouch& touch) {
   int& first = placeOf_[static_cast<std::size_t>(node)];
   int at = first;
-  while (at >= 0 && several_ && !sameWay(touch, touches_[static_cast<std::size_t>(at)])) {
+  while (at >= 0 && !sameWay(touch, touches_[static_cast<std::size_t>(at)])) {
     at = touches_[static_cast<std::size_t>(at)].next;
   }
   if (at >= 0) return join(touch, touches_[static_cast<std::size_t>(at)]);

@@ -71,8 +71,7 @@ class TouchSearch {
   btScalar margin() const { return margin_; }
 
   /// Where the nodes are in this step; valid until the next call.
-  /// several  a node may be stopped in several directions: at an edge, by its two sides
-  void begin(const std::vector<NodePath>& nodes, bool several = true);
+  void begin(const std::vector<NodePath>& nodes);
   /// Of the body with these nodes and this shape; ascending by node. Valid until the next call.
   /// memory  of the same shape, or an empty one
   const std::vector<NodeTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
@@ -101,7 +100,6 @@ class TouchSearch {
   btScalar margin_, share_, slack_;
   btScalar spread_ = 1;  ///< the largest of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
-  bool several_ = true;
   bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
   // Of one call of `find`.

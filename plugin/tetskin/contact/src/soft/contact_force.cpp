@@ -70,7 +70,6 @@ void ContactForce::removeSoftBody(btSoftBody* body) {
 void ContactForce::reinitialize(bool) {
   const bool removal = removal_;
   removal_ = false;
-  predicted_ = false;
   // The step before may have had no solve, or been of another length: what it has left is read first.
   if (!removal) memory_ = memoryOf(rows_, static_cast<btScalar>(options_.hold));
   rows_.clear();
@@ -207,29 +206,9 @@ void ContactForce::addScaledDampingForce(btScalar, TVStack& force) {
   }
 }
 
-void ContactForce::addScaledForces(btScalar scale, TVStack& force) {
-  addScaledExplicitForce(scale, force);
-  if (predicted_) addScaledDampingForce(scale, force);
-  predicted_ = true;
-}
-
 void ContactForce::addScaledDampingForceDifferential(btScalar, const TVStack& dv, TVStack& df) {
   for (const ContactRow& row : rows_) {
     if (row.live()) row.addTo(df, firmness(row) * row.held(row.relativeOf(dv)));
-  }
-}
-
-void ContactForce::buildDampingForceDifferentialDiagonal(btScalar, TVStack& diagonal) {
-  for (const ContactRow& row : rows_) {
-    if (!row.live()) continue;
-    btVector3 held(1, 1, 1);
-    if (row.sliding == Sliding::Yes) held = row.normal * row.normal;
-    for (const ContactNodes& side : row.sides) {
-      for (int k = 0; k < 4; ++k) {
-        if (side.numbers[k] < 0) continue;
-        diagonal[side.numbers[k]] += firmness(row) * side.weights[k] * side.weights[k] * held;
-      }
-    }
   }
 }
 

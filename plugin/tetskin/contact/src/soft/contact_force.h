@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftContacts: what Bullet calls, in a step:
+// Internal to SoftContacts: what a DeformableSolver calls, in a step:
 //   reinitialize                contacts of the positions that the step begins with; their impulses by masses alone
-//   addScaledExplicitForce, or in implicit worlds addScaledForces for the first time: these impulses
-//   addScaledDampingForce, or in implicit worlds addScaledForces from then on: what it takes to hold contacts
-//   addScaledDampingForceDifferential: the same, for velocities that the solve tries
+//   addScaledExplicitForce      these impulses
+//   addScaledDampingForce       what it takes to hold contacts
+//   addScaledDampingForceDifferential  the same, for velocities that the solve tries
 #pragma once
 
 #include <tetskin/bullet/coupling_force.h>
@@ -32,12 +32,9 @@ class ContactForce : public CouplingForce {
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
   void reinitialize(bool nodeUpdated) override;
-  void addScaledForces(btScalar scale, TVStack& force) override;
   void addScaledExplicitForce(btScalar scale, TVStack& force) override;
   void addScaledDampingForce(btScalar scale, TVStack& force) override;
   void addScaledDampingForceDifferential(btScalar scale, const TVStack& dv, TVStack& df) override;
-  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
-  void buildDampingForceDifferentialDiagonal(btScalar scale, TVStack& diagonal) override;
 
  private:
   void readBodies();
@@ -58,8 +55,7 @@ class ContactForce : public CouplingForce {
   BodyList bodies_;
   std::vector<const btSoftBody*> gone_;
   int nextId_ = 0;
-  bool removal_ = false;    ///< Bullet calls `reinitialize` next, and it is no step
-  bool predicted_ = false;  ///< in implicit worlds: the impulses have been given
+  bool removal_ = false;  ///< Bullet calls `reinitialize` next, and it is no step
   btScalar dt_ = 0;
   PairSearch search_;
   std::map<std::pair<int, int>, PairMemory> pairMemory_;  ///< by the bodies' ids

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableBodySolver.h>
 #include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/touch/src/forces/node_pushes.h>
 #include <tetskin/touch/src/forces/touch_force.h>
-#include <tetskin/touch/src/points/body_kind.h>
 
 namespace tetskin::touch_detail {
 namespace {
@@ -27,8 +26,7 @@ class Load : public Acting {
     dt_ = static_cast<double>(dt);
     --left_;
   }
-  void addPrediction(VectorStack& impulses) override { addTo(impulses, true); }
-  void addTo(VectorStack& impulses, bool) override {
+  void addTo(VectorStack& impulses) override {
     if (!body_->isActive()) return;
     for (const NodePush& of : forces_) {
       const btSoftBody::Node& node = body_->m_nodes[of.node];
@@ -36,12 +34,6 @@ class Load : public Acting {
     }
   }
   void addResistance(const VectorStack&, VectorStack&) const override {}
-  void addDiagonal(VectorStack&) const override {}
-  double energy() const override {
-    double sum = 0;
-    for (const NodePush& of : forces_) sum -= dt_ * of.push.dot(toEigen(body_->m_nodes[of.node].m_v));
-    return sum;
-  }
   void finish() override {}
 
  private:
@@ -54,7 +46,7 @@ class Load : public Acting {
 };
 
 /// Kept by the body, or by the point that asks.
-std::shared_ptr<TouchForce> forceFor(btDeformableBodySolver& solver, std::shared_ptr<void>& keeper) {
+std::shared_ptr<TouchForce> forceFor(DeformableSolver& solver, std::shared_ptr<void>& keeper) {
   auto kept = std::static_pointer_cast<TouchForce>(keeper);
   if (!kept || &kept->solver() != &solver) kept = TouchForce::of(solver);
   keeper = kept;
@@ -79,9 +71,9 @@ void applyImpulses(const NodePushes& impulses, btSoftBody& body) {
 
 TouchStatus applyForces(NodePushes forces, int steps, btSoftBody& body, std::shared_ptr<void>* owner) {
   if (!body.getBroadphaseHandle()) return TouchStatus::OutOfWorld;
-  btDeformableBodySolver* solver = deformableSolverOf(body);
+  DeformableSolver* solver = deformableSolverOf(body);
   BodyWithTrees* made = bodyWithTrees(body);
-  if (!solver || isReduced(body) || steps < 1 || !(made || owner)) return TouchStatus::InvalidOption;
+  if (!solver || steps < 1 || !(made || owner)) return TouchStatus::InvalidOption;
   std::shared_ptr<void>& keeper = made ? made->companion() : *owner;
   forceFor(*solver, keeper)->add(std::make_shared<Load>(body, std::move(forces), steps));
   body.activate();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
-#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/touch/src/forces/touch_force.h>
 
@@ -19,7 +19,7 @@ TouchForce::~TouchForce() {
   if (inWorld) leave();
 }
 
-std::shared_ptr<TouchForce> TouchForce::of(btDeformableBodySolver& solver) {
+std::shared_ptr<TouchForce> TouchForce::of(DeformableSolver& solver) {
   const auto& list = *solver.getLagrangianForceArray();
   for (int i = 0; i < list.size(); ++i) {
     if (auto* found = dynamic_cast<TouchForce*>(list[i])) return found->shared_from_this();
@@ -28,6 +28,7 @@ std::shared_ptr<TouchForce> TouchForce::of(btDeformableBodySolver& solver) {
 }
 
 void TouchForce::add(std::shared_ptr<Acting> part) {
+  solver_.solveAlways();
   parts_.push_back(std::move(part));
   if (listed_) return;
   listed_ = true;
@@ -73,7 +74,7 @@ void TouchForce::eraseSpent() {
 
 void TouchForce::reinitialize(bool) {
   const bool removal = removal_;
-  removal_ = predicted_ = false;
+  removal_ = false;
   if (removal) return;
   eraseSpent();
   beginAll(solver_.m_objective->m_dt);
@@ -91,30 +92,15 @@ void TouchForce::beginAll(btScalar dt) {
 }
 
 void TouchForce::addScaledDampingForce(btScalar, TVStack& force) {
-  for (const auto& part : parts_) part->addTo(force, false);
+  for (const auto& part : parts_) part->addTo(force);
 }
 
 bool TouchForce::moves(const btCollisionObject& object) const {
   return std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part->moves(object); });
 }
 
-void TouchForce::addScaledForces(btScalar, TVStack& force) {
-  for (const auto& part : parts_) predicted_ ? part->addTo(force, true) : part->addPrediction(force);
-  predicted_ = true;
-}
-
 void TouchForce::addScaledDampingForceDifferential(btScalar, const TVStack& dv, TVStack& df) {
   for (const auto& part : parts_) part->addResistance(dv, df);
-}
-
-void TouchForce::buildDampingForceDifferentialDiagonal(btScalar, TVStack& diagonal) {
-  for (const auto& part : parts_) part->addDiagonal(diagonal);
-}
-
-double TouchForce::totalElasticEnergy(btScalar) {
-  double sum = 0;
-  for (const auto& part : parts_) sum += part->energy();
-  return sum;
 }
 
 void TouchForce::updateAction(btCollisionWorld*, btScalar) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: all that acts at points of the bodies of one world, as one force in its list. What Bullet
-// calls, in a step:
+// Internal to tetskin::touch: all that acts at points of the bodies of one world, as one force in its list. What a
+// DeformableSolver calls, in a step:
 //   reinitialize                              begin
-//   addScaledForces, in implicit worlds for the first time: addPrediction
-//   addScaledDampingForce, or in implicit worlds addScaledForces from then on: addTo
+//   addScaledDampingForce                     addTo
 //   addScaledDampingForceDifferential         addResistance, for velocities that the solve tries
+// and Bullet's world:
 //   updateAction, once positions are final    finish
 #pragma once
 
@@ -17,8 +17,11 @@
 
 #include <memory>
 
-class btDeformableBodySolver;
 class btDiscreteDynamicsWorld;
+
+namespace tetskin {
+class DeformableSolver;
+}
 
 namespace tetskin::touch_detail {
 
@@ -41,30 +44,24 @@ class Acting {
 
   /// Before a step of dt seconds. sharers: of the same partner
   virtual void begin(btScalar dt, int sharers) = 0;
-  /// What it does to the nodes in the step if nothing but their masses held them back: impulses.
-  virtual void addPrediction(VectorStack& impulses) = 0;
-  /// What it does at the velocities that nodes have now.
-  /// split  with those by which contacts push bodies apart; else the solve has them already
-  virtual void addTo(VectorStack& impulses, bool split) = 0;
+  /// What it does at the velocities that nodes have now: impulses.
+  virtual void addTo(VectorStack& impulses) = 0;
   /// By how much less, for a change of these.
   virtual void addResistance(const VectorStack& change, VectorStack& impulses) const = 0;
-  virtual void addDiagonal(VectorStack& diagonal) const = 0;
-  /// Of which the impulses are the slope downwards.
-  virtual double energy() const = 0;
   /// Positions are those after the step.
   virtual void finish() = 0;
 };
 
 class TouchForce : public CouplingForce, public btActionInterface, public std::enable_shared_from_this<TouchForce> {
  public:
-  explicit TouchForce(btDeformableBodySolver& solver) : solver_(solver) {}
+  explicit TouchForce(DeformableSolver& solver) : solver_(solver) {}
   ~TouchForce() override;
   TouchForce(const TouchForce&) = delete;
   TouchForce& operator=(const TouchForce&) = delete;
 
   /// The one in the solver's list, or a new one.
-  static std::shared_ptr<TouchForce> of(btDeformableBodySolver& solver);
-  const btDeformableBodySolver& solver() const { return solver_; }
+  static std::shared_ptr<TouchForce> of(DeformableSolver& solver);
+  const DeformableSolver& solver() const { return solver_; }
 
   /// From the next step on; in the list for as long as there is any.
   void add(std::shared_ptr<Acting> part);
@@ -79,13 +76,9 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
   void reinitialize(bool nodeUpdated) override;
-  void addScaledForces(btScalar scale, TVStack& force) override;
   void addScaledExplicitForce(btScalar, TVStack&) override {}
   void addScaledDampingForce(btScalar scale, TVStack& force) override;
   void addScaledDampingForceDifferential(btScalar scale, const TVStack& dv, TVStack& df) override;
-  void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
-  void buildDampingForceDifferentialDiagonal(btScalar scale, TVStack& diagonal) override;
-  double totalElasticEnergy(btScalar dt) override;
 
   void updateAction(btCollisionWorld* world, btScalar dt) override;
   void debugDraw(btIDebugDraw*) override {}
@@ -95,13 +88,12 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
   void beginAll(btScalar dt);
   void leave();
 
-  btDeformableBodySolver& solver_;
+  DeformableSolver& solver_;
   btDiscreteDynamicsWorld* world_ = nullptr;  ///< of which it is an action
   std::vector<std::shared_ptr<Acting>> parts_;
   std::vector<std::array<btSoftBody*, 2>> pairs_;
   bool listed_ = false;
-  bool removal_ = false;    ///< Bullet calls `reinitialize` next, and it is no step
-  bool predicted_ = false;  ///< in implicit worlds
+  bool removal_ = false;  ///< Bullet calls `reinitialize` next, and it is no step
 };
 
 }  // namespace tetskin::touch_detail

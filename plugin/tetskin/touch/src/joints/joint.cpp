@@ -53,7 +53,6 @@ Joint::Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const 
     : point_(point),
       partner_(std::move(partner)),
       settings_(settings),
-      nodeCount_(point.body()->m_nodes.size()),
       nodeMass_(meanNodeMass(*point.body())),
       lever_(leverOf(point.data(), *point.body())),
       places_(placesOf(lever_, *point.body())),
@@ -92,12 +91,6 @@ Vector6 Joint::offsetOf(const Lever& lever) const {
   return way;
 }
 
-/// Within a step, when forces may hide a body's tets, which is all that `SurfacePoint::status` looks at besides.
-bool Joint::readable() const {
-  const btSoftBody& soft = *point_.body();
-  return soft.m_nodes.size() == nodeCount_ && isFiniteVector(linearPosition(point_.data(), soft));
-}
-
 bool Joint::softMoves() const {
   return point_.body()->isActive();
 }
@@ -120,7 +113,7 @@ void Joint::wake() {
 
 void Joint::begin(btScalar dt, int sharers) {
   active_ = false;
-  if (spent() || !(dt > 0) || !readable()) return;
+  if (spent() || !(dt > 0) || point_.status() != TouchStatus::Ok) return;
   lever_ = leverOf(point_.data(), *point_.body());
   dt_ = static_cast<double>(dt);
   sharers_ = sharers;
@@ -160,11 +153,11 @@ void Joint::measure() {
     compliance_.tail<3>().setConstant(1.0 / (dt_ * dt_ * turning));
     wanted_.tail<3>() += offset_.tail<3>() / dt_;
   }
-  matrix_ = inverse(response_);
+  matrix_ = inverse();
 }
 
-Matrix6 Joint::inverse(const Matrix6& response) const {
-  Matrix6 given = response;
+Matrix6 Joint::inverse() const {
+  Matrix6 given = response_;
   given.diagonal() += compliance_;
   if (settings_.turns) return given.inverse();
   Matrix6 only = Matrix6::Zero();
@@ -182,19 +175,10 @@ void Joint::spread(const Vector6& impulse, VectorStack& impulses) const {
   }
 }
 
-void Joint::addPrediction(VectorStack& impulses) {
+void Joint::addTo(VectorStack& impulses) {
   if (!active_) return;
   measure();
-  Matrix6 all = response_;
-  all.topLeftCorner<3, 3>() += linearResponse(lever_, *point_.body());
-  if (settings_.turns) all.bottomRightCorner<3, 3>() += angularResponse(lever_, *point_.body());
-  spread(inverse(all) * (wanted_ - pointVelocity()), impulses);
-}
-
-void Joint::addTo(VectorStack& impulses, bool split) {
-  if (!active_) return;
-  measure();
-  spread(impulse(split), impulses);
+  spread(impulse(false), impulses);
 }
 
 void Joint::addResistance(const VectorStack& change, VectorStack& impulses) const {
@@ -208,23 +192,6 @@ void Joint::addResistance(const VectorStack& change, VectorStack& impulses) cons
     faster.tail<3>() += of.angular * by;
   }
   spread(matrix_ * faster, impulses);
-}
-
-void Joint::addDiagonal(VectorStack& diagonal) const {
-  if (!active_ || !softMoves()) return;
-  for (const LeverNode& of : lever_) {
-    const btSoftBody::Node& node = point_.body()->m_nodes[of.node];
-    if (node.m_im == 0) continue;
-    Eigen::Matrix<double, 6, 3> column;
-    column << of.linear, of.angular;
-    diagonal[node.index] += toBullet((column.transpose() * matrix_ * column).diagonal());
-  }
-}
-
-double Joint::energy() const {
-  if (!active_) return 0;
-  const Vector6 missed = wanted_ - pointVelocity();
-  return 0.5 * missed.dot(matrix_ * missed);
 }
 
 void Joint::finish() {

@@ -52,30 +52,26 @@ class Joint : public Acting {
   const void* partner() const override { return partner_->mass(); }
   bool moves(const btCollisionObject& object) const override { return !spent() && partner_->object() == &object; }
   void begin(btScalar dt, int sharers) override;
-  void addPrediction(VectorStack& impulses) override;
-  void addTo(VectorStack& impulses, bool split) override;
+  void addTo(VectorStack& impulses) override;
   void addResistance(const VectorStack& change, VectorStack& impulses) const override;
-  void addDiagonal(VectorStack& diagonal) const override;
-  double energy() const override;
   void finish() override;
 
  private:
   void wake();
-  bool readable() const;
   bool softMoves() const;
   Vector6 offsetOf(const Lever& lever) const;
   Vector6 pointVelocity(bool split = true) const;
   /// Of the partner as it is now: what the impulse is made of.
   void measure();
   /// What gives the impulse for an error in velocity, if all of this gives way to it.
-  Matrix6 inverse(const Matrix6& response) const;
+  Matrix6 inverse() const;
+  /// split  with the velocities by which contacts push bodies apart; else the solve has them already
   Vector6 impulse(bool split = true) const { return matrix_ * (wanted_ - pointVelocity(split)); }
   void spread(const Vector6& impulse, VectorStack& impulses) const;
 
   SurfacePoint point_;
   std::unique_ptr<Partner> partner_;
   JointSettings settings_;
-  int nodeCount_;
   double nodeMass_;  ///< the mean
   bool dropped_ = false;
   bool hidden_ = false;  ///< body and partner do not collide, by us

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/src/solver/required_solver.h>
 #include <tetskin/touch/src/joints/joint_owner.h>
-#include <tetskin/touch/src/points/body_kind.h>
 
 namespace tetskin::touch_detail {
 
@@ -12,17 +11,17 @@ Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoin
   }
   const auto* deformable = dynamic_cast<const btDeformableMultiBodyDynamicsWorld*>(&world);
   if (!deformable) {
-    return {StatusCode::InvalidOption,
-            "springs and welds need the deformable world; in the classic ones, use impulses, or Bullet's own anchors"};
+    return {
+        StatusCode::InvalidOption,
+        "springs and welds need a deformable world, made with a DeformableSolver; in the classic ones, use impulses, "
+        "or Bullet's own anchors"};
   }
   const auto& inWorld = deformable->getSoftBodyArray();
   if (inWorld.findLinearSearch(point.body()) == inWorld.size()) {
     return {StatusCode::InvalidOption, "the point's body is not in this world: add it there first"};
   }
-  if (isReduced(*point.body()) || !deformableSolverOf(*point.body())) {
-    return {StatusCode::InvalidOption, "springs and welds need full bodies, not reduced ones"};
-  }
-  return {};
+  if (deformableSolverOf(*point.body())) return {};
+  return refusal("springs and welds", {kUseDeformableSolver});
 }
 
 JointOwner::JointOwner(btDiscreteDynamicsWorld& world, std::shared_ptr<Joint> joint)

@@ -6,15 +6,10 @@
 
 #include <tetskin/touch/surface_point.h>
 
-class btDeformableBodySolver;
-
 namespace tetskin::touch_detail {
 
 /// Reduced bodies have no velocities at their nodes, but for modes'.
 bool isReduced(const btSoftBody& body);
-
-/// Of the deformable world that the body is in; null if it is in none, or in another kind.
-btDeformableBodySolver* deformableSolverOf(const btSoftBody& body);
 
 inline bool isFiniteVector(const btVector3& v) {
   return v.x() * 0 + v.y() * 0 + v.z() * 0 == 0;

@@ -121,14 +121,6 @@ Matrix3d linearResponse(const Lever& lever, const btSoftBody& body) {
   return sum;
 }
 
-Matrix3d angularResponse(const Lever& lever, const btSoftBody& body) {
-  Matrix3d sum = Matrix3d::Zero();
-  for (const LeverNode& of : lever) {
-    sum += static_cast<double>(body.m_nodes[of.node].m_im) * of.angular * of.angular.transpose();
-  }
-  return sum;
-}
-
 Matrix3d turnSince(const std::vector<Vector3d>& before, const Lever& lever, const btSoftBody& body) {
   assert(before.size() == lever.size());
   const std::vector<Vector3d> now = placesOf(lever, body);

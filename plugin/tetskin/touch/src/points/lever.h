@@ -32,9 +32,8 @@ btVector3 linearPosition(const PointData& point, const btSoftBody& body);
 Eigen::Vector3d velocityOf(const Lever& lever, const btSoftBody& body, bool split = true);
 Eigen::Vector3d spinOf(const Lever& lever, const btSoftBody& body, bool split = true);
 
-/// Inverse masses: how fast the point moves, or the nodes turn, by a unit impulse or moment on them.
+/// Inverse mass: how fast the point moves by a unit impulse.
 Eigen::Matrix3d linearResponse(const Lever& lever, const btSoftBody& body);
-Eigen::Matrix3d angularResponse(const Lever& lever, const btSoftBody& body);
 
 /// How the nodes have turned, by the best fit, from where they were.
 /// before  as many, in the lever's order, about any middle
