@@ -88,7 +88,7 @@ Cage placedAt(Cage cage, int k) {
 
 class Pile {
  public:
-  explicit Pile(const PileOptions& options) : world_(forceOf(options.setting), btVector3(0, btScalar(-kEarth), 0)) {
+  explicit Pile(const PileOptions& options) : world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)) {
     ModelOptions model = options.model;
     if (!model.mesh.empty()) models_.emplace_back(model);
     for (const BuiltIn builtIn : kModels) {

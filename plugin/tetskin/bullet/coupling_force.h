@@ -29,9 +29,11 @@ class TETSKIN_BULLET_API CouplingForce : public btDeformableLagrangianForce {
   /// Whether it moves this rigid body, too, in this step: then nobody else solves for it.
   virtual bool moves(const btCollisionObject& object) const;
 
-  // Of implicit worlds, which a `DeformableSolver` does not solve so.
+  /// Of Bullet's implicit solve: nothing.
   void addScaledForces(btScalar, TVStack&) override {}
+  /// Likewise.
   void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  /// Of Bullet's preconditioner: nothing.
   void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
 
   /// None of Bullet's, so that `addForce` joins nobody's body to it.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The solve after contacts: of bodies that forces couple together, of all others by themselves.
+// The solve of one system: of bodies that forces couple together, or of one by itself.
 #include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
-#include <tetskin/bullet/src/solver/solver_parts.h>
+#include <tetskin/bullet/src/solver/step.h>
 
 #include <algorithm>
 
@@ -17,73 +17,9 @@ constexpr double kCloserWithRigids = 0.1;
 /// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
 constexpr double kWithForeignForces = 1e-6;
 
-/// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
-/// nothing.
-btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
-  btVector3 v = node.m_v;
-  for (int k = 0; k < 3; ++k) {
-    if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
-  }
-  return v;
-}
-
 }  // namespace
 
-/// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
-/// velocities the whole step begins with.
-void DeformableSolver::Parts::readContacts(SolvedBody& of) {
-  Dynamics& dynamics = *of.dynamics;
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const int number = of.first + static_cast<int>(n);
-    const btVector3& before = solver.m_backupVelocity[number];
-    btVector3& dv = solver.m_dv[number];
-    of.touched |= !dv.isZero();
-    if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
-    btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
-    // Beside the rigid motion: what the solution has been.
-    const btVector3 own = of.elastic ? fromWide(solution) : btVector3(0, 0, 0);
-    toPoint(before - own, dynamics.velocity(n));
-    toWide(own + dv, solution);
-  }
-}
-
-/// As btDeformableBackwardEulerObjective::computeResidual.
-void DeformableSolver::Parts::addOthers() {
-  for (int i = 0; i < forces().size(); ++i) {
-    btDeformableLagrangianForce& force = *forces()[i];
-    if (force.getForceType() == BT_MOUSE_PICKING_FORCE) {
-      force.addScaledForces(dt(), solver.m_residual);
-    } else {
-      force.addScaledDampingForce(dt(), solver.m_residual);
-    }
-  }
-}
-
-void DeformableSolver::Parts::tieRigids() {
-  ties.collect(solver.m_objective->m_projection, forces(), bodies);
-  for (std::size_t r = 0; r < ties.rigids().size(); ++r) {
-    std::vector<std::size_t> places;
-    for (const RigidTie& tie : ties.rigids()[r].ties) {
-      if (places.empty() || places.back() != tie.body) places.push_back(tie.body);
-    }
-    if (!places.empty()) bodies.join(places).rigids.push_back(r);
-  }
-}
-
-/// What Bullet's forces have a part in is solved here, one after the other, each by all threads; the rest side by side.
-void DeformableSolver::Parts::solveSystems() {
-  step.resize(solver.m_numNodes, btVector3(0, 0, 0));
-  image.resize(solver.m_numNodes, btVector3(0, 0, 0));
-  extras.resize(bodies.bodies().size());
-  std::vector<const SolvedSystem*> own;
-  for (const SolvedSystem& system : bodies.systems()) {
-    system.forces.empty() ? own.push_back(&system) : solve(system, threads);
-  }
-  ParallelFor* inner = own.size() == 1 ? threads : nullptr;
-  runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solve(*own[k], inner); });
-}
-
-void DeformableSolver::Parts::solve(const SolvedSystem& system, ParallelFor* inner) {
+void DeformableSolver::Parts::solveSystem(const SolvedSystem& system, ParallelFor* inner) {
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   bool again = !system.forces.empty();
   for (const std::size_t b : system.bodies) again |= bodies.bodies()[b].constrained || bodies.bodies()[b].touched;
@@ -212,17 +148,6 @@ void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
       toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
     }
-  }
-}
-
-void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
-  const auto& matrix = of.dynamics->matrix();
-  of.body->m_maxSpeedSquared = 0;
-  for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
-    btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-    const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
-    if (node.m_im > 0) node.m_v = v - node.m_splitv;
-    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, movingPart(node, dt()).length2());
   }
 }
 

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: its members, and what a step is made of.
+// Internal to DeformableSolver: its members, and the stages of a step, in their order.
+//
+// A node has four numbers, and not one:
+//   node            in its body, as the application has it
+//   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
+//   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
+//   wide            where a slot's three numbers are, in groups of slots, one to each lane of a register
+// The first two differ by a sum. The last two are BlockMatrix's alone (`slotOf`, `wideOf`): nodes would have to be
+// renumbered in the application's body to be rid of them.
 #pragma once
 
 #include <tetskin/bullet/deformable_solver.h>
@@ -18,31 +26,38 @@ constexpr double kUnseen = 1e-3 * 9.81;
 struct DeformableSolver::Parts {
   explicit Parts(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
+  // The stages: step.cpp.
+  void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
+  void predict();
+  void assemble();
+  void solve();
+  void finishContacts();
+  void writeBack();
+
   ForceList& forces() { return solver.m_objective->m_lf; }
+  const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
   btScalar dt() const { return solver.m_dt; }
 
-  // Which bodies, and which forces on them: deformable_solver.cpp.
+  // Of gather.
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
+
+  // Of predict.
   /// Of what is left to Bullet's code in a step that is solved here.
   void useOwnSettings();
-  /// Several bodies side by side, or one in pieces.
-  void forEachBody(void (Parts::*task)(SolvedBody&, ParallelFor*));
-
-  // Before contacts: solver_prediction.cpp.
   /// The impulses of other forces.
   void applyOthers();
-  /// The elastic solve before contacts.
-  void predict(SolvedBody& of, ParallelFor* inner);
+  void predictVelocities(SolvedBody& of, ParallelFor* inner);
   void writePrediction(SolvedBody& of) const;
-  void predictPositions(SolvedBody& of) const;
+  void predictPositions(SolvedBody& of);
 
-  // After contacts: solver_solve.cpp.
+  // Of assemble.
   void readContacts(SolvedBody& of);
-  void tieRigids();
   void addOthers();
-  void solveSystems();
-  void solve(const SolvedSystem& system, ParallelFor* inner);
+  void tieRigids();
+
+  // Of solve: system_solve.cpp.
+  void solveSystem(const SolvedSystem& system, ParallelFor* inner);
   void solveAgain(const SolvedSystem& system, ParallelFor* inner);
   void startAgain(const SolvedSystem& system, ParallelFor* inner);
   elastic_detail::SolveLimits limitsOf(const SolvedSystem& system) const;
@@ -50,6 +65,8 @@ struct DeformableSolver::Parts {
   void multiplyOthers(const SolvedSystem& system);
   /// The same times the matrices' own steps, and what ties add, for the conjugate gradient.
   void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
+
+  // Of writeBack.
   void writeVelocities(SolvedBody& of) const;
 
   DeformableSolver& solver;
