@@ -8,7 +8,7 @@
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/src/skin_binding.h>
+#include <tetskin/core/src/shared/skin_binding.h>
 #include <tetskin/core/src/skinning/skinning.h>
 #include <tetskin/io/tet_files.h>
 

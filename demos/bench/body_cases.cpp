@@ -5,7 +5,7 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/cage/cage_builder.h>
 
 #include <string>

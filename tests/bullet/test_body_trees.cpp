@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "deformable_test.h"
 
-#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 
 #include <unistd.h>
 #include <csignal>

@@ -3,7 +3,7 @@
 //
 // How Bullet binds a render mesh to tets or faces, beside how we do: where both agree, and the defects of its own path
 // that can be reproduced with the installed Bullet. The table in tests/README.md names these tests.
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // An application's own body, with Bullet's own forces, in a world where bodies of ours come and go.
 #include "deformable_test.h"
 
-#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
 
 namespace tetskin {
 namespace {

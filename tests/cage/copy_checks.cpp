@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "copy_checks.h"
 
-#include <tetskin/core/src/base/disjoint_sets.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "support/part_models.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <cmath>
 #include <random>

@@ -4,8 +4,8 @@
 // Binds surfaces 1 % of the diagonal inside and outside of each cage's boundary, moves the nodes at random and then
 // with Bullet, and compares every vertex with brute force in double after every update. See tests/clients/run.
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/tolerances.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/io/tet_files.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <tetskin/contact/src/rigid/convex_probe.h>
 #include <tetskin/contact/src/rigid/hull_probe.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 namespace tetskin::test {
 namespace {

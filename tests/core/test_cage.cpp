@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <limits>
 #include <random>

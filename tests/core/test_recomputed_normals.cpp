@@ -3,8 +3,8 @@
 #include "carried_normals.h"
 
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/kernels/instruction_set.h>
-#include <tetskin/core/src/skin_binding.h>
+#include <tetskin/core/src/shared/kernels/instruction_set.h>
+#include <tetskin/core/src/shared/skin_binding.h>
 
 #include <limits>
 #include <random>

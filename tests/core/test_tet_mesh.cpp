@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <algorithm>

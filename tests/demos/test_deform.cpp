@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/cage/cage_builder.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/io/mesh_loader.h>
 #include <tetskin/io/obj_sequence.h>
 #include <tetskin/io/tet_files.h>

@@ -3,7 +3,7 @@
 //
 // --self-contact of the programs that drop, pile and drag bodies.
 #include <gtest/gtest.h>
-#include <tetskin/core/src/mesh/winding_tree.h>
+#include <tetskin/core/src/shared/mesh/winding_tree.h>
 #include <tetskin/io/mesh_loader.h>
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include <tetskin/cage/cage_builder.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/kernels/instruction_set.h>
+#include <tetskin/core/src/shared/kernels/instruction_set.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>

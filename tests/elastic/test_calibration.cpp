@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/cage_builder.h>
-#include <tetskin/core/src/mesh/uniform_refinement.h>
+#include <tetskin/core/src/shared/mesh/uniform_refinement.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 

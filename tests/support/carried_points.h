@@ -4,7 +4,7 @@
 // Points in a cage and what skinning makes of them.
 #pragma once
 
-#include <tetskin/core/src/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 

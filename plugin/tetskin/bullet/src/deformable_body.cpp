@@ -4,12 +4,12 @@
 #include <BulletSoftBody/btDeformableLinearElasticityForce.h>
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/src/bodies/body_elements.h>
-#include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
-#include <tetskin/bullet/src/solver/required_solver.h>
-#include <tetskin/core/src/base/median.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/shared/bodies/body_elements.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/solver/required_solver.h>
+#include <tetskin/core/src/shared/base/median.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/forces/body_forces.h>
-#include <tetskin/bullet/src/solver/required_solver.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/contact_force.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/bodies/body_trees.h>
-#include <tetskin/bullet/src/solver/required_solver.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
 #include <tetskin/contact/src/rigid/contact_registry.h>
 #include <tetskin/contact/surface_contact.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/core/src/base/positive_values.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/shared/base/positive_values.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/elastic/src/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
 
 #include <cmath>
 #include <numeric>

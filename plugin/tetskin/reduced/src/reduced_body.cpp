@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/BulletReducedDeformableBody/btReducedDeformableBodySolver.h>
-#include <tetskin/bullet/src/bodies/body_elements.h>
-#include <tetskin/bullet/src/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/bodies/body_elements.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/reduced/reduced_body.h>
 #include <tetskin/reduced/src/bodies/modal_body.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/bodies/body_trees.h>
-#include <tetskin/core/src/skin_binding.h>
-#include <tetskin/core/src/skinning/quadratic_point.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/shared/skinning/quadratic_point.h>
 #include <tetskin/touch/src/forces/node_pushes.h>
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/lever.h>

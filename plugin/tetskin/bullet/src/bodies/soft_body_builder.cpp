@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/bodies/body_elements.h>
-#include <tetskin/bullet/src/bodies/body_trees.h>
-#include <tetskin/core/src/base/positive_values.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/shared/bodies/body_elements.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/core/src/shared/base/positive_values.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/coupling_force.h>
-#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
 
 namespace tetskin {
 

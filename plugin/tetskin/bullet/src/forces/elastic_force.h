@@ -4,8 +4,8 @@
 // Internal to tetskin::bullet: the corotated elasticity of one body, as it stands in Bullet's list of forces.
 #pragma once
 
-#include <tetskin/bullet/src/forces/body_forces.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
 
 namespace tetskin {
 

@@ -6,7 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/elastic/src/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
 
 #include <memory>
 #include <vector>

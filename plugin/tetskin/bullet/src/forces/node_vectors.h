@@ -6,7 +6,7 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
-#include <tetskin/elastic/src/kernels/elastic_kernels.h>
+#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
 
 #include <cmath>
 

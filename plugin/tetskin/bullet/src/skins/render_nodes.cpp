@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/core/src/embedding/embedding_data.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 namespace tetskin {
 namespace {

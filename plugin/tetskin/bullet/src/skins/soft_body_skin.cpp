@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
-#include <tetskin/core/src/skin_binding.h>
+#include <tetskin/core/src/shared/skin_binding.h>
 
 #include <algorithm>
 #include <utility>

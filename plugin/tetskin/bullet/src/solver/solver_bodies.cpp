@@ -3,7 +3,7 @@
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
 #include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
-#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <typeinfo>

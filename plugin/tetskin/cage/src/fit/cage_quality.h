@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <cstddef>

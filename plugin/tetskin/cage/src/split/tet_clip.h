@@ -4,7 +4,7 @@
 // What of edges and triangles is in a tet, by the barycentric weights of their corners.
 #pragma once
 
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <array>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/cage/src/split/body_ways.h>
-#include <tetskin/core/src/mesh/winding_tree.h>
+#include <tetskin/core/src/shared/mesh/winding_tree.h>
 
 #include <vector>
 

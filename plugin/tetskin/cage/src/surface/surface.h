@@ -4,7 +4,7 @@
 // The mesh as the later stages want it: welded, without repeated triangles, consistently oriented where it can be.
 #pragma once
 
-#include <tetskin/core/src/mesh/winding_tree.h>
+#include <tetskin/core/src/shared/mesh/winding_tree.h>
 #include <tetskin/core/triangle_mesh.h>
 
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/rigid/contact_patches.h>
-#include <tetskin/core/src/bvh/bvh.h>
-#include <tetskin/core/src/mesh/triangle_samples.h>
+#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/shared/mesh/triangle_samples.h>
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <tetskin/contact/src/rigid/shape_probe.h>
-#include <tetskin/core/src/mesh/triangle_geometry.h>
+#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
 #include <cstdint>
 #include <unordered_map>

@@ -4,7 +4,7 @@
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/core/src/mesh/triangle_geometry.h>
+#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
 #include <algorithm>
 

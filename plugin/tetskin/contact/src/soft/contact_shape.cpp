@@ -3,7 +3,7 @@
 #include <tetskin/contact/src/soft/other_parts.h>
 #include <tetskin/contact/src/soft/surface_samples.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

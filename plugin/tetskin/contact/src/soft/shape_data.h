@@ -7,7 +7,7 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
 #include <tetskin/core/embedded_point.h>
-#include <tetskin/core/src/bvh/bvh.h>
+#include <tetskin/core/src/shared/bvh/bvh.h>
 
 #include <array>
 #include <cstdint>

@@ -4,15 +4,15 @@
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/core/src/embedding/embedding_data.h>
 #include <tetskin/core/src/embedding/mapped_vertices.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
-#include <tetskin/core/src/mesh/weld.h>
 #include <tetskin/core/src/search/outside_neighbours.h>
 #include <tetskin/core/src/search/search_cage.h>
 #include <tetskin/core/src/search/tet_search.h>
 #include <tetskin/core/src/search/tolerances.h>
+#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/embedding/mapped_vertices.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
-#include <tetskin/core/src/mesh/weld.h>
 #include <tetskin/core/src/search/tolerances.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/weld.h>
 
 namespace tetskin {
 namespace {

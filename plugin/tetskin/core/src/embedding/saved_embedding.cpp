@@ -13,8 +13,8 @@
 //   12 a vertex         by slot: weights of nodes 0, 1, 2, one plane after the other
 //   12 a vertex outside closest weights, likewise
 //   8                   hash of all that precedes
-#include <tetskin/core/src/base/bytes.h>
-#include <tetskin/core/src/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/base/bytes.h>
+#include <tetskin/core/src/shared/embedding/embedding_data.h>
 
 #include <algorithm>
 #include <cstring>

@@ -6,7 +6,7 @@
 // vertices, as most are, costs little more than its vertices.
 #pragma once
 
-#include <tetskin/core/src/kernels/lanes.h>
+#include <tetskin/core/src/shared/kernels/lanes.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 

@@ -5,7 +5,7 @@
 // what skinning_kernels.h says of its header holds for this one too.
 #pragma once
 
-#include <tetskin/core/src/kernels/dispatch.h>
+#include <tetskin/core/src/shared/kernels/dispatch.h>
 
 #include <cstddef>
 #include <cstdint>

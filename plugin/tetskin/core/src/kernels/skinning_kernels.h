@@ -8,7 +8,7 @@
 // linker keeps for everyone.
 #pragma once
 
-#include <tetskin/core/src/kernels/dispatch.h>
+#include <tetskin/core/src/shared/kernels/dispatch.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 // Internal to embedding: vertices outside the cage stay with the part of it that carries their neighbours.
 #pragma once
 
-#include <tetskin/core/src/base/point_reader.h>
+#include <tetskin/core/src/shared/base/point_reader.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 

@@ -4,7 +4,7 @@
 // Internal to embedding: the cage as the searches see it.
 #pragma once
 
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <tetskin/core/src/kernels/search_kernels.h>
-#include <tetskin/core/src/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/spatial_hash.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 // Internal to quadratic skinning: how the gradient at a node follows from the positions of the nodes around it.
 #pragma once
 
-#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/shared/base/lists.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
 #include <vector>

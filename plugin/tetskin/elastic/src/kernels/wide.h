@@ -4,8 +4,8 @@
 // Internal to the kernels: W tets or rows side by side, a part of a group of eight, and the way to points and back.
 #pragma once
 
-#include <tetskin/core/src/kernels/lanes.h>
-#include <tetskin/elastic/src/kernels/elastic_kernels.h>
+#include <tetskin/core/src/shared/kernels/lanes.h>
+#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 

@@ -5,7 +5,7 @@
 // The matrix of a whole mesh is that of BlockRows; bodies in motion, of which each tet is turned, have BlockMatrix.
 #pragma once
 
-#include <tetskin/core/src/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/tet_mesh.h>
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
 #include <tetskin/elastic/src/matrix/rigid_motions.h>
 
 #include <cassert>
@@ -45,7 +45,8 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) :
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
     Part& part = parts_[partOf_[n]];
     arms_.emplace_back(mesh.nodes[n] - part.centroid);
-    part.inertia += masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
+    part.inertia +=
+        masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
   }
   for (Part& part : parts_) part.inertiaFactors.compute(part.inertia);
 }

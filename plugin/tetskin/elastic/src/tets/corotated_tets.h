@@ -5,9 +5,9 @@
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/src/base/aligned.h>
+#include <tetskin/core/src/shared/base/aligned.h>
 #include <tetskin/core/tet_mesh.h>
-#include <tetskin/elastic/src/kernels/elastic_kernels.h>
+#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/material.h>
 
 #include <array>

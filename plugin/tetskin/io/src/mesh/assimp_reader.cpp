@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/mesh/area_vectors.h>
+#include <tetskin/core/src/shared/mesh/area_vectors.h>
 #include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/stated_sizes.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/bullet/src/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
 #include <tetskin/touch/src/forces/touch_force.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/touch/src/tree/nearest_triangle.h>
 
-#include <tetskin/core/src/mesh/triangle_geometry.h>
+#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
 #include <limits>
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/shared/solver/required_solver.h>
+
+namespace tetskin {
+
+DeformableSolver* deformableSolverOf(const btSoftBody& body) {
+  // A body that has left its world may name a solver that is gone.
+  if (!body.getBroadphaseHandle()) return nullptr;
+  return dynamic_cast<DeformableSolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+}
+
+btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world) {
+  const auto named = [](btSoftBody& body) -> btDeformableBodySolver& {
+    return static_cast<btDeformableBodySolver&>(*body.getSoftBodySolver());
+  };
+  if (world.getSoftBodyArray().size() > 0) return named(*world.getSoftBodyArray()[0]);
+  btSoftBody nothing(&world.getWorldInfo());
+  world.addSoftBody(&nothing);
+  btDeformableBodySolver& solver = named(nothing);
+  world.removeSoftBody(&nothing);
+  return solver;
+}
+
+DeformableSolver* deformableSolverOf(btDeformableMultiBodyDynamicsWorld& world) {
+  return dynamic_cast<DeformableSolver*>(&solverOf(world));
+}
+
+Status refusal(const std::string& subject, const std::vector<std::string>& changes) {
+  if (changes.empty()) return {};
+  std::string message = "for " + subject;
+  for (std::size_t k = 0; k < changes.size(); ++k) message += (k == 0 ? " " : "; and ") + changes[k];
+  return {StatusCode::InvalidOption, message};
+}
+
+}  // namespace tetskin

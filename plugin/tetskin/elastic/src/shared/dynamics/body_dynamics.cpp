@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
+#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+using kernels::kGroup;
+
+/// A matrix whose tets have turned by no more, in radians, in the mean and at most, still serves: forces are those of
+/// the tets as they are.
+constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
+/// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
+constexpr double kFullTurnStep = 1.0 / 240.0;
+/// A matrix of rotations that are older by an angle of phi takes rigid turning for strain; the stress of it turns the
+/// body, by dt^2 phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So much is let be:
+/// from 1 to 0.01 held.
+constexpr double kMostGain = 0.1;
+/// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
+constexpr double kStiff = 1e3;
+/// dt^2 times that, above which a turn that arises within a step, of a tenth of a radian, stores energy to speak of.
+constexpr double kFeelsTurns = 1.0;
+
+}  // namespace
+
+template <class S>
+BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
+    : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), held_(nodes) {
+  findParts(rest.tets);
+  if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
+  for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
+    v->assign(4 * matrix_.slotCount(), S(0));
+  }
+  for (AlignedVector<S>* v : {&rightSide_, &image_}) v->assign(matrix_.wideSize(), S(0));
+}
+
+/// Slots without node, which have no mass, belong to the first.
+template <class S>
+void BodyDynamics<S>::findParts(const std::vector<Tet>& tets) {
+  DisjointSets sets(nodeCount());
+  for (const Tet& tet : tets) {
+    for (std::size_t k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
+  }
+  partOf_.assign(matrix_.slotCount(), 0);
+  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // from 1
+  std::uint32_t parts = 0;
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
+    if (number == 0) number = ++parts;
+    partOf_[matrix_.slotOf(n)] = number - 1;
+  }
+  motions_.resize(parts);
+  stiffness_.assign(parts, 0.0);
+}
+
+template <class S>
+void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
+  assert(tets_ && lame.size() == tets_->count());
+  const RestTets& rest = tets_->rest();
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  for (std::size_t t = 0; t < lame.size(); ++t) {
+    tets_->setMaterial(t, lame[t]);
+    const std::uint32_t part = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
+    stiffness_[part] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
+  }
+  changed_ = true;
+}
+
+template <class S>
+void BodyDynamics<S>::setMass(std::size_t node, S mass) {
+  const S before = matrix_.mass(node);
+  if (before == mass) return;
+  matrix_.setMass(node, mass);
+  changed_ = true;
+  held_ += mass == S(0);
+  held_ -= before == S(0);
+}
+
+template <class S>
+double BodyDynamics<S>::alphaFor(double seconds) const {
+  return tets_ ? seconds * (damping_ + seconds) : 0.0;
+}
+
+template <class S>
+void BodyDynamics<S>::prepareForces(ParallelFor* threads) {
+  if (tets_) tets_->forces(points_.data(), forces_.data(), threads);
+}
+
+template <class S>
+void BodyDynamics<S>::prepare(double seconds, ParallelFor* threads) {
+  assert(seconds > 0.0);
+  prepareForces(threads);
+  assembleIfNeeded(seconds, 1.0, threads);
+}
+
+template <class S>
+void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads) {
+  const double alpha = alphaFor(seconds);
+  const double share = turnShare * std::min(1.0, seconds / kFullTurnStep);
+  const bool turned = tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * kMostTurn);
+  if (!changed_ && alpha == alpha_ && !turned) return;
+  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
+  alpha_ = alpha;
+  changed_ = false;
+}
+
+/// Calls visit(slot, first scalar in wide vectors) for all slots.
+template <class Visit>
+void bySlots(std::size_t slots, Visit&& visit) {
+  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
+  }
+}
+
+template <class S>
+void BodyDynamics<S>::findMotions(double seconds) {
+  std::vector<HeldNodes> held(motions_.size());
+  for (std::size_t n = 0; held_ > 0 && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (matrix_.massAt(slot) != S(0)) continue;
+    const S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    held[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
+  }
+  // About where parts were before: one pass, and no digits lost far from the origin.
+  std::vector<PartMoments> moments(motions_.size());
+  const auto add = [&](std::size_t slot, PartMoments& sums, const Eigen::Vector3d& about) {
+    sums.add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], about.data());
+  };
+  if (motions_.size() == 1) {  // nearly always: its sums stay in registers
+    PartMoments sums;
+    const Eigen::Vector3d about = motions_.front().about();
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) add(slot, sums, about);
+    moments.front() = sums;
+  } else {
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+      add(slot, moments[partOf_[slot]], motions_[partOf_[slot]].about());
+    }
+  }
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    held[k].finish(seconds);
+    const Eigen::Vector3d near = motions_[k].about();
+    motions_[k].find(moments[k], near, held[k], seconds);
+  }
+}
+
+/// Velocities become those of the rigid motion; `relative_` what they are beside it. Forces do not depend on where
+/// parts are: without their translation, points have no other rounding in each step, which would be taken for strain.
+/// All of it is beside an anchor near the part, where this precision does.
+template <class S>
+void BodyDynamics<S>::moveRigidly(double seconds) {
+  struct Rigid {
+    S anchor[3], fromAnchor[3], velocity[3], field[9];
+  };
+  std::vector<Rigid> parts;
+  for (const PartMotion& motion : motions_) {
+    const RigidVelocity exact = motion.velocities(seconds);
+    const Eigen::Vector3d anchor = motion.anchor();
+    Rigid& part = parts.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      part.anchor[k] = static_cast<S>(anchor[k]);
+      part.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
+      part.velocity[k] = static_cast<S>(exact.velocity[k]);
+    }
+    for (int k = 0; k < 9; ++k) part.field[k] = static_cast<S>(exact.field[k]);
+  }
+  const auto dt = static_cast<S>(seconds);
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    const Rigid& part = parts[partOf_[slot]];
+    S *x = &points_[4 * slot], *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
+    const S place[3] = {x[0] - part.anchor[0], x[1] - part.anchor[1], x[2] - part.anchor[2]};
+    const S arm[3] = {place[0] - part.fromAnchor[0], place[1] - part.fromAnchor[1], place[2] - part.fromAnchor[2]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S turning = part.field[3 * k] * arm[0] + part.field[3 * k + 1] * arm[1] + part.field[3 * k + 2] * arm[2];
+      moved[k] = place[k] + dt * turning;
+      const S rigid = part.velocity[k] + turning;
+      beside[k] = v[k] - rigid;
+      v[k] = rigid;
+    }
+  }
+}
+
+/// The angle by which tets may turn before the matrix is made anew, over that of a soft body.
+template <class S>
+double BodyDynamics<S>::allowedTurn(double seconds) const {
+  return std::min(1.0, std::sqrt(kMostGain / (seconds * seconds * stiffnessOverInertia_)) / kMeanTurn);
+}
+
+template <class S>
+void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
+  assert(seconds > 0.0);
+  if (!tets_) return assembleIfNeeded(seconds, 1.0, threads);
+  findMotions(seconds);
+  if (changed_) {
+    stiffnessOverInertia_ = 0.0;
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      const double inertia = motions_[k].leastInertia();
+      if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
+    }
+  }
+  stiff_ = seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
+  moveRigidly(seconds);
+  tets_->forces(moved_.data(), forces_.data(), threads);
+  assembleIfNeeded(seconds, allowedTurn(seconds), threads);
+}
+
+template <class S>
+double BodyDynamics<S>::roundingSpeed(double seconds) const {
+  constexpr double kShare = 0.1;  // of the last digit
+  double reach = 0.0;
+  for (const PartMotion& motion : motions_) reach = std::max(reach, motion.reach());
+  return kShare * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
+}
+
+template <class S>
+void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+  S* solution = matrix_.solution();
+  S* residual = matrix_.residual();
+  squaredDeviation_ = 0.0;
+  if (!tets_) {
+    std::fill_n(solution, matrix_.wideSize(), S(0));
+    std::fill(rightSide_.begin(), rightSide_.end(), S(0));
+    std::copy(rightSide_.begin(), rightSide_.end(), residual);
+    return;
+  }
+  const auto dt = static_cast<S>(seconds);
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S mass = matrix_.massAt(slot);
+    S* deviation = &relative_[4 * slot];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S impulse = mass * deviation[k];
+      rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
+      if (stiff_ && mass != S(0)) {
+        squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
+        deviation[k] = S(0);
+      }
+      solution[wide + k * kGroup] = deviation[k];
+    }
+  });
+  if (stiff_ && held_ == 0) {
+    std::copy(rightSide_.begin(), rightSide_.end(), residual);
+    return;
+  }
+  matrix_.multiply(relative_.data(), image_.data(), threads);
+  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+double BodyDynamics<S>::squaredSolution() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S v = solution[wide + k * kGroup];
+      sum += static_cast<double>(matrix_.massAt(slot) * v * v);
+    }
+  });
+  return sum;
+}
+
+template <class S>
+void BodyDynamics<S>::rightSide(std::size_t node, S out[3]) const {
+  for (std::size_t k = 0; k < 3; ++k) out[k] = rightSide_[matrix_.wideOf(node) + k * kGroup];
+}
+
+template <class S>
+const S* BodyDynamics<S>::times(const S* points, ParallelFor* threads) {
+  matrix_.multiply(points, image_.data(), threads);
+  return image_.data();
+}
+
+template <class S>
+void BodyDynamics<S>::startAgain(ParallelFor* threads) {
+  const S* solution = matrix_.solution();
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = solution[wide + k * kGroup];
+  });
+  matrix_.multiply(relative_.data(), image_.data(), threads);
+  S* residual = matrix_.residual();
+  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+double BodyDynamics<S>::energy(ParallelFor* threads) {
+  return tets_ ? tets_->energy(points_.data(), threads) : 0.0;
+}
+
+/// Of the velocities as the solution has them.
+template <class S>
+std::vector<PartMomentum> BodyDynamics<S>::momentaNow() const {
+  const S* solution = matrix_.solution();
+  std::vector<PartMomentum> now(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S* v = &velocities_[4 * slot];
+    double velocity[3];
+    for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
+    const std::uint32_t part = partOf_[slot];
+    now[part].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[part].about().data());
+  });
+  return now;
+}
+
+template <class S>
+void BodyDynamics<S>::bendTurns(double seconds) {
+  if (!tets_ || seconds * seconds * stiffnessOverInertia_ < kFeelsTurns) return;
+  S* solution = matrix_.solution();
+  const std::vector<PartMomentum> now = momentaNow();
+  std::vector<PartMoments> moments(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    S v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = velocities_[4 * slot + k] + solution[wide + k * kGroup];
+    const std::uint32_t part = partOf_[slot];
+    moments[part].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[part].about().data());
+  });
+  std::vector<RigidVelocity> chords;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    chords.push_back(motions_[k].chord(now[k], moments[k], motions_[k].about(), seconds));
+  }
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    chords[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse) {
+  const std::vector<PartMomentum> now = momentaNow();
+  std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
+  for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n), part = partOf_[slot];
+    if (matrix_.massAt(slot) == S(0)) continue;
+    const S* x = &points_[4 * slot];
+    const std::array<double, 3> from = impulse(n);
+    const Eigen::Vector3d given(from[0], from[1], from[2]);
+    impulses[part] += given;
+    torques[part] += (Eigen::Vector3d(x[0], x[1], x[2]) - motions_[part].about()).cross(given);
+  }
+  std::vector<RigidVelocity> excess;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    excess.push_back(motions_[k].excess(now[k], impulses[k], torques[k]));
+  }
+  S* solution = matrix_.solution();
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    excess[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
+  });
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class BodyDynamics<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail
