@@ -42,9 +42,10 @@ endif()
 # With Bullet in double precision: what knows of it is tested in float by all other builds, and all else is templates,
 # tested for both. Without the demos, which take longer to build so than all the rest of it; and without the fuzzers, which
 # have a configuration of their own; and without the largest models and the longest runs, as smaller ones go the same ways.
+# SortedOrderIs...ToTheLastBit holds with GCC: clang fuses multiplications and additions in some lanes and not in others.
 tetskin_test_configuration(sanitized_in_double TARGET unit_tests
   TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced)"
-  LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertex|NeverTearWhatHangsTogether|AreStableAtAny|LongitudinalFrequencies|Timoshenkos"
+  LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertex|NeverTearWhatHangsTogether|AreStableAtAny|LongitudinalFrequencies|Timoshenkos|SortedOrderIsTheMeshsPermuted"
   OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
   -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF)
 # The tests that start threads, also those beside Bullet's worlds.

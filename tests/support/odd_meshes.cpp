@@ -14,6 +14,12 @@ double uniform(std::mt19937& generator) {
   return static_cast<double>(generator()) / 4294967296.0;  // the same on every standard library
 }
 
+/// One number after the other: in which order a call's arguments are worked out is the compiler's choice.
+Eigen::Vector3d uniformVector(std::mt19937& generator) {
+  const double z = uniform(generator), y = uniform(generator), x = uniform(generator);
+  return {x, y, z};
+}
+
 TetMesh lattice(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs,
                 bool mirrored = true) {
   TetMesh mesh;
@@ -117,7 +123,7 @@ TetMesh bodyCentredCage(int nx, int ny, int nz, double edge) {
 TetMesh jittered(TetMesh cage, double amount, unsigned seed) {
   std::mt19937 generator(seed);
   for (Eigen::Vector3d& p : cage.nodes) {
-    const Eigen::Vector3d u(uniform(generator), uniform(generator), uniform(generator));
+    const Eigen::Vector3d u = uniformVector(generator);
     p += amount * (2.0 * u - Eigen::Vector3d::Ones());
   }
   static_cast<void>(repairTetMesh(cage));
@@ -181,9 +187,9 @@ TetMesh randomTets(std::size_t count, double size, unsigned seed) {
   std::mt19937 generator(seed);
   TetMesh mesh;
   for (std::size_t t = 0; t < count; ++t) {
-    const Eigen::Vector3d base(uniform(generator), uniform(generator), uniform(generator));
+    const Eigen::Vector3d base = uniformVector(generator);
     for (int k = 0; k < 4; ++k) {
-      const Eigen::Vector3d offset(uniform(generator), uniform(generator), uniform(generator));
+      const Eigen::Vector3d offset = uniformVector(generator);
       mesh.nodes.push_back(base + size * (offset - Eigen::Vector3d::Constant(0.5)));
     }
     const int n = static_cast<int>(4 * t);
@@ -251,7 +257,7 @@ std::vector<Eigen::Vector3d> randomPoints(std::size_t count, const Box3& box, un
   std::mt19937 generator(seed);
   std::vector<Eigen::Vector3d> points(count);
   for (Eigen::Vector3d& p : points) {
-    const Eigen::Vector3d u(uniform(generator), uniform(generator), uniform(generator));
+    const Eigen::Vector3d u = uniformVector(generator);
     p = box.min() + u.cwiseProduct(box.sizes());
   }
   return points;
