@@ -105,11 +105,10 @@ Eigen::Matrix<Scalar, 3, 1> quadraticPosition(const EmbeddedPoint<Scalar>& point
                                               const QuadraticStencils<Scalar>& stencils,
                                               const NodePositions<Scalar>& positionOf) {
   assert(point.tet >= 0 && stencils.runEdges().size() + 6 == 6 * embedding.data().runs.size());
-  const Eigen::Matrix<Scalar, 3, 1> linear = point.position(positionOf);
   const std::size_t run = runOf(embedding.data(), point.tet);
-  if (run == embedding.data().runs.size()) return linear;
+  if (run == embedding.data().runs.size()) return point.position(positionOf);
   const Vector3d origin = positionOf(point.nodes[3]).template cast<double>();
-  return linear + bendOf(point, edgesOf(stencils, run, origin, positionOf)).template cast<Scalar>();
+  return point.position(positionOf) + bendOf(point, edgesOf(stencils, run, origin, positionOf)).template cast<Scalar>();
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)                                        \
