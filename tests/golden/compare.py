@@ -7,7 +7,7 @@
 
 BEFORE and AFTER are build folders with demos, of two commits on one machine: processors with other vector instructions
 round differently, and so do compilers, which is why no hashes are kept here. One line per scene that differs, that only
-one of them has, or that failed; exit status 1 if there is any. Without --quick some six minutes, and every case of
+one of them has, or that failed; exit status 1 if there is any. Without --quick a minute and a half, and every case of
 tetskin_stress --force tetskin; the same folder twice shows that runs repeat themselves.
 """
 import argparse
