@@ -10,6 +10,8 @@
 
 namespace tetskin {
 
+class SystemSolve;
+
 /// Bullet's solver of deformable bodies, with a solve of our own: what the application makes instead of a
 /// `btDeformableBodySolver`, and gives to its world and to its constraint solver just as that.
 ///
@@ -46,14 +48,17 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code has solved it.
   int iterations() const;
 
-  /// What contacts with rigid bodies have pushed a node with in the last step, along the contact's normal, as solved
-  /// for here; 0 for a body that was not, which Bullet's constraints tell.
-  btScalar normalImpulse(const btSoftBody& body, int node) const;
+  /// Passes of the last step's contact solves, each a linear solve, over all bodies that touch something.
+  int passes() const;
+  /// How many of these did not converge: bodies that are solved for together count once. Theirs is the best that was
+  /// found.
+  int unconverged() const;
 
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
   void setupDeformableSolve(bool implicit) override;
+  void setConstraints(const btContactSolverInfo& info) override;
   void setLagrangeMultiplier() override;
   void solveDeformableConstraints(btScalar dt) override;
   void applyTransforms(btScalar dt) override;
@@ -62,6 +67,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Parts;
   friend struct Parts;
+  friend class SystemSolve;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -18,9 +18,6 @@ struct SurfaceContactOptions {
   /// Distance that is kept between the surface and rigid bodies, world units; below 0: 0.2 % of the body's size, the
   /// largest side of its box.
   double margin = -1.0;
-  /// Above 0 to 0.25: a vertex in touch is held by those nodes of its tet that carry at least this share of it, and by
-  /// the one that carries most. More nodes hold it more firmly, and stiffen the body where it touches.
-  double share = 0.1;
   /// Rest units: triangles with longer edges get samples of this spacing, which touch as vertices do. 0: none. Vertices
   /// must not be farther apart than what the body touches is thick. At most 10,000,000 of them.
   double sampleSpacing = 0.0;

@@ -33,9 +33,6 @@ Status checkContactOptions(const SurfaceContactOptions& options) {
   if (std::isnan(options.margin) || std::isinf(options.margin)) {
     return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite, or below 0 for a default");
   }
-  if (!(options.share > 0.0 && options.share <= 0.25)) {
-    return refused(StatusCode::InvalidOption, "the share of surface contact must be above 0 and at most 0.25");
-  }
   if (!(options.sampleSpacing >= 0.0) || std::isinf(options.sampleSpacing)) {
     return refused(StatusCode::InvalidOption, "the sample spacing of surface contact must be finite, 0 for no samples");
   }
@@ -105,7 +102,7 @@ struct SurfaceContact::Parts {
   Parts(btCollisionDispatcher& ofDispatcher, btSoftBody& of, TouchSearch search, btScalar thickness)
       : dispatcher(&ofDispatcher),
         lifetime(bodyWithTrees(of)->lifetime()),
-        contacts(of, std::move(search), thickness) {}
+        contacts(*bodyWithTrees(of), std::move(search), thickness) {}
 
   void begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach);
   void end();
@@ -153,8 +150,7 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
   auto parts = std::make_unique<Parts>(static_cast<btCollisionDispatcher&>(*world.getDispatcher()), body,
-                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(options.share),
-                                                   static_cast<btScalar>(kSearchSlack * size)),
+                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
                                        static_cast<btScalar>(kMeshThickness * size));
   deformableSolverOf(body)->solveAlways();
   parts->begin(world, reach);

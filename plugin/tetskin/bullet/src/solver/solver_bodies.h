@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/src/forces/elastic_force.h>
+#include <tetskin/bullet/src/solver/contact_row.h>
 #include <tetskin/bullet/src/solver/padded_trees.h>
 
 #include <memory>
@@ -25,10 +26,12 @@ struct SolvedBody {
   const SolverLimits* limits = nullptr;
   Dynamics* dynamics = nullptr;
   bool needsDeformation = false;                    ///< Bullet's own gradients
-  std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
+  std::vector<Sticking>* sticking = nullptr;    ///< of the step before, by number of the point; elastic ones only
+  PointContacts* bulletsContacts = nullptr;     ///< of this step, as Bullet has found them
   PaddedTrees* paddedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
+  bool wasTouched = false;   ///< in the step before: what it deviates by is not solved for before contacts are known
   bool constrained = false;  ///< by more than held nodes
   bool solvedAgain = false;  ///< with what contacts and other forces do
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
@@ -41,7 +44,10 @@ struct SolvedBody {
 struct SolvedSystem {
   std::vector<std::size_t> bodies;
   std::vector<btDeformableLagrangianForce*> forces;  ///< but elastic ones
-  std::vector<std::size_t> rigids;                   ///< bound to them: see RigidTies
+  std::vector<ContactRow*> rows;                     ///< that act on them, or on the rigid ones
+  std::vector<std::size_t> rigids;                   ///< in RigidUnknowns: solved for with them
+  int passes = 0;                                    ///< of the solve
+  bool converged = true;                             ///< likewise
 };
 
 class SolverBodies {
@@ -65,9 +71,7 @@ class SolverBodies {
 
   std::vector<SolvedBody>& bodies() { return bodies_; }
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
-  const std::vector<SolvedSystem>& systems() const { return systems_; }
-  /// 0 where the body is not awake, or not elastic here.
-  btScalar normalImpulse(const btSoftBody& body, int node) const;
+  std::vector<SolvedSystem>& systems() { return systems_; }
   /// The body of a node, by its number.
   SolvedBody& bodyOf(int node);
 
@@ -86,7 +90,8 @@ class SolverBodies {
 
   struct Kept {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
-    std::vector<btScalar> normalImpulses;
+    std::vector<Sticking> sticking;
+    PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;
   };

@@ -3,33 +3,30 @@
 //
 // A step, from top to bottom. Bullet's world calls, in this order:
 //   reinitialize                gather          which bodies are awake, and which forces act on them
-//   predictMotion               predict         other forces' impulses; the elastic solve, short if contacts are to be
-//                                               expected; where nodes go by it
-//   (detection of contacts, and their solve node by node, by Bullet, with the inverse diagonal blocks for masses)
-//   solveDeformableConstraints  assemble        what contacts have changed, fixed and bound to rigid bodies
+//   predictMotion               predict         other forces' impulses; the elastic solve, but of bodies that will be
+//                                               touched again; where nodes go by it
+//   (detection of contacts, by Bullet; its solve of rigid bodies among themselves)
+//   solveDeformableConstraints  assemble        contacts, anchors, and what rigid bodies are held by beside, as rows;
+//                                               what Bullet's other constraints have changed and fixed
 //                               solve           on where nothing was met; else again, with all of that
-//                               finishContacts  what contacts have pushed with, and what rigid bodies have got
+//                               finishContacts  what contacts have pushed with
 //                               writeBack       velocities
 //   applyTransforms             positions, by Bullet
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/rigid_rows.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
+#include <tetskin/bullet/src/solver/system_solve.h>
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace tetskin {
 namespace {
-
-/// Iterations before contacts are looked for, where there were some in the step before: what they find is refined after
-/// them.
-constexpr int kIterationsBeforeContacts = 3;
-
-bool wasTouched(const SolvedBody& of) {
-  return std::any_of(of.normalImpulses->begin(), of.normalImpulses->end(),
-                     [](btScalar impulse) { return impulse != 0; });
-}
 
 void prepareStep(btSoftBody& body, btScalar dt) {
   body.m_sst.sdt = dt * body.m_cfg.timescale;
@@ -81,6 +78,7 @@ void clearContacts(btSoftBody& body) {
   destroyAll(body.m_faceRigidContacts);
   destroyAll(body.m_faceNodeContacts);
   destroyAll(body.m_faceNodeContactsCCD);
+  if (auto* own = bodyWithTrees(body)) own->pointContacts().clear();
 }
 
 /// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
@@ -178,6 +176,7 @@ void DeformableSolver::Parts::applyOthers() {
   for (SolvedBody& of : bodies.bodies()) {
     for (int n = 0; n < of.body->m_nodes.size(); ++n) {
       btSoftBody::Node& node = of.body->m_nodes[n];
+      node.m_vn = node.m_v;
       node.m_v += node.m_im * impulses[of.first + n];
       impulses[of.first + n].setZero();
       if (!of.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
@@ -198,8 +197,8 @@ void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inn
   limits.floor = std::max(kUnseen * seconds, dynamics.roundingSpeed(seconds));
   limits.enough = limits.tolerance * limits.tolerance * dynamics.squaredDeviation();
   of.solve->start({&dynamics.matrix()}, limits, {}, inner);
-  of.solve->iterate(wasTouched(of) ? kIterationsBeforeContacts : limits.iterations, inner);
-  of.iterations = of.solve->iterations();
+  if (!of.wasTouched) of.solve->iterate(limits.iterations, inner);
+  of.iterations = of.wasTouched ? 0 : of.solve->iterations();
 }
 
 void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
@@ -235,16 +234,18 @@ void DeformableSolver::Parts::assemble() {
   for (SolvedBody& of : bodies.bodies()) of.dynamics->matrix().free();
   for (SolvedBody& of : bodies.bodies()) readContacts(of);
   addOthers();
-  tieRigids();
-  addDynamicFriction(projection(), ties, bodies, solver.m_residual);
-  fixContacts(projection(), ties, bodies);
+  addDynamicFriction(projection(), bodies, solver.m_residual);
+  fixContacts(projection(), bodies);
+  collectRows();
 }
 
-/// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
-/// velocities the whole step begins with.
+/// Bullet's step so far: by how much its constraints have changed the velocities, which begins the solution; and what
+/// velocities the whole step begins with. Where a body was touched in the step before, the solution begins with the
+/// velocities of that: what rests goes on to rest.
 void DeformableSolver::Parts::readContacts(SolvedBody& of) {
   Dynamics& dynamics = *of.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const int number = of.first + static_cast<int>(n);
     const btVector3& before = solver.m_backupVelocity[number];
     btVector3& dv = solver.m_dv[number];
@@ -253,8 +254,10 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
     // Beside the rigid motion: what the solution has been.
     const btVector3 own = of.elastic ? fromWide(solution) : btVector3(0, 0, 0);
-    toPoint(before - own, dynamics.velocity(n));
-    toWide(own + dv, solution);
+    const btVector3 rigid = before - own;
+    toPoint(rigid, dynamics.velocity(n));
+    const bool goesOn = of.elastic && of.wasTouched && node.m_im > 0;
+    toWide((goesOn ? node.m_vn - rigid : own) + dv, solution);
   }
 }
 
@@ -270,14 +273,56 @@ void DeformableSolver::Parts::addOthers() {
   }
 }
 
-void DeformableSolver::Parts::tieRigids() {
-  ties.collect(projection(), forces(), bodies);
-  for (std::size_t r = 0; r < ties.rigids().size(); ++r) {
-    std::vector<std::size_t> places;
-    for (const RigidTie& tie : ties.rigids()[r].ties) {
-      if (places.empty() || places.back() != tie.body) places.push_back(tie.body);
-    }
-    if (!places.empty()) bodies.join(places).rigids.push_back(r);
+void DeformableSolver::Parts::collectRows() {
+  rigids.clear();
+  rows.collect(bodies, rigids, dt());
+  collectRigidRowsOfWorlds();
+  joinByRigids();
+}
+
+void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
+  if (rigids.list().empty()) return;
+  std::vector<btDiscreteDynamicsWorld*> worlds;
+  for (const SolvedBody& of : bodies.bodies()) {
+    // Of a body that has been moved to another world since, it is not known.
+    const bool known = of.elastic && of.body->getWorldInfo() == of.elastic->worldInfo;
+    btDiscreteDynamicsWorld* world = known ? of.elastic->world : nullptr;
+    if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
+    worlds.push_back(world);
+    collectRigidRows(*world, dt(), rigids, rows.rows());
+  }
+}
+
+/// Soft bodies are solved for together where rows lead from one to the other by rigid bodies.
+void DeformableSolver::Parts::joinByRigids() {
+  const std::size_t bodyCount = bodies.bodies().size();
+  DisjointSets sets(bodyCount + rigids.list().size());
+  const auto rigidSet = [&](const RigidPoint& point) { return static_cast<int>(bodyCount) + point.unknown; };
+  for (const ContactRow& row : rows.rows()) {
+    if (row.nodeCount > 0 && row.rigid.unknown >= 0) sets.unite(static_cast<int>(row.body), rigidSet(row.rigid));
+    if (row.own.unknown >= 0 && row.rigid.unknown >= 0) sets.unite(rigidSet(row.own), rigidSet(row.rigid));
+  }
+  std::unordered_map<int, std::vector<std::size_t>> groups;  // bodies, by set
+  for (std::size_t b = 0; b < bodyCount; ++b) groups[sets.find(static_cast<int>(b))].push_back(b);
+  for (std::size_t b = 0; b < bodyCount; ++b) {
+    const auto& group = groups[sets.find(static_cast<int>(b))];
+    if (group.front() == b && group.size() > 1) bodies.join(group);
+  }
+  std::vector<SolvedSystem*> systemOf(bodyCount, nullptr);
+  for (SolvedSystem& system : bodies.systems()) {
+    for (const std::size_t b : system.bodies) systemOf[b] = &system;
+  }
+  const auto systemOfSet = [&](int member) -> SolvedSystem* {
+    const auto group = groups.find(sets.find(member));
+    return group == groups.end() ? nullptr : systemOf[group->second.front()];
+  };
+  for (ContactRow& row : rows.rows()) {
+    const RigidPoint& any = row.own.unknown >= 0 ? row.own : row.rigid;
+    SolvedSystem* system = row.nodeCount > 0 ? systemOf[row.body] : systemOfSet(rigidSet(any));
+    if (system) system->rows.push_back(&row);
+  }
+  for (std::size_t r = 0; r < rigids.list().size(); ++r) {
+    if (SolvedSystem* system = systemOfSet(static_cast<int>(bodyCount + r))) system->rigids.push_back(r);
   }
 }
 
@@ -288,21 +333,107 @@ void DeformableSolver::Parts::solve() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
   image.resize(solver.m_numNodes, btVector3(0, 0, 0));
   extras.resize(bodies.bodies().size());
-  std::vector<const SolvedSystem*> own;
-  for (const SolvedSystem& system : bodies.systems()) {
+  std::vector<SolvedSystem*> own;
+  for (SolvedSystem& system : bodies.systems()) {
     system.forces.empty() ? own.push_back(&system) : solveSystem(system, threads);
   }
   ParallelFor* inner = own.size() == 1 ? threads : nullptr;
   runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solveSystem(*own[k], inner); });
-  iterations = 0;
+  iterations = passes = unconverged = 0;
   for (const SolvedBody& of : bodies.bodies()) iterations += of.iterations;
+  for (const SolvedSystem& system : bodies.systems()) {
+    passes += system.passes;
+    unconverged += system.converged ? 0 : 1;
+  }
+}
+
+void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inner) {
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  bool again = !system.forces.empty() || !system.rows.empty();
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    again |= of.constrained || of.touched || of.wasTouched;
+  }
+  if (again) {
+    const SolveReport report = SystemSolve(*this, system, inner).solve();
+    first.iterations += report.iterations;
+    system.passes = report.passes;
+    system.converged = report.converged;
+    for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
+  } else if (first.elastic) {
+    first.solve->iterate(first.limits->iterations, inner);
+    first.iterations = first.solve->iterations();
+  }
+  const bool free = system.forces.empty() && system.rows.empty() && !first.constrained && !first.touched;
+  if (free && first.elastic) first.dynamics->removeMomentum();
+}
+
+void DeformableSolver::Parts::addOtherResiduals(const SolvedSystem& system) {
+  const bool withForces = !system.forces.empty();
+  if (withForces) {
+    for (const std::size_t b : system.bodies) {
+      const SolvedBody& of = bodies.bodies()[b];
+      const auto& matrix = of.dynamics->matrix();
+      for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+        const int number = of.first + static_cast<int>(n);
+        step[number] = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
+                       solver.m_backupVelocity[number];
+      }
+    }
+    multiplyOthers(system);
+  }
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    auto& matrix = of.dynamics->matrix();
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      const std::size_t wide = matrix.wideOf(n);
+      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[of.first + static_cast<int>(n)];
+      if (withForces) residual -= fromWide(&extras[b][wide]);
+      toWide(residual, matrix.residual() + wide);
+    }
+  }
+}
+
+void DeformableSolver::Parts::beginProducts(const SolvedSystem& system) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    if (system.forces.empty()) {
+      extras[b].assign(matrix.wideSize(), btScalar(0));
+      continue;
+    }
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
+    }
+  }
+  if (!system.forces.empty()) multiplyOthers(system);
+}
+
+void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    for (int n = 0; n < of.body->m_nodes.size(); ++n) image[of.first + n].setZero();
+  }
+  for (btDeformableLagrangianForce* force : system.forces) {
+    force->addScaledDampingForceDifferential(-dt(), step, image);
+    if (force->getForceType() == BT_MOUSE_PICKING_FORCE) {
+      force->addScaledElasticForceDifferential(-dt() * dt(), step, image);
+    }
+  }
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    extras[b].resize(matrix.wideSize(), btScalar(0));
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
+    }
+  }
 }
 
 // ---- contacts
 
 void DeformableSolver::Parts::finishContacts() {
-  keepNormalImpulses(projection(), bodies, solver.m_residual);
-  ties.finish(bodies);
+  rows.finish(bodies, dt());
 }
 
 // ---- write back

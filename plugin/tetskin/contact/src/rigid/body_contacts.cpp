@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
-#include <tetskin/contact/src/rigid/node_contacts.h>
 
 #include <algorithm>
 
@@ -30,9 +29,6 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !responds(object)) return;
-  // Bullet clears its contacts in each step.
-  const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
-  if (touches_.size() > kept) touches_.resize(kept);
   nodesRead_ = false;
   shapeNumber_ = 0;
   collideShape(*rigid.getCollisionShape(), pathOf(rigid), object);
@@ -79,9 +75,26 @@ void BodyContacts::collideShape(const btCollisionShape& shape, const ShapePath& 
   if (!probe) return;
   readNodes();
   ShapeMemory& memory = memoryOf(shape, object);
-  for (const NodeTouch& touch : search_.find(*probe, path, memory)) {
-    if (addNodeContact(body_, object, touch)) touches_.push_back(touch);
-  }
+  const std::vector<PointTouch>& touches = search_.find(*probe, path, memory);
+  for (const PointTouch& touch : touches) addContact(touch, object);
+  if (!touches.empty() && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
+}
+
+void BodyContacts::addContact(const PointTouch& touch, const btCollisionObject& object) {
+  const ContactPatches& patches = search_.patches();
+  const ContactPatch& patch = patches.patches[touch.patch];
+  PointContact contact;
+  contact.point = touch.point;
+  contact.object = &object;
+  contact.nodeCount = patch.nodeCount;
+  const btScalar* weights = &patches.weights[patch.firstWeight + (touch.point - patch.firstPoint) * patch.nodeCount];
+  std::copy_n(&patches.nodes[patch.firstNode], patch.nodeCount, contact.nodes.begin());
+  std::copy_n(weights, patch.nodeCount, contact.weights.begin());
+  contact.position = touch.position;
+  contact.normal = touch.normal;
+  contact.distance = touch.distance;
+  contact.friction = body_.m_cfg.kDF * object.getFriction();
+  body_.pointContacts().push_back(contact);
 }
 
 void BodyContacts::collideChildren(const btCollisionShape& compound, const ShapePath& path,
@@ -96,9 +109,9 @@ void BodyContacts::collideChildren(const btCollisionShape& compound, const Shape
 void BodyContacts::forget(const btCollisionObject& object) {
   const auto isOf = [&](const KnownShape& known) { return known.object == &object; };
   known_.erase(std::remove_if(known_.begin(), known_.end(), isOf), known_.end());
-  const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
-  for (std::size_t k = 0; k < std::min(kept, touches_.size()); ++k) {
-    if (body_.m_nodeRigidContacts[static_cast<int>(k)].m_cti.m_colObj == &object) touches_[k].node = -1;
+  // The last step's are told of until the next one.
+  for (PointContact& contact : body_.pointContacts()) {
+    if (contact.object == &object) contact.object = nullptr;
   }
 }
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/contact/src/rigid/convex_probe.h>
 #include <tetskin/contact/src/rigid/hull_probe.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
@@ -27,19 +27,16 @@ struct KnownShape {
 class BodyContacts {
  public:
   /// thickness  how deep in a mesh a point still belongs to it
-  BodyContacts(btSoftBody& body, TouchSearch search, btScalar thickness)
+  BodyContacts(BodyWithTrees& body, TouchSearch search, btScalar thickness)
       : body_(body), search_(std::move(search)), thickness_(thickness) {}
 
-  /// Adds the contacts with an object, shape by shape, to Bullet's.
+  /// Adds the contacts with an object, shape by shape, to the body's.
   void collide(const btCollisionObjectWrapper& rigid);
 
   /// An object that is met no more, or not for now.
   void forget(const btCollisionObject& object);
 
-  /// Where each of Bullet's contacts of the body touches: `m_nodeRigidContacts`, in order. No node: an object that was
-  /// forgotten since, and may be gone.
-  const std::vector<NodeTouch>& touches() const { return touches_; }
-  btSoftBody& body() const { return body_; }
+  BodyWithTrees& body() const { return body_; }
   const TouchSearch& search() const { return search_; }
 
  private:
@@ -47,11 +44,12 @@ class BodyContacts {
   void readNodes();
   void collideShape(const btCollisionShape& shape, const ShapePath& path, const btCollisionObject& object);
   void collideChildren(const btCollisionShape& compound, const ShapePath& path, const btCollisionObject& object);
+  void addContact(const PointTouch& touch, const btCollisionObject& object);
   bool isNear(const btCollisionShape& shape, const ShapePath& path) const;
   ShapeMemory& memoryOf(const btCollisionShape& shape, const btCollisionObject& object);
   ShapeProbe* probeOf(const btCollisionShape& shape);
 
-  btSoftBody& body_;
+  BodyWithTrees& body_;
   TouchSearch search_;
   btScalar thickness_;
   std::vector<NodePath> nodes_;
@@ -63,7 +61,6 @@ class BodyContacts {
   std::vector<KnownShape> known_;
   ShapeMemory overflow_;  ///< of a shape too many: nothing is remembered of it
   int shapeNumber_ = 0;   ///< in this call
-  std::vector<NodeTouch> touches_;
 };
 
 }  // namespace tetskin

@@ -11,22 +11,6 @@
 namespace tetskin {
 namespace {
 
-/// Cosine: points whose normals are as near as that stop a node together.
-constexpr btScalar kSameWay = btScalar(0.7);
-
-bool sameWay(const NodeTouch& a, const NodeTouch& b) {
-  return a.normal.dot(b.normal) > kSameWay;
-}
-
-/// Of two points that one node carries: the one that goes deeper, as far as both let it.
-void join(const NodeTouch& other, NodeTouch& touch) {
-  const NodeTouch before = touch;
-  if (other.predicted < touch.predicted) touch = other;
-  if (sameWay(before, other)) touch.room = std::min(before.room, other.room);
-  touch.node = before.node;
-  touch.next = before.next;
-}
-
 /// Steps on the way of a point. After these it counts as meeting what it has come near to.
 constexpr int kMostSteps = 24;
 /// How near counts as met, over the margin.
@@ -74,15 +58,14 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
 
 }  // namespace
 
-TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack)
-    : patches_(std::move(patches)), margin_(margin), share_(share), slack_(slack) {
+TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar slack)
+    : patches_(std::move(patches)), margin_(margin), slack_(slack) {
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
 void TouchSearch::begin(const std::vector<NodePath>& nodes) {
   nodes_ = &nodes;
   clustersRead_ = false;
-  placeOf_.resize(nodes.size(), -1);
   local_.resize(nodes.size());
 }
 
@@ -99,14 +82,17 @@ void TouchSearch::readClusters() {
   }
 }
 
-const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
+const std::vector<PointTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
   assert(nodes_);
   probe_ = &probe;
   shape_ = shape;
   touches_.clear();
   memory_ = &memory;
   ++memory.steps;
-  if (isAllClear()) return touches_;
+  if (isAllClear()) {
+    memory.touched.clear();
+    return touches_;
+  }
   readClusters();
   toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
   turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
@@ -120,10 +106,14 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
     allClear = allClear && left > slack_ / 2;
   }
   if (allClear) rememberAllClear();
-  for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
-  std::stable_sort(touches_.begin(), touches_.end(),
-                   [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
+  rememberTouched();
   return touches_;
+}
+
+void TouchSearch::rememberTouched() {
+  memory_->touched.clear();
+  for (const PointTouch& touch : touches_) memory_->touched.push_back(touch.point);
+  std::sort(memory_->touched.begin(), memory_->touched.end());
 }
 
 void TouchSearch::prepare(ShapeMemory& memory) const {
@@ -263,6 +253,7 @@ btScalar TouchSearch::lowestHeight(const ContactPatch& patch, const ShapeBound& 
 
 btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
   const btScalar* weights = &patches_.weights[patch.firstWeight];
+  const std::size_t first = touches_.size();
   btScalar clear = slack_;
   for (std::uint32_t p = 0; p < patch.pointCount; ++p, weights += patch.nodeCount) {
     btScalar now = 0, predicted = 0;
@@ -273,6 +264,7 @@ btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
     const btScalar height = std::min(now, predicted) - margin_;
     clear = std::min(clear, height > 0 ? height : touch(patch, p));
   }
+  chooseTouches(first);
   return clear;
 }
 
@@ -292,42 +284,49 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   const Meeting met = firstMet(*probe_, path, margin_);
   if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
   const btVector3& normal = met.distance.normal;
-  NodeTouch touch;
+  PointTouch touch;
   touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
   // What is too near is pushed out, wherever it goes.
   if (!(touch.predicted < 0 || touch.distance < 0)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
+  touch.patch = static_cast<std::uint32_t>(&patch - patches_.patches.data());
   touch.point = patch.firstPoint + point;
-  touch.room = touch.distance;
-  keep(patch, point, touch);
+  touches_.push_back(touch);
   return 0;
 }
 
-/// The nodes that carry a point hold it.
-void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch) {
-  const btScalar* acting = &patches_.acting[patch.firstWeight + point * patch.nodeCount];
-  const btScalar least = std::min(share_, *std::max_element(acting, acting + patch.nodeCount));
-  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-    if (acting[n] < least) continue;
-    const int node = patches_.nodes[patch.firstNode + n];
-    keepAt(node, touch);
+/// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched in
+/// the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
+void TouchSearch::chooseTouches(std::size_t first) {
+  if (touches_.size() - first <= kMaxTouches) return;
+  const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto lead = [&](const PointTouch& touch) {
+    const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
+    return known ? slack_ : btScalar(0);
+  };
+  chosen_.clear();
+  auto next = std::min_element(begin, touches_.end(), [&](const PointTouch& a, const PointTouch& b) {
+    return a.predicted - lead(a) < b.predicted - lead(b);
+  });
+  apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
+  for (;;) {
+    chosen_.push_back(*next);
+    if (chosen_.size() == kMaxTouches) break;
+    btScalar most = -1;
+    for (auto at = begin; at != touches_.end(); ++at) {
+      btScalar& apart = apart_[static_cast<std::size_t>(at - begin)];
+      apart = std::min(apart, (at->position - chosen_.back().position).length());
+      if (apart > 0 && apart + lead(*at) - btMax(at->predicted, btScalar(0)) > most) {
+        most = apart + lead(*at) - btMax(at->predicted, btScalar(0));
+        next = at;
+      }
+    }
+    if (!(most >= 0)) break;
   }
-}
-
-/// One for each direction in which the node is stopped: at an edge, by its two sides.
-void TouchSearch::keepAt(int node, const NodeTouch& touch) {
-  int& first = placeOf_[static_cast<std::size_t>(node)];
-  int at = first;
-  while (at >= 0 && !sameWay(touch, touches_[static_cast<std::size_t>(at)])) {
-    at = touches_[static_cast<std::size_t>(at)].next;
-  }
-  if (at >= 0) return join(touch, touches_[static_cast<std::size_t>(at)]);
-  touches_.push_back(touch);
-  touches_.back().node = node;
-  touches_.back().next = first;
-  first = static_cast<int>(touches_.size()) - 1;
+  touches_.erase(begin, touches_.end());
+  touches_.insert(touches_.end(), chosen_.begin(), chosen_.end());
 }
 
 }  // namespace tetskin

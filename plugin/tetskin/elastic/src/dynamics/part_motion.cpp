@@ -186,6 +186,18 @@ double PartMotion::leastInertia() const {
   return std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues()[0]);
 }
 
+double PartMotion::compliance(const Vector3d& point, const Vector3d& direction) const {
+  const bool free = held_.kind == HeldNodes::Nothing;
+  const Vector3d moment = (point - about_).cross(direction);
+  const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), second_);
+  double sum = free && mass_ > 0.0 ? direction.squaredNorm() / mass_ : 0.0;
+  if (free || held_.kind == HeldNodes::Point) sum += moment.dot(inertia.partialPivLu().solve(moment));
+  if (held_.kind == HeldNodes::Line) {
+    sum += std::pow(held_.axis.dot(moment), 2) / held_.axis.dot(inertia * held_.axis);
+  }
+  return std::isfinite(sum) ? std::max(sum, 0.0) : 0.0;
+}
+
 RigidVelocity PartMotion::excess(const PartMomentum& now, const Vector3d& impulse, const Vector3d& torque) const {
   const Vector3d spin = vectorOf(now.spin) - spin_ - torque;
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();

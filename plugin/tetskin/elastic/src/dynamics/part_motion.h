@@ -98,6 +98,9 @@ class PartMotion {
   double reach() const;
   /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
   double leastInertia() const;
+  /// By how much a unit impulse at a point changes the velocity there, both in a direction, as far as the part moves as
+  /// one: of what is held, about a node or a line; 0 where more is.
+  double compliance(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
   /// What must be taken from velocities that have this momentum, about `about()`, for them to have what the part had at
   /// the step's beginning: internal forces cannot change it, but a solve that is cut short does. A rigid motion of the

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/shared/solver/point_contacts.h>
 #include <tetskin/export.h>
 
 #include <memory>
@@ -52,6 +53,11 @@ class BodyWithTrees : public btSoftBody {
   /// What has to live as long as the body: one thing, of whoever puts it there.
   std::shared_ptr<void>& companion() { return companion_; }
 
+  /// What the body is to stay outside of in this step: whoever searches puts it there, the solver takes it up, and
+  /// clears it when a step begins.
+  PointContacts& pointContacts() { return pointContacts_; }
+  const PointContacts& pointContacts() const { return pointContacts_; }
+
   /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
   /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
@@ -70,6 +76,7 @@ class BodyWithTrees : public btSoftBody {
   btScalar reach_ = -1;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
+  PointContacts pointContacts_;
 };
 
 /// Of a body that `makeSoftBody` has made; null for others.

@@ -219,6 +219,15 @@ double BodyDynamics<S>::roundingSpeed(double seconds) const {
 }
 
 template <class S>
+double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                                        const std::array<double, 3>& direction) const {
+  if (!tets_) return 0.0;
+  const PartMotion& motion = motions_[partOf_[matrix_.slotOf(node)]];
+  return motion.compliance(Eigen::Vector3d(point[0], point[1], point[2]),
+                           Eigen::Vector3d(direction[0], direction[1], direction[2]));
+}
+
+template <class S>
 void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
   S* solution = matrix_.solution();
   S* residual = matrix_.residual();
@@ -262,6 +271,32 @@ double BodyDynamics<S>::squaredSolution() const {
     }
   });
   return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::squaredChange(double seconds) const {
+  const S* solution = matrix_.solution();
+  const auto dt = static_cast<S>(seconds);
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S mass = matrix_.massAt(slot);
+    if (mass == S(0)) return;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = wide + k * kGroup;
+      const S began = (rightSide_[at] - dt * forces_[4 * slot + k]) / mass;
+      const auto change = static_cast<double>(solution[at] - began);
+      sum += static_cast<double>(mass) * change * change;
+    }
+  });
+  return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::squaredByMatrix() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  for (std::size_t k = 0; k < image_.size(); ++k) sum += static_cast<double>(solution[k]) * static_cast<double>(image_[k]);
+  return std::max(sum, 0.0);
 }
 
 template <class S>

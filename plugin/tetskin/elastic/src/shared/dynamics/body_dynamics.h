@@ -64,8 +64,16 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   bool isStiff() const { return stiff_; }
   /// The square of the solution's norm, by masses.
   double squaredSolution() const;
+  /// The same of how the solution differs from the velocities that the step began with, all else that acts included.
+  double squaredChange(double seconds) const;
+  /// The square of the solution's norm by the matrix, as `startAgain` has found it.
+  double squaredByMatrix() const;
   /// Velocities that hardly change a position, by its last digits.
   double roundingSpeed(double seconds) const;
+  /// By how much a unit impulse on the part of this node changes the velocity of a point there, both in a direction,
+  /// as far as the part moves as one. World space, of the last `predict`.
+  double rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                         const std::array<double, 3>& direction) const;
   void rightSide(std::size_t node, S out[3]) const;
   /// residual = right side - A solution, of the solution as it is. Add what else acts to the residual.
   void startAgain(ParallelFor* threads);
