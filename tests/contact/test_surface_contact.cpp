@@ -339,11 +339,6 @@ TEST(SurfaceContact, RefusesWhatDoesNotBelongTogether) {
   body.contact.reset();
   EXPECT_EQ(codeOf(other.deformable(), body.mesh, {}), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(world.deformable(), ballMesh(9, 0.35), {}), StatusCode::SizeMismatch);
-  for (const double bad : {0.0, -1.0, 0.3, std::nan("")}) {
-    SurfaceContactOptions options;
-    options.share = bad;
-    EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);
-  }
   for (const double bad : {-1.0, HUGE_VAL, std::nan(""), 1e-9, 1e-5}) {
     SurfaceContactOptions options;
     options.sampleSpacing = bad;

@@ -191,6 +191,7 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     row.rigid = rigids.at(*row.object, row.position);
     row.gapVelocity = std::max(contact.distance / seconds, -pushingOut);
     row.relative = relativeVelocity(body, row, rigids, seconds);
+    if (isNoNumber(row.relative)) return;
     recall(body, seconds, row);
     rows_.push_back(row);
   };

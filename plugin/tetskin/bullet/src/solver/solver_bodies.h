@@ -18,6 +18,13 @@ namespace tetskin {
 
 using VectorStack = btAlignedObjectArray<btVector3>;
 
+/// A node that Bullet's constraints let move nowhere, in all directions but one, or in one alone.
+struct FixedNode {
+  enum Kind { Fixed, AlongDirection, AllButDirection } kind = Fixed;
+  std::size_t node = 0;
+  btVector3 direction{0, 0, 0};
+};
+
 /// A body awake in this step.
 struct SolvedBody {
   btSoftBody* body = nullptr;
@@ -32,7 +39,7 @@ struct SolvedBody {
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   bool wasTouched = false;   ///< in the step before: what it deviates by is not solved for before contacts are known
-  bool constrained = false;  ///< by more than held nodes
+  std::vector<FixedNode> fixed;  ///< but held ones
   bool solvedAgain = false;  ///< with what contacts and other forces do
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall
 

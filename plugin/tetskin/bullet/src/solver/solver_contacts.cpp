@@ -9,26 +9,39 @@
 namespace tetskin {
 namespace {
 
-void fix(Dynamics& dynamics, std::size_t node, const btAlignedObjectArray<btVector3>& directions) {
-  auto& matrix = dynamics.matrix();
-  if (directions.size() >= 3) return matrix.fix(node);
-  btVector3 free = directions.size() == 2 ? directions[0].cross(directions[1]) : btVector3(0, 0, 0);
-  if (free.length2() < SIMD_EPSILON) return matrix.fixAlong(node, directions[0].m_floats);
-  free.normalize();
-  matrix.fixAllBut(node, free.m_floats);
+FixedNode fixedNode(std::size_t node, const btAlignedObjectArray<btVector3>& directions) {
+  FixedNode fixed;
+  fixed.node = node;
+  if (directions.size() >= 3) return fixed;
+  fixed.direction = directions.size() == 2 ? directions[0].cross(directions[1]) : btVector3(0, 0, 0);
+  fixed.kind = FixedNode::AllButDirection;
+  if (fixed.direction.length2() < SIMD_EPSILON) {
+    fixed.direction = directions[0];
+    fixed.kind = FixedNode::AlongDirection;
+  } else {
+    fixed.direction.normalize();
+  }
+  return fixed;
 }
 
 }  // namespace
 
-void fixContacts(const btDeformableContactProjection& projection, SolverBodies& bodies) {
-  const auto& fixed = projection.m_projectionsDict;
-  for (int k = 0; k < fixed.size(); ++k) {
-    const int node = fixed.getKeyAtIndex(k).getUid1();
-    SolvedBody& of = bodies.bodyOf(node);
-    const std::size_t place = of.placeOf(node);
-    if (of.dynamics->matrix().mass(place) == 0) continue;
-    fix(*of.dynamics, place, *fixed.getAtIndex(k));
-    of.constrained = true;
+void listFixedNodes(const btDeformableContactProjection& projection, SolverBodies& bodies) {
+  const auto& projected = projection.m_projectionsDict;
+  for (int k = 0; k < projected.size(); ++k) {
+    const int number = projected.getKeyAtIndex(k).getUid1();
+    SolvedBody& of = bodies.bodyOf(number);
+    const std::size_t node = of.placeOf(number);
+    if (of.dynamics->matrix().mass(node) != 0) of.fixed.push_back(fixedNode(node, *projected.getAtIndex(k)));
+  }
+}
+
+void fixNodes(const SolvedBody& body) {
+  auto& matrix = body.dynamics->matrix();
+  for (const FixedNode& fixed : body.fixed) {
+    if (fixed.kind == FixedNode::Fixed) matrix.fix(fixed.node);
+    if (fixed.kind == FixedNode::AlongDirection) matrix.fixAlong(fixed.node, fixed.direction.m_floats);
+    if (fixed.kind == FixedNode::AllButDirection) matrix.fixAllBut(fixed.node, fixed.direction.m_floats);
   }
 }
 

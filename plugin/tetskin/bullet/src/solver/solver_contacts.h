@@ -10,12 +10,13 @@ class btDeformableContactProjection;
 
 namespace tetskin {
 
-/// Bullet's directions in which a node's velocity stays as its constraints have made it: of bodies under Bullet's
-/// forces all, of elastic ones those of contacts that Bullet alone knows of. Marks the bodies that have any but held
-/// nodes.
-void fixContacts(const btDeformableContactProjection& projection, SolverBodies& bodies);
+/// Lists the nodes whose velocity stays, in some directions, as Bullet's constraints have made it: of bodies under
+/// Bullet's forces all, of elastic ones those of contacts that Bullet alone knows of.
+void listFixedNodes(const btDeformableContactProjection& projection, SolverBodies& bodies);
+/// Fixes them in the matrix: after all that is added to its diagonal.
+void fixNodes(const SolvedBody& body);
 
-/// What friction does to nodes that slide, as impulses, where Bullet solves for contacts. Before `fixContacts`.
+/// What friction does to nodes that slide, as impulses, where Bullet solves for contacts.
 /// residual  by node number
 void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual);
 

@@ -235,7 +235,7 @@ void DeformableSolver::Parts::assemble() {
   for (SolvedBody& of : bodies.bodies()) readContacts(of);
   addOthers();
   addDynamicFriction(projection(), bodies, solver.m_residual);
-  fixContacts(projection(), bodies);
+  listFixedNodes(projection(), bodies);
   collectRows();
 }
 
@@ -352,7 +352,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
   bool again = !system.forces.empty() || !system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
-    again |= of.constrained || of.touched || of.wasTouched;
+    again |= !of.fixed.empty() || of.touched || of.wasTouched;
   }
   if (again) {
     const SolveReport report = SystemSolve(*this, system, inner).solve();
@@ -364,7 +364,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
     first.solve->iterate(first.limits->iterations, inner);
     first.iterations = first.solve->iterations();
   }
-  const bool free = system.forces.empty() && system.rows.empty() && !first.constrained && !first.touched;
+  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.touched;
   if (free && first.elastic) first.dynamics->removeMomentum();
 }
 

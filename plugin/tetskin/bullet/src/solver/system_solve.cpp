@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <algorithm>
@@ -174,6 +175,7 @@ bool SystemSolve::start(int pass) {
   keepState();
   addImpulses();
   addTangents();
+  for (std::size_t k = 0; k < states_.size(); ++k) fixNodes(bodyAt(k));
   eliminateRigids();
   elastic_detail::ConjugateGradient<btScalar>::Matrices matrices;
   for (std::size_t k = 0; k < states_.size(); ++k) matrices.push_back(&bodyAt(k).dynamics->matrix());
@@ -404,7 +406,7 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     if (of.elastic) limits.enough += of.solve->enough();
-    changed |= of.constrained || of.touched;
+    changed |= !of.fixed.empty() || of.touched;
     stiff |= of.dynamics->isStiff();
     squaredStart += of.dynamics->squaredSolution();
     anyElastic |= of.elastic != nullptr;
@@ -480,7 +482,7 @@ void SystemSolve::giveMomentum() {
   const Vector change = inverseMass_ * push;
   for (const std::size_t r : system_.rigids) RigidUnknowns::apply(step_.rigids.list()[r], change);
   for (std::size_t k = 0; k < states_.size() && system_.forces.empty(); ++k) {
-    if (!bodyAt(k).elastic || bodyAt(k).constrained) continue;
+    if (!bodyAt(k).elastic || !bodyAt(k).fixed.empty()) continue;
     bodyAt(k).dynamics->removeMomentum([&](std::size_t node) { return impulses[k][node]; });
   }
 }

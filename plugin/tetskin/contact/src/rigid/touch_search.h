@@ -60,7 +60,7 @@ struct ShapeMemory {
 };
 
 /// Of one patch and one shape: as many hold it as it can be held by, and more would only cost.
-constexpr std::size_t kMaxTouches = 4;
+constexpr std::size_t kMaxTouches = 8;
 
 /// A point may pass a thin shape in one step: it touches what it meets first on its way.
 class TouchSearch {
