@@ -170,6 +170,10 @@ void World::setThreads(ParallelFor* threads) {
   if (force_ == Force::Elastic) static_cast<DeformableSolver&>(*bodySolver_).setThreads(threads);
 }
 
+int World::iterations() const {
+  return force_ == Force::Elastic ? static_cast<const DeformableSolver&>(*bodySolver_).iterations() : 0;
+}
+
 int World::step(double seconds) {
   return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
 }

@@ -105,6 +105,8 @@ class World {
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
   int step(double seconds);
+  /// Of the library's solver in the last step; 0 of others.
+  int iterations() const;
   /// Lends threads to the library's solver, if it is in use.
   void setThreads(ParallelFor* threads);
 

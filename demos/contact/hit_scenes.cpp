@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What collides freely: momentum of all is what it was.
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+#include <memory>
+
+#include "contact/contact_world.h"
+#include "contact/scene_list.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kWeightless = Vector3d::Zero();
+const Vector3d kBallStart(-0.75, 0.3, 0.05), kBallVelocity(5, 0, 0);
+constexpr double kBallRadius = 0.15;
+
+/// For half a second, until all that met has parted.
+void reportLost(Run& run, ContactWorld& world) {
+  const Momentum before = world.momentum();
+  world.simulate(0.5);
+  const Momentum after = world.momentum();
+  run.report("linear momentum lost", (after.linear - before.linear).norm() / before.linearScale);
+  run.report("angular momentum lost", (after.angular - before.angular).norm() / before.angularScale);
+}
+
+BodyOptions hitBody(double stiffness) {
+  BodyOptions options;
+  options.stiffness = stiffness;
+  return options;
+}
+
+/// What hears of contacts, and answers none.
+void addTrigger(ContactWorld& world) {
+  btRigidBody& trigger = world.addBox(Vector3d::Zero(), Vector3d::Constant(5));
+  trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+}
+
+/// A rigid ball hits a soft one of 1 kg aside of its centre.
+void hit(Run& run, double stiffness, double mass, bool inTrigger) {
+  ContactWorld world(run, kWeightless);
+  if (inTrigger) addTrigger(world);
+  world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
+  world.addSphere(kBallStart, kBallRadius, mass).setLinearVelocity(toBullet(kBallVelocity));
+  reportLost(run, world);
+}
+
+/// The same by a multibody without links.
+void hitByMultiBody(Run& run, double stiffness) {
+  ContactWorld world(run, kWeightless);
+  world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
+  constexpr btScalar kMass = 1;
+  auto shape = std::make_unique<btSphereShape>(static_cast<btScalar>(kBallRadius));
+  btVector3 inertia;
+  shape->calculateLocalInertia(kMass, inertia);
+  auto body = std::make_unique<btMultiBody>(0, kMass, inertia, false, false);
+  body->finalizeMultiDof();  // which makes room for velocities
+  body->setBasePos(toBullet(kBallStart));
+  body->setBaseVel(toBullet(kBallVelocity));
+  body->setLinearDamping(0);
+  body->setAngularDamping(0);
+  world.addMultiBody(std::move(body), -1, std::move(shape));
+  reportLost(run, world);
+}
+
+/// A soft ball falls on a box that lies on a heavy one; all are free.
+void onBoxes(Run& run, double stiffness) {
+  ContactWorld world(run, kWeightless);
+  world.addBox({0, -0.2, 0}, {1.5, 0.2, 1.5}, 20);
+  world.addBox({0, 0.15, 0}, {0.4, 0.15, 0.4}, 1);
+  world.addSoft(makeBall(), hitBody(stiffness), Vector3d(0.2, 0.9, 0)).push(Vector3d(0, -3, 0));
+  reportLost(run, world);
+}
+
+/// Two free boxes close on a soft one from both sides, not in line.
+void betweenBoxes(Run& run, double stiffness, double mass, double otherMass) {
+  ContactWorld world(run, kWeightless);
+  world.addSoft(makeBox({0.5, 0.5, 0.5}), hitBody(stiffness), kWeightless);
+  const Vector3d half(0.2, 0.4, 0.4);
+  world.addBox({-0.8, 0.1, 0}, half, mass).setLinearVelocity(btVector3(3, 0, 0));
+  world.addBox({0.8, -0.1, 0}, half, otherMass).setLinearVelocity(btVector3(-2, 0, 0));
+  reportLost(run, world);
+}
+
+}  // namespace
+
+void addHitScenes(ContactScenes& scenes) {
+  for (const double k : {50.0, 500.0}) {
+    const std::string end = "/k" + text(k);
+    for (const bool inTrigger : {false, true}) {
+      for (const double mass : {0.05, 1.0, 20.0}) {
+        scenes.push_back({std::string(inTrigger ? "hit in trigger/" : "hit/") + text(mass) + "kg" + end,
+                          [=](Run& run) { hit(run, k, mass, inTrigger); }});
+      }
+    }
+    scenes.push_back({"hit by multibody/1kg" + end, [=](Run& run) { hitByMultiBody(run, k); }});
+    scenes.push_back({"between/box on box" + end, [=](Run& run) { onBoxes(run, k); }});
+    scenes.push_back({"between/two boxes/1 and 1kg" + end, [=](Run& run) { betweenBoxes(run, k, 1, 1); }});
+    scenes.push_back({"between/two boxes/0.05 and 20kg" + end, [=](Run& run) { betweenBoxes(run, k, 0.05, 20); }});
+  }
+}
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The scenes in which contact is measured: each a function that makes its own world.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "contact/run.h"
+
+namespace tetskin::contact_demo {
+
+struct ContactScene {
+  std::string name;
+  std::function<void(Run&)> run;
+  /// Whether it makes sense with Bullet's solver: not what is measured by the library's elasticity.
+  bool withBullet = true;
+};
+
+using ContactScenes = std::vector<ContactScene>;
+
+void addHitScenes(ContactScenes& scenes);
+void addApplicationScenes(ContactScenes& scenes);
+void addRestScenes(ContactScenes& scenes);
+void addLoadScenes(ContactScenes& scenes);
+void addFrictionScenes(ContactScenes& scenes);
+void addEnergyScenes(ContactScenes& scenes);
+
+const ContactScenes& contactScenes();
+
+/// "50", "0.05", for names.
+std::string text(double value);
+
+}  // namespace tetskin::contact_demo
