@@ -174,8 +174,10 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar 
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
     SolvedBody& body = bodies.bodies()[b];
     if (!body.elastic) continue;
+    const std::size_t before = rows_.size();
     addBody(b, body, rigids, seconds);
     addAnchors(b, body, rigids, seconds);
+    body.rowCount = static_cast<int>(rows_.size() - before);
   }
   setStiffness(bodies, rigids);
 }

@@ -38,6 +38,7 @@ struct SolvedBody {
   PaddedTrees* paddedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
+  int rowCount = 0;          ///< of contacts and anchors
   bool wasTouched = false;   ///< in the step before: what it deviates by is not solved for before contacts are known
   std::vector<FixedNode> fixed;  ///< but held ones
   bool solvedAgain = false;  ///< with what contacts and other forces do

@@ -240,12 +240,10 @@ void DeformableSolver::Parts::assemble() {
 }
 
 /// Bullet's step so far: by how much its constraints have changed the velocities, which begins the solution; and what
-/// velocities the whole step begins with. Where a body was touched in the step before, the solution begins with the
-/// velocities of that: what rests goes on to rest.
+/// velocities the whole step begins with.
 void DeformableSolver::Parts::readContacts(SolvedBody& of) {
   Dynamics& dynamics = *of.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
     const int number = of.first + static_cast<int>(n);
     const btVector3& before = solver.m_backupVelocity[number];
     btVector3& dv = solver.m_dv[number];
@@ -254,10 +252,8 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
     // Beside the rigid motion: what the solution has been.
     const btVector3 own = of.elastic ? fromWide(solution) : btVector3(0, 0, 0);
-    const btVector3 rigid = before - own;
-    toPoint(rigid, dynamics.velocity(n));
-    const bool goesOn = of.elastic && of.wasTouched && node.m_im > 0;
-    toWide((goesOn ? node.m_vn - rigid : own) + dv, solution);
+    toPoint(before - own, dynamics.velocity(n));
+    toWide(own + dv, solution);
   }
 }
 
@@ -278,6 +274,21 @@ void DeformableSolver::Parts::collectRows() {
   rows.collect(bodies, rigids, dt());
   collectRigidRowsOfWorlds();
   joinByRigids();
+  for (SolvedBody& of : bodies.bodies()) {
+    if (of.wasTouched && of.rowCount > 0) goOn(of);
+  }
+}
+
+/// What rests goes on to rest: the solution begins with the velocities of the step before.
+void DeformableSolver::Parts::goOn(SolvedBody& of) {
+  Dynamics& dynamics = *of.dynamics;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+    if (!(node.m_im > 0)) continue;
+    toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
+  }
+  // What stiff bodies deform by does not last.
+  if (dynamics.isStiff()) dynamics.keepRigidPart();
 }
 
 void DeformableSolver::Parts::collectRigidRowsOfWorlds() {

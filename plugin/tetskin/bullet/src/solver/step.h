@@ -58,6 +58,7 @@ struct DeformableSolver::Parts {
   void collectRows();
   void collectRigidRowsOfWorlds();
   void joinByRigids();
+  void goOn(SolvedBody& of);
 
   // Of solve.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace tetskin {
 namespace {
@@ -20,6 +22,10 @@ constexpr double kCloserWithRows = 0.1;
 /// By how much the first pass lessens the residual, at most, and the others: rows are others after it.
 constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
 constexpr int kMaxPasses = 30;
+/// Stiffness numbers from which on the rigid motions of parts are unknowns of their own.
+constexpr double kStiffPart = 30.0;
+/// Parts of a body whose rigid motions are solved for by themselves.
+constexpr std::size_t kMaxParts = 4;
 /// Passes from which on the derivative of sliding is used, but for a tenth, and from how long a step on.
 constexpr int kPassesBeforeDerivative = 2;
 constexpr btScalar kKept = btScalar(0.1), kLongStep = btScalar(0.9);
@@ -43,6 +49,12 @@ Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
   return to;
 }
 
+double product(const btScalar* a, const btScalar* b, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
+  return sum;
+}
+
 double product(const btVector3& a, const btVector3& b) {
   double sum = 0.0;
   for (int k = 0; k < 3; ++k) sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
@@ -61,6 +73,8 @@ SystemSolve::SystemSolve(DeformableSolver::Parts& step, const SolvedSystem& syst
   assert(!system.bodies.empty());
   states_.resize(system.bodies.size());
   numberRigids();
+  collectParts();
+  moveIntoParts();
 }
 
 SolvedBody& SystemSolve::bodyAt(std::size_t k) const {
@@ -79,7 +93,98 @@ void SystemSolve::numberRigids() {
     const RigidUnknown& unknown = step_.rigids.list()[r];
     inverseMass_.block(unknown.first, unknown.first, unknown.size, unknown.size) = unknown.inverseMass;
   }
-  rigidChange_ = rigidMomentum_ = rigidStep_ = rigidPush_ = Vector::Zero(size);
+  rigidSize_ = fewSize_ = size;
+  rigidMomentum_ = rigidPush_ = Vector::Zero(size);
+}
+
+// ---- parts of stiff bodies
+
+void SystemSolve::collectParts() {
+  rowParts_.assign(system_.rows.size(), -1);
+  rowMotions_.assign(system_.rows.size(), Eigen::Matrix<double, 3, 6>::Zero());
+  for (const std::size_t b : system_.bodies) {
+    const SolvedBody& of = step_.bodies.bodies()[b];
+    // What others do to the nodes is not asked of parts.
+    if (!of.elastic || of.rowCount == 0 || !system_.forces.empty() || !of.fixed.empty()) continue;
+    if (of.dynamics->stiffnessNumber() < kStiffPart) continue;
+    for (std::size_t part = 0; part < std::min(of.dynamics->partCount(), kMaxParts); ++part) addPart(b, part);
+  }
+  few_ = fewStep_ = fewResidual_ = Vector::Zero(fewSize_);
+}
+
+void SystemSolve::addPart(std::size_t body, std::size_t part) {
+  const Dynamics& dynamics = *step_.bodies.bodies()[body].dynamics;
+  PartUnknown unknown;
+  unknown.body = body;
+  unknown.first = fewSize_;
+  if (!dynamics.rigidMotions(part, unknown.motions)) return;
+  const auto& matrix = dynamics.matrix();
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    unknown.momenta[k].assign(matrix.wideSize(), btScalar(0));
+    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+      toWide(matrix.mass(n) * fromPoint(&unknown.motions[k][4 * matrix.slotOf(n)]),
+             &unknown.momenta[k][matrix.wideOf(n)]);
+    }
+  }
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.nodeCount == 0 || row.body != body) continue;
+    bool moves = false;
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      btVector3 sum(0, 0, 0);
+      for (std::uint32_t n = 0; n < row.nodeCount; ++n) {
+        const std::size_t slot = matrix.slotOf(static_cast<std::size_t>(row.nodes[n]));
+        sum += row.weights[n] * fromPoint(&unknown.motions[k][4 * slot]);
+      }
+      moves |= !sum.isZero();
+      for (int i = 0; i < 3; ++i) {
+        if (!sum.isZero()) rowMotions_[r](i, static_cast<Eigen::Index>(k)) = static_cast<double>(sum[i]);
+      }
+    }
+    if (moves) rowParts_[r] = static_cast<int>(parts_.size());
+  }
+  parts_.push_back(std::move(unknown));
+  fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
+}
+
+/// The solutions of stiff bodies are rigid motions when a solve begins: see goOn.
+void SystemSolve::moveIntoParts() {
+  for (const PartUnknown& part : parts_) {
+    auto& dynamics = *step_.bodies.bodies()[part.body].dynamics;
+    auto& matrix = dynamics.matrix();
+    Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> momentum = Eigen::Matrix<double, 6, 1>::Zero();
+    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+      const btVector3 v = fromWide(matrix.solution() + matrix.wideOf(n));
+      for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
+        const btVector3 p = fromWide(&part.momenta[i][matrix.wideOf(n)]);
+        momentum[static_cast<Eigen::Index>(i)] += product(p, v);
+        for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+          mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
+              product(p, fromPoint(&part.motions[k][4 * matrix.slotOf(n)]));
+        }
+      }
+    }
+    few_.segment<6>(part.first) = mass.ldlt().solve(momentum);
+    addPartMotion(part, few_, btScalar(-1));
+  }
+}
+
+void SystemSolve::moveOutOfParts() {
+  for (const PartUnknown& part : parts_) addPartMotion(part, few_, btScalar(1));
+}
+
+void SystemSolve::addPartMotion(const PartUnknown& part, const Vector& few, btScalar factor) {
+  auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+    btScalar* to = matrix.solution() + matrix.wideOf(n);
+    btVector3 moved = fromWide(to);
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      moved += factor * static_cast<btScalar>(few[part.first + static_cast<Eigen::Index>(k)]) *
+               fromPoint(&part.motions[k][4 * matrix.slotOf(n)]);
+    }
+    toWide(moved, to);
+  }
 }
 
 SolveReport SystemSolve::solve() {
@@ -102,22 +207,34 @@ SolveReport SystemSolve::solve() {
     solve.iterate(elastic_detail::SolveLimits{}.iterations, threads_);
     report.iterations += solve.iterations();
     if (system_.rows.empty()) break;
-    moveRigids();
+    moveFew();
     length = derivative ? searchLine() : btScalar(1);
     if (length < 1) moveBack(length);
     refreshBounds();
   }
   for (std::size_t k = 0; k < states_.size(); ++k) bodyAt(k).dynamics->matrix().free();
+  moveOutOfParts();
   giveMomentum();
+  if (getenv("DBG")) {
+    auto& of = bodyAt(0);
+    double p[3] = {}, e = 0, ep = 0, m = 0; btVector3 imp(0,0,0); double lowg = 1e9;
+    for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
+      const double mm = of.dynamics->matrix().mass(n); btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(of.dynamics->matrix().solution() + of.dynamics->matrix().wideOf(n));
+      btVector3 v0 = of.body->m_nodes[n].m_vn;
+      for (int k = 0; k < 3; ++k) p[k] += mm * v[k]; e += 0.5 * mm * v.length2(); ep += 0.5 * mm * v0.length2(); m += mm; }
+    for (auto* r : system_.rows) { imp += r->impulse; lowg = std::min(lowg, double(r->gapVelocity) * step_.dt()); }
+    printf("   -> v %.4f %.4f %.4f kinetic %.4g -> %.4g impulse %.4g %.4g %.4g gap %.3g passes %d its %d\n", p[0]/m, p[1]/m, p[2]/m, ep, e, imp.x(), imp.y(), imp.z(), lowg, report.passes, report.iterations);
+  }
   return report;
 }
 
 /// What a point is pushed with in this step, before anything is known: as if it were alone.
 void SystemSolve::beginBounds() {
-  for (ContactRow* row : system_.rows) {
-    if (row->normalBound > 0 || row->joined || row->nodeCount == 0) continue;
-    const btScalar towards = row->normal.dot(velocityOf(*row)) + row->gapVelocity;
-    row->normalBound = row->effectiveMass * std::max(-towards, btScalar(0));
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    ContactRow& row = *system_.rows[r];
+    if (row.normalBound > 0 || row.joined || row.nodeCount == 0) continue;
+    const btScalar towards = row.normal.dot(velocityOf(r)) + row.gapVelocity;
+    row.normalBound = row.effectiveMass * std::max(-towards, btScalar(0));
   }
 }
 
@@ -130,13 +247,20 @@ void SystemSolve::findResiduals() {
     bodyAt(k).dynamics->startAgain(threads_);
   }
   step_.addOtherResiduals(system_);
+  for (const PartUnknown& part : parts_) {
+    btScalar* to = step_.bodies.bodies()[part.body].dynamics->matrix().residual();
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      const auto factor = static_cast<btScalar>(few_[part.first + static_cast<Eigen::Index>(k)]);
+      for (std::size_t i = 0; i < part.momenta[k].size(); ++i) to[i] -= factor * part.momenta[k][i];
+    }
+  }
 }
 
 void SystemSolve::evaluateRows(btScalar kept) {
   before_.resize(system_.rows.size());
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
-    before_[r] = velocityOf(row);
+    before_[r] = velocityOf(r);
     row.slip = before_[r] - row.normal.dot(before_[r]) * row.normal;
     row.impulse = impulseAt(row, before_[r], row.state);
     row.tangent = tangentAt(row, before_[r], row.state, kept);
@@ -155,9 +279,30 @@ btVector3 SystemSolve::nodesOf(const ContactRow& row, bool steps) const {
   return sum;
 }
 
-btVector3 SystemSolve::velocityOf(const ContactRow& row) const {
-  return row.relative + nodesOf(row, false) + step_.rigids.velocity(row.own, rigidChange_) -
-         step_.rigids.velocity(row.rigid, rigidChange_);
+/// What the few unknowns do to the velocity of a row.
+btVector3 SystemSolve::fewVelocity(std::size_t r, const Vector& few) const {
+  const ContactRow& row = *system_.rows[r];
+  btVector3 sum = step_.rigids.velocity(row.own, few) - step_.rigids.velocity(row.rigid, few);
+  if (rowParts_[r] >= 0) {
+    const PartUnknown& part = parts_[static_cast<std::size_t>(rowParts_[r])];
+    const Eigen::Vector3d moved = rowMotions_[r] * few.segment<6>(part.first);
+    sum += btVector3(static_cast<btScalar>(moved[0]), static_cast<btScalar>(moved[1]), static_cast<btScalar>(moved[2]));
+  }
+  return sum;
+}
+
+/// The other way round: what an impulse of the row is to the few unknowns.
+void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
+  const ContactRow& row = *system_.rows[r];
+  step_.rigids.addImpulse(row.own, push, to);
+  step_.rigids.addImpulse(row.rigid, -push, to);
+  if (rowParts_[r] < 0) return;
+  const PartUnknown& part = parts_[static_cast<std::size_t>(rowParts_[r])];
+  to.segment<6>(part.first) += rowMotions_[r].transpose() * Eigen::Vector3d(push[0], push[1], push[2]);
+}
+
+btVector3 SystemSolve::velocityOf(std::size_t r) const {
+  return system_.rows[r]->relative + nodesOf(*system_.rows[r], false) + fewVelocity(r, few_);
 }
 
 void SystemSolve::addToNodes(const ContactRow& row, const btVector3& impulse) {
@@ -171,22 +316,29 @@ void SystemSolve::addToNodes(const ContactRow& row, const btVector3& impulse) {
 
 /// Makes the pass's linear system, and begins its solve. Returns whether there is nothing left to solve.
 bool SystemSolve::start(int pass) {
-  const elastic_detail::SolveLimits limits = system_.rows.empty() ? limitsWithoutRows() : limitsOfPass(pass);
   keepState();
   addImpulses();
+  const elastic_detail::SolveLimits limits = system_.rows.empty() ? limitsWithoutRows() : limitsOfPass(pass);
   addTangents();
   for (std::size_t k = 0; k < states_.size(); ++k) fixNodes(bodyAt(k));
-  eliminateRigids();
+  eliminate();
   elastic_detail::ConjugateGradient<btScalar>::Matrices matrices;
   for (std::size_t k = 0; k < states_.size(); ++k) matrices.push_back(&bodyAt(k).dynamics->matrix());
   elastic_detail::ConjugateGradient<btScalar>::Extra extra;
-  if (!system_.forces.empty() || rigidChange_.size() > 0) {
+  if (!system_.forces.empty() || fewSize_ > 0) {
     extra = [this](std::vector<const btScalar*>& added) { addProducts(added); };
   }
   auto& solve = *bodyAt(0).solve;
   solve.start(std::move(matrices), limits, std::move(extra), threads_);
   const double most = std::max(limits.enough, limits.floor * limits.floor * massOfAll());
-  return solve.squaredResidual() <= kAccepted * kAccepted * most;
+  if (getenv("DBG")) {
+    int active = 0, slides = 0;
+    for (auto* r : system_.rows) active += r->state != ContactRow::State::Apart, slides += r->state == ContactRow::State::Slides;
+    printf("  pass %d rho %.3g enough %.3g floor %.3g byM %.3g change %.3g rows %zu active %d slides %d its %d\n", pass, solve.squaredResidual(), limits.enough, limits.floor * limits.floor * massOfAll(), bodyAt(0).dynamics->squaredByMatrix(), bodyAt(0).dynamics->squaredChange(), system_.rows.size(), active, slides, solve.iterations());
+  }
+  double squared = solve.squaredResidual();
+  if (fewSize_ > 0) squared += fewResidual_.dot(compliance_ * fewResidual_);
+  return squared <= kAccepted * kAccepted * most;
 }
 
 void SystemSolve::keepState() {
@@ -198,14 +350,40 @@ void SystemSolve::keepState() {
 }
 
 void SystemSolve::addImpulses() {
-  Vector push = Vector::Zero(rigidChange_.size());
-  for (const ContactRow* row : system_.rows) {
-    addToNodes(*row, row->impulse);
-    const btVector3 more = row->impulse - row->given;
-    step_.rigids.addImpulse(row->own, more, push);
-    step_.rigids.addImpulse(row->rigid, -more, push);
+  fewResidual_ = Vector::Zero(fewSize_);
+  findFewResiduals();
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    addToNodes(row, row.impulse);
+    addRowPush(r, row.impulse - row.given, fewResidual_);
   }
-  rigidResidual_ = push - rigidMomentum_;
+}
+
+/// Without rows: what rigid bodies and parts have of momentum.
+void SystemSolve::findFewResiduals() {
+  fewResidual_.head(rigidSize_) -= rigidMomentum_;
+  partsBefore_ = Vector::Zero(fewSize_);
+  for (const PartUnknown& part : parts_) {
+    partsBefore_.segment<6>(part.first) = partMomentum(part);
+    fewResidual_.segment<6>(part.first) -= partsBefore_.segment<6>(part.first);
+  }
+}
+
+/// Z^T M (y + Z q)
+Eigen::Matrix<double, 6, 1> SystemSolve::partMomentum(const PartUnknown& part) const {
+  const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+    btVector3 v = fromWide(matrix.solution() + matrix.wideOf(n));
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      v += static_cast<btScalar>(few_[part.first + static_cast<Eigen::Index>(k)]) *
+           fromPoint(&part.motions[k][4 * matrix.slotOf(n)]);
+    }
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      sum[static_cast<Eigen::Index>(k)] += product(fromWide(&part.momenta[k][matrix.wideOf(n)]), v);
+    }
+  }
+  return sum;
 }
 
 /// Rows of one tet at once.
@@ -251,78 +429,138 @@ void SystemSolve::addBlocks(std::size_t first, std::size_t last) {
   for (std::uint32_t i = 0; i < any.nodeCount; ++i) matrix.resist(static_cast<std::size_t>(any.nodes[i]), own[i]);
 }
 
-void SystemSolve::eliminateRigids() {
-  const Eigen::Index size = rigidChange_.size();
-  if (size == 0) return;
-  Matrix stiffness = Matrix::Zero(size, size);
+/// Of the few unknowns, but for the masses of rigid bodies: what rows, and the masses of parts, couple them by.
+SystemSolve::Matrix SystemSolve::fewMatrix() const {
+  Matrix few = Matrix::Zero(fewSize_, fewSize_);
   const RigidUnknowns& rigids = step_.rigids;
-  for (const ContactRow* row : system_.rows) {
-    if (row->state == ContactRow::State::Apart || (row->own.unknown < 0 && row->rigid.unknown < 0)) continue;
-    const Eigen::Matrix3d h = toEigenMatrix(row->tangent);
-    rigids.addStiffness(row->rigid, row->rigid, h, 1.0, stiffness);
-    rigids.addStiffness(row->own, row->own, h, 1.0, stiffness);
-    rigids.addStiffness(row->rigid, row->own, h, -1.0, stiffness);
-    rigids.addStiffness(row->own, row->rigid, h, -1.0, stiffness);
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state == ContactRow::State::Apart) continue;
+    const Eigen::Matrix3d h = toEigenMatrix(row.tangent);
+    rigids.addStiffness(row.rigid, row.rigid, h, 1.0, few);
+    rigids.addStiffness(row.own, row.own, h, 1.0, few);
+    rigids.addStiffness(row.rigid, row.own, h, -1.0, few);
+    rigids.addStiffness(row.own, row.rigid, h, -1.0, few);
+    if (rowParts_[r] < 0) continue;
+    const Eigen::Index first = parts_[static_cast<std::size_t>(rowParts_[r])].first;
+    few.block<6, 6>(first, first) += rowMotions_[r].transpose() * h * rowMotions_[r];
+    for (Eigen::Index k = 0; k < 6 && row.rigid.unknown >= 0; ++k) {
+      const Eigen::Vector3d push = h * rowMotions_[r].col(k);
+      Vector column = Vector::Zero(rigidSize_);
+      rigids.addImpulse(row.rigid,
+                        {static_cast<btScalar>(push[0]), static_cast<btScalar>(push[1]), static_cast<btScalar>(push[2])},
+                        column);
+      few.col(first + k).head(rigidSize_) -= column;
+      few.row(first + k).head(rigidSize_) -= column.transpose();
+    }
   }
-  const Matrix system = Matrix::Identity(size, size) + inverseMass_ * stiffness;
-  compliance_ = system.partialPivLu().solve(inverseMass_);
-  const Vector change = compliance_ * rigidResidual_;
-  for (const ContactRow* row : system_.rows) {
-    if (row->state == ContactRow::State::Apart || row->rigid.unknown < 0) continue;
-    addToNodes(*row, row->tangent * rigids.velocity(row->rigid, change));
+  for (const PartUnknown& part : parts_) {
+    const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
+        for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+          few(part.first + static_cast<Eigen::Index>(i), part.first + static_cast<Eigen::Index>(k)) +=
+              product(fromWide(&part.momenta[i][matrix.wideOf(n)]), fromPoint(&part.motions[k][4 * matrix.slotOf(n)]));
+        }
+      }
+    }
   }
+  return few;
+}
+
+/// Rows of rigid bodies are multiplied by M^-1, in which axes may be locked.
+void SystemSolve::eliminate() {
+  if (fewSize_ == 0) return;
+  Matrix scale = Matrix::Identity(fewSize_, fewSize_);
+  scale.topLeftCorner(rigidSize_, rigidSize_) = inverseMass_;
+  Matrix system = scale * fewMatrix();
+  system.topLeftCorner(rigidSize_, rigidSize_) += Matrix::Identity(rigidSize_, rigidSize_);
+  compliance_ = system.partialPivLu().solve(scale);
+  addFew(compliance_ * fewResidual_, true);
+}
+
+/// What the few unknowns do to the nodes: to their residuals, or to the products.
+void SystemSolve::addFew(const Vector& few, bool toResiduals) {
+  const auto target = [&](std::size_t body) {
+    return toResiduals ? step_.bodies.bodies()[body].dynamics->matrix().residual() : step_.extras[body].data();
+  };
+  const btScalar sign = toResiduals ? btScalar(-1) : btScalar(1);
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.nodeCount == 0 || row.state == ContactRow::State::Apart) continue;
+    if (row.rigid.unknown < 0 && rowParts_[r] < 0) continue;
+    const btVector3 push = sign * (row.tangent * fewVelocity(r, few));
+    const auto& matrix = step_.bodies.bodies()[row.body].dynamics->matrix();
+    for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
+      btScalar* to = target(row.body) + matrix.wideOf(static_cast<std::size_t>(row.nodes[k]));
+      toWide(fromWide(to) + row.weights[k] * push, to);
+    }
+  }
+  for (const PartUnknown& part : parts_) {
+    btScalar* to = target(part.body);
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      const auto factor = sign * static_cast<btScalar>(few[part.first + static_cast<Eigen::Index>(k)]);
+      for (std::size_t i = 0; i < part.momenta[k].size(); ++i) to[i] += factor * part.momenta[k][i];
+    }
+  }
+}
+
+/// What the nodes' steps of the conjugate gradient do to the few unknowns.
+SystemSolve::Vector SystemSolve::fewOf() const {
+  Vector few = Vector::Zero(fewSize_);
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.nodeCount == 0 || row.state == ContactRow::State::Apart) continue;
+    if (row.rigid.unknown >= 0 || rowParts_[r] >= 0) addRowPush(r, -(row.tangent * nodesOf(row, true)), few);
+  }
+  for (const PartUnknown& part : parts_) {
+    const btScalar* step = step_.bodies.bodies()[part.body].dynamics->matrix().step();
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      few[part.first + static_cast<Eigen::Index>(k)] -= product(part.momenta[k].data(), step, part.momenta[k].size());
+    }
+  }
+  return few;
 }
 
 void SystemSolve::addProducts(std::vector<const btScalar*>& added) {
   step_.beginProducts(system_);
-  const RigidUnknowns& rigids = step_.rigids;
-  if (rigidChange_.size() > 0) {
-    Vector push = Vector::Zero(rigidChange_.size());
-    for (const ContactRow* row : system_.rows) {
-      if (row->nodeCount == 0 || row->state == ContactRow::State::Apart) continue;
-      rigids.addImpulse(row->rigid, row->tangent * nodesOf(*row, true), push);
-    }
-    const Vector change = compliance_ * push;
-    for (const ContactRow* row : system_.rows) {
-      if (row->nodeCount == 0 || row->state == ContactRow::State::Apart || row->rigid.unknown < 0) continue;
-      const btVector3 less = row->tangent * rigids.velocity(row->rigid, change);
-      const auto& matrix = step_.bodies.bodies()[row->body].dynamics->matrix();
-      for (std::uint32_t k = 0; k < row->nodeCount; ++k) {
-        btScalar* to = &step_.extras[row->body][matrix.wideOf(static_cast<std::size_t>(row->nodes[k]))];
-        toWide(fromWide(to) - row->weights[k] * less, to);
-      }
-    }
-  }
+  if (fewSize_ > 0) addFew(compliance_ * fewOf(), false);
   for (std::size_t k = 0; k < system_.bodies.size(); ++k) added[k] = step_.extras[system_.bodies[k]].data();
 }
 
-/// By what the nodes have done in the pass.
-void SystemSolve::moveRigids() {
+/// The few unknowns follow what the nodes have done in the pass.
+void SystemSolve::moveFew() {
+  Vector push = fewResidual_;
+  for (std::size_t r = 0; r < system_.rows.size() && fewSize_ > 0; ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * (velocityOf(r) - before_[r])), push);
+  }
+  for (const PartUnknown& part : parts_) {
+    const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+    const BodyState& state = states_[placeOf(part.body)];
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      const std::size_t size = part.momenta[k].size();
+      push[part.first + static_cast<Eigen::Index>(k)] -= product(part.momenta[k].data(), matrix.solution(), size) -
+                                                         product(part.momenta[k].data(), state.solution.data(), size);
+    }
+  }
+  if (fewSize_ > 0) fewStep_ = compliance_ * push;
+  few_ += fewStep_;
   stepped_.resize(system_.rows.size());
-  std::vector<btVector3> ofNodes(system_.rows.size());
-  Vector push = rigidResidual_;
+  // M times the step is what is left of the bodies' equation, less what rows take back.
+  Vector left = fewResidual_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    // What the row's velocity was, but for what has not moved yet.
-    ofNodes[r] = velocityOf(row) - before_[r];
-    if (row.state != ContactRow::State::Apart) step_.rigids.addImpulse(row.rigid, row.tangent * ofNodes[r], push);
+    stepped_[r] = velocityOf(r) - before_[r];
+    if (rigidSize_ > 0 && row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), left);
   }
-  if (rigidChange_.size() > 0) {
-    rigidStep_ = compliance_ * push;
-    rigidPush_ = push;
-    rigidChange_ += rigidStep_;
-  }
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    stepped_[r] = velocityOf(row) - before_[r];
-    if (rigidChange_.size() == 0 || row.state == ContactRow::State::Apart) continue;
-    // M times the step is what pushes it, less what rows take back.
-    const btVector3 back = row.tangent * (step_.rigids.velocity(row.rigid, rigidStep_) -
-                                          step_.rigids.velocity(row.own, rigidStep_));
-    step_.rigids.addImpulse(row.rigid, -back, rigidPush_);
-    step_.rigids.addImpulse(row.own, back, rigidPush_);
-  }
+  rigidPush_ = left.head(rigidSize_);
   rigidMomentum_ += rigidPush_;
+}
+
+std::size_t SystemSolve::placeOf(std::size_t body) const {
+  return static_cast<std::size_t>(std::find(system_.bodies.begin(), system_.bodies.end(), body) -
+                                  system_.bodies.begin());
 }
 
 /// Of the energy of which the solve seeks the least, along the pass's step.
@@ -340,7 +578,8 @@ double SystemSolve::slope(btScalar share, double linear, double quadratic) const
 /// How much of the pass's step to take.
 btScalar SystemSolve::searchLine() {
   findResiduals();
-  double linear = rigidStep_.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep_.dot(rigidPush_);
+  const Vector rigidStep = fewStep_.head(rigidSize_);
+  double linear = rigidStep.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep.dot(rigidPush_);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     auto& matrix = bodyAt(k).dynamics->matrix();
     for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
@@ -349,6 +588,12 @@ btScalar SystemSolve::searchLine() {
       linear -= step * before;
       quadratic += step * (before - static_cast<double>(matrix.residual()[i]));
     }
+  }
+  for (const PartUnknown& part : parts_) {
+    const Eigen::Matrix<double, 6, 1> step = fewStep_.segment<6>(part.first);
+    const Eigen::Matrix<double, 6, 1> after = partMomentum(part), grown = after - partsBefore_.segment<6>(part.first);
+    linear += step.dot(partsBefore_.segment<6>(part.first));
+    quadratic += step.dot(grown);
   }
   const double first = slope(0, linear, quadratic), all = slope(1, linear, quadratic);
   if (!(all > kFlat * std::abs(first))) return 1;
@@ -372,7 +617,7 @@ void SystemSolve::moveBack(btScalar share) {
     }
   }
   const auto rest = static_cast<double>(1 - share);
-  rigidChange_ -= rest * rigidStep_;
+  few_ -= rest * fewStep_;
   rigidMomentum_ -= rest * rigidPush_;
   for (btVector3& step : stepped_) step *= share;
 }
@@ -447,7 +692,10 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
     limits.floor = std::max(limits.floor, of.dynamics->roundingSpeed(seconds));
     byMatrix += of.dynamics->squaredByMatrix();
-    byMasses += of.dynamics->squaredChange(seconds);
+    byMasses += of.dynamics->squaredChange();
+  }
+  for (const PartUnknown& part : parts_) {
+    byMasses += few_.segment<6>(part.first).dot(partsBefore_.segment<6>(part.first));
   }
   tolerance = toleranceWithForces(kCloserWithRows * tolerance, true);
   limits.enough = tolerance * tolerance * std::max(byMatrix, byMasses);
@@ -461,7 +709,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
 /// gives them beside it. Where other forces act on the system, their part is not known here.
 void SystemSolve::giveMomentum() {
   if (system_.rows.empty()) return;
-  Vector push = Vector::Zero(rigidChange_.size());
+  Vector push = Vector::Zero(rigidSize_);
   std::vector<std::vector<std::array<double, 3>>> impulses(states_.size());
   std::vector<std::size_t> places(step_.bodies.bodies().size(), states_.size());
   for (std::size_t k = 0; k < states_.size(); ++k) {

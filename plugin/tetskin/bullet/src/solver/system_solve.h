@@ -12,6 +12,8 @@
 
 #include <tetskin/bullet/src/solver/step.h>
 
+#include <tetskin/core/src/shared/base/aligned.h>
+
 #include <Eigen/LU>
 #include <vector>
 
@@ -34,6 +36,14 @@ class SystemSolve {
  private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
+  /// The rigid motion of a part of a stiff body, beside which the nodes' velocities are: sweeps would be slow to find
+  /// it, and its stiffness is so large that rounding would hide what it weighs. Elasticity does not resist it.
+  struct PartUnknown {
+    std::size_t body = 0;    ///< in SolverBodies::bodies
+    Eigen::Index first = 0;  ///< of its six unknowns
+    AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z: 4 scalars a slot
+    AlignedVector<btScalar> momenta[Dynamics::kRigidMotions];  ///< M Z, wide
+  };
   struct BodyState {
     std::vector<btScalar> solution, residual;  ///< wide, when a pass began; of elasticity and others alone
   };
@@ -47,18 +57,31 @@ class SystemSolve {
   void addImpulses();
   void addTangents();
   void addBlocks(std::size_t first, std::size_t last);
-  void eliminateRigids();
+  void collectParts();
+  void addPart(std::size_t body, std::size_t part);
+  void moveIntoParts();
+  void moveOutOfParts();
+  void addPartMotion(const PartUnknown& part, const Vector& few, btScalar factor);
+  Eigen::Matrix<double, 6, 1> partMomentum(const PartUnknown& part) const;
+  std::size_t placeOf(std::size_t body) const;
+  void findFewResiduals();
+  Matrix fewMatrix() const;
+  void eliminate();
+  void addFew(const Vector& few, bool toResiduals);
+  Vector fewOf() const;
+  void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
+  btVector3 fewVelocity(std::size_t row, const Vector& few) const;
   void addToNodes(const ContactRow& row, const btVector3& impulse);
   bool start(int pass);
   void keepState();
   void addProducts(std::vector<const btScalar*>& added);
-  void moveRigids();
+  void moveFew();
   btScalar searchLine();
   double slope(btScalar share, double linear, double quadratic) const;
   void moveBack(btScalar share);
   void refreshBounds();
   void beginBounds();
-  btVector3 velocityOf(const ContactRow& row) const;
+  btVector3 velocityOf(std::size_t row) const;
   btVector3 nodesOf(const ContactRow& row, bool steps) const;
   void giveMomentum();
   double massOfAll() const;
@@ -68,9 +91,15 @@ class SystemSolve {
   const SolvedSystem& system_;
   ParallelFor* threads_;
   std::vector<BodyState> states_;                        ///< by body of the system
-  Vector rigidChange_, rigidMomentum_, rigidResidual_;   ///< V, M V, and of the pass what V is to grow by for y = 0
-  Vector rigidStep_, rigidPush_;                         ///< of the pass: the growth of V, and of M V
-  Matrix inverseMass_, compliance_;                      ///< M^-1; (M + sum J^T H J)^-1
+  std::vector<PartUnknown> parts_;
+  std::vector<Eigen::Matrix<double, 3, 6>> rowMotions_;  ///< by row: Z where it acts
+  std::vector<int> rowParts_;                            ///< by row: in `parts_`, or below 0
+  // Few unknowns: V of rigid bodies, and then q of parts.
+  Eigen::Index rigidSize_ = 0, fewSize_ = 0;
+  Vector few_, fewStep_, fewResidual_;   ///< as they are; of the pass, their growth and what is left of their equations
+  Vector partsBefore_;                   ///< momenta of parts when the pass began
+  Vector rigidMomentum_, rigidPush_;     ///< M V, and its growth in the pass
+  Matrix inverseMass_, compliance_;      ///< M^-1; the inverse of the few unknowns' matrix
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
 };
 

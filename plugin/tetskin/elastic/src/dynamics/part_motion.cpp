@@ -199,15 +199,23 @@ double PartMotion::compliance(const Vector3d& point, const Vector3d& direction) 
 }
 
 RigidVelocity PartMotion::excess(const PartMomentum& now, const Vector3d& impulse, const Vector3d& torque) const {
-  const Vector3d spin = vectorOf(now.spin) - spin_ - torque;
+  const Vector3d momentum = vectorOf(now.momentum) - momentum_ - impulse, spin = vectorOf(now.spin) - spin_ - torque;
+  return rigidWith(momentum, spin, turn_);
+}
+
+RigidVelocity PartMotion::withMomentum(const PartMomentum& own) const {
+  return rigidWith(vectorOf(own.momentum), vectorOf(own.spin), Matrix3d::Identity());
+}
+
+RigidVelocity PartMotion::rigidWith(const Vector3d& momentum, const Vector3d& spin, const Matrix3d& turn) const {
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
-  const Matrix3d inertia = inertiaOf(turn_, second_);
-  if (held_.kind == HeldNodes::Nothing && mass_ > 0.0) push = (vectorOf(now.momentum) - momentum_ - impulse) / mass_;
+  const Matrix3d inertia = inertiaOf(turn, second_);
+  if (held_.kind == HeldNodes::Nothing && mass_ > 0.0) push = momentum / mass_;
   if (held_.kind == HeldNodes::Nothing || held_.kind == HeldNodes::Point) rate = inertia.partialPivLu().solve(spin);
   if (held_.kind == HeldNodes::Line) rate = held_.axis * (held_.axis.dot(spin) / held_.axis.dot(inertia * held_.axis));
   if (!push.allFinite()) push.setZero();
   if (!rate.allFinite()) rate.setZero();
-  return rigidVelocity(about_, push, crossMatrix(rate) * turn_);
+  return rigidVelocity(about_, push, crossMatrix(rate) * turn);
 }
 
 RigidVelocity PartMotion::chord(const PartMomentum& now, const PartMoments& moments, const Vector3d& near,

@@ -109,6 +109,9 @@ class PartMotion {
   /// impulse, torque  what else has acted on it in the step
   RigidVelocity excess(const PartMomentum& now, const Eigen::Vector3d& impulse, const Eigen::Vector3d& torque) const;
 
+  /// The rigid motion with this momentum, about `about()`, as far as the part is not held.
+  RigidVelocity withMomentum(const PartMomentum& own) const;
+
   /// What must be added to velocities in which something else has turned the part: the turn is a straight motion, in
   /// proportion to where nodes are, and becomes a chord. Momenta stay.
   /// now, moments  of these velocities
@@ -116,6 +119,10 @@ class PartMotion {
                       double seconds) const;
 
  private:
+  /// With this momentum about `about_`, of the part as a rotation has turned it.
+  RigidVelocity rigidWith(const Eigen::Vector3d& momentum, const Eigen::Vector3d& spin,
+                          const Eigen::Matrix3d& turn) const;
+
   HeldNodes held_;
   Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   double mass_ = 0.0;

@@ -95,6 +95,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   S* solution() { return solution_.data(); }
   const S* solution() const { return solution_.data(); }
   const S* stepPoints() const { return stepPoints_.data(); }
+  const S* step() const { return step_.data(); }
 
  private:
   kernels::RowWork<S> work(std::size_t firstChunk, std::size_t lastChunk) const;

@@ -38,7 +38,7 @@ BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
   for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
     v->assign(4 * matrix_.slotCount(), S(0));
   }
-  for (AlignedVector<S>* v : {&rightSide_, &image_}) v->assign(matrix_.wideSize(), S(0));
+  for (AlignedVector<S>* v : {&rightSide_, &image_, &began_}) v->assign(matrix_.wideSize(), S(0));
 }
 
 /// Slots without node, which have no mass, belong to the first.
@@ -204,7 +204,8 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
       if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
     }
   }
-  stiff_ = seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
+  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
+  stiff_ = stiffnessNumber_ > kStiff;
   moveRigidly(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
   assembleIfNeeded(seconds, allowedTurn(seconds), threads);
@@ -244,6 +245,7 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
     S* deviation = &relative_[4 * slot];
     for (std::size_t k = 0; k < 3; ++k) {
       const S impulse = mass * deviation[k];
+      began_[wide + k * kGroup] = deviation[k];
       rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
       if (stiff_ && mass != S(0)) {
         squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
@@ -274,18 +276,13 @@ double BodyDynamics<S>::squaredSolution() const {
 }
 
 template <class S>
-double BodyDynamics<S>::squaredChange(double seconds) const {
+double BodyDynamics<S>::squaredChange() const {
   const S* solution = matrix_.solution();
-  const auto dt = static_cast<S>(seconds);
   double sum = 0.0;
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    const S mass = matrix_.massAt(slot);
-    if (mass == S(0)) return;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t at = wide + k * kGroup;
-      const S began = (rightSide_[at] - dt * forces_[4 * slot + k]) / mass;
-      const auto change = static_cast<double>(solution[at] - began);
-      sum += static_cast<double>(mass) * change * change;
+      const auto change = static_cast<double>(solution[wide + k * kGroup] - began_[wide + k * kGroup]);
+      sum += static_cast<double>(matrix_.massAt(slot)) * change * change;
     }
   });
   return sum;
@@ -362,6 +359,54 @@ void BodyDynamics<S>::bendTurns(double seconds) {
     double v[3];
     chords[partOf_[slot]].at(&points_[4 * slot], v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+bool BodyDynamics<S>::rigidMotions(std::size_t part, AlignedVector<S> (&motions)[kRigidMotions]) const {
+  double mass = 0.0, centroid[3] = {};
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != part) continue;
+    if (matrix_.massAt(slot) == S(0)) return false;
+    const auto m = static_cast<double>(matrix_.massAt(slot));
+    mass += m;
+    for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(moved_[4 * slot + k]);
+  }
+  if (!(mass > 0.0)) return false;
+  for (AlignedVector<S>& motion : motions) motion.assign(4 * matrix_.slotCount(), S(0));
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != part) continue;
+    S arm[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      arm[k] = moved_[4 * slot + k] - static_cast<S>(centroid[k] / mass);
+      motions[k][4 * slot + k] = S(1);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {  // about axis k
+      motions[3 + k][4 * slot + (k + 1) % 3] = -arm[(k + 2) % 3];
+      motions[3 + k][4 * slot + (k + 2) % 3] = arm[(k + 1) % 3];
+    }
+  }
+  return true;
+}
+
+template <class S>
+void BodyDynamics<S>::keepRigidPart() {
+  S* solution = matrix_.solution();
+  std::vector<PartMomentum> own(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    double v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
+    own[partOf_[slot]].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[partOf_[slot]].about().data());
+  });
+  std::vector<RigidVelocity> rigid;
+  for (std::size_t k = 0; k < motions_.size(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    rigid[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] = static_cast<S>(v[k]);
   });
 }
 

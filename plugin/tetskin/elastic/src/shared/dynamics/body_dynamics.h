@@ -27,6 +27,8 @@ namespace tetskin::elastic_detail {
 template <class S>
 class TETSKIN_ELASTIC_API BodyDynamics {
  public:
+  static constexpr std::size_t kRigidMotions = 6;
+
   /// rest  may be empty: a body without elasticity, of masses alone
   BodyDynamics(RestTets rest, std::size_t nodes);
 
@@ -62,10 +64,13 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double squaredDeviation() const { return squaredDeviation_; }
   /// Of the last `predict`.
   bool isStiff() const { return stiff_; }
+  /// dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia, of the last `predict`: how much faster
+  /// deformations are taken back than a step lasts.
+  double stiffnessNumber() const { return stiffnessNumber_; }
   /// The square of the solution's norm, by masses.
   double squaredSolution() const;
   /// The same of how the solution differs from the velocities that the step began with, all else that acts included.
-  double squaredChange(double seconds) const;
+  double squaredChange() const;
   /// The square of the solution's norm by the matrix, as `startAgain` has found it.
   double squaredByMatrix() const;
   /// Velocities that hardly change a position, by its last digits.
@@ -85,6 +90,12 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   S* scratchPoints() { return relative_.data(); }
   double energy(ParallelFor* threads);
 
+  /// The rigid motions of a part as its forces are taken at: kRigidMotions velocities, 4 scalars a slot. False, and
+  /// nothing written, where something of the part is held, or it has no mass.
+  bool rigidMotions(std::size_t part, AlignedVector<S> (&motions)[kRigidMotions]) const;
+  std::size_t partCount() const { return motions_.size(); }
+  /// The solution becomes the rigid motion that has its momentum, of each part as far as it is not held.
+  void keepRigidPart();
   /// The solution loses the linear and the angular momentum that internal forces cannot give, but a solve that is cut
   /// short does: see `PartMotion::excess`.
   /// impulse  of a node, by what else has acted on it in the step; none: nothing has
@@ -110,8 +121,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::optional<CorotatedTets<S>> tets_;
   AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0, less where its part is
   AlignedVector<S> rightSide_, image_;                                ///< wide
+  AlignedVector<S> began_;                                            ///< wide: the solution if no force acted
   double damping_ = 0.0, alpha_ = 0.0;
   bool stiff_ = false;
+  double stiffnessNumber_ = 0.0;
   bool changed_ = true;                ///< masses or material, since the last assembly
   std::size_t held_;                   ///< nodes
   std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node
