@@ -23,7 +23,7 @@ constexpr double kCloserWithRows = 0.1;
 constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
 constexpr int kMaxPasses = 30;
 /// Stiffness numbers from which on the rigid motions of parts are unknowns of their own.
-constexpr double kStiffPart = 30.0;
+constexpr double kStiffPart = 5.0;
 /// Parts of a body whose rigid motions are solved for by themselves.
 constexpr std::size_t kMaxParts = 4;
 /// Passes from which on the derivative of sliding is used, but for a tenth, and from how long a step on.
@@ -119,13 +119,32 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
   unknown.first = fewSize_;
   if (!dynamics.rigidMotions(part, unknown.motions)) return;
   const auto& matrix = dynamics.matrix();
+  // Elasticity resists rigid motions as far as the matrix is of other rotations than the body's, or of a deformed body.
+  // The stiffest have a fresh one, and rounding in it would outweigh their mass: it does not count.
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    unknown.momenta[k].assign(matrix.wideSize(), btScalar(0));
+    unknown.images[k].assign(matrix.wideSize(), btScalar(0));
+    if (!dynamics.isStiff()) {
+      matrix.multiply(unknown.motions[k].data(), unknown.images[k].data(), threads_);
+      continue;
+    }
     for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
       toWide(matrix.mass(n) * fromPoint(&unknown.motions[k][4 * matrix.slotOf(n)]),
-             &unknown.momenta[k][matrix.wideOf(n)]);
+             &unknown.images[k][matrix.wideOf(n)]);
     }
   }
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    btVector3 began = matrix.mass(n) * fromWide(dynamics.deviation() + matrix.wideOf(n));
+    if (!dynamics.isStiff()) dynamics.rightSide(n, began.m_floats);
+    for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
+      const btVector3 motion = fromPoint(&unknown.motions[i][4 * matrix.slotOf(n)]);
+      unknown.began[static_cast<Eigen::Index>(i)] += product(motion, began);
+      for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+        unknown.mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
+            product(motion, fromWide(&unknown.images[k][matrix.wideOf(n)]));
+      }
+    }
+  }
+  unknown.mass = (0.5 * (unknown.mass + unknown.mass.transpose())).eval();
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
     if (row.nodeCount == 0 || row.body != body) continue;
@@ -147,27 +166,22 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
   fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
 }
 
-/// The solutions of stiff bodies are rigid motions when a solve begins: see goOn.
+/// Beside the parts' rigid motions solutions have none.
 void SystemSolve::moveIntoParts() {
   for (const PartUnknown& part : parts_) {
-    auto& dynamics = *step_.bodies.bodies()[part.body].dynamics;
-    auto& matrix = dynamics.matrix();
-    Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> momentum = Eigen::Matrix<double, 6, 1>::Zero();
-    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-      const btVector3 v = fromWide(matrix.solution() + matrix.wideOf(n));
-      for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
-        const btVector3 p = fromWide(&part.momenta[i][matrix.wideOf(n)]);
-        momentum[static_cast<Eigen::Index>(i)] += product(p, v);
-        for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-          mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
-              product(p, fromPoint(&part.motions[k][4 * matrix.slotOf(n)]));
-        }
-      }
-    }
-    few_.segment<6>(part.first) = mass.ldlt().solve(momentum);
+    few_.segment<6>(part.first) = part.mass.ldlt().solve(imageProducts(part));
     addPartMotion(part, few_, btScalar(-1));
   }
+}
+
+/// Z^T A y
+SystemSolve::Vector6 SystemSolve::imageProducts(const PartUnknown& part) const {
+  const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+  Vector6 sum;
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    sum[static_cast<Eigen::Index>(k)] = product(part.images[k].data(), matrix.solution(), part.images[k].size());
+  }
+  return sum;
 }
 
 void SystemSolve::moveOutOfParts() {
@@ -251,7 +265,7 @@ void SystemSolve::findResiduals() {
     btScalar* to = step_.bodies.bodies()[part.body].dynamics->matrix().residual();
     for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
       const auto factor = static_cast<btScalar>(few_[part.first + static_cast<Eigen::Index>(k)]);
-      for (std::size_t i = 0; i < part.momenta[k].size(); ++i) to[i] -= factor * part.momenta[k][i];
+      for (std::size_t i = 0; i < part.images[k].size(); ++i) to[i] -= factor * part.images[k][i];
     }
   }
 }
@@ -365,25 +379,13 @@ void SystemSolve::findFewResiduals() {
   partsBefore_ = Vector::Zero(fewSize_);
   for (const PartUnknown& part : parts_) {
     partsBefore_.segment<6>(part.first) = partMomentum(part);
-    fewResidual_.segment<6>(part.first) -= partsBefore_.segment<6>(part.first);
+    fewResidual_.segment<6>(part.first) += part.began - partsBefore_.segment<6>(part.first);
   }
 }
 
-/// Z^T M (y + Z q)
-Eigen::Matrix<double, 6, 1> SystemSolve::partMomentum(const PartUnknown& part) const {
-  const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
-  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
-  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-    btVector3 v = fromWide(matrix.solution() + matrix.wideOf(n));
-    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      v += static_cast<btScalar>(few_[part.first + static_cast<Eigen::Index>(k)]) *
-           fromPoint(&part.motions[k][4 * matrix.slotOf(n)]);
-    }
-    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      sum[static_cast<Eigen::Index>(k)] += product(fromWide(&part.momenta[k][matrix.wideOf(n)]), v);
-    }
-  }
-  return sum;
+/// Z^T A (y + Z q)
+SystemSolve::Vector6 SystemSolve::partMomentum(const PartUnknown& part) const {
+  return imageProducts(part) + part.mass * few_.segment<6>(part.first);
 }
 
 /// Rows of one tet at once.
@@ -454,17 +456,7 @@ SystemSolve::Matrix SystemSolve::fewMatrix() const {
       few.row(first + k).head(rigidSize_) -= column.transpose();
     }
   }
-  for (const PartUnknown& part : parts_) {
-    const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
-    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
-        for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-          few(part.first + static_cast<Eigen::Index>(i), part.first + static_cast<Eigen::Index>(k)) +=
-              product(fromWide(&part.momenta[i][matrix.wideOf(n)]), fromPoint(&part.motions[k][4 * matrix.slotOf(n)]));
-        }
-      }
-    }
-  }
+  for (const PartUnknown& part : parts_) few.block<6, 6>(part.first, part.first) += part.mass;
   return few;
 }
 
@@ -500,7 +492,7 @@ void SystemSolve::addFew(const Vector& few, bool toResiduals) {
     btScalar* to = target(part.body);
     for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
       const auto factor = sign * static_cast<btScalar>(few[part.first + static_cast<Eigen::Index>(k)]);
-      for (std::size_t i = 0; i < part.momenta[k].size(); ++i) to[i] += factor * part.momenta[k][i];
+      for (std::size_t i = 0; i < part.images[k].size(); ++i) to[i] += factor * part.images[k][i];
     }
   }
 }
@@ -516,7 +508,7 @@ SystemSolve::Vector SystemSolve::fewOf() const {
   for (const PartUnknown& part : parts_) {
     const btScalar* step = step_.bodies.bodies()[part.body].dynamics->matrix().step();
     for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      few[part.first + static_cast<Eigen::Index>(k)] -= product(part.momenta[k].data(), step, part.momenta[k].size());
+      few[part.first + static_cast<Eigen::Index>(k)] -= product(part.images[k].data(), step, part.images[k].size());
     }
   }
   return few;
@@ -539,9 +531,9 @@ void SystemSolve::moveFew() {
     const auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
     const BodyState& state = states_[placeOf(part.body)];
     for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      const std::size_t size = part.momenta[k].size();
-      push[part.first + static_cast<Eigen::Index>(k)] -= product(part.momenta[k].data(), matrix.solution(), size) -
-                                                         product(part.momenta[k].data(), state.solution.data(), size);
+      const std::size_t size = part.images[k].size();
+      push[part.first + static_cast<Eigen::Index>(k)] -= product(part.images[k].data(), matrix.solution(), size) -
+                                                         product(part.images[k].data(), state.solution.data(), size);
     }
   }
   if (fewSize_ > 0) fewStep_ = compliance_ * push;
@@ -590,9 +582,9 @@ btScalar SystemSolve::searchLine() {
     }
   }
   for (const PartUnknown& part : parts_) {
-    const Eigen::Matrix<double, 6, 1> step = fewStep_.segment<6>(part.first);
-    const Eigen::Matrix<double, 6, 1> after = partMomentum(part), grown = after - partsBefore_.segment<6>(part.first);
-    linear += step.dot(partsBefore_.segment<6>(part.first));
+    const Vector6 step = fewStep_.segment<6>(part.first);
+    const Vector6 grown = partMomentum(part) - partsBefore_.segment<6>(part.first);
+    linear += step.dot(partsBefore_.segment<6>(part.first) - part.began);
     quadratic += step.dot(grown);
   }
   const double first = slope(0, linear, quadratic), all = slope(1, linear, quadratic);

@@ -36,13 +36,16 @@ class SystemSolve {
  private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
   /// The rigid motion of a part of a stiff body, beside which the nodes' velocities are: sweeps would be slow to find
-  /// it, and its stiffness is so large that rounding would hide what it weighs. Elasticity does not resist it.
+  /// it, and its stiffness is so large that rounding would hide what it weighs.
   struct PartUnknown {
     std::size_t body = 0;    ///< in SolverBodies::bodies
     Eigen::Index first = 0;  ///< of its six unknowns
     AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z: 4 scalars a slot
-    AlignedVector<btScalar> momenta[Dynamics::kRigidMotions];  ///< M Z, wide
+    AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, wide
+    Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
+    Vector6 began = Vector6::Zero();                                         ///< Z^T b
   };
   struct BodyState {
     std::vector<btScalar> solution, residual;  ///< wide, when a pass began; of elasticity and others alone
@@ -62,7 +65,8 @@ class SystemSolve {
   void moveIntoParts();
   void moveOutOfParts();
   void addPartMotion(const PartUnknown& part, const Vector& few, btScalar factor);
-  Eigen::Matrix<double, 6, 1> partMomentum(const PartUnknown& part) const;
+  Vector6 imageProducts(const PartUnknown& part) const;
+  Vector6 partMomentum(const PartUnknown& part) const;
   std::size_t placeOf(std::size_t body) const;
   void findFewResiduals();
   Matrix fewMatrix() const;

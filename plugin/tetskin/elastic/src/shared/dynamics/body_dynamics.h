@@ -69,6 +69,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double stiffnessNumber() const { return stiffnessNumber_; }
   /// The square of the solution's norm, by masses.
   double squaredSolution() const;
+  /// The solution if no force acted, wide: what the velocities that the step began with, all else that acts included,
+  /// are beside the rigid motion.
+  const S* deviation() const { return began_.data(); }
   /// The same of how the solution differs from the velocities that the step began with, all else that acts included.
   double squaredChange() const;
   /// The square of the solution's norm by the matrix, as `startAgain` has found it.
