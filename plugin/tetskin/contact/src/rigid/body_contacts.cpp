@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
 #include <tetskin/contact/src/rigid/node_contacts.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tetskin {
 namespace {
@@ -26,6 +28,13 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
 }
 
 }  // namespace
+
+BodyContacts::BodyContacts(const btDispatcher& dispatcher, btSoftBody& body, TouchSearch search, btScalar thickness)
+    : dispatcher_(&dispatcher),
+      body_(body),
+      lifetime_(bodyWithTrees(body)->lifetime()),
+      search_(std::move(search)),
+      thickness_(thickness) {}
 
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
@@ -96,6 +105,7 @@ void BodyContacts::collideChildren(const btCollisionShape& compound, const Shape
 void BodyContacts::forget(const btCollisionObject& object) {
   const auto isOf = [&](const KnownShape& known) { return known.object == &object; };
   known_.erase(std::remove_if(known_.begin(), known_.end(), isOf), known_.end());
+  if (!bodyLives()) return;
   const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
   for (std::size_t k = 0; k < std::min(kept, touches_.size()); ++k) {
     if (body_.m_nodeRigidContacts[static_cast<int>(k)].m_cti.m_colObj == &object) touches_[k].node = -1;

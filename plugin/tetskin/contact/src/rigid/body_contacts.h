@@ -4,6 +4,7 @@
 // Internal to SurfaceContact: one body and all that it meets.
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/contact/src/rigid/convex_probe.h>
@@ -11,6 +12,7 @@
 #include <tetskin/contact/src/rigid/mesh_probe.h>
 #include <tetskin/contact/src/rigid/touch_search.h>
 
+#include <memory>
 #include <vector>
 
 namespace tetskin {
@@ -26,9 +28,14 @@ struct KnownShape {
 
 class BodyContacts {
  public:
-  /// thickness  how deep in a mesh a point still belongs to it
-  BodyContacts(btSoftBody& body, TouchSearch search, btScalar thickness)
-      : body_(body), search_(std::move(search)), thickness_(thickness) {}
+  /// dispatcher  whose pairs are met; only compared
+  /// body        one that `makeSoftBody` has made
+  /// thickness   how deep in a mesh a point still belongs to it
+  BodyContacts(const btDispatcher& dispatcher, btSoftBody& body, TouchSearch search, btScalar thickness);
+
+  const btDispatcher* dispatcher() const { return dispatcher_; }
+  /// If not, nothing else may be called but `forget` and the accessors.
+  bool bodyLives() const { return !lifetime_.expired(); }
 
   /// Adds the contacts with an object, shape by shape, to Bullet's.
   void collide(const btCollisionObjectWrapper& rigid);
@@ -51,7 +58,9 @@ class BodyContacts {
   ShapeMemory& memoryOf(const btCollisionShape& shape, const btCollisionObject& object);
   ShapeProbe* probeOf(const btCollisionShape& shape);
 
+  const btDispatcher* dispatcher_;
   btSoftBody& body_;
+  std::weak_ptr<const void> lifetime_;  ///< the body's: another one may have its address afterwards
   TouchSearch search_;
   btScalar thickness_;
   std::vector<NodePath> nodes_;

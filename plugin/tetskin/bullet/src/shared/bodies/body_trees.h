@@ -13,6 +13,7 @@
 #include <tetskin/export.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tetskin {
@@ -51,6 +52,9 @@ class BodyWithTrees : public btSoftBody {
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
   /// What has to live as long as the body: one thing, of whoever puts it there.
   std::shared_ptr<void>& companion() { return companion_; }
+  /// tetskin::contact's, who finds where the body's surface meets rigid bodies; gone where nobody does.
+  const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
+  void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
 
   /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
   /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
@@ -70,9 +74,11 @@ class BodyWithTrees : public btSoftBody {
   btScalar reach_ = -1;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
+  std::weak_ptr<void> surfaceContacts_;
 };
 
 /// Of a body that `makeSoftBody` has made; null for others.
 TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
+TETSKIN_BULLET_API const BodyWithTrees* bodyWithTrees(const btSoftBody& body);
 
 }  // namespace tetskin
