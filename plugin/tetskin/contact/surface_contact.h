@@ -50,7 +50,8 @@ struct SurfaceContactPoint {
 /// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again, as it does in a world
 ///           with another dispatcher. This object, the body, the world, rigid bodies and their shapes may go in any
 ///           order, each as Bullet allows it, also at the end of the program, where globals hold them.
-/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it)
+/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it);
+///           children of a compound are found by its tree
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// From the next substep on. Sets the margin of the body's shape, until this object goes.
