@@ -60,6 +60,10 @@ struct ContactObstacle {
 ContactObstacle ground() {
   return {nullptr, std::make_unique<btBoxShape>(btVector3(10, 1, 10)), btVector3(0, -1, 0)};
 }
+/// Longer than anything slides on it.
+ContactObstacle runway() {
+  return {nullptr, std::make_unique<btBoxShape>(btVector3(40, 1, 10)), btVector3(0, -1, 0)};
+}
 ContactObstacle sphere() {
   return {nullptr, std::make_unique<btSphereShape>(btScalar(1.2)), btVector3(0, btScalar(-1.2), 0)};
 }
@@ -266,18 +270,18 @@ std::vector<ContactCase> contactCases() {
   beside.gravity = 0.0;
   ContactCase row{"compound_10000", compound};
   row.bodies = 10;
-  ContactCase rolling{"rolling", ground};
+  ContactCase rolling{"rolling", runway};
   rolling.mesh = ball;
   rolling.height = kTouching;
   rolling.speed = 2.0;
   rolling.rolls = true;
   // Stops as the run ends.
-  ContactCase sliding{"sliding", ground};
+  ContactCase sliding{"sliding", runway};
   sliding.mesh = slab;
   sliding.height = kTouching;
   sliding.speed = 5.8;
   sliding.friction = 0.4;
-  ContactCase slope{"slope", ground};
+  ContactCase slope{"slope", runway};
   slope.mesh = slab;
   slope.height = kTouching;
   slope.friction = 1.0;
