@@ -98,7 +98,6 @@ World::~World() {
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
   world_.reset();
-  SurfaceContact::shutdown(static_cast<btCollisionDispatcher&>(*dispatcher_));
 }
 
 void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {

@@ -4,7 +4,6 @@
 // What rests, rests on the ground as drawn.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
@@ -45,10 +44,11 @@ struct SurfaceContactPoint {
 /// draw them: a quadratic one is drawn up to some thousandths of the body's size away, more in few tets and under
 /// loads.
 ///
-/// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again. This object, the body,
-///           the world, rigid bodies and their shapes may go in any order, each as Bullet allows it. What the world's
-///           dispatcher was told stays until `shutdown`.
-/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it)
+/// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again, as it does in a world
+///           with another dispatcher. This object, the body, the world, rigid bodies and their shapes may go in any
+///           order, each as Bullet allows it, also at the end of the program, where globals hold them.
+/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it);
+///           children of a compound are found by its tree
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// From the next substep on. Sets the margin of the body's shape, until this object goes.
@@ -66,9 +66,6 @@ class TETSKIN_CONTACT_API SurfaceContact {
   ~SurfaceContact();
   SurfaceContact(const SurfaceContact&) = delete;
   SurfaceContact& operator=(const SurfaceContact&) = delete;
-
-  /// The dispatcher forgets us: to be called once for each, after its world is deleted, and before it is itself.
-  static void shutdown(btCollisionDispatcher& dispatcher);
 
   /// Those of the last substep in which the body was awake, each once, by obstacle; without obstacles that have left
   /// the world since. Allocates the result.

@@ -174,6 +174,10 @@ BodyWithTrees* bodyWithTrees(btSoftBody& body) {
   return dynamic_cast<BodyWithTrees*>(&body);
 }
 
+const BodyWithTrees* bodyWithTrees(const btSoftBody& body) {
+  return dynamic_cast<const BodyWithTrees*>(&body);
+}
+
 void BodyWithTrees::makeTrees(bool faces) {
   buildNodeTree(*this);
   kind_ = faces ? Kind::Faces : Kind::LeftOut;

@@ -14,6 +14,7 @@
 #include <tetskin/export.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tetskin {
@@ -52,6 +53,9 @@ class BodyWithTrees : public btSoftBody {
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
   /// What has to live as long as the body: one thing, of whoever puts it there.
   std::shared_ptr<void>& companion() { return companion_; }
+  /// tetskin::contact's, who finds where the body's surface meets rigid bodies; gone where nobody does.
+  const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
+  void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
 
   /// What the body is to stay outside of in this step: whoever searches puts it there, the solver takes it up, and
   /// clears it when a step begins.
@@ -77,9 +81,11 @@ class BodyWithTrees : public btSoftBody {
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
   PointContacts pointContacts_;
+  std::weak_ptr<void> surfaceContacts_;
 };
 
 /// Of a body that `makeSoftBody` has made; null for others.
 TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
+TETSKIN_BULLET_API const BodyWithTrees* bodyWithTrees(const btSoftBody& body);
 
 }  // namespace tetskin
