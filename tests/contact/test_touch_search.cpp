@@ -35,7 +35,7 @@ class TouchSearchTest : public ::testing::Test {
                               ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::of(shape));
-    search.begin(nodes_);
+    search.begin(nodes_, 0);
     return search.find(probe, {at, at}, memory);
   }
   std::vector<PointTouch> findAnew(const btCollisionShape& shape, const btVector3& at) {

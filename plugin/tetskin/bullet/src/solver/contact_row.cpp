@@ -20,7 +20,7 @@ btVector3 slip(const ContactRow& row, const btVector3& u) {
 
 }  // namespace
 
-btVector3 impulseAt(const ContactRow& row, const btVector3& u, ContactRow::State& state) {
+btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state) {
   using State = ContactRow::State;
   if (row.joined) {
     state = State::Sticks;
@@ -33,7 +33,7 @@ btVector3 impulseAt(const ContactRow& row, const btVector3& u, ContactRow::State
   state = State::Sticks;
   btVector3 along = -row.tangentStiffness * slip(row, u);
   const btScalar most = row.friction * row.normalBound, length = along.length();
-  if (length > most) {
+  if (length > most && !sticks) {
     state = State::Slides;
     along *= most / length;
   }

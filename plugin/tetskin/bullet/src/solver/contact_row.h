@@ -47,12 +47,14 @@ struct ContactRow {
   btScalar friction = 0;
   btScalar stiffness = 0;             ///< D, in masses
   btScalar tangentStiffness = 0;      ///< T
+  btScalar stiffening = 1;            ///< of D, where the point is deep
   btScalar gapVelocity = 0;           ///< max(g / dt, -pushingOut)
   btVector3 offsetVelocity{0, 0, 0};  ///< s / dt
   btVector3 relative{0, 0, 0};        ///< u where nothing is solved for yet
   btVector3 given{0, 0, 0};           ///< impulse that velocities have already
   btScalar normalBound = 0;           ///< normal impulse by which friction is bounded
   btVector3 stickingPlace{0, 0, 0};   ///< where the point sticks, in the object's frame
+  bool stuck = false;                 ///< in the step before: the first pass takes it that it does still
 
   btScalar effectiveMass = 0;  ///< of both sides along the normal
   btVector3 slip{0, 0, 0};     ///< u along the surface, at the velocities as they are
@@ -68,10 +70,12 @@ struct Sticking {
   btVector3 normal;
   btVector3 place;           ///< in the object's frame
   btScalar normalForce = 0;  ///< of the step
+  bool stuck = false;        ///< and did not slide
 };
 
 /// The impulse at a velocity over that of what it meets, and what kind it is of.
-btVector3 impulseAt(const ContactRow& row, const btVector3& u, ContactRow::State& state);
+/// sticks  as if friction were not bounded
+btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state);
 
 /// By how much the impulse falls as velocities grow: the derivative, but for sliding, where it leaves out `kept` of how
 /// friction turns with its direction less than it resists. With 0 kept it is the derivative, and passes cycle; with 1

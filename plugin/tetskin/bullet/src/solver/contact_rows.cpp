@@ -18,6 +18,8 @@ constexpr btScalar kTangentShare = btScalar(0.3);
 constexpr double kAnchorStiffness = 1000.0;
 /// Sizes of the body per second at which what is in each other is pushed apart, at most.
 constexpr btScalar kPushingOut = 1;
+/// Of the body's size, from which depth on contact is stiffer in proportion to it, and by how much at most.
+constexpr btScalar kDeep = btScalar(0.002), kMaxStiffening = 10;
 /// Weights below do not count where rows share a node.
 constexpr btScalar kSmallWeight = btScalar(0.02);
 /// Cosine: contacts of one point whose normals are as near as that are the same from step to step.
@@ -44,28 +46,29 @@ int indexIn(const btSoftBody& body, const btSoftBody::Node* node) {
 }
 
 /// What Bullet's own contacts have in common.
-PointContact bulletsContact(const btSoftBody::DeformableRigidContact& from) {
+/// speculation  that Bullet takes for a part of the margin
+PointContact bulletsContact(const btSoftBody::DeformableRigidContact& from, btScalar speculation) {
   PointContact contact;
   contact.object = from.m_cti.m_colObj;
   contact.normal = from.m_cti.m_normal;
-  contact.distance = from.m_cti.m_offset;
+  contact.distance = from.m_cti.m_offset + speculation;
   contact.friction = from.m_c3;
   return contact;
 }
 
 /// Bullet's own contacts of the body with rigid objects.
-void readBulletsContacts(const btSoftBody& body, PointContacts& contacts) {
+void readBulletsContacts(const btSoftBody& body, btScalar speculation, PointContacts& contacts) {
   contacts.clear();
   for (int k = 0; k < body.m_nodeRigidContacts.size(); ++k) {
     const auto& from = body.m_nodeRigidContacts[k];
-    PointContact& contact = contacts.emplace_back(bulletsContact(from));
+    PointContact& contact = contacts.emplace_back(bulletsContact(from, speculation));
     addNode(indexIn(body, from.m_node), 1, contact);
     contact.point = static_cast<std::uint32_t>(contact.nodes[0]);
     contact.position = from.m_node->m_x;
   }
   for (int k = 0; k < body.m_faceRigidContacts.size(); ++k) {
     const auto& from = body.m_faceRigidContacts[k];
-    PointContact& contact = contacts.emplace_back(bulletsContact(from));
+    PointContact& contact = contacts.emplace_back(bulletsContact(from, speculation));
     contact.point = kFirstFace + static_cast<std::uint32_t>(from.m_face - &body.m_faces[0]);
     contact.position = btVector3(0, 0, 0);
     for (int c = 0; c < 3; ++c) {
@@ -87,8 +90,7 @@ bool anyFree(const SolvedBody& body, const ContactRow& row) {
 }
 
 /// Over what it meets.
-btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, const RigidUnknowns& rigids,
-                           btScalar seconds) {
+btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
   btVector3 sum(0, 0, 0);
   for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
     sum += row.weights[k] * fromPoint(body.dynamics->velocity(static_cast<std::size_t>(row.nodes[k])));
@@ -126,6 +128,7 @@ void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
     offset -= row.normal.dot(offset) * row.normal;
     row.offsetVelocity = offset / seconds;
     row.normalBound = known->normalForce * seconds;
+    row.stuck = known->stuck;
     return;
   }
 }
@@ -160,6 +163,7 @@ Sticking stickingOf(const ContactRow& row, btScalar seconds) {
   const btScalar along = row.normal.dot(row.impulse);
   kept.normalForce = along / seconds;
   kept.place = row.stickingPlace;
+  kept.stuck = row.state == ContactRow::State::Sticks;
   if (row.state != ContactRow::State::Slides || !(row.tangentStiffness > 0)) return kept;
   const btVector3 reached = (row.slip + row.offsetVelocity) * seconds;
   const btVector3 held = -(row.impulse - along * row.normal) * (seconds / row.tangentStiffness);
@@ -183,8 +187,10 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar 
 }
 
 void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
-  readBulletsContacts(*body.body, *body.bulletsContacts);
-  const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
+  auto* own = bodyWithTrees(*body.body);
+  readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
+  if (own) own->setSpeculation(0);
+  const btScalar size = sizeOf(*body.body), pushingOut = kPushingOut * size;
   const auto add = [&](PointContact& contact) {
     contact.impulse.setZero();
     if (!contact.object || !isFinite(contact)) return;
@@ -192,15 +198,15 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     if (!anyFree(body, row)) return;
     row.rigid = rigids.at(*row.object, row.position);
     row.gapVelocity = std::max(contact.distance / seconds, -pushingOut);
+    row.stiffening = std::min(std::max(-contact.distance / (kDeep * size), btScalar(1)), kMaxStiffening);
     row.relative = relativeVelocity(body, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
     recall(body, seconds, row);
     rows_.push_back(row);
   };
   for (PointContact& contact : *body.bulletsContacts) add(contact);
-  if (auto* own = bodyWithTrees(*body.body)) {
-    for (PointContact& contact : own->pointContacts()) add(contact);
-  }
+  if (!own) return;
+  for (PointContact& contact : own->pointContacts()) add(contact);
 }
 
 void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
@@ -240,7 +246,7 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
       share = std::max(share, loads[row.body][static_cast<std::size_t>(row.nodes[k])]);
     }
     const double mass = effectiveMass(bodies.bodies()[row.body], row, rigids);
-    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
+    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share * row.stiffening;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
   }

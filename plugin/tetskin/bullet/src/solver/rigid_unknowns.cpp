@@ -10,6 +10,9 @@
 namespace tetskin {
 namespace {
 
+/// Radians in a step, and a share of the velocity, that Bullet's velocities of kinematic bodies may be off by.
+constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
+
 Eigen::Vector3d toEigenVector(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
@@ -84,6 +87,8 @@ void RigidUnknowns::clear() {
   unknowns_.clear();
   places_.clear();
   jacobians_.clear();
+  placesBefore_.swap(placesNow_);
+  placesNow_.clear();
 }
 
 int RigidUnknowns::find(const btCollisionObject& object) const {
@@ -141,7 +146,7 @@ RigidPoint RigidUnknowns::at(const btCollisionObject& object, const btVector3& p
   return point;
 }
 
-btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds) const {
+btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds) {
   if (linkOf(object) && at.jacobian >= 0) {
     const btMultiBody& body = *linkOf(object)->m_multiBody;
     const Jacobian& jacobian = jacobians_[static_cast<std::size_t>(at.jacobian)];
@@ -153,7 +158,24 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};
-  return rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
+  const btVector3 velocity = rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
+  return rigid->isKinematicObject() ? carriedBy(object, at.arm, velocity, seconds) : velocity;
+}
+
+/// Bullet makes the angular velocity of a kinematic body of the arc cosine of its turn in a step, of which few digits
+/// are left. Its places in this step and the one before have all of them.
+btVector3 RigidUnknowns::carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity,
+                                   btScalar seconds) {
+  const btTransform& now = object.getWorldTransform();
+  placesNow_[&object] = now;
+  const auto known = placesBefore_.find(&object);
+  if (known == placesBefore_.end()) return velocity;
+  const btTransform& before = known->second;
+  const btVector3 turned = now.getBasis() * (before.getBasis().transpose() * arm);
+  const btVector3 carried = (now.getOrigin() - before.getOrigin() + turned - arm) / seconds;
+  // Else it was put there, or is another one.
+  const btScalar most = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
+  return (carried - velocity).length() <= most ? carried : velocity;
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {

@@ -11,7 +11,7 @@
 // in which only inverse masses occur, so that an axis may be locked.
 #pragma once
 
-#include <LinearMath/btVector3.h>
+#include <LinearMath/btTransform.h>
 
 #include <Eigen/Core>
 #include <unordered_map>
@@ -41,6 +41,7 @@ struct RigidUnknown {
 
 class RigidUnknowns {
  public:
+  /// When a step begins.
   void clear();
 
   /// Where an object is met: of one that is free to move, which becomes an unknown.
@@ -50,7 +51,7 @@ class RigidUnknowns {
   /// For a RigidPoint of a rigid body: a row of a joint, whose velocity is along x alone.
   int addScalarJacobian(const btVector3& linear, const btVector3& angular);
   /// Of the object there, as Bullet has left it: that of the straight way which a point of it goes in the step.
-  btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds) const;
+  btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
@@ -72,11 +73,13 @@ class RigidUnknowns {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   Jacobian jacobianOf(const RigidPoint& at) const;
   int add(const btCollisionObject& object);
+  btVector3 carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity, btScalar seconds);
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;
   std::unordered_map<const void*, int> places_;  ///< by rigid body or multibody
   std::vector<Jacobian> jacobians_;
+  std::unordered_map<const btCollisionObject*, btTransform> placesNow_, placesBefore_;  ///< of kinematic bodies
 };
 
 }  // namespace tetskin

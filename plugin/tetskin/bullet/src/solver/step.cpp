@@ -91,6 +91,12 @@ btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
   return v;
 }
 
+/// Null where it is not known: of a body that is not elastic, or has been moved since.
+btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
+  if (!of.elastic) return nullptr;
+  return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
+}
+
 /// Several bodies side by side, or one in pieces.
 /// task  (SolvedBody&, ParallelFor* inner)
 template <class Task>
@@ -154,8 +160,17 @@ void DeformableSolver::Parts::predict() {
   for (SolvedBody& of : bodies.bodies()) {
     writePrediction(of);
     clearContacts(*of.body);
+    if (of.elastic) speculate(of);
     predictPositions(of);
   }
+}
+
+/// Twice as far as gravity takes anything in a step: one of two that are in touch may be predicted to fall, and neither
+/// does.
+void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
+  auto* own = bodyWithTrees(*of.body);
+  const btDiscreteDynamicsWorld* world = worldOf(of);
+  if (own && world) own->setSpeculation(2 * world->getGravity().length() * dt() * dt());
 }
 
 /// The world tells its own in each step.
@@ -295,9 +310,7 @@ void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
   if (rigids.list().empty()) return;
   std::vector<btDiscreteDynamicsWorld*> worlds;
   for (const SolvedBody& of : bodies.bodies()) {
-    // Of a body that has been moved to another world since, it is not known.
-    const bool known = of.elastic && of.body->getWorldInfo() == of.elastic->worldInfo;
-    btDiscreteDynamicsWorld* world = known ? of.elastic->world : nullptr;
+    btDiscreteDynamicsWorld* world = worldOf(of);
     if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
     worlds.push_back(world);
     collectRigidRows(*world, dt(), rigids, rows.rows());

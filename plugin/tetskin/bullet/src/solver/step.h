@@ -49,6 +49,7 @@ struct DeformableSolver::Parts {
   void applyOthers();
   void predictVelocities(SolvedBody& of, ParallelFor* inner);
   void writePrediction(SolvedBody& of) const;
+  void speculate(const SolvedBody& of) const;
   void predictPositions(SolvedBody& of);
 
   // Of assemble.

@@ -210,7 +210,7 @@ SolveReport SystemSolve::solve() {
     const bool derivative = pass >= kPassesBeforeDerivative && length > kLongStep;
     const btScalar kept = derivative ? kKept : btScalar(1);
     findResiduals();
-    evaluateRows(kept);
+    evaluateRows(kept, pass == 0);
     const bool done = start(pass);
     const bool last = pass == (system_.rows.empty() ? 1 : kMaxPasses);
     if (pass > 0 && (done || last || system_.rows.empty())) {
@@ -270,13 +270,13 @@ void SystemSolve::findResiduals() {
   }
 }
 
-void SystemSolve::evaluateRows(btScalar kept) {
+void SystemSolve::evaluateRows(btScalar kept, bool first) {
   before_.resize(system_.rows.size());
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
     before_[r] = velocityOf(r);
     row.slip = before_[r] - row.normal.dot(before_[r]) * row.normal;
-    row.impulse = impulseAt(row, before_[r], row.state);
+    row.impulse = impulseAt(row, before_[r], first && row.stuck, row.state);
     row.tangent = tangentAt(row, before_[r], row.state, kept);
   }
 }
@@ -561,7 +561,7 @@ double SystemSolve::slope(btScalar share, double linear, double quadratic) const
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
     ContactRow::State state{};
-    const btVector3 impulse = impulseAt(row, before_[r] + share * stepped_[r], state);
+    const btVector3 impulse = impulseAt(row, before_[r] + share * stepped_[r], false, state);
     sum -= product(impulse - row.given, stepped_[r]);
   }
   return sum;

@@ -56,7 +56,7 @@ class SystemSolve {
   elastic_detail::SolveLimits limitsOfPass(int pass) const;
   void numberRigids();
   void findResiduals();
-  void evaluateRows(btScalar kept);
+  void evaluateRows(btScalar kept, bool first);
   void addImpulses();
   void addTangents();
   void addBlocks(std::size_t first, std::size_t last);

@@ -86,7 +86,7 @@ void BodyContacts::readNodes() {
     const btSoftBody::Node& node = body_.m_nodes[n];
     nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
   }
-  search_.begin(nodes_);
+  search_.begin(nodes_, body_.speculation());
 }
 
 /// By the boxes that Bullet keeps, and for shapes of one piece by the distance of the body's.

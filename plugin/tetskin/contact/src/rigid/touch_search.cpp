@@ -63,8 +63,11 @@ TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar slack
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
-void TouchSearch::begin(const std::vector<NodePath>& nodes) {
+void TouchSearch::begin(const std::vector<NodePath>& nodes, btScalar speculation) {
+  assert(speculation >= 0);
   nodes_ = &nodes;
+  speculation_ = speculation;
+  reach_ = margin_ + speculation;
   clustersRead_ = false;
   local_.resize(nodes.size());
 }
@@ -88,6 +91,10 @@ const std::vector<PointTouch>& TouchSearch::find(ShapeProbe& probe, const ShapeP
   shape_ = shape;
   touches_.clear();
   memory_ = &memory;
+  if (memory.speculation != speculation_) {
+    memory = {};
+    memory.speculation = speculation_;
+  }
   ++memory.steps;
   if (isAllClear()) {
     memory.touched.clear();
@@ -177,7 +184,7 @@ btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool 
       left = std::min(left, still);
       continue;
     }
-    if (!entered && !probe_->enter(ball, margin_ + slack_)) {
+    if (!entered && !probe_->enter(ball, reach_ + slack_)) {
       memory_->clusterBalls[cluster] = ball;
       memory_->clusterClear[cluster] = slack_;
       return slack_;
@@ -223,7 +230,7 @@ void TouchSearch::remember(std::size_t patch, btScalar clear) {
 
 /// Returns how far all its points are, where they begin, from meeting anything.
 btScalar TouchSearch::searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound) {
-  const btScalar far = lowestHeight(patch, clusterBound) - margin_;
+  const btScalar far = lowestHeight(patch, clusterBound) - reach_;
   if (far > slack_) return far;
   BoxOfPaths box;
   btScalar longest = 0;
@@ -232,10 +239,10 @@ btScalar TouchSearch::searchPatch(const ContactPatch& patch, const ShapeBound& c
     longest = std::max(longest, (carriers_[n].predicted - carriers_[n].now).length2());
   }
   // So far that a point's whole way is within reach of where it begins.
-  const btScalar reach = margin_ + slack_ + btSqrt(longest) * patch.spread;
+  const btScalar reach = reach_ + slack_ + btSqrt(longest) * patch.spread;
   const CarrierPaths carriers{carriers_.data(), patch.nodeCount, patch.spread};
   if (!probe_->narrow(carriers, box.ball(patch.spread), reach)) return slack_;
-  const btScalar nearer = lowestHeight(patch, probe_->bound()) - margin_;
+  const btScalar nearer = lowestHeight(patch, probe_->bound()) - reach_;
   return nearer > 0 ? nearer : searchPoints(patch);
 }
 
@@ -261,7 +268,7 @@ btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
       now += weights[n] * heights_[0][n];
       predicted += weights[n] * heights_[1][n];
     }
-    const btScalar height = std::min(now, predicted) - margin_;
+    const btScalar height = std::min(now, predicted) - reach_;
     clear = std::min(clear, height > 0 ? height : touch(patch, p));
   }
   chooseTouches(first);
@@ -281,14 +288,14 @@ NodePath TouchSearch::pathOf(const ContactPatch& patch, std::uint32_t point) con
 /// Returns how far the point is from meeting anything.
 btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   const NodePath path = pathOf(patch, point);
-  const Meeting met = firstMet(*probe_, path, margin_);
+  const Meeting met = firstMet(*probe_, path, reach_);
   if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
   const btVector3& normal = met.distance.normal;
   PointTouch touch;
   touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
   // What is too near is pushed out, wherever it goes.
-  if (!(touch.predicted < 0 || touch.distance < 0)) return 0;
+  if (!(touch.predicted < speculation_ || touch.distance < speculation_)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
   touch.patch = static_cast<std::uint32_t>(&patch - patches_.patches.data());

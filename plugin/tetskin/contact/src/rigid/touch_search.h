@@ -25,7 +25,7 @@ struct PointTouch {
   btVector3 position;       ///< now, world space
   btVector3 normal;         ///< of the shape where the point meets it, world space
   btScalar distance = 0;    ///< now, along the normal, less the margin
-  btScalar predicted = 0;   ///< the same at the end of the step: one of the two is below 0
+  btScalar predicted = 0;   ///< the same at the end of the step: one of the two is below 0, or hardly above
 };
 
 class BoxOfPaths {
@@ -55,6 +55,7 @@ struct ShapeMemory {
   std::vector<std::uint32_t> touched;  ///< points of the last step, ascending
   std::vector<btVector3> nodes;        ///< world space, from where on the whole body is clear of a shape that rests
   btTransform place = btTransform::getIdentity();  ///< of that shape
+  btScalar speculation = 0;                        ///< by which all of it is clear
   unsigned clearUntil = 0;                         ///< step
   unsigned steps = 0;
 };
@@ -72,7 +73,8 @@ class TouchSearch {
   btScalar margin() const { return margin_; }
 
   /// Where the nodes are in this step; valid until the next call.
-  void begin(const std::vector<NodePath>& nodes);
+  /// speculation  how far above the margin points still touch
+  void begin(const std::vector<NodePath>& nodes, btScalar speculation);
   /// Of the body with these nodes and this shape, patch by patch, no more of each than kMaxTouches. Valid until the next
   /// call.
   /// memory  of the same shape, or an empty one
@@ -100,6 +102,7 @@ class TouchSearch {
 
   ContactPatches patches_;
   btScalar margin_, slack_;
+  btScalar speculation_ = 0, reach_ = 0;  ///< of this step; with the margin
   btScalar spread_ = 1;  ///< the largest of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
   bool clustersRead_ = false;

@@ -67,6 +67,12 @@ class BodyWithTrees : public btSoftBody {
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
   btScalar reach() const { return reach_; }
 
+  /// How far from what it may meet a body's points count as touching, while a step looks for that, beside what is kept
+  /// between them. Forces that will hold both are not known yet: what rests on something that rests is predicted to fall
+  /// with it, or away from it. 0: none, as outside of steps.
+  void setSpeculation(btScalar distance) { speculation_ = distance; }
+  btScalar speculation() const { return speculation_; }
+
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;
   void scale(const btVector3& factors) override;
@@ -77,7 +83,7 @@ class BodyWithTrees : public btSoftBody {
   void keepFaceTree();
 
   Kind kind_ = Kind::None;
-  btScalar reach_ = -1;
+  btScalar reach_ = -1, speculation_ = 0;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
   PointContacts pointContacts_;
