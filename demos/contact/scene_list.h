@@ -27,6 +27,7 @@ void addRestScenes(ContactScenes& scenes);
 void addLoadScenes(ContactScenes& scenes);
 void addFrictionScenes(ContactScenes& scenes);
 void addEnergyScenes(ContactScenes& scenes);
+void addMovedScenes(ContactScenes& scenes);
 
 const ContactScenes& contactScenes();
 
