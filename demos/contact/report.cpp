@@ -3,10 +3,12 @@
 #include "contact/report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "contact/promise.h"
 #include "contact/scene_list.h"
@@ -40,23 +42,53 @@ SceneResult resultFrom(const nlohmann::json& json) {
   return result;
 }
 
-/// The worst of the figures of which this is promised; none if none of these was measured.
-std::optional<double> worstFor(const Promise& promise, const SceneResults& results) {
-  std::optional<double> worst;
+/// What a scene's name ends with where there are several of it: "k50", "1e9Pa"; empty: there is one.
+std::string stiffnessIn(const std::string& scene) {
+  const std::string last = scene.substr(scene.rfind('/') + 1);
+  const bool isRelative = last.size() > 1 && last[0] == 'k' && std::isdigit(static_cast<unsigned char>(last[1]));
+  const bool isPressure = last.size() > 2 && last.compare(last.size() - 2, 2, "Pa") == 0;
+  return isRelative || isPressure ? last : "";
+}
+
+/// The worst of the figures of which this is promised, by stiffness, in the order in which these were run.
+using WorstFigures = std::vector<std::pair<std::string, double>>;
+
+WorstFigures worstFor(const Promise& promise, const SceneResults& results) {
+  WorstFigures worst;
   for (const SceneResult& result : results) {
+    const std::string stiffness = stiffnessIn(result.scene);
     for (const Figure& figure : result.figures) {
       if (promiseFor(result.scene, figure.name) != &promise) continue;
-      if (!worst || !(promise.slack(figure.value) >= promise.slack(*worst))) worst = figure.value;
+      const auto found = std::find_if(worst.begin(), worst.end(), [&](const auto& w) { return w.first == stiffness; });
+      if (found == worst.end()) {
+        worst.emplace_back(stiffness, figure.value);
+      } else if (!(promise.slack(figure.value) >= promise.slack(found->second))) {
+        found->second = figure.value;
+      }
     }
   }
   return worst;
 }
 
-std::string cell(const Promise& promise, const std::optional<double>& worst) {
-  if (!worst) return "";
-  char digits[32];
-  std::snprintf(digits, sizeof digits, std::abs(*worst) < 1e-3 ? "%.1e" : "%.3g", *worst);
-  return promise.holds(*worst) ? digits : "**" + std::string(digits) + "**";
+std::string cell(const Promise& promise, const WorstFigures& worst) {
+  std::string cell;
+  for (const auto& [stiffness, value] : worst) {
+    char digits[32];
+    const bool tiny = value != 0.0 && std::abs(value) < 1e-3;
+    std::snprintf(digits, sizeof digits, tiny ? "%.1e" : "%.4g", value);
+    cell += (cell.empty() ? "" : ", ") + (promise.holds(value) ? digits : "**" + std::string(digits) + "**");
+  }
+  return cell;
+}
+
+/// "roll/undamped, k300, k3000".
+std::string heading(const Promise& promise, const WorstFigures& worst) {
+  std::string heading = promise.scene;
+  for (const auto& [stiffness, value] : worst) {
+    const bool isNamed = stiffness.empty() || heading.find("/" + stiffness) != std::string::npos;
+    if (!isNamed) heading += ", " + stiffness;
+  }
+  return heading;
 }
 
 }  // namespace
@@ -116,14 +148,14 @@ std::string toMarkdown(const std::vector<ResultColumn>& columns) {
   table += "\n" + rule + "\n";
   for (const Promise& promise : promises()) {
     std::string cells;
-    bool any = false;
+    WorstFigures first;
     for (const ResultColumn& column : columns) {
-      const auto worst = worstFor(promise, column.results);
-      any = any || worst;
+      const WorstFigures worst = worstFor(promise, column.results);
+      if (first.empty()) first = worst;
       cells += " " + cell(promise, worst) + " |";
     }
-    if (any)
-      table += std::string("| ") + promise.scene + " | " + promise.figure + " | " + text(promise) + " |" + cells + "\n";
+    if (first.empty()) continue;
+    table += "| " + heading(promise, first) + " | " + promise.figure + " | " + text(promise) + " |" + cells + "\n";
   }
   return table;
 }

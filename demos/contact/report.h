@@ -37,7 +37,8 @@ struct ResultColumn {
   std::string title;
   SceneResults results;
 };
-/// A table: a line a promise, with the figure that comes nearest to breaking it, or breaks it by most, in each column.
+/// A table: a line a promise; in each column, and for each stiffness of the scenes, the figure that comes nearest to
+/// breaking it, or breaks it by most.
 std::string toMarkdown(const std::vector<ResultColumn>& columns);
 
 }  // namespace tetskin::contact_demo
