@@ -84,6 +84,7 @@ int main(int argc, char** argv) {
                     "by the surface, a figure is not what is promised"});
   line.addText("--only", options.only, "Part of the scenes' names");
   std::vector<std::string> forces;
+  forces.reserve(kKinds.size());
   for (const auto& kind : kKinds) forces.push_back(kind.first);
   line.addWord("--force", options.force, forces, "Whose solver, and what of a body meets rigid ones");
   line.addSummaryOption(options.json, "File of the results, a list of scenes");
