@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact/contact_world.h"
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
@@ -109,6 +110,7 @@ ContactWorld::~ContactWorld() {
   for (const auto& constraint : constraints_) bullet().removeConstraint(constraint.get());
   for (const auto& collider : colliders_) bullet().removeCollisionObject(collider.get());
   for (const auto& body : multiBodies_) bullet().removeMultiBody(body.get());
+  for (const auto& ghost : ghosts_) bullet().removeCollisionObject(ghost.get());
 }
 
 btDeformableMultiBodyDynamicsWorld& ContactWorld::bullet() {
@@ -171,6 +173,22 @@ btRigidBody& ContactWorld::addSphere(const Vector3d& centre, double radius, doub
 
 btRigidBody& ContactWorld::addFloor() {
   return addBox({0, -1, 0}, {20, 1, 20});
+}
+
+void ContactWorld::addTrigger(double halfExtent) {
+  btRigidBody& trigger = addBox(Vector3d::Zero(), Vector3d::Constant(halfExtent));
+  trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+}
+
+void ContactWorld::addGhost(double halfExtent) {
+  shapes_.push_back(std::make_unique<btBoxShape>(toBullet(Vector3d::Constant(halfExtent))));
+  ghosts_.push_back(std::make_unique<btGhostObject>());
+  btGhostObject& ghost = *ghosts_.back();
+  ghost.setCollisionShape(shapes_.back().get());
+  ghost.setWorldTransform(btTransform::getIdentity());
+  ghost.setInterpolationWorldTransform(btTransform::getIdentity());
+  ghost.setCollisionFlags(ghost.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  bullet().addCollisionObject(&ghost);
 }
 
 btRigidBody& ContactWorld::makeKinematic(btRigidBody& body) {

@@ -18,6 +18,7 @@
 #include "contact/run.h"
 #include "scenes/world.h"
 
+class btGhostObject;
 class btMultiBody;
 class btMultiBodyLinkCollider;
 class btTypedConstraint;
@@ -99,6 +100,9 @@ class ContactWorld {
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass = 0.0);
   /// A large box with its upper side at y = 0.
   btRigidBody& addFloor();
+  /// A box about the origin that hears of contacts, and answers none: by its flags, or as a ghost.
+  void addTrigger(double halfExtent);
+  void addGhost(double halfExtent);
   /// One that the scene moves, by its world transform before each step.
   static btRigidBody& makeKinematic(btRigidBody& body);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
@@ -121,6 +125,7 @@ class ContactWorld {
   scenes::World world_;
   Eigen::Vector3d gravity_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btGhostObject>> ghosts_;
   std::vector<std::unique_ptr<btMultiBody>> multiBodies_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btTypedConstraint>> constraints_;

@@ -39,10 +39,13 @@ BodyOptions hitBody(double stiffness) {
   return options;
 }
 
-/// What hears of contacts, and answers none.
-void addTrigger(ContactWorld& world) {
-  btRigidBody& trigger = world.addBox(Vector3d::Zero(), Vector3d::Constant(5));
-  trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+/// What all of a scene lies in.
+enum class Zone { None, Trigger, Ghost };
+
+void addZone(ContactWorld& world, Zone zone) {
+  constexpr double kHalf = 5.0;
+  if (zone == Zone::Trigger) world.addTrigger(kHalf);
+  if (zone == Zone::Ghost) world.addGhost(kHalf);
 }
 
 /// Nothing meets anything: what the figures are worth.
@@ -56,9 +59,9 @@ void miss(Run& run, double stiffness) {
 }
 
 /// A rigid ball hits a soft one of 1 kg aside of its centre.
-void hit(Run& run, double stiffness, double mass, bool inTrigger) {
+void hit(Run& run, double stiffness, double mass, Zone zone) {
   ContactWorld world(run, kWeightless);
-  if (inTrigger) addTrigger(world);
+  addZone(world, zone);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
   world.addSphere(kBallStart, kBallRadius, mass).setLinearVelocity(toBullet(kBallVelocity));
   reportLost(run, world);
@@ -107,12 +110,14 @@ void addHitScenes(ContactScenes& scenes) {
   for (const double k : {50.0, 500.0}) {
     const std::string end = "/k" + text(k);
     scenes.push_back({"free flight" + end, [=](Run& run) { miss(run, k); }});
-    for (const bool inTrigger : {false, true}) {
+    const auto addHits = [&](const std::string& name, Zone zone) {
       for (const double mass : {0.05, 1.0, 20.0}) {
-        scenes.push_back({std::string(inTrigger ? "hit in trigger/" : "hit/") + text(mass) + "kg" + end,
-                          [=](Run& run) { hit(run, k, mass, inTrigger); }});
+        scenes.push_back({name + "/" + text(mass) + "kg" + end, [=](Run& run) { hit(run, k, mass, zone); }});
       }
-    }
+    };
+    addHits("hit", Zone::None);
+    addHits("hit in trigger", Zone::Trigger);
+    addHits("hit in ghost", Zone::Ghost);
     scenes.push_back({"hit by multibody/1kg" + end, [=](Run& run) { hitByMultiBody(run, k); }});
     scenes.push_back({"between/box on box" + end, [=](Run& run) { onBoxes(run, k); }});
     scenes.push_back({"between/two boxes/1 and 1kg" + end, [=](Run& run) { betweenBoxes(run, k, 1, 1); }});

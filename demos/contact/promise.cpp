@@ -27,6 +27,8 @@ const std::vector<Promise>& promises() {
       {"hit", "energy over its start", -kNone, 1.001},
       {"hit in trigger", "linear momentum lost", -kNone, 1e-3},
       {"hit in trigger", "angular momentum lost", -kNone, 1e-3},
+      {"hit in ghost", "linear momentum lost", -kNone, 1e-3},
+      {"hit in ghost", "angular momentum lost", -kNone, 1e-3},
       {"hit by multibody", "linear momentum lost", -kNone, 1e-2},
       {"hit by multibody", "angular momentum lost", -kNone, 1e-2},
       {"between", "linear momentum lost", -kNone, 1e-2},
