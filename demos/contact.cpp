@@ -43,7 +43,7 @@ SceneResults runScenes(const ContactOptions& options) {
   const Kind kind = kKinds.at(options.force);
   SceneResults results;
   for (const ContactScene& scene : contactScenes()) {
-    if (scene.name.find(options.only) == std::string::npos || (kind == Kind::Bullet && !scene.withBullet)) continue;
+    if (scene.name.find(options.only) == std::string::npos || !scene.isFor(kind)) continue;
     results.push_back(runScene(scene, kind));
     if (!options.quiet) print(results.back());
   }

@@ -110,14 +110,16 @@ void addHitScenes(ContactScenes& scenes) {
   for (const double k : {50.0, 500.0}) {
     const std::string end = "/k" + text(k);
     scenes.push_back({"free flight" + end, [=](Run& run) { miss(run, k); }});
-    const auto addHits = [&](const std::string& name, Zone zone) {
+    const auto addHits = [&](const std::string& name, Zone zone, const std::vector<Kind>& kinds) {
       for (const double mass : {0.05, 1.0, 20.0}) {
-        scenes.push_back({name + "/" + text(mass) + "kg" + end, [=](Run& run) { hit(run, k, mass, zone); }});
+        scenes.push_back({name + "/" + text(mass) + "kg" + end, [=](Run& run) { hit(run, k, mass, zone); }, kinds});
       }
     };
-    addHits("hit", Zone::None);
-    addHits("hit in trigger", Zone::Trigger);
-    addHits("hit in ghost", Zone::Ghost);
+    const std::vector<Kind> all = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+    addHits("hit", Zone::None, all);
+    addHits("hit in trigger", Zone::Trigger, all);
+    // Bullet's own search for nodes in a ghost leaves what it solves with unset: velocities are not numbers then.
+    addHits("hit in ghost", Zone::Ghost, {Kind::Surface});
     scenes.push_back({"hit by multibody/1kg" + end, [=](Run& run) { hitByMultiBody(run, k); }});
     scenes.push_back({"between/box on box" + end, [=](Run& run) { onBoxes(run, k); }});
     scenes.push_back({"between/two boxes/1 and 1kg" + end, [=](Run& run) { betweenBoxes(run, k, 1, 1); }});
