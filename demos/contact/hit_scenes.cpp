@@ -112,7 +112,9 @@ void addHitScenes(ContactScenes& scenes) {
     scenes.push_back({"free flight" + end, [=](Run& run) { miss(run, k); }});
     const auto addHits = [&](const std::string& name, Zone zone, const std::vector<Kind>& kinds) {
       for (const double mass : {0.05, 1.0, 20.0}) {
-        scenes.push_back({name + "/" + text(mass) + "kg" + end, [=](Run& run) { hit(run, k, mass, zone); }, kinds});
+        std::string full = name;
+        full.append("/").append(text(mass)).append("kg").append(end);
+        scenes.push_back({full, [=](Run& run) { hit(run, k, mass, zone); }, kinds});
       }
     };
     const std::vector<Kind> all = {Kind::Surface, Kind::Nodes, Kind::Bullet};
