@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact/contact_world.h"
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
@@ -37,6 +38,7 @@ SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, 
   soft.damping = options.damping;
   soft.poissonRatio = kPoisson;
   soft.solverTolerance = options.tolerance;
+  soft.maxIterations = 1000;  // no figure is to be that of a solve which was broken off
   const double density = options.mass / model.volume;
   soft.youngsModulus =
       options.youngsModulus > 0.0 ? options.youngsModulus : options.stiffness * density * scenes::kEarth * model.size;
@@ -49,9 +51,10 @@ SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, 
 
 }  // namespace
 
-SoftObject::SoftObject(DeformableBody& deformable, ModelPtr model, double youngsModulus,
+SoftObject::SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
                        std::vector<double> stiffnessScale)
     : deformable_(deformable),
+      contact_(contact),
       model_(std::move(model)),
       youngsModulus_(youngsModulus),
       stiffnessScale_(std::move(stiffnessScale)) {
@@ -71,6 +74,13 @@ double SoftObject::energy() const {
   return kineticEnergy(soft()) + elasticEnergy(*model_, soft(), youngsModulus_, kPoisson, stiffnessScale_);
 }
 
+std::optional<Vector3d> SoftObject::contactImpulse() const {
+  if (!contact_) return std::nullopt;
+  Vector3d sum = Vector3d::Zero();
+  for (const SurfaceContactPoint& point : contact_->contacts()) sum += toEigen(point.impulse);
+  return sum;
+}
+
 const std::vector<Vector3d>& SoftObject::surface() {
   skin_.markMoved();
   surface_.assign(skin_.positions().size(), Vector3d::Constant(std::nan("")));
@@ -81,7 +91,7 @@ const std::vector<Vector3d>& SoftObject::surface() {
   return surface_;
 }
 
-double SoftObject::gap(const std::function<double(const Vector3d&)>& distance) {
+double SoftObject::gap(const Distance& distance) {
   double least = HUGE_VAL;
   for (const Vector3d& p : surface()) lower(least, distance(p));
   return least;
@@ -100,6 +110,7 @@ ContactWorld::~ContactWorld() {
   for (const auto& constraint : constraints_) bullet().removeConstraint(constraint.get());
   for (const auto& collider : colliders_) bullet().removeCollisionObject(collider.get());
   for (const auto& body : multiBodies_) bullet().removeMultiBody(body.get());
+  for (const auto& ghost : ghosts_) bullet().removeCollisionObject(ghost.get());
 }
 
 btDeformableMultiBodyDynamicsWorld& ContactWorld::bullet() {
@@ -113,7 +124,8 @@ SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, co
   deformables_.push_back(std::move(made).value());
   btSoftBody& body = deformables_.back()->body();
   if (!options.sleeps) body.setActivationState(DISABLE_DEACTIVATION);
-  if (run_.kind == Kind::Surface && !options.byNodes) {
+  const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
+  if (bySurface) {
     SurfaceContactOptions contact;
     contact.margin = kMargin * model->size;
     auto touching = SurfaceContact::add(bullet(), body, *model->binding, model->mesh, contact);
@@ -121,7 +133,8 @@ SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, co
     contacts_.push_back(std::move(touching).value());
   }
   const std::vector<double> scale = withCage(model->cage, soft).stiffnessScale;
-  soft_.push_back(std::make_unique<SoftObject>(*deformables_.back(), std::move(model), soft.youngsModulus, scale));
+  soft_.push_back(std::make_unique<SoftObject>(*deformables_.back(), bySurface ? contacts_.back().get() : nullptr,
+                                               std::move(model), soft.youngsModulus, scale));
   return *soft_.back();
 }
 
@@ -160,6 +173,22 @@ btRigidBody& ContactWorld::addSphere(const Vector3d& centre, double radius, doub
 
 btRigidBody& ContactWorld::addFloor() {
   return addBox({0, -1, 0}, {20, 1, 20});
+}
+
+void ContactWorld::addTrigger(double halfExtent) {
+  btRigidBody& trigger = addBox(Vector3d::Zero(), Vector3d::Constant(halfExtent));
+  trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+}
+
+void ContactWorld::addGhost(double halfExtent) {
+  shapes_.push_back(std::make_unique<btBoxShape>(toBullet(Vector3d::Constant(halfExtent))));
+  ghosts_.push_back(std::make_unique<btGhostObject>());
+  btGhostObject& ghost = *ghosts_.back();
+  ghost.setCollisionShape(shapes_.back().get());
+  ghost.setWorldTransform(btTransform::getIdentity());
+  ghost.setInterpolationWorldTransform(btTransform::getIdentity());
+  ghost.setCollisionFlags(ghost.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  bullet().addCollisionObject(&ghost);
 }
 
 btRigidBody& ContactWorld::makeKinematic(btRigidBody& body) {
@@ -230,6 +259,7 @@ double ContactWorld::energy() const {
     const double mass = 1.0 / static_cast<double>(body->getInvMass());
     energy += kineticEnergy(*body) - mass * gravity_.dot(toEigen(body->getCenterOfMassPosition()));
   }
+  for (const auto& body : multiBodies_) energy += kineticEnergy(*body);
   return energy;
 }
 

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "contact/body_model.h"
@@ -17,6 +18,7 @@
 #include "contact/run.h"
 #include "scenes/world.h"
 
+class btGhostObject;
 class btMultiBody;
 class btMultiBodyLinkCollider;
 class btTypedConstraint;
@@ -26,6 +28,9 @@ namespace tetskin::contact_demo {
 constexpr double kStep = 1.0 / 240;
 /// Kept between a surface and what it touches, over the body's size: the exact gap at rest.
 constexpr double kMargin = 0.002;
+
+/// Of a point of world space from an obstacle.
+using Distance = std::function<double(const Eigen::Vector3d&)>;
 
 struct BodyOptions {
   double stiffness = 50.0;     ///< Young's modulus over density x gravity x size
@@ -42,7 +47,9 @@ struct BodyOptions {
 /// A soft body in a ContactWorld, which owns it.
 class SoftObject {
  public:
-  SoftObject(DeformableBody& deformable, ModelPtr model, double youngsModulus, std::vector<double> stiffnessScale);
+  /// contact  null where its nodes meet rigid bodies
+  SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
+             std::vector<double> stiffnessScale);
 
   DeformableBody& deformable() { return deformable_; }
   btSoftBody& soft() { return deformable_.body(); }
@@ -55,15 +62,18 @@ class SoftObject {
   RigidMotion motion() const { return rigidMotionOf(soft()); }
   double fastest() const { return fastestNode(soft()); }
   double energy() const;  ///< kinetic and elastic
+  /// Of all contacts in the last step; nothing where its nodes meet rigid bodies, of which nobody tells.
+  std::optional<Eigen::Vector3d> contactImpulse() const;
   /// The mesh's vertices as they are now, world space.
   const std::vector<Eigen::Vector3d>& surface();
   /// Least distance of the mesh's vertices, metres.
-  double gap(const std::function<double(const Eigen::Vector3d&)>& distance);
+  double gap(const Distance& distance);
   /// To the floor's plane, y = 0.
   double floorGap();
 
  private:
   DeformableBody& deformable_;
+  const SurfaceContact* contact_;
   ModelPtr model_;
   double youngsModulus_;
   std::vector<double> stiffnessScale_;
@@ -90,8 +100,11 @@ class ContactWorld {
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass = 0.0);
   /// A large box with its upper side at y = 0.
   btRigidBody& addFloor();
+  /// A box about the origin that hears of contacts, and answers none: by its flags, or as a ghost.
+  void addTrigger(double halfExtent);
+  void addGhost(double halfExtent);
   /// One that the scene moves, by its world transform before each step.
-  btRigidBody& makeKinematic(btRigidBody& body);
+  static btRigidBody& makeKinematic(btRigidBody& body);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
   /// Finished. link  that collides: -1: the base
   btMultiBody& addMultiBody(std::unique_ptr<btMultiBody> body, int link, std::unique_ptr<btCollisionShape> shape);
@@ -104,7 +117,7 @@ class ContactWorld {
 
   /// Of all that can move.
   Momentum momentum() const;
-  /// Kinetic, elastic, and potential above y = 0; without multibodies.
+  /// Kinetic, elastic, and potential above y = 0; of multibodies, the kinetic one of their bases.
   double energy() const;
 
  private:
@@ -112,6 +125,7 @@ class ContactWorld {
   scenes::World world_;
   Eigen::Vector3d gravity_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btGhostObject>> ghosts_;
   std::vector<std::unique_ptr<btMultiBody>> multiBodies_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btTypedConstraint>> constraints_;

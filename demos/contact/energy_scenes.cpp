@@ -24,8 +24,7 @@ BodyOptions bodyOfStiffness(double stiffness) {
 }
 
 /// For half a second.
-void reportEnergy(Run& run, ContactWorld& world, SoftObject& body,
-                  const std::function<double(const Vector3d&)>& distance) {
+void reportEnergy(Run& run, ContactWorld& world, SoftObject& body, const Distance& distance) {
   const double start = world.energy();
   double most = 0.0, gap = HUGE_VAL;
   world.simulate(0.5, [&] {
@@ -88,7 +87,8 @@ void squeeze(Run& run, double stiffness) {
     inner += velocity * kStep;
     for (int k = 0; k < 2; ++k) plates[k]->setWorldTransform(at(2 * k - 1, inner));
     world.step();
-    lower(gap, body.gap([&](const Vector3d& p) { return inner - std::abs(p.x()); }));
+    const bool opening = velocity > 0.0;
+    if (!opening) lower(gap, body.gap([&](const Vector3d& p) { return inner - std::abs(p.x()); }));
   };
   while (inner > kClosed) move(-kSpeed);
   for (int k = 0; k < 24; ++k) move(0.0);
@@ -106,7 +106,8 @@ void squeeze(Run& run, double stiffness) {
 
 void addEnergyScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, const std::function<void(Run&)>& run) {
-    scenes.push_back({"energy/" + name, run, false});
+    // What Bullet's material has stored would take other formulas.
+    scenes.push_back({"energy/" + name, run, {Kind::Surface, Kind::Nodes}});
   };
   for (const double k : {50.0, 500.0}) {
     const std::string end = "/k" + text(k);

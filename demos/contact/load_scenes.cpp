@@ -76,8 +76,9 @@ double boxHeight() {
   return 1.0 + 2.0 * kMargin + kHeavyHalf.y();
 }
 
-void heavyOnTop(Run& run) {
+void heavyOnTop(Run& run, bool inTrigger) {
   ContactWorld world(run);
+  if (inTrigger) world.addTrigger(5.0);
   world.addFloor();
   SoftObject& cube = addCube(world, 0.0);
   reportRest(run, world, cube, world.addBox({0, boxHeight(), 0}, kHeavyHalf, kHeavyMass));
@@ -130,7 +131,8 @@ void addLoadScenes(ContactScenes& scenes) {
   for (const double k : {50.0, 500.0}) {
     scenes.push_back({"plate/k" + text(k), [=](Run& run) { plate(run, k); }});
   }
-  scenes.push_back({"heavy/on top", heavyOnTop});
+  scenes.push_back({"heavy/on top", [](Run& run) { heavyOnTop(run, false); }});
+  scenes.push_back({"heavy/on top in trigger", [](Run& run) { heavyOnTop(run, true); }});
   scenes.push_back({"heavy/below", heavyBelow});
   scenes.push_back({"heavy/on a hinge", heavyOnHinge});
   scenes.push_back({"heavy/link", heavyAsLink});

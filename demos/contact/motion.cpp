@@ -58,9 +58,9 @@ void addMomentum(Momentum& sum, const btRigidBody& body) {
 
 void addMomentum(Momentum& sum, const btMultiBody& body) {
   const Vector3d p = static_cast<double>(body.getBaseMass()) * toEigen(body.getBaseVel());
-  const btQuaternion toWorld = body.getWorldToBaseRot().inverse();
-  const btVector3 local = quatRotate(toWorld.inverse(), body.getBaseOmega());
-  sum.add(p, toEigen(body.getBasePos()).cross(p) + toEigen(quatRotate(toWorld, body.getBaseInertia() * local)));
+  const btQuaternion toBase = body.getWorldToBaseRot();
+  const btVector3 spin = body.getBaseInertia() * quatRotate(toBase, body.getBaseOmega());
+  sum.add(p, toEigen(body.getBasePos()).cross(p) + toEigen(quatRotate(toBase.inverse(), spin)));
 }
 
 RigidMotion rigidMotionOf(const btSoftBody& body) {
@@ -104,6 +104,12 @@ double kineticEnergy(const btRigidBody& body) {
   const Vector3d spin = toEigen(body.getAngularVelocity());
   return 0.5 * (toEigen(body.getLinearVelocity()).squaredNorm() / static_cast<double>(body.getInvMass()) +
                 spin.dot(inertiaOf(body) * spin));
+}
+
+double kineticEnergy(const btMultiBody& body) {
+  const Vector3d spin = toEigen(quatRotate(body.getWorldToBaseRot(), body.getBaseOmega()));
+  return 0.5 * (static_cast<double>(body.getBaseMass()) * toEigen(body.getBaseVel()).squaredNorm() +
+                spin.dot(toEigen(body.getBaseInertia()).cwiseProduct(spin)));
 }
 
 double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,

@@ -43,6 +43,7 @@ double fastestNode(const btSoftBody& body);
 
 double kineticEnergy(const btSoftBody& body);
 double kineticEnergy(const btRigidBody& body);
+double kineticEnergy(const btMultiBody& body);  ///< of its base
 /// Of corotated elasticity.
 /// stiffnessScale  tetCount; empty: 1
 double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,

@@ -4,10 +4,10 @@
 // What is promised of contact by the surface, figure by figure.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
-
-#include "contact/run.h"
+#include <vector>
 
 namespace tetskin::contact_demo {
 
@@ -19,7 +19,11 @@ struct Promise {
   double most = std::numeric_limits<double>::infinity();
 
   bool holds(double value) const { return value >= least && value <= most; }
+  /// How far the value may still go; below 0: it is out by that.
+  double slack(double value) const { return std::min(value - least, most - value); }
 };
+
+const std::vector<Promise>& promises();
 
 /// Of several that fit, the one that names more of the scene; null where nothing is promised.
 const Promise* promiseFor(const std::string& scene, const std::string& figure);

@@ -17,21 +17,67 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Whether the floor pushes as gravity pulls, where contacts tell.
+class Weighing {
+ public:
+  Weighing(const SoftObject& body) : body_(body), perStep_(body.motion().mass * scenes::kEarth * kStep) {}
+
+  void step() {
+    const auto impulse = body_.contactImpulse();
+    if (!impulse) return;
+    push_ += impulse->y();
+    ++steps_;
+  }
+  void report(Run& run) const {
+    if (steps_ > 0) run.report("push over weight", push_ / (steps_ * perStep_));
+  }
+
+ private:
+  const SoftObject& body_;
+  double perStep_, push_ = 0.0;
+  int steps_ = 0;
+};
+
 void rest(Run& run, const ModelPtr& model, const BodyOptions& options) {
   ContactWorld world(run);
   world.addFloor();
   SoftObject& body = world.addSoftOn(0.0, model, options);
   world.simulate(4);
   const long iterations = run.iterations, steps = run.steps;
+  Weighing weighing(body);
   double gap = 0.0, fastest = 0.0;
   world.simulate(1, [&] {
     const double now = body.floorGap() - kMargin * model->size;
     if (!(std::abs(now) <= std::abs(gap))) gap = now;
     raise(fastest, body.fastest());
+    weighing.step();
   });
   run.report("gap, S", gap / model->size);
   run.report("fastest node, m/s", fastest);
+  weighing.report(run);
   run.report("iterations a step", static_cast<double>(run.iterations - iterations) / (run.steps - steps));
+}
+
+/// A ball between two slopes of 45 degrees.
+void restInV(Run& run, double stiffness) {
+  ContactWorld world(run);
+  for (const double side : {-1.0, 1.0}) {
+    const btQuaternion turn(btVector3(0, 0, 1), static_cast<btScalar>(side * EIGEN_PI / 4));
+    world.addRigid(std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)),
+                   btTransform(turn, quatRotate(turn, btVector3(0, btScalar(-0.5), 0))));
+  }
+  BodyOptions options;
+  options.stiffness = stiffness;
+  SoftObject& body = world.addSoft(makeBall(), options, Vector3d(0, std::sqrt(2.0) * (0.5 + kMargin), 0));
+  world.simulate(4);
+  Weighing weighing(body);
+  double fastest = 0.0;
+  world.simulate(1, [&] {
+    raise(fastest, body.fastest());
+    weighing.step();
+  });
+  run.report("fastest node, m/s", fastest);
+  weighing.report(run);
 }
 
 /// A flat floor of triangles, its upper side at y = 0.
@@ -81,6 +127,9 @@ void addRestScenes(ContactScenes& scenes) {
     BodyOptions options;
     options.stiffness = k;
     add("k" + text(k), options);
+  }
+  for (const double k : {50.0, 500.0}) {
+    scenes.push_back({"rest/ball in a V/k" + text(k), [=](Run& run) { restInV(run, k); }});
   }
   BodyOptions stiff;
   stiff.youngsModulus = 1e9;

@@ -4,6 +4,7 @@
 // One scene's run: with what it is solved, and what was measured in it.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,10 @@ struct Figure {
 struct Run {
   explicit Run(Kind which) : kind(which) {}
 
-  void report(const std::string& name, double value) { figures.push_back({name, value}); }
+  /// What is not a number has no sign, however it came about.
+  void report(const std::string& name, double value) {
+    figures.push_back({name, std::isnan(value) ? std::nan("") : value});
+  }
 
   Kind kind;
   std::vector<Figure> figures;

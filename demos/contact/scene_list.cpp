@@ -14,6 +14,7 @@ const ContactScenes& contactScenes() {
     addLoadScenes(scenes);
     addFrictionScenes(scenes);
     addEnergyScenes(scenes);
+    addMovedScenes(scenes);
     addRestScenes(scenes);
     return scenes;
   }();

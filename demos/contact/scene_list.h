@@ -4,6 +4,7 @@
 // The scenes in which contact is measured: each a function that makes its own world.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,8 +16,10 @@ namespace tetskin::contact_demo {
 struct ContactScene {
   std::string name;
   std::function<void(Run&)> run;
-  /// Whether it makes sense with Bullet's solver: not what is measured by the library's elasticity.
-  bool withBullet = true;
+  /// Those with which it can be run.
+  std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+
+  bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
 };
 
 using ContactScenes = std::vector<ContactScene>;
@@ -27,6 +30,7 @@ void addRestScenes(ContactScenes& scenes);
 void addLoadScenes(ContactScenes& scenes);
 void addFrictionScenes(ContactScenes& scenes);
 void addEnergyScenes(ContactScenes& scenes);
+void addMovedScenes(ContactScenes& scenes);
 
 const ContactScenes& contactScenes();
 
