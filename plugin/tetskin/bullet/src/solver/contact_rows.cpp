@@ -98,6 +98,13 @@ btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, RigidU
   return sum - rigids.velocityAt(row.rigid, *row.object, seconds);
 }
 
+/// A kinematic body is already where the step takes it when contacts are looked for: by how much it has moved to there,
+/// over seconds, the gap is less than when the step begins.
+btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
+  const btVector3 moved = rigids.velocityAt(row.rigid, *row.object, seconds);
+  return row.object->isKinematicObject() ? row.normal.dot(moved) : btScalar(0);
+}
+
 ContactRow rowOf(std::size_t index, PointContact& contact) {
   ContactRow row;
   row.body = index;
@@ -197,10 +204,11 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     ContactRow row = rowOf(index, contact);
     if (!anyFree(body, row)) return;
     row.rigid = rigids.at(*row.object, row.position);
-    row.gapVelocity = std::max(contact.distance / seconds, -pushingOut);
-    row.stiffening = std::min(std::max(-contact.distance / (kDeep * size), btScalar(1)), kMaxStiffening);
     row.relative = relativeVelocity(body, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
+    const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
+    row.gapVelocity = std::max(gap / seconds, -pushingOut);
+    row.stiffening = std::min(std::max(-gap / (kDeep * size), btScalar(1)), kMaxStiffening);
     recall(body, seconds, row);
     rows_.push_back(row);
   };
