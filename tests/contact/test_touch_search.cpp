@@ -61,6 +61,7 @@ class TouchSearchTest : public ::testing::Test {
 
 TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
   const btSphereShape shape(btScalar(0.3));
+  std::size_t all = 0;
   for (const btVector3& at : {btVector3(0, btScalar(-0.64), 0), btVector3(btScalar(0.4), btScalar(0.4), btScalar(0.2)),
                               btVector3(0, btScalar(-0.66), 0)}) {
     const auto touches = findAnew(shape, at);
@@ -82,18 +83,20 @@ TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
         EXPECT_LT(touch.point, patch.firstPoint + patch.pointCount);
         EXPECT_LT((touch.position - pointOf(patch, touch.point - patch.firstPoint)).length(), 1e-5);
       }
-      EXPECT_EQ(told, std::min(inTouch, kMaxTouches));
+      EXPECT_GE(told, std::min(inTouch, kMinTouches));
+      EXPECT_LE(told, std::min(inTouch, kMaxTouches));
       EXPECT_NEAR(deepestTold, deepest, 1e-5);
       found += told;
     }
     EXPECT_EQ(found, touches.size());
-    EXPECT_GT(found, 0u);
+    all += found;
     for (const PointTouch& touch : touches) {
       EXPECT_LT(touch.distance, 0);
       EXPECT_NEAR((touch.position - at).length() - btScalar(0.3) - kMargin, touch.distance, 1e-5);
       EXPECT_NEAR((touch.position - at).normalized().dot(touch.normal), 1, 1e-4);
     }
   }
+  EXPECT_GT(all, 0u);
 }
 
 TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
@@ -140,7 +143,7 @@ TEST_F(TouchSearchTest, GoesOnWithThePointsOfTheStepBefore) {
     return points;
   };
   const auto before = pointsAfter(0);
-  EXPECT_GT(before.size(), kMaxTouches);
+  EXPECT_GT(before.size(), kMinTouches);
   EXPECT_EQ(pointsAfter(btScalar(1e-4)), before);
 }
 
@@ -165,10 +168,9 @@ TEST_F(TouchSearchTest, RemembersNothingThatIsNotSo) {
     const btVector3 way(x, y - btScalar(0.3) * (now.y() - btScalar(0.651)), z);
     moveBy(now, way);
     const auto kept = find(search, shape, btVector3(0, 0, 0), memory), anew = findAnew(shape, btVector3(0, 0, 0));
+    // Which points of a patch are chosen depends on those of the step before.
     ASSERT_EQ(kept.size(), anew.size()) << step;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      EXPECT_EQ(kept[k].point, anew[k].point);
-    }
+    for (std::size_t k = 0; k < kept.size(); ++k) EXPECT_EQ(kept[k].patch, anew[k].patch);
     touched += !kept.empty();
     now += way;
     if (step % 50 == 49) now.setY(now.y() + btScalar(0.03));

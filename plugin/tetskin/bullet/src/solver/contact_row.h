@@ -47,7 +47,6 @@ struct ContactRow {
   btScalar friction = 0;
   btScalar stiffness = 0;             ///< D, in masses
   btScalar tangentStiffness = 0;      ///< T
-  btScalar stiffening = 1;            ///< of D, where the point is deep
   btScalar gapVelocity = 0;           ///< max(g / dt, -pushingOut)
   btVector3 offsetVelocity{0, 0, 0};  ///< s / dt
   btVector3 relative{0, 0, 0};        ///< u where nothing is solved for yet

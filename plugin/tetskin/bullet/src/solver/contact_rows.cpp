@@ -18,8 +18,8 @@ constexpr btScalar kTangentShare = btScalar(0.3);
 constexpr double kAnchorStiffness = 1000.0;
 /// Sizes of the body per second at which what is in each other is pushed apart, at most.
 constexpr btScalar kPushingOut = 1;
-/// Of the body's size, from which depth on contact is stiffer in proportion to it, and by how much at most.
-constexpr btScalar kDeep = btScalar(0.002), kMaxStiffening = 10;
+/// Last digits of a position.
+constexpr btScalar kRounding = 2;
 /// Weights below do not count where rows share a node.
 constexpr btScalar kSmallWeight = btScalar(0.02);
 /// Cosine: contacts of one point whose normals are as near as that are the same from step to step.
@@ -120,6 +120,21 @@ ContactRow rowOf(std::size_t index, PointContact& contact) {
   return row;
 }
 
+/// What positions there are rounded by, by axis: far from the origin, a last digit is no depth to be pushed out of.
+btVector3 roundingOf(const btVector3& position) {
+  return kRounding * SIMD_EPSILON * position.absolute();
+}
+
+/// Without what is rounding.
+btVector3 seenPart(const btVector3& offset, const btVector3& position) {
+  const btVector3 rounding = roundingOf(position);
+  btVector3 seen = offset;
+  for (int k = 0; k < 3; ++k) {
+    if (btFabs(offset[k]) <= rounding[k]) seen[k] = 0;
+  }
+  return seen;
+}
+
 /// Where the point sticks, and what it was pushed with.
 void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
   const btTransform& frame = row.object->getWorldTransform();
@@ -133,7 +148,7 @@ void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
     row.stickingPlace = known->place;
     btVector3 offset = row.position - frame * known->place;
     offset -= row.normal.dot(offset) * row.normal;
-    row.offsetVelocity = offset / seconds;
+    row.offsetVelocity = seenPart(offset, row.position) / seconds;
     row.normalBound = known->normalForce * seconds;
     row.stuck = known->stuck;
     return;
@@ -197,7 +212,7 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
   auto* own = bodyWithTrees(*body.body);
   readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
   if (own) own->setSpeculation(0);
-  const btScalar size = sizeOf(*body.body), pushingOut = kPushingOut * size;
+  const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
   const auto add = [&](PointContact& contact) {
     contact.impulse.setZero();
     if (!contact.object || !isFinite(contact)) return;
@@ -207,8 +222,8 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     row.relative = relativeVelocity(body, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
     const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
-    row.gapVelocity = std::max(gap / seconds, -pushingOut);
-    row.stiffening = std::min(std::max(-gap / (kDeep * size), btScalar(1)), kMaxStiffening);
+    const btScalar seen = gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
+    row.gapVelocity = std::max(seen / seconds, -pushingOut);
     recall(body, seconds, row);
     rows_.push_back(row);
   };
@@ -254,7 +269,7 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
       share = std::max(share, loads[row.body][static_cast<std::size_t>(row.nodes[k])]);
     }
     const double mass = effectiveMass(bodies.bodies()[row.body], row, rigids);
-    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share * row.stiffening;
+    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
   }

@@ -39,7 +39,8 @@ struct SolvedBody {
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
   int rowCount = 0;          ///< of contacts and anchors
-  bool wasTouched = false;   ///< in the step before: what it deviates by is not solved for before contacts are known
+  bool wasTouched = false;   ///< in the step before
+  bool waits = false;        ///< it is solved for when contacts are known, and not before
   std::vector<FixedNode> fixed;  ///< but held ones
   bool solvedAgain = false;  ///< with what contacts and other forces do
   bool touched = false;      ///< something beside elasticity has changed velocities, or shall

@@ -156,6 +156,11 @@ void DeformableSolver::Parts::predict() {
   useOwnSettings();
   applyOthers();
   for (SolvedBody& of : bodies.bodies()) readNodes(*of.body, false, *of.dynamics);
+  for (SolvedSystem& system : bodies.systems()) {
+    SolvedBody& first = bodies.bodies()[system.bodies.front()];
+    // With other forces, what these do is known by what the body does without contacts.
+    first.waits = first.wasTouched && system.forces.empty();
+  }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& of, ParallelFor* inner) { predictVelocities(of, inner); });
   for (SolvedBody& of : bodies.bodies()) {
     writePrediction(of);
@@ -166,11 +171,16 @@ void DeformableSolver::Parts::predict() {
 }
 
 /// Twice as far as gravity takes anything in a step: one of two that are in touch may be predicted to fall, and neither
-/// does.
+/// does. And a share of the body's own way: what is stopped by some points turns others in.
 void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
+  constexpr btScalar kShareOfWay = btScalar(0.2);
   auto* own = bodyWithTrees(*of.body);
   const btDiscreteDynamicsWorld* world = worldOf(of);
-  if (own && world) own->setSpeculation(2 * world->getGravity().length() * dt() * dt());
+  if (!own || !world) return;
+  btScalar fastest = 0;
+  for (int n = 0; n < of.body->m_nodes.size(); ++n) fastest = std::max(fastest, of.body->m_nodes[n].m_v.length2());
+  const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
+  own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
 }
 
 /// The world tells its own in each step.
@@ -201,19 +211,23 @@ void DeformableSolver::Parts::applyOthers() {
 
 void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inner) {
   Dynamics& dynamics = *of.dynamics;
-  const auto seconds = static_cast<double>(dt());
-  dynamics.predict(seconds, inner);
+  dynamics.predict(static_cast<double>(dt()), inner);
   dynamics.matrix().free();
-  dynamics.start(seconds, inner);
-  if (!of.elastic) return;
+  if (of.waits) return dynamics.startLater(static_cast<double>(dt()));
+  dynamics.start(static_cast<double>(dt()), inner);
+  if (of.elastic) solveAlone(of, inner);
+}
+
+void DeformableSolver::Parts::solveAlone(SolvedBody& of, ParallelFor* inner) const {
+  const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
   limits.tolerance = of.limits->tolerance;
   limits.iterations = of.limits->iterations;
-  limits.floor = std::max(kUnseen * seconds, dynamics.roundingSpeed(seconds));
-  limits.enough = limits.tolerance * limits.tolerance * dynamics.squaredDeviation();
-  of.solve->start({&dynamics.matrix()}, limits, {}, inner);
-  if (!of.wasTouched) of.solve->iterate(limits.iterations, inner);
-  of.iterations = of.wasTouched ? 0 : of.solve->iterations();
+  limits.floor = std::max(kUnseen * seconds, of.dynamics->roundingSpeed(seconds));
+  limits.enough = limits.tolerance * limits.tolerance * of.dynamics->squaredDeviation();
+  of.solve->start({&of.dynamics->matrix()}, limits, {}, inner);
+  of.solve->iterate(limits.iterations, inner);
+  of.iterations = of.solve->iterations();
 }
 
 void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
@@ -290,7 +304,7 @@ void DeformableSolver::Parts::collectRows() {
   collectRigidRowsOfWorlds();
   joinByRigids();
   for (SolvedBody& of : bodies.bodies()) {
-    if (of.wasTouched && of.rowCount > 0) goOn(of);
+    if (of.waits && of.rowCount > 0) goOn(of);
   }
 }
 
@@ -376,7 +390,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
   bool again = !system.forces.empty() || !system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& of = bodies.bodies()[b];
-    again |= !of.fixed.empty() || of.touched || of.wasTouched;
+    again |= !of.fixed.empty() || of.touched;
   }
   if (again) {
     const SolveReport report = SystemSolve(*this, system, inner).solve();
@@ -385,8 +399,14 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
     system.converged = report.converged;
     for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
   } else if (first.elastic) {
-    first.solve->iterate(first.limits->iterations, inner);
-    first.iterations = first.solve->iterations();
+    // Of a body that waited for contacts, and has none, all; else on from where it stopped.
+    if (first.waits) {
+      first.dynamics->startAgain(inner);
+      solveAlone(first, inner);
+    } else {
+      first.solve->iterate(first.limits->iterations, inner);
+      first.iterations = first.solve->iterations();
+    }
   }
   const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.touched;
   if (free && first.elastic) first.dynamics->removeMomentum();

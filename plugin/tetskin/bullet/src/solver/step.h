@@ -48,6 +48,7 @@ struct DeformableSolver::Parts {
   /// The impulses of other forces.
   void applyOthers();
   void predictVelocities(SolvedBody& of, ParallelFor* inner);
+  void solveAlone(SolvedBody& of, ParallelFor* inner) const;
   void writePrediction(SolvedBody& of) const;
   void speculate(const SolvedBody& of) const;
   void predictPositions(SolvedBody& of);

@@ -642,7 +642,7 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
     const SolvedBody& of = bodyAt(k);
     limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    if (of.elastic) limits.enough += of.solve->enough();
+    if (of.elastic && !of.waits) limits.enough += of.solve->enough();
     changed |= !of.fixed.empty() || of.touched;
     stiff |= of.dynamics->isStiff();
     squaredStart += of.dynamics->squaredSolution();

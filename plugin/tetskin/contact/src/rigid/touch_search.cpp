@@ -15,6 +15,10 @@ namespace {
 constexpr int kMostSteps = 24;
 /// How near counts as met, over the margin.
 constexpr btScalar kMet = btScalar(0.05);
+/// Over the slack: how far the points of a patch that touch may be from those of them that are chosen.
+constexpr btScalar kSpacing = 4;
+/// How much farther apart others must be than a point that goes deeper by one.
+constexpr btScalar kDepthsWorth = 2;
 /// Steps after which what was clear is looked at again.
 constexpr unsigned kRemembered = 16;
 
@@ -307,30 +311,31 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
 /// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched in
 /// the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
 void TouchSearch::chooseTouches(std::size_t first) {
-  if (touches_.size() - first <= kMaxTouches) return;
+  if (touches_.size() - first <= kMinTouches) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
   const auto lead = [&](const PointTouch& touch) {
     const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
-    return known ? slack_ : btScalar(0);
+    return known ? kSpacing * slack_ : btScalar(0);
   };
   chosen_.clear();
   auto next = std::min_element(begin, touches_.end(), [&](const PointTouch& a, const PointTouch& b) {
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
+  const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);
     if (chosen_.size() == kMaxTouches) break;
-    btScalar most = -1;
+    btScalar most = -BT_LARGE_FLOAT;
     for (auto at = begin; at != touches_.end(); ++at) {
       btScalar& apart = apart_[static_cast<std::size_t>(at - begin)];
       apart = std::min(apart, (at->position - chosen_.back().position).length());
-      if (apart > 0 && apart + lead(*at) - btMax(at->predicted, btScalar(0)) > most) {
-        most = apart + lead(*at) - btMax(at->predicted, btScalar(0));
-        next = at;
-      }
+      const btScalar gain = apart + lead(*at) - kDepthsWorth * at->predicted;
+      if (apart <= enoughApart() || gain <= most) continue;
+      most = gain;
+      next = at;
     }
-    if (!(most >= 0)) break;
+    if (!(most > -BT_LARGE_FLOAT)) break;
   }
   touches_.erase(begin, touches_.end());
   touches_.insert(touches_.end(), chosen_.begin(), chosen_.end());

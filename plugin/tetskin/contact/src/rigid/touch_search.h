@@ -60,8 +60,8 @@ struct ShapeMemory {
   unsigned steps = 0;
 };
 
-/// Of one patch and one shape: as many hold it as it can be held by, and more would only cost.
-constexpr std::size_t kMaxTouches = 8;
+/// Of one patch and one shape: as many hold a tet as it can be held by, and more only where it is large.
+constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
 
 /// A point may pass a thin shape in one step: it touches what it meets first on its way.
 class TouchSearch {
@@ -75,8 +75,8 @@ class TouchSearch {
   /// Where the nodes are in this step; valid until the next call.
   /// speculation  how far above the margin points still touch
   void begin(const std::vector<NodePath>& nodes, btScalar speculation);
-  /// Of the body with these nodes and this shape, patch by patch, no more of each than kMaxTouches. Valid until the next
-  /// call.
+  /// Of the body with these nodes and this shape, patch by patch; of each the deepest points, and others so far apart that none
+  /// is missed, no more than kMaxTouches. Valid until the next call.
   /// memory  of the same shape, or an empty one
   const std::vector<PointTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
 

@@ -150,6 +150,7 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
     *this = {};
     return;
   }
+  findInverseInertia();
   const Vector3d own = seconds * (spin_ - mass_ * arm.cross(velocity_));  // beside the motion of what is held
   switch (held.kind) {
     case HeldNodes::Nothing:
@@ -164,6 +165,15 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
     case HeldNodes::Fixed:
       turn_ = held.turn;
   }
+}
+
+void PartMotion::findInverseInertia() {
+  const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), second_);
+  if (held_.kind == HeldNodes::Nothing || held_.kind == HeldNodes::Point) inverseInertia_ = inertia.inverse();
+  if (held_.kind == HeldNodes::Line) {
+    inverseInertia_ = held_.axis * held_.axis.transpose() / held_.axis.dot(inertia * held_.axis);
+  }
+  if (!inverseInertia_.allFinite()) inverseInertia_.setZero();
 }
 
 RigidVelocity PartMotion::velocities(double seconds) const {
@@ -187,15 +197,10 @@ double PartMotion::leastInertia() const {
 }
 
 double PartMotion::compliance(const Vector3d& point, const Vector3d& direction) const {
-  const bool free = held_.kind == HeldNodes::Nothing;
   const Vector3d moment = (point - about_).cross(direction);
-  const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), second_);
-  double sum = free && mass_ > 0.0 ? direction.squaredNorm() / mass_ : 0.0;
-  if (free || held_.kind == HeldNodes::Point) sum += moment.dot(inertia.partialPivLu().solve(moment));
-  if (held_.kind == HeldNodes::Line) {
-    sum += std::pow(held_.axis.dot(moment), 2) / held_.axis.dot(inertia * held_.axis);
-  }
-  return std::isfinite(sum) ? std::max(sum, 0.0) : 0.0;
+  const bool free = held_.kind == HeldNodes::Nothing;
+  const double moved = free && mass_ > 0.0 ? direction.squaredNorm() / mass_ : 0.0;
+  return moved + moment.dot(inverseInertia_ * moment);
 }
 
 RigidVelocity PartMotion::excess(const PartMomentum& now, const Vector3d& impulse, const Vector3d& torque) const {

@@ -119,6 +119,7 @@ class PartMotion {
                       double seconds) const;
 
  private:
+  void findInverseInertia();
   /// With this momentum about `about_`, of the part as a rotation has turned it.
   RigidVelocity rigidWith(const Eigen::Vector3d& momentum, const Eigen::Vector3d& spin,
                           const Eigen::Matrix3d& turn) const;
@@ -129,6 +130,7 @@ class PartMotion {
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();  ///< about `about_`
   Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero(), central_ = second_;  ///< of mass, about `about_` and its centre
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inverseInertia_ = Eigen::Matrix3d::Zero();  ///< about `about_`; of what can turn about a point
 };
 
 }  // namespace tetskin::elastic_detail

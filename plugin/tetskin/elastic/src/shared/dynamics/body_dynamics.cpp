@@ -229,14 +229,12 @@ double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<doubl
 }
 
 template <class S>
-void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+void BodyDynamics<S>::startLater(double seconds) {
   S* solution = matrix_.solution();
-  S* residual = matrix_.residual();
   squaredDeviation_ = 0.0;
   if (!tets_) {
     std::fill_n(solution, matrix_.wideSize(), S(0));
     std::fill(rightSide_.begin(), rightSide_.end(), S(0));
-    std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }
   const auto dt = static_cast<S>(seconds);
@@ -254,7 +252,13 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
       solution[wide + k * kGroup] = deviation[k];
     }
   });
-  if (stiff_ && held_ == 0) {
+}
+
+template <class S>
+void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+  startLater(seconds);
+  S* residual = matrix_.residual();
+  if (!tets_ || (stiff_ && held_ == 0)) {
     std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }

@@ -59,6 +59,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// After `predict`: the right side of the step, which is of the matrix's residual and of `startAgain`, too. The
   /// solution, a velocity beside the rigid motion's, has its start: of a soft body what it was, of a stiff one 0.
   void start(double seconds, ParallelFor* threads);
+  /// The same without the residual: `startAgain` follows.
+  void startLater(double seconds);
   /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in
   /// the residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
   double squaredDeviation() const { return squaredDeviation_; }
