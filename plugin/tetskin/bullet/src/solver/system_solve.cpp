@@ -231,13 +231,13 @@ SolveReport SystemSolve::solve() {
   giveMomentum();
   if (getenv("DBG")) {
     auto& of = bodyAt(0);
-    double p[3] = {}, e = 0, ep = 0, m = 0; btVector3 imp(0,0,0); double lowg = 1e9;
+    double p[3] = {}, e = 0, ep = 0, m = 0; btVector3 imp(0,0,0); double lowg = 1e9, cy = 0, py = 0, vmax = 0;
     for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
       const double mm = of.dynamics->matrix().mass(n); btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(of.dynamics->matrix().solution() + of.dynamics->matrix().wideOf(n));
-      btVector3 v0 = of.body->m_nodes[n].m_vn;
+      btVector3 v0 = of.body->m_nodes[n].m_vn; cy += mm * of.body->m_nodes[n].m_x.y(); py += mm*v0.y(); vmax = std::max(vmax, double(v.length()));
       for (int k = 0; k < 3; ++k) p[k] += mm * v[k]; e += 0.5 * mm * v.length2(); ep += 0.5 * mm * v0.length2(); m += mm; }
     for (auto* r : system_.rows) { imp += r->impulse; lowg = std::min(lowg, double(r->gapVelocity) * step_.dt()); }
-    printf("   -> v %.4f %.4f %.4f kinetic %.4g -> %.4g impulse %.4g %.4g %.4g gap %.3g passes %d its %d\n", p[0]/m, p[1]/m, p[2]/m, ep, e, imp.x(), imp.y(), imp.z(), lowg, report.passes, report.iterations);
+    printf("   -> com %.6f vn %.4f vmax %.3f v %.4f %.4f %.4f kinetic %.4g -> %.4g impulse %.4g %.4g %.4g gap %.3g passes %d its %d\n", cy / m, py / m, vmax, p[0]/m, p[1]/m, p[2]/m, ep, e, imp.x(), imp.y(), imp.z(), lowg, report.passes, report.iterations);
   }
   return report;
 }
@@ -344,7 +344,8 @@ bool SystemSolve::start(int pass) {
   }
   auto& solve = *bodyAt(0).solve;
   solve.start(std::move(matrices), limits, std::move(extra), threads_);
-  const double most = std::max(limits.enough, limits.floor * limits.floor * massOfAll());
+  const double most =
+      std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
   if (getenv("DBG")) {
     int active = 0, slides = 0;
     for (auto* r : system_.rows) active += r->state != ContactRow::State::Apart, slides += r->state == ContactRow::State::Slides;
@@ -352,7 +353,7 @@ bool SystemSolve::start(int pass) {
   }
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(compliance_ * fewResidual_);
-  return squared <= kAccepted * kAccepted * most;
+  return squared <= most;
 }
 
 void SystemSolve::keepState() {
@@ -682,7 +683,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
     const SolvedBody& of = bodyAt(k);
     tolerance = std::min(tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    limits.floor = std::max(limits.floor, of.dynamics->roundingSpeed(seconds));
+    limits.floor = std::max(limits.floor, pass > 0 ? of.dynamics->roundingSpeed(seconds) : 0.0);
     byMatrix += of.dynamics->squaredByMatrix();
     byMasses += of.dynamics->squaredChange();
   }
