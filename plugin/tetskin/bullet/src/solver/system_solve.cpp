@@ -24,6 +24,8 @@ constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
 constexpr int kMaxPasses = 30;
 /// Stiffness numbers from which on the rigid motions of parts are unknowns of their own.
 constexpr double kStiffPart = 5.0;
+/// And from which on what the matrix makes of them is rounding.
+constexpr double kRoundedPart = 1e5;
 /// Parts of a body whose rigid motions are solved for by themselves.
 constexpr std::size_t kMaxParts = 4;
 /// Passes from which on the derivative of sliding is used, but for a tenth, and from how long a step on.
@@ -120,10 +122,11 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
   if (!dynamics.rigidMotions(part, unknown.motions)) return;
   const auto& matrix = dynamics.matrix();
   // Elasticity resists rigid motions as far as the matrix is of other rotations than the body's, or of a deformed body.
-  // The stiffest have a fresh one, and rounding in it would outweigh their mass: it does not count.
+  // Of the stiffest, rounding in it would outweigh their mass: it does not count.
+  const bool rounded = dynamics.stiffnessNumber() > kRoundedPart;
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     unknown.images[k].assign(matrix.wideSize(), btScalar(0));
-    if (!dynamics.isStiff()) {
+    if (!rounded) {
       matrix.multiply(unknown.motions[k].data(), unknown.images[k].data(), threads_);
       continue;
     }
@@ -134,7 +137,7 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
   }
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     btVector3 began = matrix.mass(n) * fromWide(dynamics.deviation() + matrix.wideOf(n));
-    if (!dynamics.isStiff()) dynamics.rightSide(n, began.m_floats);
+    if (!rounded) dynamics.rightSide(n, began.m_floats);
     for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
       const btVector3 motion = fromPoint(&unknown.motions[i][4 * matrix.slotOf(n)]);
       unknown.began[static_cast<Eigen::Index>(i)] += product(motion, began);
