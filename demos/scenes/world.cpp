@@ -174,7 +174,16 @@ int World::iterations() const {
 }
 
 int World::step(double seconds) {
-  return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  const int steps = world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  if (force_ == Force::Elastic && steps > 0) countSolve(static_cast<const DeformableSolver&>(*bodySolver_));
+  return steps;
+}
+
+void World::countSolve(const DeformableSolver& solver) {
+  ++solveTotals_.steps;
+  solveTotals_.iterations += solver.iterations();
+  solveTotals_.passes += solver.passes();
+  if (solver.unconverged() > 0) ++solveTotals_.unconverged;
 }
 
 std::uint64_t World::hashOfNodes(std::uint64_t seed) const {

@@ -49,6 +49,11 @@ TEST_F(StressCommand, QuickCasesHold) {
     } else {
       EXPECT_TRUE(row.at("bullet_cannot_tetskin_can").is_null()) << row;
     }
+    // Of what is simulated, and by our solver.
+    const bool solved = row["force"] == "tetskin" && row["status"].get<std::string>().find("refused") != 0;
+    EXPECT_EQ(row.at("iterations_per_step").is_null(), !solved) << row;
+    EXPECT_EQ(row.at("passes_per_step").is_null(), !solved) << row;
+    EXPECT_TRUE(!solved || row.at("steps_unconverged") == 0) << row;
     gained += row.at("bullet_cannot_tetskin_can") == true;
     EXPECT_NE(result.out.find(name), std::string::npos) << name;
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
