@@ -22,7 +22,7 @@ struct SurfaceContactOptions {
   double sampleSpacing = 0.0;
 };
 
-/// A point of the surface in touch with a rigid body, or so near that gravity might bring it there in the substep.
+/// A point of the surface in touch with a rigid body, or so near that it might come there in the substep.
 struct SurfaceContactPoint {
   btVector3 point;                            ///< of the surface, world space, when contacts were last looked for
   btVector3 normal;                           ///< away from the rigid body, of unit length
@@ -52,8 +52,8 @@ struct SurfaceContactPoint {
 ///           with another dispatcher. This object, the body, the world, rigid bodies and their shapes may go in any
 ///           order, each as Bullet allows it, also at the end of the program, where globals hold them.
 /// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it);
-///           children of a compound are found by its tree. What is solved for are at most eight points of each tet
-///           in touch with one shape
+///           children of a compound are found by its tree. Of the points of a tet that touch a shape four are
+///           solved for, and as many more as are 2 % of the body's size apart, up to 64
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// From the next substep on. Sets the margin of the body's shape, until this object goes.
