@@ -215,7 +215,7 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
   const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
   const auto add = [&](PointContact& contact) {
     contact.impulse.setZero();
-    if (!contact.object || !isFinite(contact)) return;
+    if (!contact.object || !contact.object->hasContactResponse() || !isFinite(contact)) return;
     ContactRow row = rowOf(index, contact);
     if (!anyFree(body, row)) return;
     row.rigid = rigids.at(*row.object, row.position);

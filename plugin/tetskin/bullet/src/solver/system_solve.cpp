@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace tetskin {
 namespace {
@@ -232,16 +230,6 @@ SolveReport SystemSolve::solve() {
   for (std::size_t k = 0; k < states_.size(); ++k) bodyAt(k).dynamics->matrix().free();
   moveOutOfParts();
   giveMomentum();
-  if (getenv("DBG")) {
-    auto& of = bodyAt(0);
-    double p[3] = {}, e = 0, ep = 0, m = 0; btVector3 imp(0,0,0); double lowg = 1e9, cy = 0, py = 0, vmax = 0;
-    for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
-      const double mm = of.dynamics->matrix().mass(n); btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(of.dynamics->matrix().solution() + of.dynamics->matrix().wideOf(n));
-      btVector3 v0 = of.body->m_nodes[n].m_vn; cy += mm * of.body->m_nodes[n].m_x.y(); py += mm*v0.y(); vmax = std::max(vmax, double(v.length()));
-      for (int k = 0; k < 3; ++k) p[k] += mm * v[k]; e += 0.5 * mm * v.length2(); ep += 0.5 * mm * v0.length2(); m += mm; }
-    for (auto* r : system_.rows) { imp += r->impulse; lowg = std::min(lowg, double(r->gapVelocity) * step_.dt()); }
-    printf("   -> com %.6f vn %.4f vmax %.3f v %.4f %.4f %.4f kinetic %.4g -> %.4g impulse %.4g %.4g %.4g gap %.3g passes %d its %d\n", cy / m, py / m, vmax, p[0]/m, p[1]/m, p[2]/m, ep, e, imp.x(), imp.y(), imp.z(), lowg, report.passes, report.iterations);
-  }
   return report;
 }
 
@@ -349,11 +337,6 @@ bool SystemSolve::start(int pass) {
   solve.start(std::move(matrices), limits, std::move(extra), threads_);
   const double most =
       std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
-  if (getenv("DBG")) {
-    int active = 0, slides = 0;
-    for (auto* r : system_.rows) active += r->state != ContactRow::State::Apart, slides += r->state == ContactRow::State::Slides;
-    printf("  pass %d rho %.3g enough %.3g floor %.3g byM %.3g change %.3g rows %zu active %d slides %d its %d\n", pass, solve.squaredResidual(), limits.enough, limits.floor * limits.floor * massOfAll(), bodyAt(0).dynamics->squaredByMatrix(), bodyAt(0).dynamics->squaredChange(), system_.rows.size(), active, slides, solve.iterations());
-  }
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(compliance_ * fewResidual_);
   return squared <= most;
@@ -464,9 +447,31 @@ SystemSolve::Matrix SystemSolve::fewMatrix() const {
   return few;
 }
 
+/// The nodes' equations have each part's rigid motion, too, and must ask of it what its own do: together they are
+/// singular, and along what contradicts the conjugate gradient goes on without end. Forces of stiff bodies, which are
+/// summed to 0, leave that much by rounding.
+void SystemSolve::matchParts() {
+  for (const PartUnknown& part : parts_) {
+    auto& matrix = step_.bodies.bodies()[part.body].dynamics->matrix();
+    Vector6 excess = -fewResidual_.segment<6>(part.first);
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      const btVector3 residual = fromWide(matrix.residual() + matrix.wideOf(n));
+      for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+        excess[static_cast<Eigen::Index>(k)] += product(fromPoint(&part.motions[k][4 * matrix.slotOf(n)]), residual);
+      }
+    }
+    const Vector6 motion = part.mass.ldlt().solve(excess);
+    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+      const auto factor = static_cast<btScalar>(motion[static_cast<Eigen::Index>(k)]);
+      for (std::size_t i = 0; i < part.images[k].size(); ++i) matrix.residual()[i] -= factor * part.images[k][i];
+    }
+  }
+}
+
 /// Rows of rigid bodies are multiplied by M^-1, in which axes may be locked.
 void SystemSolve::eliminate() {
   if (fewSize_ == 0) return;
+  matchParts();
   Matrix scale = Matrix::Identity(fewSize_, fewSize_);
   scale.topLeftCorner(rigidSize_, rigidSize_) = inverseMass_;
   Matrix system = scale * fewMatrix();
@@ -592,7 +597,8 @@ btScalar SystemSolve::searchLine() {
     quadratic += step.dot(grown);
   }
   const double first = slope(0, linear, quadratic), all = slope(1, linear, quadratic);
-  if (!(all > kFlat * std::abs(first))) return 1;
+  // A step that does not lead down, by rounding or as bounds are refreshed, has no least on it.
+  if (!(first < 0.0 && all > -kFlat * first)) return 1;
   double low = 0.0, high = 1.0, atLow = first, atHigh = all;
   for (int k = 0; k < kMaxHalvings; ++k) {
     const double tried = k % 2 == 1 ? 0.5 * (low + high) : low - atLow * (high - low) / (atHigh - atLow);

@@ -70,6 +70,7 @@ class SystemSolve {
   std::size_t placeOf(std::size_t body) const;
   void findFewResiduals();
   Matrix fewMatrix() const;
+  void matchParts();
   void eliminate();
   void addFew(const Vector& few, bool toResiduals);
   Vector fewOf() const;
