@@ -136,7 +136,7 @@ TEST(SurfaceContact, LetsBodiesFallAsleepFarFromTheOrigin) {
     TetskinWorld world;
     Obstacle ground(world, std::make_unique<btBoxShape>(btVector3(5, 1, 5)), placeAt(btVector3(far, 4, 0)));
     TouchingBody body(world, ballMesh(12, 0.35), btVector3(far, btScalar(5.4), 0));
-    step(world, 240);
+    step(world, 480);
     EXPECT_FALSE(body.body->body().isActive()) << far;
   }
 }

@@ -35,7 +35,7 @@ class TouchSearchTest : public ::testing::Test {
                               ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::of(shape));
-    search.begin(nodes_, 0);
+    search.begin(nodes_, speculation_);
     return search.find(probe, {at, at}, memory);
   }
   std::vector<PointTouch> findAnew(const btCollisionShape& shape, const btVector3& at) {
@@ -57,6 +57,7 @@ class TouchSearchTest : public ::testing::Test {
   TriangleMesh mesh_ = ballMesh(20, 0.35);
   ContactPatches patches_;
   std::vector<NodePath> nodes_;
+  btScalar speculation_ = 0;
 };
 
 TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
@@ -167,10 +168,13 @@ TEST_F(TouchSearchTest, RemembersNothingThatIsNotSo) {
     const btScalar x = part(), y = part(), z = part();
     const btVector3 way(x, y - btScalar(0.3) * (now.y() - btScalar(0.651)), z);
     moveBy(now, way);
+    speculation_ = btScalar(0.001) * static_cast<btScalar>(step % 4);
     const auto kept = find(search, shape, btVector3(0, 0, 0), memory), anew = findAnew(shape, btVector3(0, 0, 0));
     // Which points of a patch are chosen depends on those of the step before.
-    ASSERT_EQ(kept.size(), anew.size()) << step;
-    for (std::size_t k = 0; k < kept.size(); ++k) EXPECT_EQ(kept[k].patch, anew[k].patch);
+    std::set<std::uint32_t> keptPatches, newPatches;
+    for (const PointTouch& touch : kept) keptPatches.insert(touch.patch);
+    for (const PointTouch& touch : anew) newPatches.insert(touch.patch);
+    ASSERT_EQ(keptPatches, newPatches) << step;
     touched += !kept.empty();
     now += way;
     if (step % 50 == 49) now.setY(now.y() + btScalar(0.03));

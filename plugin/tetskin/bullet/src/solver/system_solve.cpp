@@ -390,32 +390,39 @@ void SystemSolve::addBlocks(std::size_t first, std::size_t last) {
   const ContactRow& any = *system_.rows[first];
   if (any.nodeCount == 0) return;
   auto& matrix = step_.bodies.bodies()[any.body].dynamics->matrix();
-  btScalar own[kMaxPointNodes][6] = {};
-  for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
-    for (std::uint32_t j = 0; j < i; ++j) {
-      btScalar block[6] = {}, size[6] = {};
-      for (std::size_t r = first; r < last; ++r) {
-        const ContactRow& row = *system_.rows[r];
-        if (row.state == ContactRow::State::Apart) continue;
+  btScalar blocks[kMaxPointNodes][kMaxPointNodes][6] = {};  // the lower triangle
+  for (std::size_t r = first; r < last; ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state == ContactRow::State::Apart) continue;
+    const btMatrix3x3& h = row.tangent;
+    const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
+    for (std::uint32_t i = 0; i < row.nodeCount; ++i) {
+      for (std::uint32_t j = 0; j <= i; ++j) {
         const btScalar weight = row.weights[i] * row.weights[j];
-        addSymmetric(row.tangent, weight, block);
-        addSymmetric(row.tangent, std::abs(weight), size);
-      }
-      const auto a = static_cast<std::size_t>(any.nodes[i]), b = static_cast<std::size_t>(any.nodes[j]);
-      if (matrix.couple(a, b, block)) continue;
-      for (int k = 0; k < 6; ++k) {
-        own[i][k] += size[k];
-        own[j][k] += size[k];
-      }
-    }
-    for (std::size_t r = first; r < last; ++r) {
-      const ContactRow& row = *system_.rows[r];
-      if (row.state != ContactRow::State::Apart) {
-        addSymmetric(row.tangent, row.weights[i] * row.weights[i], own[i]);
+        for (int k = 0; k < 6; ++k) blocks[i][j][k] += weight * tangent[k];
       }
     }
   }
-  for (std::uint32_t i = 0; i < any.nodeCount; ++i) matrix.resist(static_cast<std::size_t>(any.nodes[i]), own[i]);
+  for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
+    for (std::uint32_t j = 0; j < i; ++j) {
+      const auto a = static_cast<std::size_t>(any.nodes[i]), b = static_cast<std::size_t>(any.nodes[j]);
+      if (!matrix.couple(a, b, blocks[i][j])) addApart(first, last, i, j, blocks);
+    }
+  }
+  for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
+    matrix.resist(static_cast<std::size_t>(any.nodes[i]), blocks[i][i]);
+  }
+}
+
+void SystemSolve::addApart(std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
+                           btScalar (&blocks)[kMaxPointNodes][kMaxPointNodes][6]) const {
+  for (std::size_t r = first; r < last; ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state == ContactRow::State::Apart) continue;
+    const btScalar weight = std::abs(row.weights[i] * row.weights[j]);
+    addSymmetric(row.tangent, weight, blocks[i][i]);
+    addSymmetric(row.tangent, weight, blocks[j][j]);
+  }
 }
 
 /// Of the few unknowns, but for the masses of rigid bodies: what rows, and the masses of parts, couple them by.

@@ -60,6 +60,8 @@ class SystemSolve {
   void addImpulses();
   void addTangents();
   void addBlocks(std::size_t first, std::size_t last);
+  void addApart(std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
+                btScalar (&blocks)[kMaxPointNodes][kMaxPointNodes][6]) const;
   void collectParts();
   void addPart(std::size_t body, std::size_t part);
   void moveIntoParts();

@@ -17,8 +17,10 @@ constexpr int kMostSteps = 24;
 constexpr btScalar kMet = btScalar(0.05);
 /// Over the slack: how far the points of a patch that touch may be from those of them that are chosen.
 constexpr btScalar kSpacing = 4;
+/// Cosine: a patch in one tet moves as a whole, and on a plane a few points hold it.
+constexpr btScalar kSamePlane = btScalar(0.9999);
 /// How much farther apart others must be than a point that goes deeper by one.
-constexpr btScalar kDepthsWorth = 2;
+constexpr btScalar kDepthsWorth = 3;
 /// Steps after which what was clear is looked at again.
 constexpr unsigned kRemembered = 16;
 
@@ -95,10 +97,6 @@ const std::vector<PointTouch>& TouchSearch::find(ShapeProbe& probe, const ShapeP
   shape_ = shape;
   touches_.clear();
   memory_ = &memory;
-  if (memory.speculation != speculation_) {
-    memory = {};
-    memory.speculation = speculation_;
-  }
   ++memory.steps;
   if (isAllClear()) {
     memory.touched.clear();
@@ -141,7 +139,9 @@ bool TouchSearch::isAllClear() const {
       !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
     return false;
   }
-  const btScalar most = btScalar(0.25) * slack_ * slack_ / (spread_ * spread_);
+  const btScalar left = btScalar(0.5) * slack_ - std::max(speculation_ - memory_->speculation, btScalar(0));
+  if (!(left > 0)) return false;
+  const btScalar most = left * left / (spread_ * spread_);
   for (std::size_t n = 0; n < nodes_->size(); ++n) {
     const NodePath& path = (*nodes_)[n];
     if ((path.now - memory_->nodes[n]).length2() >= most) return false;
@@ -153,6 +153,7 @@ bool TouchSearch::isAllClear() const {
 void TouchSearch::rememberAllClear() {
   memory_->clearUntil = memory_->steps + kRemembered;
   memory_->place = shape_.now;
+  memory_->speculation = speculation_;
   memory_->nodes.resize(nodes_->size());
   for (std::size_t n = 0; n < nodes_->size(); ++n) memory_->nodes[n] = (*nodes_)[n].now;
 }
@@ -169,7 +170,7 @@ btScalar TouchSearch::clearance(std::size_t cluster, const Ball& ball) const {
   if (!(memory_->clusterClear[cluster] > 0)) return 0;
   const Ball& known = memory_->clusterBalls[cluster];
   const btScalar grown = std::max(ball.radius - known.radius, btScalar(0));
-  return memory_->clusterClear[cluster] - (ball.centre - known.centre).length() - grown;
+  return memory_->clusterClear[cluster] - speculation_ - (ball.centre - known.centre).length() - grown;
 }
 
 /// Returns by how much all of the cluster is clear, or 0.
@@ -190,13 +191,14 @@ btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool 
     }
     if (!entered && !probe_->enter(ball, reach_ + slack_)) {
       memory_->clusterBalls[cluster] = ball;
-      memory_->clusterClear[cluster] = slack_;
+      memory_->clusterClear[cluster] = slack_ + speculation_;
       return slack_;
     }
     if (!entered) bound = probe_->bound();
     entered = true;
-    remember(p, searchPatch(patch, bound));
-    left = std::min(left, memory_->clear[p]);
+    const btScalar clear = searchPatch(patch, bound);
+    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
+    left = std::min(left, clear);
   }
   return left;
 }
@@ -223,7 +225,7 @@ btScalar TouchSearch::clearance(const ContactPatch& patch, btScalar known) const
     const btVector3& from = memory_->carriers[patch.firstNode + n];
     moved = std::max({moved, (carriers_[n].now - from).length2(), (carriers_[n].predicted - from).length2()});
   }
-  return known - btSqrt(moved) * patch.spread;
+  return known - speculation_ - btSqrt(moved) * patch.spread;
 }
 
 void TouchSearch::remember(std::size_t patch, btScalar clear) {
@@ -322,10 +324,13 @@ void TouchSearch::chooseTouches(std::size_t first) {
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
+  const bool flat = std::all_of(begin, touches_.end(),
+                                [&](const PointTouch& touch) { return touch.normal.dot(begin->normal) > kSamePlane; });
+  const std::size_t enough = flat ? kMinTouches : kMaxTouches;
   const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);
-    if (chosen_.size() == kMaxTouches) break;
+    if (chosen_.size() == enough) break;
     btScalar most = -BT_LARGE_FLOAT;
     for (auto at = begin; at != touches_.end(); ++at) {
       btScalar& apart = apart_[static_cast<std::size_t>(at - begin)];

@@ -49,19 +49,19 @@ class BoxOfPaths {
 /// Shapes may change in place without a word: everything is looked at again after some steps.
 struct ShapeMemory {
   std::vector<Ball> clusterBalls;      ///< shape space, as are all
-  std::vector<btScalar> clusterClear;  ///< how far from everything; 0: not known
+  std::vector<btScalar> clusterClear;  ///< how far from everything, less the margin; 0: not known
   std::vector<btVector3> carriers;     ///< as ContactPatches::nodes
-  std::vector<btScalar> clear;         ///< by patch
+  std::vector<btScalar> clear;         ///< by patch, likewise
   std::vector<std::uint32_t> touched;  ///< points of the last step, ascending
   std::vector<btVector3> nodes;        ///< world space, from where on the whole body is clear of a shape that rests
   btTransform place = btTransform::getIdentity();  ///< of that shape
-  btScalar speculation = 0;                        ///< by which all of it is clear
+  btScalar speculation = 0;                        ///< of the step from which on it is
   unsigned clearUntil = 0;                         ///< step
   unsigned steps = 0;
 };
 
 /// Of one patch and one shape: as many hold a tet as it can be held by, and more only where it is large.
-constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
+constexpr std::size_t kMinTouches = 2, kMaxTouches = 64;
 
 /// A point may pass a thin shape in one step: it touches what it meets first on its way.
 class TouchSearch {
