@@ -28,11 +28,11 @@ class TouchSearchTest : public ::testing::Test {
     }
   }
   std::vector<PointTouch> find(TouchSearch& search, const btCollisionShape& shape, const btVector3& at,
-                              ShapeMemory& memory) {
+                               ShapeMemory& memory) {
     return find(search, shape, placeAt(at), memory);
   }
   std::vector<PointTouch> find(TouchSearch& search, const btCollisionShape& shape, const btTransform& at,
-                              ShapeMemory& memory) {
+                               ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::of(shape));
     search.begin(nodes_, speculation_);

@@ -144,9 +144,9 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   const auto margin = static_cast<btScalar>(options.margin >= 0.0 ? options.margin : kSurfaceMargin * size);
   ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
-  auto parts = std::make_unique<Parts>(*world.getDispatcher(), body,
-                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
-                                       static_cast<btScalar>(kMeshThickness * size));
+  auto parts = std::make_unique<Parts>(
+      *world.getDispatcher(), body, TouchSearch(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
+      static_cast<btScalar>(kMeshThickness * size));
   deformableSolverOf(body)->solveAlways();
   parts->begin(world, reach);
   return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));

@@ -18,7 +18,7 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
-#include <tetskin/bullet/src/shared/solver/point_contacts.h>
+#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/bullet/src/solver/rigid_unknowns.h>
 
 namespace tetskin {

@@ -171,8 +171,7 @@ double effectiveMass(const SolvedBody& body, const ContactRow& row, const RigidU
   const auto along = [&](const btVector3& direction) {
     return compliance(body, row, direction) + rigids.compliance(row.rigid, direction);
   };
-  const double sum =
-      row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
+  const double sum = row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
@@ -222,7 +221,8 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     row.relative = relativeVelocity(body, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
     const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
-    const btScalar seen = gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
+    const btScalar seen =
+        gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
     row.gapVelocity = std::max(seen / seconds, -pushingOut);
     recall(body, seconds, row);
     rows_.push_back(row);

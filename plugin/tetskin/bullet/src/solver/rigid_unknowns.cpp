@@ -158,7 +158,8 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};
-  const btVector3 velocity = rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
+  const btVector3 velocity =
+      rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
   return rigid->isKinematicObject() ? carriedBy(object, at.arm, velocity, seconds) : velocity;
 }
 
@@ -213,8 +214,7 @@ void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const
   if (a.unknown < 0 || b.unknown < 0) return;
   const RigidUnknown &first = unknowns_[static_cast<std::size_t>(a.unknown)],
                      &second = unknowns_[static_cast<std::size_t>(b.unknown)];
-  to.block(first.first, second.first, first.size, second.size) +=
-      sign * jacobianOf(a).transpose() * h * jacobianOf(b);
+  to.block(first.first, second.first, first.size, second.size) += sign * jacobianOf(a).transpose() * h * jacobianOf(b);
 }
 
 double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {

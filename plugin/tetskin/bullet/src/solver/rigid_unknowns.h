@@ -5,8 +5,8 @@
 // meet.
 //
 // What is unknown is by how much the solve changes their velocities, beside what Bullet has made of them in this step.
-// They have few degrees of freedom, and are eliminated: with J the velocity of a row's point over these, H the stiffness
-// of the row and M the masses,
+// They have few degrees of freedom, and are eliminated: with J the velocity of a row's point over these, H the
+// stiffness of the row and M the masses,
 //   (M + sum J^T H J) dV = sum J^T f,    dV = (1 + M^-1 sum J^T H J)^-1 M^-1 sum J^T f
 // in which only inverse masses occur, so that an axis may be locked.
 #pragma once
@@ -73,7 +73,8 @@ class RigidUnknowns {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   Jacobian jacobianOf(const RigidPoint& at) const;
   int add(const btCollisionObject& object);
-  btVector3 carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity, btScalar seconds);
+  btVector3 carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity,
+                      btScalar seconds);
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;

@@ -32,18 +32,18 @@ struct SolvedBody {
   ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
   const SolverLimits* limits = nullptr;
   Dynamics* dynamics = nullptr;
-  bool needsDeformation = false;                    ///< Bullet's own gradients
-  std::vector<Sticking>* sticking = nullptr;    ///< of the step before, by number of the point; elastic ones only
-  PointContacts* bulletsContacts = nullptr;     ///< of this step, as Bullet has found them
+  bool needsDeformation = false;              ///< Bullet's own gradients
+  std::vector<Sticking>* sticking = nullptr;  ///< of the step before, by number of the point; elastic ones only
+  PointContacts* bulletsContacts = nullptr;   ///< of this step, as Bullet has found them
   PaddedTrees* paddedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
-  int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
-  int rowCount = 0;          ///< of contacts and anchors
-  bool wasTouched = false;   ///< in the step before
-  bool waits = false;        ///< it is solved for when contacts are known, and not before
+  int iterations = 0;            ///< in this step; of bodies that are coupled, the first one's are for all
+  int rowCount = 0;              ///< of contacts and anchors
+  bool wasTouched = false;       ///< in the step before
+  bool waits = false;            ///< it is solved for when contacts are known, and not before
   std::vector<FixedNode> fixed;  ///< but held ones
-  bool solvedAgain = false;  ///< with what contacts and other forces do
-  bool touched = false;      ///< something beside elasticity has changed velocities, or shall
+  bool solvedAgain = false;      ///< with what contacts and other forces do
+  bool touched = false;          ///< something beside elasticity has changed velocities, or shall
 
   /// Of a node of the body, by its number.
   std::size_t placeOf(int number) const { return static_cast<std::size_t>(number - first); }

@@ -45,8 +45,7 @@ void fixNodes(const SolvedBody& body) {
   }
 }
 
-void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies,
-                        VectorStack& residual) {
+void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual) {
   const auto add = [&](const auto& constraint, const btSoftBody::Node& node) {
     const btVector3 dv = constraint.getDv(&node);
     if (node.m_im == 0 || isNoNumber(dv)) return;

@@ -335,8 +335,7 @@ bool SystemSolve::start(int pass) {
   }
   auto& solve = *bodyAt(0).solve;
   solve.start(std::move(matrices), limits, std::move(extra), threads_);
-  const double most =
-      std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
+  const double most = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(compliance_ * fewResidual_);
   return squared <= most;
@@ -443,9 +442,9 @@ SystemSolve::Matrix SystemSolve::fewMatrix() const {
     for (Eigen::Index k = 0; k < 6 && row.rigid.unknown >= 0; ++k) {
       const Eigen::Vector3d push = h * rowMotions_[r].col(k);
       Vector column = Vector::Zero(rigidSize_);
-      rigids.addImpulse(row.rigid,
-                        {static_cast<btScalar>(push[0]), static_cast<btScalar>(push[1]), static_cast<btScalar>(push[2])},
-                        column);
+      rigids.addImpulse(
+          row.rigid, {static_cast<btScalar>(push[0]), static_cast<btScalar>(push[1]), static_cast<btScalar>(push[2])},
+          column);
       few.col(first + k).head(rigidSize_) -= column;
       few.row(first + k).head(rigidSize_) -= column.transpose();
     }

@@ -5,8 +5,8 @@
 //
 // With y the nodes' velocities beside their rigid motions, and V by how much rigid bodies change theirs:
 //   A y = b + sum w f + what others do,    M V = sum J^T (f - given)
-// with f the rows' impulses, which depend on both (contact_row.h). Newton's method: in each pass rows are linear, with H
-// of each in the blocks of its tet, so that sweeps see it; rigid bodies are eliminated; the conjugate gradient solves
+// with f the rows' impulses, which depend on both (contact_row.h). Newton's method: in each pass rows are linear, with
+// H of each in the blocks of its tet, so that sweeps see it; rigid bodies are eliminated; the conjugate gradient solves
 // for the rest. Passes go on until it has converged.
 #pragma once
 
@@ -40,10 +40,10 @@ class SystemSolve {
   /// The rigid motion of a part of a stiff body, beside which the nodes' velocities are: sweeps would be slow to find
   /// it, and its stiffness is so large that rounding would hide what it weighs.
   struct PartUnknown {
-    std::size_t body = 0;    ///< in SolverBodies::bodies
-    Eigen::Index first = 0;  ///< of its six unknowns
-    AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z: 4 scalars a slot
-    AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, wide
+    std::size_t body = 0;                                                    ///< in SolverBodies::bodies
+    Eigen::Index first = 0;                                                  ///< of its six unknowns
+    AlignedVector<btScalar> motions[Dynamics::kRigidMotions];                ///< Z: 4 scalars a slot
+    AlignedVector<btScalar> images[Dynamics::kRigidMotions];                 ///< A Z, wide
     Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
     Vector6 began = Vector6::Zero();                                         ///< Z^T b
   };
@@ -97,17 +97,17 @@ class SystemSolve {
   DeformableSolver::Parts& step_;
   const SolvedSystem& system_;
   ParallelFor* threads_;
-  std::vector<BodyState> states_;                        ///< by body of the system
+  std::vector<BodyState> states_;  ///< by body of the system
   std::vector<PartUnknown> parts_;
   std::vector<Eigen::Matrix<double, 3, 6>> rowMotions_;  ///< by row: Z where it acts
   std::vector<int> rowParts_;                            ///< by row: in `parts_`, or below 0
   // Few unknowns: V of rigid bodies, and then q of parts.
   Eigen::Index rigidSize_ = 0, fewSize_ = 0;
-  Vector few_, fewStep_, fewResidual_;   ///< as they are; of the pass, their growth and what is left of their equations
-  Vector partsBefore_;                   ///< momenta of parts when the pass began
-  Vector rigidMomentum_, rigidPush_;     ///< M V, and its growth in the pass
-  Matrix inverseMass_, compliance_;      ///< M^-1; the inverse of the few unknowns' matrix
-  std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
+  Vector few_, fewStep_, fewResidual_;  ///< as they are; of the pass, their growth and what is left of their equations
+  Vector partsBefore_;                  ///< momenta of parts when the pass began
+  Vector rigidMomentum_, rigidPush_;    ///< M V, and its growth in the pass
+  Matrix inverseMass_, compliance_;     ///< M^-1; the inverse of the few unknowns' matrix
+  std::vector<btVector3> before_, stepped_;  ///< by row: u when the pass began, and by how much it changed
 };
 
 }  // namespace tetskin

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
-#include <tetskin/bullet/src/shared/solver/point_contacts.h>
+#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/core/embedding.h>
 
 #include <cstdint>

@@ -310,8 +310,8 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   return 0;
 }
 
-/// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched in
-/// the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
+/// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched
+/// in the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
 void TouchSearch::chooseTouches(std::size_t first) {
   if (touches_.size() - first <= kMinTouches) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);

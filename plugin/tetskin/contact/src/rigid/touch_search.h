@@ -75,9 +75,9 @@ class TouchSearch {
   /// Where the nodes are in this step; valid until the next call.
   /// speculation  how far above the margin points still touch
   void begin(const std::vector<NodePath>& nodes, btScalar speculation);
-  /// Of the body with these nodes and this shape, patch by patch; of each the deepest points, and others so far apart that none
-  /// is missed, no more than kMaxTouches. Valid until the next call.
-  /// memory  of the same shape, or an empty one
+  /// Of the body with these nodes and this shape, patch by patch; of each the deepest points, and others so far apart
+  /// that none is missed, no more than kMaxTouches. Valid until the next call. memory  of the same shape, or an empty
+  /// one
   const std::vector<PointTouch>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
 
  private:
@@ -103,7 +103,7 @@ class TouchSearch {
   ContactPatches patches_;
   btScalar margin_, slack_;
   btScalar speculation_ = 0, reach_ = 0;  ///< of this step; with the margin
-  btScalar spread_ = 1;  ///< the largest of all clusters
+  btScalar spread_ = 1;                   ///< the largest of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
   bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;  ///< world space, with all that their points pass through
@@ -111,9 +111,9 @@ class TouchSearch {
   ShapeProbe* probe_ = nullptr;
   ShapeMemory* memory_ = nullptr;
   ShapePath shape_, toShape_;
-  btScalar turn_ = 0;         ///< how far a point at distance 1 moves by the shape's turning
+  btScalar turn_ = 0;  ///< how far a point at distance 1 moves by the shape's turning
   std::vector<PointTouch> touches_, chosen_;
-  std::vector<btScalar> apart_;  ///< by touch of a patch: how far from those that are chosen
+  std::vector<btScalar> apart_;                     ///< by touch of a patch: how far from those that are chosen
   std::vector<NodePath> local_;                     ///< by node, of the cluster's; shape space
   std::array<NodePath, kMostCarriers> carriers_;    ///< of the patch
   std::array<btScalar, kMostCarriers> heights_[2];  ///< of these, above the bound, now and predicted

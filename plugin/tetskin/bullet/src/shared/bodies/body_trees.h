@@ -10,7 +10,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
-#include <tetskin/bullet/src/shared/solver/point_contacts.h>
+#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/export.h>
 
 #include <memory>
@@ -68,8 +68,8 @@ class BodyWithTrees : public btSoftBody {
   btScalar reach() const { return reach_; }
 
   /// How far from what it may meet a body's points count as touching, while a step looks for that, beside what is kept
-  /// between them. Forces that will hold both are not known yet: what rests on something that rests is predicted to fall
-  /// with it, or away from it. 0: none, as outside of steps.
+  /// between them. Forces that will hold both are not known yet: what rests on something that rests is predicted to
+  /// fall with it, or away from it. 0: none, as outside of steps.
   void setSpeculation(btScalar distance) { speculation_ = distance; }
   btScalar speculation() const { return speculation_; }
 

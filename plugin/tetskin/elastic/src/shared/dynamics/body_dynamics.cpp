@@ -296,7 +296,8 @@ template <class S>
 double BodyDynamics<S>::squaredByMatrix() const {
   const S* solution = matrix_.solution();
   double sum = 0.0;
-  for (std::size_t k = 0; k < image_.size(); ++k) sum += static_cast<double>(solution[k]) * static_cast<double>(image_[k]);
+  for (std::size_t k = 0; k < image_.size(); ++k)
+    sum += static_cast<double>(solution[k]) * static_cast<double>(image_[k]);
   return std::max(sum, 0.0);
 }
 

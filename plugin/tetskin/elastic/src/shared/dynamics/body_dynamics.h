@@ -66,8 +66,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double squaredDeviation() const { return squaredDeviation_; }
   /// Of the last `predict`.
   bool isStiff() const { return stiff_; }
-  /// dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia, of the last `predict`: how much faster
-  /// deformations are taken back than a step lasts.
+  /// dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia, of the last `predict`: how much
+  /// faster deformations are taken back than a step lasts.
   double stiffnessNumber() const { return stiffnessNumber_; }
   /// The square of the solution's norm, by masses.
   double squaredSolution() const;
