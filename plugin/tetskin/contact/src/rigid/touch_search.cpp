@@ -19,6 +19,8 @@ constexpr btScalar kMet = btScalar(0.05);
 constexpr btScalar kSpacing = 4;
 /// Cosine: a patch in one tet moves as a whole, and on a plane a few points hold it.
 constexpr btScalar kSamePlane = btScalar(0.9999);
+/// How far it goes to the plane in a step at most, over the slack.
+constexpr btScalar kCalm = btScalar(0.25);
 /// How much farther apart others must be than a point that goes deeper by one.
 constexpr btScalar kDepthsWorth = 3;
 /// Steps after which what was clear is looked at again.
@@ -313,7 +315,7 @@ btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
 /// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched
 /// in the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
 void TouchSearch::chooseTouches(std::size_t first) {
-  if (touches_.size() - first <= kMinTouches) return;
+  if (touches_.size() - first <= 2) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
   const auto lead = [&](const PointTouch& touch) {
     const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
@@ -324,9 +326,12 @@ void TouchSearch::chooseTouches(std::size_t first) {
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
-  const bool flat = std::all_of(begin, touches_.end(),
-                                [&](const PointTouch& touch) { return touch.normal.dot(begin->normal) > kSamePlane; });
-  const std::size_t enough = flat ? kMinTouches : kMaxTouches;
+  // Lies or slides on a plane: where it falls onto one, points between those that are chosen go in.
+  const bool flat = std::all_of(begin, touches_.end(), [&](const PointTouch& touch) {
+    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < kCalm * slack_;
+  });
+  const std::size_t few = first < kManyTouches ? kMinTouches : 2;
+  const std::size_t enough = flat ? few : kMaxTouches;
   const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);

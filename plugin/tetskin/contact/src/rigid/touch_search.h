@@ -60,8 +60,10 @@ struct ShapeMemory {
   unsigned steps = 0;
 };
 
-/// Of one patch and one shape: as many hold a tet as it can be held by, and more only where it is large.
-constexpr std::size_t kMinTouches = 2, kMaxTouches = 64;
+/// Of one patch and one shape: as many as hold a tet, and more only where it is large.
+constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
+/// Where so many points touch already, patches that lie flat have no more than two each.
+constexpr std::size_t kManyTouches = 64;
 
 /// A point may pass a thin shape in one step: it touches what it meets first on its way.
 class TouchSearch {
