@@ -337,6 +337,7 @@ int run(const DragOptions& options) {
   nlohmann::ordered_json json;
   drag.tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  tellSolve(drag.world().solveTotals(), json);
   json["finite"] = run.finite;
   writeJson(json, summary);
   if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());

@@ -161,6 +161,7 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   json["contact"] = options_.contactPossible() == Contact::Surface ? "surface" : "cage";
   player_.selfContact().tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  tellSolve(player_.scene().world().solveTotals(), json);
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
   json["frames"] = run.frames;
@@ -202,6 +203,10 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   row("contact", json.at("contact").get<std::string>());
   row("contact with itself", json.at("self_contact").get<std::string>());
   row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
+  if (!json.at("iterations_per_step").is_null()) {
+    row("solver", number("iterations_per_step", "%.1f iterations in ") + number("passes_per_step", "%.2f") +
+                      " passes a step; steps not converged: " + number("steps_unconverged", "%.0f"));
+  }
   row("skin", number("skin_us_per_frame", "%.1f us a frame"));
   row("write", number("write_ms_per_frame", "%.2f ms a frame"));
   row("speed at the end", number("rest_speed", "%.3f sizes a second"));

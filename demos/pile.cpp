@@ -222,6 +222,7 @@ int run(const PileOptions& options) {
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
   json["self_contact"] = options.touchThemselves() ? "on" : "off";
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  tellSolve(pile.world().solveTotals(), json);
   json["deepest_contact"] = deepest;
   json["deepest_contact_at_end"] = pile.deepest();
   json["contacts_at_end"] = pile.contactCount();

@@ -60,8 +60,12 @@ int run(const StressOptions& options) {
     printMap(rows);
     const auto gained = std::count_if(rows.begin(), rows.end(),
                                       [&](const Row& row) { return bulletCannot(row, rows).value_or(false); });
-    std::printf("\n%zu cases, %td of which did not hold; %td that Bullet's force cannot hold and tetskin's can\n",
-                rows.size(), broken, gained);
+    const auto unconverged =
+        std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.verdict.solve.unconverged > 0; });
+    std::printf(
+        "\n%zu cases, %td of which did not hold; %td that Bullet's force cannot hold and tetskin's can; %td in which "
+        "contact did not converge in some step\n",
+        rows.size(), broken, gained, unconverged);
   }
   return broken == 0 ? kDone : kRunFailed;
 }

@@ -7,12 +7,15 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/cage/cage_builder.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "scenes/obstacle_mesh.h"
 #include "scenes/placement.h"
 #include "scenes/serpent.h"
 #include "scenes/world.h"
@@ -21,12 +24,21 @@ namespace tetskin::bench {
 namespace {
 
 using benchmark::State;
-using scenes::Contact;
 
 constexpr std::size_t kContactTets = 1000;
 constexpr int kSubsteps = 4;
 /// A landing, and rest.
 constexpr int kContactFrames = 180;
+/// Between bodies in a row, of kSize.
+constexpr double kRowSpacing = 2.5;
+/// Over the obstacle's top: bodies that fall, and those that begin in touch.
+constexpr double kFall = 0.2, kTouching = 0.001 * scenes::kSize;
+
+/// Who looks for contacts: `Bullet` is its own solver, by nodes. `Free`: nothing is there to be met, for what the step
+/// costs without.
+enum class Finder { Surface, Cage, Bullet, Free };
+constexpr std::pair<Finder, const char*> kFinders[] = {
+    {Finder::Surface, "/surface"}, {Finder::Cage, "/cage"}, {Finder::Bullet, "/bullet"}, {Finder::Free, "/free"}};
 
 /// Processor time spent with pairs of bodies.
 std::clock_t inPairs = 0;
@@ -42,27 +54,60 @@ struct ContactObstacle {
   std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btCollisionShape> shape;
   btVector3 centre{0, 0, 0};
+  std::vector<std::unique_ptr<btCollisionShape>> children{};  ///< of a compound
 };
 
 ContactObstacle ground() {
   return {nullptr, std::make_unique<btBoxShape>(btVector3(10, 1, 10)), btVector3(0, -1, 0)};
 }
+/// Longer than anything slides on it.
+ContactObstacle runway() {
+  return {nullptr, std::make_unique<btBoxShape>(btVector3(40, 1, 10)), btVector3(0, -1, 0)};
+}
 ContactObstacle sphere() {
   return {nullptr, std::make_unique<btSphereShape>(btScalar(1.2)), btVector3(0, btScalar(-1.2), 0)};
 }
-ContactObstacle hull() {
+/// An ellipsoid.
+std::unique_ptr<btConvexHullShape> hullOf(const Eigen::Vector3d& radii, int rings) {
   auto shape = std::make_unique<btConvexHullShape>();
-  constexpr int kRings = 12;
-  for (int i = 0; i <= kRings; ++i) {
-    for (int j = 0; j < 2 * kRings; ++j) {
-      const double theta = EIGEN_PI * i / kRings, phi = EIGEN_PI * j / kRings;
-      shape->addPoint(toBullet({1.5 * std::sin(theta) * std::cos(phi), 0.8 * std::cos(theta),
-                                1.5 * std::sin(theta) * std::sin(phi)}),
-                      false);
+  for (int i = 0; i <= rings; ++i) {
+    for (int j = 0; j < 2 * rings; ++j) {
+      const double theta = EIGEN_PI * i / rings, phi = EIGEN_PI * j / rings;
+      const Eigen::Vector3d direction(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      std::sin(theta) * std::sin(phi));
+      shape->addPoint(toBullet(direction.cwiseProduct(radii)), false);
     }
   }
   shape->recalcLocalAabb();
-  return {nullptr, std::move(shape), btVector3(0, btScalar(-0.8), 0)};
+  return shape;
+}
+ContactObstacle hull() {
+  return {nullptr, hullOf({1.5, 0.8, 1.5}, 12), btVector3(0, btScalar(-0.8), 0)};
+}
+/// A square of shapes, side by side in a compound, their tops at the height of its origin.
+template <class MakeShape>
+ContactObstacle paving(int side, double spacing, double height, MakeShape&& makeShape) {
+  ContactObstacle paved;
+  auto compound = std::make_unique<btCompoundShape>(true, side * side);
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      paved.children.push_back(makeShape());
+      const Eigen::Vector3d centre(spacing * (i - 0.5 * (side - 1)), -height, spacing * (j - 0.5 * (side - 1)));
+      compound->addChildShape(btTransform(btQuaternion::getIdentity(), toBullet(centre)), paved.children.back().get());
+    }
+  }
+  paved.shape = std::move(compound);
+  return paved;
+}
+/// Each of 106 points; all of them under the body.
+template <int kSide>
+ContactObstacle hulls() {
+  const double spacing = scenes::kSize / kSide;
+  return paving(kSide, spacing, 0.1, [&] { return hullOf({0.5 * spacing, 0.1, 0.5 * spacing}, 8); });
+}
+ContactObstacle compound() {
+  return paving(100, 0.5, 0.1,
+                [] { return std::make_unique<btBoxShape>(btVector3(btScalar(0.25), btScalar(0.1), btScalar(0.25))); });
 }
 /// A hilly square of 1,152 triangles.
 ContactObstacle hills() {
@@ -86,81 +131,172 @@ ContactObstacle apart() {
   return {nullptr, std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(btScalar(0.6), 1, 0)};
 }
 
-/// A serpent on an obstacle, and what contact costs.
+TriangleMesh ball() {
+  TriangleMesh mesh;
+  scenes::appendSphere(mesh, Eigen::Vector3d::Zero(), 0.5 * scenes::kSize);
+  return mesh;
+}
+TriangleMesh slab() {
+  TriangleMesh mesh;
+  scenes::appendBox(mesh, Eigen::Vector3d::Zero(), scenes::kSize * Eigen::Vector3d(0.5, 0.2, 0.5), 0.0);
+  return mesh;
+}
+TriangleMesh serpentMesh() {
+  return scenes::makeSerpent();
+}
+
+struct ContactCase {
+  const char* name;
+  ContactObstacle (*obstacle)();
+  double gravity = scenes::kEarth;
+  TriangleMesh (*mesh)() = serpentMesh;
+  int bodies = 1;
+  double height = kFall;
+  double speed = 0.0;     ///< along x
+  bool rolls = false;     ///< with that speed
+  double slope = 0.0;     ///< radians, down along x
+  double friction = 0.5;  ///< the obstacle's, by which the body's 0.5 is multiplied
+};
+
+/// A body's mesh and cage in the world's size, where it begins.
+struct ContactModel {
+  explicit ContactModel(const ContactCase& made) : mesh(made.mesh()) {
+    CageOptions options;
+    options.targetTets = kContactTets;
+    cage = buildCage(mesh, options).value();
+    const double scale = scenes::kSize / boundingBox(cage.nodes).sizes().maxCoeff();
+    const double lift = made.height - scale * boundingBox(mesh.positions).min().y();
+    for (auto* points : {&cage.nodes, &mesh.positions}) {
+      for (Eigen::Vector3d& p : *points) p = scale * p + lift * Eigen::Vector3d::UnitY();
+    }
+  }
+
+  TriangleMesh mesh;
+  Cage cage;
+};
+
+btVector3 gravityOf(const ContactCase& made, Finder finder) {
+  if (finder == Finder::Free) return {0, 0, 0};
+  return toBullet(made.gravity * Eigen::Vector3d(std::sin(made.slope), -std::cos(made.slope), 0));
+}
+
+/// Bodies on an obstacle, and what a step costs.
 class ContactRun {
  public:
-  ContactRun(const Cage& cage, const TriangleMesh& mesh, ContactObstacle obstacle, Contact how, bool falls)
-      : obstacle_(std::move(obstacle)), world_(scenes::Force::Elastic, btVector3(0, falls ? btScalar(-9.81) : 0, 0)) {
+  ContactRun(const ContactModel& model, const ContactCase& made, Finder finder)
+      : obstacle_(made.obstacle()),
+        world_(finder == Finder::Bullet ? scenes::Force::NeoHookean : scenes::Force::Elastic, gravityOf(made, finder)) {
+    if (finder != Finder::Free) addObstacle(static_cast<btScalar>(made.friction));
+    const auto binding = SoftBodyBinding::make(model.cage, model.mesh).value();
+    for (int b = 0; b < made.bodies; ++b) {
+      Cage cage = model.cage;
+      for (Eigen::Vector3d& p : cage.nodes) p.x() += kRowSpacing * (b - 0.5 * (made.bodies - 1));
+      btSoftBody& body = world_.add(cage, scenes::oneKilogram());
+      body.setActivationState(DISABLE_DEACTIVATION);
+      if (finder == Finder::Surface) world_.touchBySurface(body, *binding, model.mesh);
+      setMotion(body, made);
+    }
+    static_cast<btCollisionDispatcher*>(world_.bullet().getDispatcher())->setNearCallback(timedNearCallback);
+  }
+  ~ContactRun() {
+    if (rigid_) world_.bullet().removeRigidBody(rigid_.get());
+  }
+  ContactRun(const ContactRun&) = delete;
+  ContactRun& operator=(const ContactRun&) = delete;
+
+  /// Makes a frame. Seconds a substep, of pairs alone and of all of it.
+  std::pair<double, double> step() {
+    inPairs = 0;
+    const std::clock_t begin = std::clock();
+    for (int k = 0; k < kSubsteps; ++k) world_.step(1.0 / (60 * kSubsteps));
+    const auto seconds = [](std::clock_t ticks) { return static_cast<double>(ticks) / CLOCKS_PER_SEC / kSubsteps; };
+    return {seconds(inPairs), seconds(std::clock() - begin)};
+  }
+
+ private:
+  void addObstacle(btScalar friction) {
     rigid_ = std::make_unique<btRigidBody>(0, nullptr, obstacle_.shape.get());
     const btTransform at(btQuaternion::getIdentity(), obstacle_.centre);
     rigid_->setWorldTransform(at);
     rigid_->setInterpolationWorldTransform(at);
+    rigid_->setFriction(friction);
     world_.bullet().addRigidBody(rigid_.get());
-    btSoftBody& body = world_.add(cage, scenes::oneKilogram());
-    body.setActivationState(DISABLE_DEACTIVATION);
-    const auto binding = SoftBodyBinding::make(cage, mesh).value();
-    if (how == Contact::Surface) world_.touchBySurface(body, *binding, mesh);
-    static_cast<btCollisionDispatcher*>(world_.bullet().getDispatcher())->setNearCallback(timedNearCallback);
   }
-  ~ContactRun() { world_.bullet().removeRigidBody(rigid_.get()); }
-  ContactRun(const ContactRun&) = delete;
-  ContactRun& operator=(const ContactRun&) = delete;
-
-  /// Seconds a substep, of one frame.
-  double step() {
-    inPairs = 0;
-    for (int k = 0; k < kSubsteps; ++k) world_.step(1.0 / (60 * kSubsteps));
-    return static_cast<double>(inPairs) / CLOCKS_PER_SEC / kSubsteps;
+  /// A body that rolls turns about the middle of its height.
+  static void setMotion(btSoftBody& body, const ContactCase& made) {
+    btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      low = std::min(low, body.m_nodes[n].m_x.y());
+      high = std::max(high, body.m_nodes[n].m_x.y());
+    }
+    const auto speed = static_cast<btScalar>(made.speed);
+    const btScalar turning = made.rolls ? 2 * speed / (high - low) : 0;
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      btSoftBody::Node& node = body.m_nodes[n];
+      const btVector3 arm = node.m_x - btVector3(0, (low + high) / 2, 0);
+      node.m_v = btVector3(speed + turning * arm.y(), -turning * arm.x(), 0);
+    }
   }
 
- private:
   ContactObstacle obstacle_;
   std::unique_ptr<btRigidBody> rigid_;
   scenes::World world_;
 };
 
-void findContacts(State& state, const std::function<ContactObstacle()>& obstacle, Contact how, bool falls) {
-  CageOptions options;
-  options.targetTets = kContactTets;
-  TriangleMesh mesh = scenes::makeSerpent();
-  Cage cage = buildCage(mesh, options).value();
-  const double scale = scenes::kSize / boundingBox(cage.nodes).sizes().maxCoeff();
-  const double lift = falls ? 0.2 - scale * boundingBox(mesh.positions).min().y() : 0.0;
-  for (auto* points : {&cage.nodes, &mesh.positions}) {
-    for (Eigen::Vector3d& p : *points) p = scale * p + lift * Eigen::Vector3d::UnitY();
-  }
+void findContacts(State& state, const ContactCase& made, Finder finder) {
+  const ContactModel model(made);
   std::unique_ptr<ContactRun> run;
   int frame = kContactFrames;
+  double steps = 0.0;
   for (auto _ : state) {
     if (frame == kContactFrames) {
-      run = std::make_unique<ContactRun>(cage, mesh, obstacle(), how, falls);
+      run = std::make_unique<ContactRun>(model, made, finder);
       frame = 0;
     }
-    state.SetIterationTime(run->step());
+    const auto [pairs, step] = run->step();
+    state.SetIterationTime(pairs);
+    steps += step;
     ++frame;
   }
-  state.counters["tets"] = static_cast<double>(cage.tetCount());
-  state.counters["triangles"] = static_cast<double>(mesh.triangleCount());
+  state.counters["step_us"] = 1e6 * steps / static_cast<double>(state.iterations());
+  state.counters["tets"] = static_cast<double>(model.cage.tetCount());
+  state.counters["triangles"] = static_cast<double>(model.mesh.triangleCount());
+}
+
+std::vector<ContactCase> contactCases() {
+  std::vector<ContactCase> cases = {{"box", ground}, {"sphere", sphere},     {"hull", hull},
+                                    {"mesh", hills}, {"hulls_64", hulls<8>}, {"hulls_81", hulls<9>}};
+  ContactCase beside{"apart", apart};
+  beside.gravity = 0.0;
+  ContactCase row{"compound_10000", compound};
+  row.bodies = 10;
+  ContactCase rolling{"rolling", runway};
+  rolling.mesh = ball;
+  rolling.height = kTouching;
+  rolling.speed = 2.0;
+  rolling.rolls = true;
+  // Stops as the run ends.
+  ContactCase sliding{"sliding", runway};
+  sliding.mesh = slab;
+  sliding.height = kTouching;
+  sliding.speed = 5.8;
+  sliding.friction = 0.4;
+  ContactCase slope{"slope", runway};
+  slope.mesh = slab;
+  slope.height = kTouching;
+  slope.friction = 1.0;
+  slope.slope = std::atan(0.975 * 0.5);
+  cases.insert(cases.end(), {beside, row, rolling, sliding, slope});
+  return cases;
 }
 
 }  // namespace
 
 void registerContactCases() {
-  struct Case {
-    const char* name;
-    ContactObstacle (*obstacle)();
-    bool falls;
-  };
-  const Case cases[] = {{"box", ground, true},
-                        {"sphere", sphere, true},
-                        {"hull", hull, true},
-                        {"mesh", hills, true},
-                        {"apart", apart, false}};
-  for (const Case& made : cases) {
-    for (const Contact how : {Contact::Surface, Contact::Cage}) {
-      const std::string name = std::string("Contact/") + made.name + (how == Contact::Cage ? "/cage" : "/surface");
-      benchmark::RegisterBenchmark(name.c_str(),
-                                   [made, how](State& state) { findContacts(state, made.obstacle, how, made.falls); })
+  for (const ContactCase& made : contactCases()) {
+    for (const auto& [finder, suffix] : kFinders) {
+      const auto run = [made, finder = finder](State& state) { findContacts(state, made, finder); };
+      benchmark::RegisterBenchmark((std::string("Contact/") + made.name + suffix).c_str(), run)
           ->UseManualTime()
           ->Iterations(kContactFrames)
           ->Unit(benchmark::kMicrosecond);

@@ -4,7 +4,8 @@
 
 namespace tetskin::bench {
 
-/// What it costs in a substep to find what a body touches, by its surface and by its cage.
+/// What it costs in a substep to find what bodies touch: by their surfaces, by their cages, in Bullet's own solver, and
+/// in free flight. The counter `step_us` is of the whole substep: less that in free flight it is what contact costs.
 void registerContactCases();
 
 }  // namespace tetskin::bench

@@ -30,6 +30,14 @@ nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit) {
   return json;
 }
 
+void tellSolve(const SolveTotals& totals, nlohmann::ordered_json& json) {
+  using Value = nlohmann::ordered_json;
+  const bool solved = totals.steps > 0;
+  json["iterations_per_step"] = solved ? Value(totals.iterationsPerStep()) : Value();
+  json["passes_per_step"] = solved ? Value(totals.passesPerStep()) : Value();
+  json["steps_unconverged"] = solved ? Value(totals.unconverged) : Value();
+}
+
 void writeJson(const nlohmann::ordered_json& json, const std::string& path) {
   writeFile(path, json.dump(2) + "\n");
 }

@@ -5,12 +5,16 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenes/model.h"
+#include "scenes/world.h"
 
 namespace tetskin::scenes {
 
 /// The head of a summary: what the model is, and how the mesh fits the cage.
 nlohmann::ordered_json summaryOf(const Model& model);
 nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit);
+
+/// What the library's solver has done; null where another solver was in use.
+void tellSolve(const SolveTotals& totals, nlohmann::ordered_json& json);
 
 /// Throws InputError.
 void writeJson(const nlohmann::ordered_json& json, const std::string& path);

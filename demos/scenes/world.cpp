@@ -98,7 +98,6 @@ World::~World() {
   for (const auto& body : bodies_) world_->removeCollisionObject(body.get());
   for (const auto& body : rigid_) world_->removeCollisionObject(body.get());
   world_.reset();
-  SurfaceContact::shutdown(static_cast<btCollisionDispatcher&>(*dispatcher_));
 }
 
 void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {
@@ -170,8 +169,21 @@ void World::setThreads(ParallelFor* threads) {
   if (force_ == Force::Elastic) static_cast<DeformableSolver&>(*bodySolver_).setThreads(threads);
 }
 
+int World::iterations() const {
+  return force_ == Force::Elastic ? static_cast<const DeformableSolver&>(*bodySolver_).iterations() : 0;
+}
+
 int World::step(double seconds) {
-  return world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  const int steps = world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  if (force_ == Force::Elastic && steps > 0) countSolve(static_cast<const DeformableSolver&>(*bodySolver_));
+  return steps;
+}
+
+void World::countSolve(const DeformableSolver& solver) {
+  ++solveTotals_.steps;
+  solveTotals_.iterations += solver.iterations();
+  solveTotals_.passes += solver.passes();
+  if (solver.unconverged() > 0) ++solveTotals_.unconverged;
 }
 
 std::uint64_t World::hashOfNodes(std::uint64_t seed) const {

@@ -25,6 +25,7 @@ class btRigidBody;
 
 namespace tetskin {
 class DeformableBody;
+class DeformableSolver;
 class ReducedBody;
 struct ReducedBodyOptions;
 struct ReductionReport;
@@ -62,6 +63,17 @@ enum class Force {
 
 /// What of a soft body meets rigid ones.
 enum class Contact { Surface, Cage };
+
+/// What the library's solver has done in the steps so far.
+struct SolveTotals {
+  int steps = 0;  ///< 0: another solver is in use, or there was no step
+  long iterations = 0;
+  long passes = 0;      ///< of contacts
+  int unconverged = 0;  ///< steps in which contact did not converge, of any body
+
+  double iterationsPerStep() const { return static_cast<double>(iterations) / steps; }
+  double passesPerStep() const { return static_cast<double>(passes) / steps; }
+};
 
 /// A world of the kind that a force needs, with everything it takes to make one, and its bodies, all owned here.
 class World {
@@ -105,6 +117,9 @@ class World {
 
   /// Makes one step of so many seconds; returns the number of Bullet's steps: 0 if no time passes.
   int step(double seconds);
+  /// Of the library's solver in the last step; 0 of others.
+  int iterations() const;
+  const SolveTotals& solveTotals() const { return solveTotals_; }
   /// Lends threads to the library's solver, if it is in use.
   void setThreads(ParallelFor* threads);
 
@@ -123,6 +138,8 @@ class World {
   void makeClassic();
   void makeDeformable();
   void addCorotated(btSoftBody& body, const SoftBodyOptions& options);
+  void countSolve(const DeformableSolver& solver);
+
   Force force_;
   std::unique_ptr<btCollisionConfiguration> configuration_;
   std::unique_ptr<btDispatcher> dispatcher_;
@@ -142,6 +159,7 @@ class World {
   std::vector<std::unique_ptr<ReducedBody>> reducedBodies_;
   std::vector<std::unique_ptr<SurfaceContact>> contacts_;
   std::unique_ptr<SoftContacts> softContacts_;
+  SolveTotals solveTotals_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's forces, under the earth's gravity.

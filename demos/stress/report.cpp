@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "scenes/summary.h"
+
 namespace tetskin::stress {
 namespace {
 
@@ -98,6 +100,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();
     row["hash"] = hashWord(verdict);
     row["milliseconds"] = verdict.milliseconds;
+    scenes::tellSolve(verdict.solve, row);
     row["force"] = toString(stressCase.force);
     row["implicit"] = stressCase.implicit;
     row["stiffness"] = stressCase.stiffness;

@@ -64,6 +64,7 @@ void simulate(const StressCase& stressCase, const StressModel& model, scenes::Sc
     verdict.hash = scene.world().hashOfNodes(verdict.hash);
     if (frame > stressCase.frames - last) squaredSpeed += scene.nodeSpeed() * scene.nodeSpeed() / last;
   }
+  verdict.solve = scene.world().solveTotals();
   verdict.restSpeed = std::sqrt(squaredSpeed);
   if (std::isfinite(scene.floorY)) verdict.lowest = (skin.bounds().min().y() - scene.floorY) / model.size;
   judge.judgeShape();

@@ -348,6 +348,7 @@ void runClaim(const Claim& claim, Verdict& verdict) {
     verdict.simulationFinite = run.look();
     verdict.hash = run.world().hashOfNodes(verdict.hash);
   }
+  verdict.solve = run.world().solveTotals();
   verdict.extentMax = run.growth();
   verdict.energy = run.energy();
   verdict.energyStored = run.stored();

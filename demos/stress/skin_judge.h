@@ -37,6 +37,7 @@ struct Verdict {
   double weightError = 0.0;  ///< largest difference of a vertex' weights' sum from 1, over the largest weight
   std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each step that is looked at
   double milliseconds = 0.0;
+  scenes::SolveTotals solve;
   std::vector<std::string> broken;  ///< the expectations that did not hold, in words
 
   bool held() const { return broken.empty(); }

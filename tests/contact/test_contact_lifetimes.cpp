@@ -4,6 +4,11 @@
 // Things go in any order.
 #include "contact_test.h"
 
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
 namespace tetskin::test {
 namespace {
 
@@ -46,11 +51,94 @@ TEST(ContactLifetimes, ABodyAtTheOldAddressIsAnother) {
   }
 }
 
-TEST(ContactLifetimes, WorldGoesFirst) {
-  auto world = std::make_unique<TetskinWorld>();
-  auto body = lying(*world);
-  world.reset();
-  body.reset();
+TEST(ContactLifetimes, ContactBodyAndWorldGoInAnyOrder) {
+  enum Owned { Contact, Body, World };
+  std::vector<Owned> order = {Contact, Body, World};
+  do {
+    auto world = std::make_unique<TetskinWorld>();
+    const auto body = lying(*world);
+    for (const Owned owned : order) {
+      if (owned == Contact) body->contact.reset();
+      if (owned == Body) body->body.reset();
+      if (owned == World) world.reset();
+      if (world) step(*world, 3);
+      if (body->contact && !body->body) {
+        EXPECT_TRUE(body->contact->contacts().empty());
+      }
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+// Destroyed from below upwards.
+std::vector<std::unique_ptr<DeformableBody>> bodiesAfterTheWorld;
+std::vector<std::unique_ptr<SurfaceContact>> contactsAfterTheWorld;
+std::unique_ptr<TetskinWorld> globalWorld;
+std::vector<std::unique_ptr<SurfaceContact>> contactsBeforeTheWorld;
+std::vector<std::unique_ptr<DeformableBody>> bodiesBeforeTheWorld;
+
+/// All four orders of contact, body and world at the end of a program.
+void fillGlobals() {
+  globalWorld = std::make_unique<TetskinWorld>();
+  for (int k = 0; k < 4; ++k) {
+    TouchingBody body(*globalWorld, ballMesh(12, 0.35), btVector3(btScalar(1.5) * k, btScalar(0.36), 0));
+    (k & 1 ? bodiesBeforeTheWorld : bodiesAfterTheWorld).push_back(std::move(body.body));
+    (k & 2 ? contactsBeforeTheWorld : contactsAfterTheWorld).push_back(std::move(body.contact));
+  }
+  step(*globalWorld, 10);
+}
+
+TEST(ContactLifetimesDeathTest, GlobalsGoInAnyOrderAtTheEndOfTheProgram) {
+  // In a process of its own, which ends as others do, by the destructors of what is static.
+  const auto run = [] {
+    fillGlobals();
+    for (const auto* contacts : {&contactsBeforeTheWorld, &contactsAfterTheWorld}) {
+      for (const auto& contact : *contacts) {
+        if (contact->contacts().empty()) std::exit(1);
+      }
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
+}
+
+/// Where it has no forces, and stays where it is.
+void move(btSoftBody& body, EmptyWorld& from, EmptyWorld& to) {
+  from.deformable().removeSoftBody(&body);
+  body.m_worldInfo = &to.deformable().getWorldInfo();
+  to.deformable().addSoftBody(&body);
+  for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_v.setZero();
+}
+
+TEST(ContactLifetimes, ABodyTakenToAnotherWorldIsMetByItsNodesThereAndByItsSurfaceOnceItIsBack) {
+  TetskinWorld first, second;
+  const auto body = lying(first);
+  btSoftBody& soft = body->body->body();
+  const TouchingBody other(second, ballMesh(12, 0.35), btVector3(3, btScalar(0.36), 0));
+  std::vector<btVector3> lyingNodes;
+  for (int n = 0; n < soft.m_nodes.size(); ++n) lyingNodes.push_back(soft.m_nodes[n].m_x);
+  move(soft, first, second);
+  step(second, 10);
+  EXPECT_GT(soft.m_nodeRigidContacts.size(), 0);
+  EXPECT_TRUE(body->contact->contacts().empty());
+  EXPECT_FALSE(other.contact->contacts().empty());
+  move(soft, second, first);
+  // By nodes it was lifted off the floor.
+  for (int n = 0; n < soft.m_nodes.size(); ++n) soft.m_nodes[n].m_x = lyingNodes[static_cast<std::size_t>(n)];
+  step(first, 1);
+  EXPECT_FALSE(body->contact->contacts().empty());
+}
+
+TEST(ContactLifetimes, ContactThatWasLeftBehindByItsWorldsDispatcherStartsAnewInAnother) {
+  auto first = std::make_unique<TetskinWorld>();
+  TetskinWorld second;
+  const auto body = lying(*first);
+  move(body->body->body(), *first, second);
+  first.reset();
+  body->contact.reset();
+  auto made = SurfaceContact::add(second.deformable(), body->body->body(), *body->binding, body->mesh);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  step(second, 10);
+  EXPECT_FALSE(made.value()->contacts().empty());
 }
 
 TEST(ContactLifetimes, ObstaclesComeAndGoInTouch) {
@@ -97,17 +185,6 @@ TEST(ContactLifetimes, OtherSoftBodiesKeepBulletsPath) {
   const auto plain = added(world, cage);
   step(world, 120);
   EXPECT_NEAR(lowest(plain->body()), 0.02, 0.01);
-}
-
-TEST(ContactLifetimes, TheRegistryIsForgottenWithItsDispatcher) {
-  for (int k = 0; k < 3; ++k) {
-    auto world = std::make_unique<TetskinWorld>();
-    const auto body = lying(*world);
-    body->contact.reset();
-    body->body.reset();
-    SurfaceContact::shutdown(world->dispatcher);
-    SurfaceContact::shutdown(world->dispatcher);  // once is enough
-  }
 }
 
 }  // namespace

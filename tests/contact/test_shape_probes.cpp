@@ -72,6 +72,25 @@ TEST(HullProbe, SeesThatAHullHasChanged) {
   EXPECT_NEAR(asked(probe, btVector3(0, btScalar(1.05), 0), 1).distance, 0.55, 1e-5);
 }
 
+TEST(HullProbe, MakesFacesOnceAsLongAsTheyAreKept) {
+  std::vector<std::unique_ptr<btConvexHullShape>> hulls;
+  std::vector<std::shared_ptr<const HullFaces>> kept;
+  HullProbe probe;
+  for (int k = 0; k < 200; ++k) {
+    hulls.push_back(std::make_unique<btConvexHullShape>());
+    for (const Eigen::Vector3d& p : boxMesh({1, 1, 1.0 + k}).positions) hulls.back()->addPoint(toBullet(p));
+    ASSERT_TRUE(probe.take(*hulls.back()));
+    kept.push_back(probe.faces());
+  }
+  for (std::size_t k = 0; k < hulls.size(); ++k) {
+    ASSERT_TRUE(probe.take(*hulls[k]));
+    EXPECT_EQ(probe.faces(), kept[k]);
+  }
+  const std::weak_ptr<const HullFaces> first = kept[0];
+  kept.clear();
+  EXPECT_TRUE(first.expired());
+}
+
 TEST(HullProbe, LeavesFlatHullsToOthers) {
   btConvexHullShape hull;
   for (int k = 0; k < 4; ++k) hull.addPoint(btVector3(k & 1, 0, k / 2));

@@ -20,64 +20,84 @@ class TouchSearchTest : public ::testing::Test {
     patches_ = makeContactPatches(embed(cage_, mesh_).value(), mesh_, 0.0);
   }
 
-  TouchSearch makeSearch() const { return TouchSearch(patches_, kMargin, btScalar(0.1), kSlack); }
+  TouchSearch makeSearch() const { return TouchSearch(patches_, kMargin, kSlack); }
   void moveBy(const btVector3& now, const btVector3& way) {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       nodes_[n].now = toBullet(cage_.nodes[n]) + now;
       nodes_[n].predicted = nodes_[n].now + way;
     }
   }
-  std::vector<NodeTouch> find(TouchSearch& search, const btCollisionShape& shape, const btVector3& at,
-                              ShapeMemory& memory) {
+  std::vector<PointTouch> find(TouchSearch& search, const btCollisionShape& shape, const btVector3& at,
+                               ShapeMemory& memory) {
     return find(search, shape, placeAt(at), memory);
   }
-  std::vector<NodeTouch> find(TouchSearch& search, const btCollisionShape& shape, const btTransform& at,
-                              ShapeMemory& memory) {
+  std::vector<PointTouch> find(TouchSearch& search, const btCollisionShape& shape, const btTransform& at,
+                               ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::of(shape));
-    search.begin(nodes_);
+    search.begin(nodes_, speculation_);
     return search.find(probe, {at, at}, memory);
   }
-  std::vector<NodeTouch> findAnew(const btCollisionShape& shape, const btVector3& at) {
+  std::vector<PointTouch> findAnew(const btCollisionShape& shape, const btVector3& at) {
     TouchSearch search = makeSearch();
     ShapeMemory memory;
     return find(search, shape, at, memory);
+  }
+
+  btVector3 pointOf(const ContactPatch& patch, std::uint32_t p) const {
+    btVector3 point(0, 0, 0);
+    const std::size_t first = patch.firstWeight + p * patch.nodeCount;
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      point += patches_.weights[first + n] * nodes_[static_cast<std::size_t>(patches_.nodes[patch.firstNode + n])].now;
+    }
+    return point;
   }
 
   TetMesh cage_ = looseCage();
   TriangleMesh mesh_ = ballMesh(20, 0.35);
   ContactPatches patches_;
   std::vector<NodePath> nodes_;
+  btScalar speculation_ = 0;
 };
 
-TEST_F(TouchSearchTest, FindsTheNodesOfAllPointsInTouch) {
+TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
   const btSphereShape shape(btScalar(0.3));
+  std::size_t all = 0;
   for (const btVector3& at : {btVector3(0, btScalar(-0.64), 0), btVector3(btScalar(0.4), btScalar(0.4), btScalar(0.2)),
                               btVector3(0, btScalar(-0.66), 0)}) {
-    std::set<int> expected;
-    for (const ContactPatch& patch : patches_.patches) {
+    const auto touches = findAnew(shape, at);
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < patches_.patches.size(); ++k) {
+      const ContactPatch& patch = patches_.patches[k];
+      std::size_t inTouch = 0, told = 0;
+      btScalar deepest = 0, deepestTold = 0;
       for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
-        btVector3 point(0, 0, 0);
-        const std::size_t first = patch.firstWeight + p * patch.nodeCount;
-        for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-          point +=
-              patches_.weights[first + n] * nodes_[static_cast<std::size_t>(patches_.nodes[patch.firstNode + n])].now;
-        }
-        if ((point - at).length() - btScalar(0.3) >= kMargin) continue;
-        for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-          if (patches_.weights[first + n] >= btScalar(0.1)) expected.insert(patches_.nodes[patch.firstNode + n]);
-        }
+        const btScalar distance = (pointOf(patch, p) - at).length() - btScalar(0.3) - kMargin;
+        inTouch += distance < 0;
+        deepest = std::min(deepest, distance);
       }
+      for (const PointTouch& touch : touches) {
+        if (touch.patch != k) continue;
+        ++told;
+        deepestTold = std::min(deepestTold, touch.distance);
+        EXPECT_GE(touch.point, patch.firstPoint);
+        EXPECT_LT(touch.point, patch.firstPoint + patch.pointCount);
+        EXPECT_LT((touch.position - pointOf(patch, touch.point - patch.firstPoint)).length(), 1e-5);
+      }
+      EXPECT_GE(told, std::min(inTouch, kMinTouches));
+      EXPECT_LE(told, std::min(inTouch, kMaxTouches));
+      EXPECT_NEAR(deepestTold, deepest, 1e-5);
+      found += told;
     }
-    std::set<int> found;
-    for (const NodeTouch& touch : findAnew(shape, at)) {
-      EXPECT_TRUE(found.insert(touch.node).second);
+    EXPECT_EQ(found, touches.size());
+    all += found;
+    for (const PointTouch& touch : touches) {
       EXPECT_LT(touch.distance, 0);
       EXPECT_NEAR((touch.position - at).length() - btScalar(0.3) - kMargin, touch.distance, 1e-5);
       EXPECT_NEAR((touch.position - at).normalized().dot(touch.normal), 1, 1e-4);
     }
-    EXPECT_EQ(found, expected);
   }
+  EXPECT_GT(all, 0u);
 }
 
 TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
@@ -85,61 +105,47 @@ TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
   moveBy(btVector3(0, 1, 0), btVector3(0, -2, 0));
   const auto touches = findAnew(plate, btVector3(0, 0, 0));
   ASSERT_FALSE(touches.empty());
-  for (const NodeTouch& touch : touches) {
+  for (const PointTouch& touch : touches) {
     EXPECT_NEAR(touch.normal.y(), 1, 1e-5);  // on the side where it comes from
     EXPECT_NEAR(touch.distance, touch.position.y() - btScalar(0.005) - kMargin, 1e-3);
   }
 }
 
-TEST_F(TouchSearchTest, StopsANodeByBothSidesOfAnEdge) {
+TEST_F(TouchSearchTest, StopsPointsByBothSidesOfAnEdge) {
   const btBoxShape box(btVector3(1, 1, 1));
   const btTransform edge =
       placeAt(btVector3(0, -btSqrt(btScalar(2)), 0), btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4));
   moveBy(btVector3(0, btScalar(0.4), 0), btVector3(0, btScalar(-0.15), 0));
   TouchSearch search = makeSearch();
   ShapeMemory memory;
-  std::multiset<int> found;
-  const auto touches = find(search, box, edge, memory);
-  for (const NodeTouch& touch : touches) {
-    found.insert(touch.node);
-    for (const NodeTouch& other : touches) {
-      if (&other == &touch || other.node != touch.node) continue;
-      EXPECT_LT(touch.normal.dot(other.normal), 0.75);
-    }
+  std::size_t left = 0, right = 0;
+  for (const PointTouch& touch : find(search, box, edge, memory)) {
+    left += touch.normal.x() < btScalar(-0.5);
+    right += touch.normal.x() > btScalar(0.5);
   }
-  std::size_t twice = 0;
-  for (const int node : found) twice += found.count(node) == 2;
-  EXPECT_GT(twice, 0u);
+  EXPECT_GT(left, 0u);
+  EXPECT_GT(right, 0u);
 }
 
-/// The deepest of a node's points may be one that has come from far: another one that is nearer must not go as far.
-TEST_F(TouchSearchTest, LetsANodeGoAsFarAsAllItsPointsMay) {
+TEST_F(TouchSearchTest, GoesOnWithThePointsOfTheStepBefore) {
   const btBoxShape ground(btVector3(2, 1, 2));
-  // Tilts while it falls: what is lowest is not what goes deepest.
-  for (NodePath& node : nodes_) node.predicted.setY(node.now.y() - btScalar(0.2) - btScalar(0.5) * node.now.x());
-  const auto touches = findAnew(ground, btVector3(0, btScalar(-1.36), 0));
-  std::size_t held = 0;
-  for (const NodeTouch& touch : touches) {
-    btScalar least = touch.distance;
-    for (const ContactPatch& patch : patches_.patches) {
-      for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
-        const std::size_t first = patch.firstWeight + p * patch.nodeCount;
-        btScalar now = 0, predicted = 0, share = 0;
-        for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-          const int node = patches_.nodes[patch.firstNode + n];
-          const NodePath& path = nodes_[static_cast<std::size_t>(node)];
-          now += patches_.weights[first + n] * path.now.y();
-          predicted += patches_.weights[first + n] * path.predicted.y();
-          if (node == touch.node) share = patches_.weights[first + n];
-        }
-        const btScalar above = btScalar(-0.36) + kMargin;
-        if (share >= btScalar(0.1) && predicted < above) least = std::min(least, now - above);
-      }
+  TouchSearch search = makeSearch();
+  ShapeMemory memory;
+  const auto pointsAfter = [&](btScalar tilt) {
+    moveBy(btVector3(0, btScalar(0.33), 0), btVector3(0, btScalar(-0.001), 0));
+    for (NodePath& node : nodes_) {
+      node.now.setY(node.now.y() + tilt * node.now.x());
+      node.predicted.setY(node.predicted.y() + tilt * node.now.x());
     }
-    EXPECT_NEAR(touch.room, least, 1e-4);
-    held += touch.room < touch.distance - btScalar(0.01);
-  }
-  EXPECT_GT(held, 0u);
+    std::set<std::uint32_t> points;
+    for (const PointTouch& touch : find(search, ground, placeAt(btVector3(0, -1, 0)), memory)) {
+      points.insert(touch.point);
+    }
+    return points;
+  };
+  const auto before = pointsAfter(0);
+  EXPECT_GT(before.size(), kMinTouches);
+  EXPECT_EQ(pointsAfter(btScalar(1e-4)), before);
 }
 
 TEST_F(TouchSearchTest, LeavesAloneWhatGoesAway) {
@@ -162,12 +168,13 @@ TEST_F(TouchSearchTest, RemembersNothingThatIsNotSo) {
     const btScalar x = part(), y = part(), z = part();
     const btVector3 way(x, y - btScalar(0.3) * (now.y() - btScalar(0.651)), z);
     moveBy(now, way);
+    speculation_ = btScalar(0.001) * static_cast<btScalar>(step % 4);
     const auto kept = find(search, shape, btVector3(0, 0, 0), memory), anew = findAnew(shape, btVector3(0, 0, 0));
-    ASSERT_EQ(kept.size(), anew.size()) << step;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      EXPECT_EQ(kept[k].node, anew[k].node);
-      EXPECT_EQ(kept[k].point, anew[k].point);
-    }
+    // Which points of a patch are chosen depends on those of the step before.
+    std::set<std::uint32_t> keptPatches, newPatches;
+    for (const PointTouch& touch : kept) keptPatches.insert(touch.patch);
+    for (const PointTouch& touch : anew) newPatches.insert(touch.patch);
+    ASSERT_EQ(keptPatches, newPatches) << step;
     touched += !kept.empty();
     now += way;
     if (step % 50 == 49) now.setY(now.y() + btScalar(0.03));

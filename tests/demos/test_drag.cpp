@@ -22,6 +22,9 @@ TEST(Drag, TheSerpentIsPickedSwungHungAndPushed) {
   EXPECT_GT(json["lag_swinging"], 0);
   EXPECT_LT(json["stretch_hanging"], 0.001);
   EXPECT_GT(json["pushed_vertices"], 10);
+  EXPECT_GT(json["iterations_per_step"], 0.1);
+  EXPECT_GT(json["passes_per_step"], 0.01);
+  EXPECT_EQ(json["steps_unconverged"], 0);
   const TriangleMesh first = loadMesh(folder.path("out/drag/frame_0000.obj")).value();
   const TriangleMesh swung = loadMesh(folder.path("out/drag/frame_0240.obj")).value();
   ASSERT_EQ(first.vertexCount(), swung.vertexCount());

@@ -44,6 +44,10 @@ TEST_F(Drop, SerpentFallsDeformsStaysAboveTheFloorAndRests) {
   EXPECT_LT(json["extent_max"], 2.0);
   EXPECT_LT(json["rest_speed"], 0.05);
   EXPECT_LT(json["rest_error_max"], 1e-6);
+  EXPECT_GT(json["iterations_per_step"], 1.0);
+  EXPECT_GT(json["passes_per_step"], 0.1) << "it lies on obstacles for most of the time";
+  EXPECT_EQ(json["steps_unconverged"], 0);
+  EXPECT_NE(result.out.find("steps not converged: 0"), std::string::npos) << result.out;
 
   const auto first = test::objPositions(folder.read("out/drop/frame_0000.obj"));
   const auto impact = test::objPositions(folder.read("out/drop/frame_0030.obj"));
@@ -155,6 +159,8 @@ TEST_F(Drop, ABodyOfBulletsForcesIsTouchedByItsCage) {
   EXPECT_EQ(summary.at("contact"), "cage");
   EXPECT_EQ(summary.at("self_contact"), "off");
   EXPECT_EQ(summary.at("finite"), true);
+  EXPECT_TRUE(summary.at("iterations_per_step").is_null()) << "nobody counts Bullet's";
+  EXPECT_EQ(result.out.find("converged"), std::string::npos) << result.out;
 }
 
 TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {

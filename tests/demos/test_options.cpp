@@ -28,9 +28,9 @@ const Program kDrop{TETSKIN_DROP}, kTwist{TETSKIN_TWIST}, kCrowd{TETSKIN_CROWD},
     kErrorVsTime{TETSKIN_ERROR_VS_TIME}, kStress{TETSKIN_STRESS}, kCage{TETSKIN_CAGE, {"-o", "o.vtk"}},
     kDeform{TETSKIN_DEFORM, {"--deformed", "d.vtk", "-o", "o.obj"}};
 
-const char* const kAllPrograms[] = {TETSKIN_DROP,   TETSKIN_PILE,   TETSKIN_DRAG,         TETSKIN_TWIST,
-                                    TETSKIN_CROWD,  TETSKIN_STRESS, TETSKIN_GAPS,         TETSKIN_CAGE,
-                                    TETSKIN_DEFORM, TETSKIN_BENCH,  TETSKIN_ERROR_VS_TIME};
+const char* const kAllPrograms[] = {TETSKIN_DROP,  TETSKIN_PILE,   TETSKIN_DRAG,  TETSKIN_TWIST,
+                                    TETSKIN_CROWD, TETSKIN_STRESS, TETSKIN_GAPS,  TETSKIN_CONTACT,
+                                    TETSKIN_CAGE,  TETSKIN_DEFORM, TETSKIN_BENCH, TETSKIN_ERROR_VS_TIME};
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

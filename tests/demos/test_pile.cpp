@@ -20,6 +20,9 @@ TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   EXPECT_TRUE(json["finite"]);
   EXPECT_EQ(json["contact"], "surface");
   EXPECT_GT(json["contacts_at_end"], 0);
+  EXPECT_GT(json["iterations_per_step"], 1.0);
+  EXPECT_GT(json["passes_per_step"], 0.1);
+  EXPECT_EQ(json["steps_unconverged"], 0);
   EXPECT_GT(json["deepest_contact_at_end"], -0.05);  // of coarse bodies that still move
   const TriangleMesh first = loadMesh(folder.path("out/pile/frame_0000.obj")).value();
   const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0180.obj")).value();

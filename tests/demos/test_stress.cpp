@@ -31,7 +31,7 @@ TEST_F(StressCommand, QuickCasesHold) {
   EXPECT_GT(cases.size(), 100u);
   std::set<std::string> names, ours;
   std::set<bool> bounded;
-  int gained = 0;
+  int gained = 0, notConverged = 0;
   const std::string markdown = folder.read("s.md");
   for (const auto& row : cases) {
     const std::string name = row["name"];
@@ -49,6 +49,11 @@ TEST_F(StressCommand, QuickCasesHold) {
     } else {
       EXPECT_TRUE(row.at("bullet_cannot_tetskin_can").is_null()) << row;
     }
+    // Of what is simulated, and by our solver.
+    const bool solved = row["force"] == "tetskin" && row["status"].get<std::string>().find("refused") != 0;
+    EXPECT_EQ(row.at("iterations_per_step").is_null(), !solved) << row;
+    EXPECT_EQ(row.at("passes_per_step").is_null(), !solved) << row;
+    notConverged += solved && row.at("steps_unconverged") != 0;
     gained += row.at("bullet_cannot_tetskin_can") == true;
     EXPECT_NE(result.out.find(name), std::string::npos) << name;
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
@@ -56,6 +61,8 @@ TEST_F(StressCommand, QuickCasesHold) {
   EXPECT_EQ(bounded.size(), 2u) << "it tells what explodes from what does not";
   EXPECT_EQ(ours, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage",
                                          "claim", "contact", "soft_contact", "split"}));
+  // Where rigid bodies slide on rigid ones under a soft one, friction's bounds creep from pass to pass.
+  EXPECT_LE(notConverged, 5);
   EXPECT_GT(gained, 5) << "what Bullet's force cannot hold, and ours can";
   EXPECT_NE(markdown.find("| bullet cannot, tetskin can |"), std::string::npos);
 #ifdef TETSKIN_PYTHON

@@ -72,6 +72,27 @@ inline Points scattered(Points points, double amount, unsigned seed) {
   return points;
 }
 
+/// The velocities of a rigid motion at a point: of a translation, and of a turn about another point.
+inline Eigen::Matrix<double, 3, 6> rigidVelocityAt(const Eigen::Vector3d& point, const Eigen::Vector3d& about) {
+  Eigen::Matrix<double, 3, 6> velocity;
+  for (int k = 0; k < 3; ++k) {
+    velocity.col(k) = Eigen::Vector3d::Unit(k);
+    velocity.col(3 + k) = Eigen::Vector3d::Unit(k).cross(point - about);
+  }
+  return velocity;
+}
+
+/// The masses of these motions: what they times an impulse at a point are to it.
+inline Eigen::Matrix<double, 6, 6> rigidMass(const Points& nodes, const std::vector<double>& masses,
+                                             const Eigen::Vector3d& about) {
+  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Eigen::Matrix<double, 3, 6> velocity = rigidVelocityAt(nodes[n], about);
+    sum += masses[n] * velocity.transpose() * velocity;
+  }
+  return sum;
+}
+
 /// Of another stiffness and another Poisson's ratio in every tet.
 inline std::vector<Lame> variedMaterial(std::size_t tets) {
   Random random(31);

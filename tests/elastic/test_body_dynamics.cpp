@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
@@ -277,6 +280,123 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
   dynamics.setMass(1, 0);
   dynamics.setMass(1, 4);
   EXPECT_FALSE(dynamics.anyHeld());
+}
+
+/// The cage twice, with no node in common.
+TetMesh twoParts(TetMesh cage) {
+  const std::vector<Tet> tets = cage.tets;
+  const int first = static_cast<int>(cage.nodeCount());
+  for (int n = 0; n < first; ++n) cage.nodes.push_back(cage.nodes[static_cast<std::size_t>(n)] + Vector3d(5, 1, 0));
+  for (const Tet& t : tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+  return cage;
+}
+
+TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAreTaken) {
+  AssembledBody<TypeParam> body(twoParts(smallCage()));
+  body.hold(3);  // of the first part
+  const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
+  BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
+  dynamics.predict(kSeconds, nullptr);
+  ASSERT_EQ(dynamics.partCount(), 2u);
+  AlignedVector<TypeParam> motions[BodyDynamics<TypeParam>::kRigidMotions];
+  const std::size_t half = body.nodes.size() / 2;
+  Points moved = body.nodes;
+  Vector3d centroid = Vector3d::Zero();
+  double mass = 0.0;
+  for (std::size_t n = half; n < moved.size(); ++n) {
+    for (int k = 0; k < 3; ++k) moved[n][k] += kSeconds * dynamics.velocity(n)[k];
+    centroid += body.masses[n] * moved[n];
+    mass += body.masses[n];
+  }
+  centroid /= mass;
+  int found = 0;
+  for (std::size_t part = 0; part < 2; ++part) {
+    if (!dynamics.rigidMotions(part, motions)) {
+      EXPECT_TRUE(motions[0].empty()) << "nothing is written";
+      continue;
+    }
+    ++found;
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+      const Eigen::Matrix<double, 3, 6> expected = test::rigidVelocityAt(moved[n], centroid);
+      for (Eigen::Index k = 0; k < 6; ++k) {
+        const TypeParam* at = &motions[k][4 * dynamics.matrix().slotOf(n)];
+        const Vector3d wanted = n < half ? Vector3d::Zero().eval() : expected.col(k).eval();
+        EXPECT_LT((Vector3d(at[0], at[1], at[2]) - wanted).norm(), 20.0 * this->kEpsilon) << n << " " << k;
+      }
+    }
+    for (auto& motion : motions) motion.clear();
+  }
+  EXPECT_EQ(found, 1) << "but not of the one that is held";
+}
+
+TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
+  for (const std::vector<std::size_t>& held : std::vector<std::vector<std::size_t>>{{}, {3}, {3, 6}, {0, 3, 6, 9}}) {
+    AssembledBody<TypeParam> body(smallCage());
+    for (const std::size_t n : held) body.hold(n);
+    const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
+    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
+    dynamics.predict(kSeconds, nullptr);
+    VectorXd some = test::Random(53).vector(3 * body.nodes.size());
+    for (const std::size_t n : held) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
+    body.toWide(some, dynamics.matrix().solution());
+    dynamics.keepRigidPart();
+    const VectorXd kept = body.fromWide(dynamics.matrix().solution());
+    const Vector3d about = held.empty() ? Vector3d::Zero().eval() : body.nodes[held[0]];
+    Vector3d momentum = Vector3d::Zero(), spin = Vector3d::Zero();
+    double strain = 0.0;
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+      const auto at = static_cast<Eigen::Index>(3 * n);
+      const Vector3d change = body.masses[n] * (kept - some).segment<3>(at);
+      momentum += change;
+      spin += (body.nodes[n] - about).cross(change);
+      for (std::size_t m = 0; m < n; ++m) {
+        const Vector3d relative = kept.segment<3>(at) - kept.segment<3>(static_cast<Eigen::Index>(3 * m));
+        strain = std::max(strain, std::abs(relative.dot(body.nodes[n] - body.nodes[m])));
+      }
+    }
+    const double tolerance = 500.0 * this->kEpsilon;
+    EXPECT_LT(strain, tolerance);
+    if (held.empty()) {
+      EXPECT_LT(momentum.norm(), tolerance);
+    }
+    if (held.size() < 2) {
+      EXPECT_LT(spin.norm(), tolerance);
+    }
+    if (held.size() == 2) {
+      EXPECT_LT(std::abs(spin.dot(body.nodes[6] - about)), tolerance);
+    }
+    if (held.size() > 2) {
+      EXPECT_EQ(kept, still) << "nothing of it is free";
+    }
+    if (held.size() < 3) {
+      EXPECT_GT(kept.norm(), 0.01);
+    }
+    body.toWide(kept, dynamics.matrix().solution());
+    dynamics.keepRigidPart();
+    EXPECT_LT((body.fromWide(dynamics.matrix().solution()) - kept).norm(), tolerance) << "it is rigid";
+  }
+}
+
+TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
+  const AssembledBody<TypeParam> body(twoParts(smallCage()));
+  const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
+  BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
+  dynamics.predict(kSeconds, nullptr);
+  const std::size_t half = body.nodes.size() / 2;
+  for (const std::size_t first : {std::size_t{0}, half}) {
+    std::vector<double> masses = body.masses;
+    for (std::size_t n = 0; n < masses.size(); ++n) masses[n] *= n / half == first / half ? 1.0 : 0.0;
+    const Vector3d point = body.nodes[first + 2] + Vector3d(0.1, 0.4, -0.2), direction = Vector3d(1, 2, -2) / 3.0;
+    const Eigen::Matrix<double, 6, 1> push = test::rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
+    const double expected = push.dot(test::rigidMass(body.nodes, masses, {0, 0, 0}).fullPivLu().solve(push));
+    const double found = dynamics.rigidCompliance(first + 2, {point.x(), point.y(), point.z()},
+                                                  {direction.x(), direction.y(), direction.z()});
+    EXPECT_NEAR(found, expected, 500.0 * this->kEpsilon * expected);
+  }
+  BodyDynamics<TypeParam> masses({}, 5);  // of nodes that nothing connects
+  masses.setMass(2, 1);
+  masses.predict(kSeconds, nullptr);
+  EXPECT_EQ(masses.rigidCompliance(2, {1, 2, 3}, {1, 0, 0}), 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <tetskin/elastic/src/dynamics/part_motion.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
 
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
@@ -158,6 +161,75 @@ TEST(PartMotion, OfWhatIsHeldByMoreGoesWhereItIsLed) {
   for (std::size_t k = 0; k < 5; ++k) part.velocities[k].setZero();
   const Points stays = part.moved(part.motion());
   for (std::size_t n = 0; n < to.size(); ++n) EXPECT_EQ(stays[n], part.nodes[n]) << n;
+}
+
+/// By how much a unit impulse at a point changes the velocity there, in a direction, by sums over all nodes.
+double freeCompliance(const Part& part, const Vector3d& point, const Vector3d& direction) {
+  const Eigen::Matrix<double, 6, 1> push = test::rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
+  return push.dot(test::rigidMass(part.nodes, part.masses, {0, 0, 0}).fullPivLu().solve(push));
+}
+
+Matrix3d inertiaAbout(const Part& part, const Vector3d& about) {
+  return test::rigidMass(part.nodes, part.masses, about).bottomRightCorner<3, 3>();
+}
+
+TEST(PartMotion, YieldsToAnImpulseAsFarAsItIsFree) {
+  test::Random random(71);
+  for (int k = 0; k < 10; ++k) {
+    const Vector3d point = 2.0 * random.vector(), direction = random.vector().normalized();
+    Part part = spinning(3.0, 2);
+    double expected = freeCompliance(part, point, direction);
+    EXPECT_NEAR(part.motion().compliance(point, direction), expected, 1e-10 * expected);
+
+    part.masses[5] = 0.0;
+    Vector3d moment = (point - part.nodes[5]).cross(direction);
+    expected = moment.dot(inertiaAbout(part, part.nodes[5]).inverse() * moment);
+    EXPECT_NEAR(part.motion().compliance(point, direction), expected, 1e-10 * expected);
+    EXPECT_NEAR(part.motion().compliance(part.nodes[5], direction), 0.0, 1e-10) << "it does not turn about it by that";
+
+    part.masses[7] = 0.0;
+    const Vector3d axis = (part.nodes[7] - part.nodes[5]).normalized();
+    expected = std::pow(axis.dot(moment), 2) / axis.dot(inertiaAbout(part, part.nodes[5]) * axis);
+    EXPECT_NEAR(part.motion().compliance(point, direction), expected, 1e-9 * expected);
+    EXPECT_NEAR(part.motion().compliance(point, axis), 0.0, 1e-10);
+
+    part.masses[0] = part.masses[9] = 0.0;
+    EXPECT_EQ(part.motion().compliance(point, direction), 0.0) << "all of it goes where it is led";
+  }
+}
+
+TEST(PartMotion, WithAMomentumHasItAsFarAsItIsFree) {
+  test::Random random(72);
+  elastic_detail::PartMomentum own;
+  for (int k = 0; k < 3; ++k) own.momentum[k] = random(), own.spin[k] = random();
+  const Vector3d momentum(own.momentum[0], own.momentum[1], own.momentum[2]),
+      spin(own.spin[0], own.spin[1], own.spin[2]);
+  for (const std::vector<std::size_t>& held : std::vector<std::vector<std::size_t>>{{}, {5}, {5, 7}, {0, 5, 7, 9}}) {
+    Part part = spinning(3.0, 2);
+    for (const std::size_t n : held) part.masses[n] = 0.0;
+    const PartMotion motion = part.motion();
+    const auto rigid = motion.withMomentum(own);
+    Points rates;
+    for (const Vector3d& p : part.nodes) {
+      double v[3];
+      rigid.at(p.data(), v);
+      rates.emplace_back(v[0], v[1], v[2]);
+    }
+    for (const std::size_t n : held) EXPECT_LT(rates[n].norm(), 1e-12) << "it is held";
+    const Vector3d lost = part.momentumOf(rates) - momentum, lostSpin = part.spinOf(rates, motion.about()) - spin;
+    if (held.empty()) {
+      EXPECT_LT(lost.norm(), 1e-12);
+    }
+    if (held.size() < 2) {
+      EXPECT_LT(lostSpin.norm(), 1e-12);
+    }
+    if (held.size() == 2) {
+      EXPECT_NEAR(lostSpin.dot(part.nodes[7] - part.nodes[5]), 0.0, 1e-12);
+    }
+    if (held.size() > 2) {
+      EXPECT_EQ(rates, Points(rates.size(), Vector3d::Zero()));
+    }
+  }
 }
 
 TEST(PartMotion, OfWhatIsNotFiniteIsNone) {

@@ -34,8 +34,7 @@ class TETSKIN_BULLET_API DeformableBody {
   /// `stepSimulation(dt, 4, dt / 4)` for 60 frames a second; one substep a frame is too few.
   ///
   /// world   made with a `DeformableSolver`; for Bullet's own forces a btDeformableBodySolver does, too. Its gravity
-  /// now
-  ///         serves as the scale of the default stiffness
+  ///         now serves as the scale of the default stiffness
   /// cage    where the body shall be, world space; its fill, factor and masses count where the options leave them out
   /// Errors  those of `makeSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, for
   ///         ForceModel::Corotated in a world without a `DeformableSolver`, or with `options.implicit`, and for the

@@ -10,15 +10,21 @@
 
 namespace tetskin {
 
+class SystemSolve;
+
 /// Bullet's solver of deformable bodies, with a solve of our own: what the application makes instead of a
 /// `btDeformableBodySolver`, and gives to its world and to its constraint solver just as that.
 ///
-/// Bodies of `ForceModel::Corotated` are solved for implicitly before contacts are looked for, and again under the
-/// contacts that Bullet finds and solves; all others as Bullet does in an explicit world with projection of contacts,
-/// with its forces. Bodies asleep cost nothing here. `ForceModel::Corotated`, tetskin::contact and tetskin::touch need
-/// this solver, and a world with any of them is solved here whatever its settings of Bullet's solve are. A world of
-/// Bullet's forces alone that is implicit, has line search, or no projection (Bullet's default;
-/// `setUseProjection(true)` switches it on, and so does `DeformableBody::add`) is solved by Bullet's own code.
+/// Bodies of `ForceModel::Corotated` are solved for implicitly, before contacts are looked for, and again where there
+/// are any: with contacts and Bullet's anchors as rows of one system, until it has converged. Dynamic rigid bodies and
+/// multibodies that are touched are unknowns of it, and so are those that these touch or hang on, as long as there are
+/// fewer than 24; their own contacts and joints begin as Bullet has left them. Bullet's constraints of such contacts
+/// and anchors are taken out before Bullet solves for them. All other bodies are solved for as Bullet does in an
+/// explicit world with projection of contacts, with its forces. Bodies asleep cost nothing here.
+/// `ForceModel::Corotated`, tetskin::contact and tetskin::touch need this solver, and a world with any of them is
+/// solved here whatever its settings of Bullet's solve are. A world of Bullet's forces alone that is implicit, has line
+/// search, or no projection (Bullet's default; `setUseProjection(true)` switches it on, and so does
+/// `DeformableBody::add`) is solved by Bullet's own code.
 ///
 /// A body whose collision flags let it meet no soft body (as `makeSoftBody` makes them) is marked as sleeping between
 /// the solve and its integration, so that Bullet does not look for such meetings; that is seen in a world's solver
@@ -46,14 +52,18 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code has solved it.
   int iterations() const;
 
-  /// What contacts with rigid bodies have pushed a node with in the last step, along the contact's normal, as solved
-  /// for here; 0 for a body that was not, which Bullet's constraints tell.
-  btScalar normalImpulse(const btSoftBody& body, int node) const;
+  /// Linear solves of the last step, over all bodies on which something beside elasticity acts; those that are solved
+  /// for together count once.
+  int passes() const;
+  /// How many of these systems with contacts were given up before they had converged: their bodies go on with what the
+  /// last pass has found.
+  int unconverged() const;
 
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
   void setupDeformableSolve(bool implicit) override;
+  void setConstraints(const btContactSolverInfo& info) override;
   void setLagrangeMultiplier() override;
   void solveDeformableConstraints(btScalar dt) override;
   void applyTransforms(btScalar dt) override;
@@ -62,6 +72,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Parts;
   friend struct Parts;
+  friend class SystemSolve;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What rests, rests on the ground as drawn.
+// Contact of soft bodies with rigid ones at the visual surface.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
@@ -18,24 +17,25 @@ struct SurfaceContactOptions {
   /// Distance that is kept between the surface and rigid bodies, world units; below 0: 0.2 % of the body's size, the
   /// largest side of its box.
   double margin = -1.0;
-  /// Above 0 to 0.25: a vertex in touch is held by those nodes of its tet that carry at least this share of it, and by
-  /// the one that carries most. More nodes hold it more firmly, and stiffen the body where it touches.
-  double share = 0.1;
   /// Rest units: triangles with longer edges get samples of this spacing, which touch as vertices do. 0: none. Vertices
   /// must not be farther apart than what the body touches is thick. At most 10,000,000 of them.
   double sampleSpacing = 0.0;
 };
 
-/// A point of the surface in touch with a rigid body.
+/// A point of the surface in touch with a rigid body, or so near that it might come there in the substep.
 struct SurfaceContactPoint {
   btVector3 point;                            ///< of the surface, world space, when contacts were last looked for
   btVector3 normal;                           ///< away from the rigid body, of unit length
-  btScalar distance = 0;                      ///< less the margin; below 0: too near
+  btScalar distance = 0;                      ///< when the substep began, less the margin; below 0: too near
   const btCollisionObject* object = nullptr;  ///< the rigid body, or the link of a multibody
-  btVector3 impulse;  ///< on the soft body in the last substep, as contacts are solved for; 0 while it sleeps
+  /// Force times seconds of the last substep, on the soft body; its opposite is on the object. 0 where nothing
+  /// pushes, and while the body sleeps.
+  btVector3 impulse;
 };
 
 /// A soft body meets rigid ones by its visual surface, instead of by the nodes of its cage, which lie outside of it.
+/// Points of the surface are what is held: the `DeformableSolver` solves for what pushes and rubs them together with
+/// the rigid bodies, so that force and counterforce act at one point.
 ///
 /// In a deformable world with a `DeformableSolver`. Nothing else need be done: static, kinematic and dynamic bodies and
 /// the links of multibodies are met in whatever order they were added, as their groups, their masks, their flags
@@ -48,10 +48,12 @@ struct SurfaceContactPoint {
 /// draw them: a quadratic one is drawn up to some thousandths of the body's size away, more in few tets and under
 /// loads.
 ///
-/// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again. This object, the body,
-///           the world, rigid bodies and their shapes may go in any order, each as Bullet allows it. What the world's
-///           dispatcher was told stays until `shutdown`.
-/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it)
+/// Lifetime  Contact ends with this object: the body then meets rigid ones by its nodes again, as it does in a world
+///           with another dispatcher. This object, the body, the world, rigid bodies and their shapes may go in any
+///           order, each as Bullet allows it, also at the end of the program, where globals hold them.
+/// Cost      in a substep, for an obstacle whose box meets the body's: O(nodes); where it is near, O(vertices near it);
+///           children of a compound are found by its tree. Of the points of a tet that touch a shape four are
+///           solved for, and as many more as are 2 % of the body's size apart, up to 64
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// From the next substep on. Sets the margin of the body's shape, until this object goes.
@@ -69,9 +71,6 @@ class TETSKIN_CONTACT_API SurfaceContact {
   ~SurfaceContact();
   SurfaceContact(const SurfaceContact&) = delete;
   SurfaceContact& operator=(const SurfaceContact&) = delete;
-
-  /// The dispatcher forgets us: to be called once for each, after its world is deleted, and before it is itself.
-  static void shutdown(btCollisionDispatcher& dispatcher);
 
   /// Those of the last substep in which the body was awake, each once, by obstacle; without obstacles that have left
   /// the world since. Allocates the result.

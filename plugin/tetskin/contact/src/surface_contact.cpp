@@ -3,7 +3,7 @@
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
-#include <tetskin/contact/src/rigid/contact_registry.h>
+#include <tetskin/contact/src/rigid/surface_algorithm.h>
 #include <tetskin/contact/surface_contact.h>
 
 #include <algorithm>
@@ -32,9 +32,6 @@ Status refused(StatusCode code, const char* message) {
 Status checkContactOptions(const SurfaceContactOptions& options) {
   if (std::isnan(options.margin) || std::isinf(options.margin)) {
     return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite, or below 0 for a default");
-  }
-  if (!(options.share > 0.0 && options.share <= 0.25)) {
-    return refused(StatusCode::InvalidOption, "the share of surface contact must be above 0 and at most 0.25");
   }
   if (!(options.sampleSpacing >= 0.0) || std::isinf(options.sampleSpacing)) {
     return refused(StatusCode::InvalidOption, "the sample spacing of surface contact must be finite, 0 for no samples");
@@ -71,11 +68,10 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
   }
   std::vector<std::string> changes;
   if (!deformableSolverOf(body)) changes.emplace_back(kUseDeformableSolver);
-  const auto* dispatcher = dynamic_cast<const btCollisionDispatcher*>(world.getDispatcher());
-  if (!dispatcher) changes.emplace_back("make the world with a btCollisionDispatcher");
+  if (!dynamic_cast<const btCollisionDispatcher*>(world.getDispatcher()))
+    changes.emplace_back("make the world with a btCollisionDispatcher");
   if (Status status = refusal("surface contact", changes); !status.ok()) return status;
-  const ContactRegistry* registry = ContactRegistry::find(dispatcher);
-  if (registry && registry->find(body)) {
+  if (contactsOf(body)) {
     return refused(StatusCode::InvalidOption, "the body has surface contact already: destroy that first");
   }
   return {};
@@ -102,34 +98,30 @@ void forgetPairs(btSoftBody& body, btDeformableMultiBodyDynamicsWorld& world) {
 }  // namespace
 
 struct SurfaceContact::Parts {
-  Parts(btCollisionDispatcher& ofDispatcher, btSoftBody& of, TouchSearch search, btScalar thickness)
-      : dispatcher(&ofDispatcher),
-        lifetime(bodyWithTrees(of)->lifetime()),
-        contacts(of, std::move(search), thickness) {}
+  Parts(const btDispatcher& dispatcher, btSoftBody& body, TouchSearch search, btScalar thickness)
+      : contacts(std::make_shared<BodyContacts>(dispatcher, *bodyWithTrees(body), std::move(search), thickness)) {}
 
   void begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach);
   void end();
 
-  const btCollisionDispatcher* dispatcher;  ///< may be gone
-  std::weak_ptr<const void> lifetime;       ///< the body's
-  BodyContacts contacts;
+  std::shared_ptr<BodyContacts> contacts;
   btScalar marginBefore = 0;
 };
 
 void SurfaceContact::Parts::begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach) {
-  btSoftBody& body = contacts.body();
+  btSoftBody& body = contacts->body();
   marginBefore = body.getCollisionShape()->getMargin();
-  body.getCollisionShape()->setMargin(contacts.search().margin());
+  body.getCollisionShape()->setMargin(contacts->search().margin());
   bodyWithTrees(body)->setReach(reach);
-  ContactRegistry::of(static_cast<btCollisionDispatcher&>(*world.getDispatcher())).add(contacts, lifetime);
+  bodyWithTrees(body)->setSurfaceContacts(contacts);
+  registerSurfaceAlgorithms(static_cast<btCollisionDispatcher&>(*world.getDispatcher()));
   forgetPairs(body, world);
   body.activate();
 }
 
 void SurfaceContact::Parts::end() {
-  if (ContactRegistry* registry = ContactRegistry::find(dispatcher)) registry->remove(contacts);
-  if (lifetime.expired()) return;
-  btSoftBody& body = contacts.body();
+  if (!contacts->bodyLives()) return;
+  btSoftBody& body = contacts->body();
   body.getCollisionShape()->setMargin(marginBefore);
   bodyWithTrees(body)->setReach(-1);
 }
@@ -152,25 +144,20 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   const auto margin = static_cast<btScalar>(options.margin >= 0.0 ? options.margin : kSurfaceMargin * size);
   ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
-  auto parts = std::make_unique<Parts>(static_cast<btCollisionDispatcher&>(*world.getDispatcher()), body,
-                                       TouchSearch(std::move(patches), margin, static_cast<btScalar>(options.share),
-                                                   static_cast<btScalar>(kSearchSlack * size)),
-                                       static_cast<btScalar>(kMeshThickness * size));
+  auto parts = std::make_unique<Parts>(
+      *world.getDispatcher(), body, TouchSearch(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
+      static_cast<btScalar>(kMeshThickness * size));
   deformableSolverOf(body)->solveAlways();
   parts->begin(world, reach);
   return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));
 }
 
-void SurfaceContact::shutdown(btCollisionDispatcher& dispatcher) {
-  ContactRegistry::remove(dispatcher);
-}
-
 std::vector<SurfaceContactPoint> SurfaceContact::contacts() const {
-  return parts_->lifetime.expired() ? std::vector<SurfaceContactPoint>() : contactPoints(parts_->contacts);
+  return parts_->contacts->bodyLives() ? contactPoints(*parts_->contacts) : std::vector<SurfaceContactPoint>();
 }
 
 std::size_t SurfaceContact::sampleCount() const {
-  return parts_->contacts.search().patches().pointCount;
+  return parts_->contacts->search().patches().pointCount;
 }
 
 }  // namespace tetskin

@@ -4,7 +4,17 @@
 // What Bullet calls. What it comes to is in step.cpp.
 #include <tetskin/bullet/src/solver/step.h>
 
+#include <BulletSoftBody/btDeformableContactProjection.h>
+
 namespace tetskin {
+namespace {
+
+template <class Constraint>
+void dropAll(btAlignedObjectArray<Constraint>& constraints) {
+  while (constraints.size() > 0) constraints.pop_back();
+}
+
+}  // namespace
 
 DeformableSolver::DeformableSolver() : parts_(std::make_unique<Parts>(*this)) {
   m_useProjection = true;
@@ -29,8 +39,11 @@ bool DeformableSolver::solves() const {
 int DeformableSolver::iterations() const {
   return parts_->iterations;
 }
-btScalar DeformableSolver::normalImpulse(const btSoftBody& body, int node) const {
-  return parts_->solving ? parts_->bodies.normalImpulse(body, node) : btScalar(0);
+int DeformableSolver::passes() const {
+  return parts_->passes;
+}
+int DeformableSolver::unconverged() const {
+  return parts_->unconverged;
 }
 
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
@@ -57,6 +70,20 @@ void DeformableSolver::setupDeformableSolve(bool implicit) {
   btDeformableBodySolver::setupDeformableSolve(implicit && !parts_->solving);
 }
 
+/// Rows are solved for here; Bullet's own of the same nodes would be a second time.
+void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
+  btDeformableBodySolver::setConstraints(info);
+  if (!parts_->solving) return;
+  btDeformableContactProjection& projection = m_objective->m_projection;
+  for (std::size_t b = 0; b < parts_->bodies.bodies().size(); ++b) {
+    if (!parts_->bodies.bodies()[b].elastic) continue;
+    const auto at = static_cast<int>(b);
+    dropAll(projection.m_nodeRigidConstraints[at]);
+    dropAll(projection.m_nodeAnchorConstraints[at]);
+    dropAll(projection.m_faceRigidConstraints[at]);
+  }
+}
+
 /// What a world without projection asks for.
 void DeformableSolver::setLagrangeMultiplier() {
   parts_->solving ? setProjection() : btDeformableBodySolver::setLagrangeMultiplier();
@@ -65,7 +92,7 @@ void DeformableSolver::setLagrangeMultiplier() {
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   Parts& parts = *parts_;
   if (!parts.solving) {
-    parts.iterations = 0;
+    parts.iterations = parts.passes = parts.unconverged = 0;
     return btDeformableBodySolver::solveDeformableConstraints(dt);
   }
   parts.assemble();

@@ -107,12 +107,13 @@ void SolverBodies::lendKept() {
   for (SolvedBody& of : bodies_) {
     Kept& kept = kept_[of.body];
     const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
-    of.normalImpulses = &kept.normalImpulses;
+    of.sticking = &kept.sticking;
+    of.bulletsContacts = &kept.bulletsContacts;
+    of.wasTouched = !kept.sticking.empty();
     of.paddedTrees = &kept.paddedTrees;
     of.solve = &kept.solve;
     if (kept.paddedTrees.points.size() != 3 * nodes) kept.paddedTrees.ready = false;
     if (of.elastic) {
-      kept.normalImpulses.resize(nodes, btScalar(0));
       of.dynamics = of.elastic->dynamics.get();
       continue;
     }
@@ -194,6 +195,7 @@ SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
     append(first->bodies, other->bodies);
     append(first->forces, other->forces);
     append(first->rigids, other->rigids);
+    append(first->rows, other->rows);
   }
   systems_.erase(others, systems_.end());
   // A force may act on both.
@@ -203,13 +205,6 @@ SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
   }
   first->forces = std::move(forces);
   return *first;
-}
-
-btScalar SolverBodies::normalImpulse(const btSoftBody& body, int node) const {
-  const std::size_t place = placeOf(&body);
-  if (place == bodies_.size() || !bodies_[place].elastic || !bodies_[place].normalImpulses) return 0;
-  const std::vector<btScalar>& impulses = *bodies_[place].normalImpulses;
-  return static_cast<std::size_t>(node) < impulses.size() ? impulses[static_cast<std::size_t>(node)] : btScalar(0);
 }
 
 SolvedBody& SolverBodies::bodyOf(int node) {

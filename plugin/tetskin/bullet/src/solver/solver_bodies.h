@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tetskin/bullet/src/forces/elastic_force.h>
+#include <tetskin/bullet/src/solver/contact_row.h>
 #include <tetskin/bullet/src/solver/padded_trees.h>
 
 #include <memory>
@@ -17,6 +18,13 @@ namespace tetskin {
 
 using VectorStack = btAlignedObjectArray<btVector3>;
 
+/// A node that Bullet's constraints let move nowhere, in all directions but one, or in one alone.
+struct FixedNode {
+  enum Kind { Fixed, AlongDirection, AllButDirection } kind = Fixed;
+  std::size_t node = 0;
+  btVector3 direction{0, 0, 0};
+};
+
 /// A body awake in this step.
 struct SolvedBody {
   btSoftBody* body = nullptr;
@@ -24,14 +32,18 @@ struct SolvedBody {
   ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
   const SolverLimits* limits = nullptr;
   Dynamics* dynamics = nullptr;
-  bool needsDeformation = false;                    ///< Bullet's own gradients
-  std::vector<btScalar>* normalImpulses = nullptr;  ///< by node, of the contacts of the step before; elastic ones only
+  bool needsDeformation = false;              ///< Bullet's own gradients
+  std::vector<Sticking>* sticking = nullptr;  ///< of the step before, by number of the point; elastic ones only
+  PointContacts* bulletsContacts = nullptr;   ///< of this step, as Bullet has found them
   PaddedTrees* paddedTrees = nullptr;
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
-  int iterations = 0;        ///< in this step; of bodies that are coupled, the first one's are for all
-  bool constrained = false;  ///< by more than held nodes
-  bool solvedAgain = false;  ///< with what contacts and other forces do
-  bool touched = false;      ///< something beside elasticity has changed velocities, or shall
+  int iterations = 0;            ///< in this step; of bodies that are coupled, the first one's are for all
+  int rowCount = 0;              ///< of contacts and anchors
+  bool wasTouched = false;       ///< in the step before
+  bool waits = false;            ///< it is solved for when contacts are known, and not before
+  std::vector<FixedNode> fixed;  ///< but held ones
+  bool solvedAgain = false;      ///< with what contacts and other forces do
+  bool touched = false;          ///< something beside elasticity has changed velocities, or shall
 
   /// Of a node of the body, by its number.
   std::size_t placeOf(int number) const { return static_cast<std::size_t>(number - first); }
@@ -41,7 +53,10 @@ struct SolvedBody {
 struct SolvedSystem {
   std::vector<std::size_t> bodies;
   std::vector<btDeformableLagrangianForce*> forces;  ///< but elastic ones
-  std::vector<std::size_t> rigids;                   ///< bound to them: see RigidTies
+  std::vector<ContactRow*> rows;                     ///< that act on them, or on the rigid ones
+  std::vector<std::size_t> rigids;                   ///< in RigidUnknowns: solved for with them
+  int passes = 0;                                    ///< of the solve
+  bool converged = true;                             ///< likewise
 };
 
 class SolverBodies {
@@ -65,9 +80,7 @@ class SolverBodies {
 
   std::vector<SolvedBody>& bodies() { return bodies_; }
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
-  const std::vector<SolvedSystem>& systems() const { return systems_; }
-  /// 0 where the body is not awake, or not elastic here.
-  btScalar normalImpulse(const btSoftBody& body, int node) const;
+  std::vector<SolvedSystem>& systems() { return systems_; }
   /// The body of a node, by its number.
   SolvedBody& bodyOf(int node);
 
@@ -86,7 +99,8 @@ class SolverBodies {
 
   struct Kept {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
-    std::vector<btScalar> normalImpulses;
+    std::vector<Sticking> sticking;
+    PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;
   };

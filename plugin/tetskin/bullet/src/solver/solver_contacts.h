@@ -10,21 +10,14 @@ class btDeformableContactProjection;
 
 namespace tetskin {
 
-class RigidTies;
+/// Lists the nodes whose velocity stays, in some directions, as Bullet's constraints have made it: of bodies under
+/// Bullet's forces all, of elastic ones those of contacts that Bullet alone knows of.
+void listFixedNodes(const btDeformableContactProjection& projection, SolverBodies& bodies);
+/// Fixes them in the matrix: after all that is added to its diagonal.
+void fixNodes(const SolvedBody& body);
 
-/// Bullet's directions in which a node's velocity stays as its contacts have made it. Marks the bodies that have any
-/// but held nodes, and those that are tied.
-void fixContacts(const btDeformableContactProjection& projection, const RigidTies& ties, SolverBodies& bodies);
-
-/// What friction does to nodes that slide: on bodies under Bullet's forces impulses, as Bullet has it; on elastic ones
-/// resistance, after their velocities have been read; ties have their own. Before `fixContacts`.
+/// What friction does to nodes that slide, as impulses, where Bullet solves for contacts.
 /// residual  by node number
-void addDynamicFriction(const btDeformableContactProjection& projection, const RigidTies& ties, SolverBodies& bodies,
-                        VectorStack& residual);
-
-/// The normal impulses of this step's contacts, of the solution: for the next. Ties have their own, after this.
-/// residual  of the solve's right side, beside the body's own: what addDynamicFriction and others gave, by node number
-void keepNormalImpulses(const btDeformableContactProjection& projection, SolverBodies& bodies,
-                        const VectorStack& residual);
+void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual);
 
 }  // namespace tetskin

@@ -3,33 +3,30 @@
 //
 // A step, from top to bottom. Bullet's world calls, in this order:
 //   reinitialize                gather          which bodies are awake, and which forces act on them
-//   predictMotion               predict         other forces' impulses; the elastic solve, short if contacts are to be
-//                                               expected; where nodes go by it
-//   (detection of contacts, and their solve node by node, by Bullet, with the inverse diagonal blocks for masses)
-//   solveDeformableConstraints  assemble        what contacts have changed, fixed and bound to rigid bodies
+//   predictMotion               predict         other forces' impulses; the elastic solve, but of bodies that will be
+//                                               touched again; where nodes go by it
+//   (detection of contacts, by Bullet; its solve of rigid bodies among themselves)
+//   solveDeformableConstraints  assemble        contacts, anchors, and what rigid bodies are held by beside, as rows;
+//                                               what Bullet's other constraints have changed and fixed
 //                               solve           on where nothing was met; else again, with all of that
-//                               finishContacts  what contacts have pushed with, and what rigid bodies have got
+//                               finishContacts  what contacts have pushed with
 //                               writeBack       velocities
 //   applyTransforms             positions, by Bullet
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/rigid_rows.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
+#include <tetskin/bullet/src/solver/system_solve.h>
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace tetskin {
 namespace {
-
-/// Iterations before contacts are looked for, where there were some in the step before: what they find is refined after
-/// them.
-constexpr int kIterationsBeforeContacts = 3;
-
-bool wasTouched(const SolvedBody& of) {
-  return std::any_of(of.normalImpulses->begin(), of.normalImpulses->end(),
-                     [](btScalar impulse) { return impulse != 0; });
-}
 
 void prepareStep(btSoftBody& body, btScalar dt) {
   body.m_sst.sdt = dt * body.m_cfg.timescale;
@@ -81,6 +78,7 @@ void clearContacts(btSoftBody& body) {
   destroyAll(body.m_faceRigidContacts);
   destroyAll(body.m_faceNodeContacts);
   destroyAll(body.m_faceNodeContactsCCD);
+  if (auto* own = bodyWithTrees(body)) own->pointContacts().clear();
 }
 
 /// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
@@ -91,6 +89,12 @@ btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
     if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
   }
   return v;
+}
+
+/// Null where it is not known: of a body that is not elastic, or has been moved since.
+btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
+  if (!of.elastic) return nullptr;
+  return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
 }
 
 /// Several bodies side by side, or one in pieces.
@@ -152,12 +156,31 @@ void DeformableSolver::Parts::predict() {
   useOwnSettings();
   applyOthers();
   for (SolvedBody& of : bodies.bodies()) readNodes(*of.body, false, *of.dynamics);
+  for (SolvedSystem& system : bodies.systems()) {
+    SolvedBody& first = bodies.bodies()[system.bodies.front()];
+    // With other forces, what these do is known by what the body does without contacts.
+    first.waits = first.wasTouched && system.forces.empty();
+  }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& of, ParallelFor* inner) { predictVelocities(of, inner); });
   for (SolvedBody& of : bodies.bodies()) {
     writePrediction(of);
     clearContacts(*of.body);
+    if (of.elastic) speculate(of);
     predictPositions(of);
   }
+}
+
+/// Twice as far as gravity takes anything in a step: one of two that are in touch may be predicted to fall, and neither
+/// does. And a share of the body's own way: what is stopped by some points turns others in.
+void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
+  constexpr btScalar kShareOfWay = btScalar(0.2);
+  auto* own = bodyWithTrees(*of.body);
+  const btDiscreteDynamicsWorld* world = worldOf(of);
+  if (!own || !world) return;
+  btScalar fastest = 0;
+  for (int n = 0; n < of.body->m_nodes.size(); ++n) fastest = std::max(fastest, of.body->m_nodes[n].m_v.length2());
+  const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
+  own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
 }
 
 /// The world tells its own in each step.
@@ -178,6 +201,7 @@ void DeformableSolver::Parts::applyOthers() {
   for (SolvedBody& of : bodies.bodies()) {
     for (int n = 0; n < of.body->m_nodes.size(); ++n) {
       btSoftBody::Node& node = of.body->m_nodes[n];
+      node.m_vn = node.m_v;
       node.m_v += node.m_im * impulses[of.first + n];
       impulses[of.first + n].setZero();
       if (!of.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
@@ -187,18 +211,22 @@ void DeformableSolver::Parts::applyOthers() {
 
 void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inner) {
   Dynamics& dynamics = *of.dynamics;
-  const auto seconds = static_cast<double>(dt());
-  dynamics.predict(seconds, inner);
+  dynamics.predict(static_cast<double>(dt()), inner);
   dynamics.matrix().free();
-  dynamics.start(seconds, inner);
-  if (!of.elastic) return;
+  if (of.waits) return dynamics.startLater(static_cast<double>(dt()));
+  dynamics.start(static_cast<double>(dt()), inner);
+  if (of.elastic) solveAlone(of, inner);
+}
+
+void DeformableSolver::Parts::solveAlone(SolvedBody& of, ParallelFor* inner) const {
+  const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
   limits.tolerance = of.limits->tolerance;
   limits.iterations = of.limits->iterations;
-  limits.floor = std::max(kUnseen * seconds, dynamics.roundingSpeed(seconds));
-  limits.enough = limits.tolerance * limits.tolerance * dynamics.squaredDeviation();
-  of.solve->start({&dynamics.matrix()}, limits, {}, inner);
-  of.solve->iterate(wasTouched(of) ? kIterationsBeforeContacts : limits.iterations, inner);
+  limits.floor = std::max(kUnseen * seconds, of.dynamics->roundingSpeed(seconds));
+  limits.enough = limits.tolerance * limits.tolerance * of.dynamics->squaredDeviation();
+  of.solve->start({&of.dynamics->matrix()}, limits, {}, inner);
+  of.solve->iterate(limits.iterations, inner);
   of.iterations = of.solve->iterations();
 }
 
@@ -235,12 +263,12 @@ void DeformableSolver::Parts::assemble() {
   for (SolvedBody& of : bodies.bodies()) of.dynamics->matrix().free();
   for (SolvedBody& of : bodies.bodies()) readContacts(of);
   addOthers();
-  tieRigids();
-  addDynamicFriction(projection(), ties, bodies, solver.m_residual);
-  fixContacts(projection(), ties, bodies);
+  addDynamicFriction(projection(), bodies, solver.m_residual);
+  listFixedNodes(projection(), bodies);
+  collectRows();
 }
 
-/// Bullet's step so far: by how much contacts have changed the velocities, which begins the solution; and what
+/// Bullet's step so far: by how much its constraints have changed the velocities, which begins the solution; and what
 /// velocities the whole step begins with.
 void DeformableSolver::Parts::readContacts(SolvedBody& of) {
   Dynamics& dynamics = *of.dynamics;
@@ -270,14 +298,69 @@ void DeformableSolver::Parts::addOthers() {
   }
 }
 
-void DeformableSolver::Parts::tieRigids() {
-  ties.collect(projection(), forces(), bodies);
-  for (std::size_t r = 0; r < ties.rigids().size(); ++r) {
-    std::vector<std::size_t> places;
-    for (const RigidTie& tie : ties.rigids()[r].ties) {
-      if (places.empty() || places.back() != tie.body) places.push_back(tie.body);
-    }
-    if (!places.empty()) bodies.join(places).rigids.push_back(r);
+void DeformableSolver::Parts::collectRows() {
+  rigids.clear();
+  rows.collect(bodies, rigids, dt());
+  collectRigidRowsOfWorlds();
+  joinByRigids();
+  for (SolvedBody& of : bodies.bodies()) {
+    if (of.waits && of.rowCount > 0) goOn(of);
+  }
+}
+
+/// What rests goes on to rest: the solution begins with the velocities of the step before.
+void DeformableSolver::Parts::goOn(SolvedBody& of) {
+  Dynamics& dynamics = *of.dynamics;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+    if (!(node.m_im > 0)) continue;
+    toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
+  }
+  // What stiff bodies deform by does not last.
+  if (dynamics.isStiff()) dynamics.keepRigidPart();
+}
+
+void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
+  if (rigids.list().empty()) return;
+  std::vector<btDiscreteDynamicsWorld*> worlds;
+  for (const SolvedBody& of : bodies.bodies()) {
+    btDiscreteDynamicsWorld* world = worldOf(of);
+    if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
+    worlds.push_back(world);
+    collectRigidRows(*world, dt(), rigids, rows.rows());
+  }
+}
+
+/// Soft bodies are solved for together where rows lead from one to the other by rigid bodies.
+void DeformableSolver::Parts::joinByRigids() {
+  const std::size_t bodyCount = bodies.bodies().size();
+  DisjointSets sets(bodyCount + rigids.list().size());
+  const auto rigidSet = [&](const RigidPoint& point) { return static_cast<int>(bodyCount) + point.unknown; };
+  for (const ContactRow& row : rows.rows()) {
+    if (row.nodeCount > 0 && row.rigid.unknown >= 0) sets.unite(static_cast<int>(row.body), rigidSet(row.rigid));
+    if (row.own.unknown >= 0 && row.rigid.unknown >= 0) sets.unite(rigidSet(row.own), rigidSet(row.rigid));
+  }
+  std::unordered_map<int, std::vector<std::size_t>> groups;  // bodies, by set
+  for (std::size_t b = 0; b < bodyCount; ++b) groups[sets.find(static_cast<int>(b))].push_back(b);
+  for (std::size_t b = 0; b < bodyCount; ++b) {
+    const auto& group = groups[sets.find(static_cast<int>(b))];
+    if (group.front() == b && group.size() > 1) bodies.join(group);
+  }
+  std::vector<SolvedSystem*> systemOf(bodyCount, nullptr);
+  for (SolvedSystem& system : bodies.systems()) {
+    for (const std::size_t b : system.bodies) systemOf[b] = &system;
+  }
+  const auto systemOfSet = [&](int member) -> SolvedSystem* {
+    const auto group = groups.find(sets.find(member));
+    return group == groups.end() ? nullptr : systemOf[group->second.front()];
+  };
+  for (ContactRow& row : rows.rows()) {
+    const RigidPoint& any = row.own.unknown >= 0 ? row.own : row.rigid;
+    SolvedSystem* system = row.nodeCount > 0 ? systemOf[row.body] : systemOfSet(rigidSet(any));
+    if (system) system->rows.push_back(&row);
+  }
+  for (std::size_t r = 0; r < rigids.list().size(); ++r) {
+    if (SolvedSystem* system = systemOfSet(static_cast<int>(bodyCount + r))) system->rigids.push_back(r);
   }
 }
 
@@ -288,21 +371,113 @@ void DeformableSolver::Parts::solve() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
   image.resize(solver.m_numNodes, btVector3(0, 0, 0));
   extras.resize(bodies.bodies().size());
-  std::vector<const SolvedSystem*> own;
-  for (const SolvedSystem& system : bodies.systems()) {
+  std::vector<SolvedSystem*> own;
+  for (SolvedSystem& system : bodies.systems()) {
     system.forces.empty() ? own.push_back(&system) : solveSystem(system, threads);
   }
   ParallelFor* inner = own.size() == 1 ? threads : nullptr;
   runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solveSystem(*own[k], inner); });
-  iterations = 0;
+  iterations = passes = unconverged = 0;
   for (const SolvedBody& of : bodies.bodies()) iterations += of.iterations;
+  for (const SolvedSystem& system : bodies.systems()) {
+    passes += system.passes;
+    unconverged += system.converged ? 0 : 1;
+  }
+}
+
+void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inner) {
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  bool again = !system.forces.empty() || !system.rows.empty();
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    again |= !of.fixed.empty() || of.touched;
+  }
+  if (again) {
+    const SolveReport report = SystemSolve(*this, system, inner).solve();
+    first.iterations += report.iterations;
+    system.passes = report.passes;
+    system.converged = report.converged;
+    for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
+  } else if (first.elastic) {
+    // Of a body that waited for contacts, and has none, all; else on from where it stopped.
+    if (first.waits) {
+      first.dynamics->startAgain(inner);
+      solveAlone(first, inner);
+    } else {
+      first.solve->iterate(first.limits->iterations, inner);
+      first.iterations = first.solve->iterations();
+    }
+  }
+  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.touched;
+  if (free && first.elastic) first.dynamics->removeMomentum();
+}
+
+void DeformableSolver::Parts::addOtherResiduals(const SolvedSystem& system) {
+  const bool withForces = !system.forces.empty();
+  if (withForces) {
+    for (const std::size_t b : system.bodies) {
+      const SolvedBody& of = bodies.bodies()[b];
+      const auto& matrix = of.dynamics->matrix();
+      for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+        const int number = of.first + static_cast<int>(n);
+        step[number] = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
+                       solver.m_backupVelocity[number];
+      }
+    }
+    multiplyOthers(system);
+  }
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    auto& matrix = of.dynamics->matrix();
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      const std::size_t wide = matrix.wideOf(n);
+      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[of.first + static_cast<int>(n)];
+      if (withForces) residual -= fromWide(&extras[b][wide]);
+      toWide(residual, matrix.residual() + wide);
+    }
+  }
+}
+
+void DeformableSolver::Parts::beginProducts(const SolvedSystem& system) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    if (system.forces.empty()) {
+      extras[b].assign(matrix.wideSize(), btScalar(0));
+      continue;
+    }
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
+    }
+  }
+  if (!system.forces.empty()) multiplyOthers(system);
+}
+
+void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    for (int n = 0; n < of.body->m_nodes.size(); ++n) image[of.first + n].setZero();
+  }
+  for (btDeformableLagrangianForce* force : system.forces) {
+    force->addScaledDampingForceDifferential(-dt(), step, image);
+    if (force->getForceType() == BT_MOUSE_PICKING_FORCE) {
+      force->addScaledElasticForceDifferential(-dt() * dt(), step, image);
+    }
+  }
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& of = bodies.bodies()[b];
+    const auto& matrix = of.dynamics->matrix();
+    extras[b].resize(matrix.wideSize(), btScalar(0));
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
+    }
+  }
 }
 
 // ---- contacts
 
 void DeformableSolver::Parts::finishContacts() {
-  keepNormalImpulses(projection(), bodies, solver.m_residual);
-  ties.finish(bodies);
+  rows.finish(bodies, dt());
 }
 
 // ---- write back

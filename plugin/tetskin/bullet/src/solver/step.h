@@ -13,8 +13,8 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
-#include <tetskin/bullet/src/solver/rigid_ties.h>
 
 #include <vector>
 
@@ -48,23 +48,28 @@ struct DeformableSolver::Parts {
   /// The impulses of other forces.
   void applyOthers();
   void predictVelocities(SolvedBody& of, ParallelFor* inner);
+  void solveAlone(SolvedBody& of, ParallelFor* inner) const;
   void writePrediction(SolvedBody& of) const;
+  void speculate(const SolvedBody& of) const;
   void predictPositions(SolvedBody& of);
 
   // Of assemble.
   void readContacts(SolvedBody& of);
   void addOthers();
-  void tieRigids();
+  /// Of contacts and anchors, and of what rigid bodies are held by beside; each to the system that it acts on.
+  void collectRows();
+  void collectRigidRowsOfWorlds();
+  void joinByRigids();
+  void goOn(SolvedBody& of);
 
-  // Of solve: system_solve.cpp.
-  void solveSystem(const SolvedSystem& system, ParallelFor* inner);
-  void solveAgain(const SolvedSystem& system, ParallelFor* inner);
-  void startAgain(const SolvedSystem& system, ParallelFor* inner);
-  elastic_detail::SolveLimits limitsOf(const SolvedSystem& system) const;
-  /// What others add to the matrices times `step`, in `extras`.
+  // Of solve.
+  void solveSystem(SolvedSystem& system, ParallelFor* inner);
+  /// Adds to the bodies' residuals what others do at the solutions as they are.
+  void addOtherResiduals(const SolvedSystem& system);
+  /// What others add to the matrices' products with their own steps, in `extras`.
+  void beginProducts(const SolvedSystem& system);
+  /// The same of `step`.
   void multiplyOthers(const SolvedSystem& system);
-  /// The same times the matrices' own steps, and what ties add, for the conjugate gradient.
-  void addProducts(const SolvedSystem& system, std::vector<const btScalar*>& added);
 
   // Of writeBack.
   void writeVelocities(SolvedBody& of) const;
@@ -72,13 +77,14 @@ struct DeformableSolver::Parts {
   DeformableSolver& solver;
   SolverBodies bodies;
   DrivenNodes driven;
-  RigidTies ties;
+  RigidUnknowns rigids;
+  ContactRows rows;
   HiddenBodies hidden;
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;
   bool always = false;  ///< see DeformableSolver::solveAlways
   bool solving = true;  ///< in this step
-  int iterations = 0;
+  int iterations = 0, passes = 0, unconverged = 0;
   btAlignedObjectArray<btSoftBody*> all;
   VectorStack step, image;                    ///< of systems with other forces
   std::vector<std::vector<btScalar>> extras;  ///< by body, wide

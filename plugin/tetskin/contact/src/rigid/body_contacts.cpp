@@ -1,16 +1,42 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <LinearMath/btAabbUtil2.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
-#include <tetskin/contact/src/rigid/node_contacts.h>
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace tetskin {
 namespace {
 
-/// Shapes that are remembered, each with some 100 bytes a tet.
-constexpr std::size_t kMostKnown = 64;
+/// Shapes near the body are remembered, each with some 100 bytes per tet, as far as these bytes suffice, and this many
+/// of them in any case. Of more, those that came first: each is asked for once per step, so that the least recently
+/// used would be dropped just before its turn.
+constexpr std::size_t kMaxMemoryBytes = std::size_t(32) << 20;
+constexpr std::size_t kMinRemembered = 64;
+/// Steps after which a shape that was not near is forgotten.
+constexpr unsigned kForgottenAfter = 64;
+
+std::size_t maxRemembered(const ContactPatches& patches) {
+  const std::size_t bytes = patches.clusters.size() * (sizeof(Ball) + sizeof(btScalar)) +
+                            patches.patches.size() * sizeof(btScalar) + patches.nodes.size() * sizeof(btVector3);
+  return std::max(kMinRemembered, kMaxMemoryBytes / std::max(bytes, std::size_t(1)));
+}
+
+/// Of a child among all shapes of an object, however deep compounds are nested; the same in each step, as memory is
+/// kept by it. A hash: two are the same as rarely as two random numbers of 64 bits are.
+std::uint64_t numberOfChild(std::uint64_t compound, int child) {
+  return compound * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(child) + 1;
+}
+
+/// Gathers the items of the leaves.
+struct LeafGatherer : btDbvt::ICollide {
+  void Process(const btDbvtNode* leaf) override { items.push_back(leaf->dataAsInt); }
+  std::vector<int> items;
+};
 
 /// Where an object goes in this step. Of those that do not move by themselves, or sleep, nobody keeps that up to date.
 btTransform predictedOf(const btCollisionObject& object) {
@@ -27,15 +53,22 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
 
 }  // namespace
 
+BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, TouchSearch search, btScalar thickness)
+    : dispatcher_(&dispatcher),
+      body_(body),
+      lifetime_(body.lifetime()),
+      search_(std::move(search)),
+      thickness_(thickness),
+      maxRemembered_(maxRemembered(search_.patches())) {}
+
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !responds(object)) return;
-  // Bullet clears its contacts in each step.
-  const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
-  if (touches_.size() > kept) touches_.resize(kept);
   nodesRead_ = false;
-  shapeNumber_ = 0;
-  collideShape(*rigid.getCollisionShape(), pathOf(rigid), object);
+  KnownObject& known = known_[&object];
+  ++known.step;
+  collideShape(*rigid.getCollisionShape(), 0, pathOf(rigid), object);
+  if (known.step % kForgottenAfter == 0) forgetUnused(known);
 }
 
 bool BodyContacts::responds(const btCollisionObject& object) const {
@@ -53,7 +86,7 @@ void BodyContacts::readNodes() {
     const btSoftBody::Node& node = body_.m_nodes[n];
     nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
   }
-  search_.begin(nodes_);
+  search_.begin(nodes_, body_.speculation());
 }
 
 /// By the boxes that Bullet keeps, and for shapes of one piece by the distance of the body's.
@@ -71,62 +104,120 @@ bool BodyContacts::isNear(const btCollisionShape& shape, const ShapePath& path) 
   return true;
 }
 
-void BodyContacts::collideShape(const btCollisionShape& shape, const ShapePath& path, const btCollisionObject& object) {
-  ++shapeNumber_;
+void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
+                                const btCollisionObject& object) {
   if (!isNear(shape, path)) return;
-  if (shape.isCompound()) return collideChildren(shape, path, object);
-  ShapeProbe* probe = probeOf(shape);
+  if (shape.isCompound()) {
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (const int c : childrenNear(compound, path)) {
+      const btTransform& local = compound.getChildTransform(c);
+      collideShape(*compound.getChildShape(c), numberOfChild(number, c), {path.now * local, path.predicted * local},
+                   object);
+    }
+    return;
+  }
+  KnownShape& known = knownShape(shape, number, object);
+  ShapeProbe* probe = probeOf(shape, known);
   if (!probe) return;
   readNodes();
-  ShapeMemory& memory = memoryOf(shape, object);
-  for (const NodeTouch& touch : search_.find(*probe, path, memory)) {
-    if (addNodeContact(body_, object, touch)) touches_.push_back(touch);
-  }
+  const std::vector<PointTouch>& touches = search_.find(*probe, path, memoryOf(known));
+  for (const PointTouch& touch : touches) addContact(touch, object);
+  if (!touches.empty() && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
 }
 
-void BodyContacts::collideChildren(const btCollisionShape& compound, const ShapePath& path,
-                                   const btCollisionObject& object) {
-  const auto& children = static_cast<const btCompoundShape&>(compound);
-  for (int c = 0; c < children.getNumChildShapes(); ++c) {
-    const btTransform& place = children.getChildTransform(c);
-    collideShape(*children.getChildShape(c), {path.now * place, path.predicted * place}, object);
+void BodyContacts::addContact(const PointTouch& touch, const btCollisionObject& object) {
+  const ContactPatches& patches = search_.patches();
+  const ContactPatch& patch = patches.patches[touch.patch];
+  PointContact contact;
+  contact.point = touch.point;
+  contact.object = &object;
+  contact.nodeCount = patch.nodeCount;
+  const btScalar* weights = &patches.weights[patch.firstWeight + (touch.point - patch.firstPoint) * patch.nodeCount];
+  std::copy_n(&patches.nodes[patch.firstNode], patch.nodeCount, contact.nodes.begin());
+  std::copy_n(weights, patch.nodeCount, contact.weights.begin());
+  contact.position = touch.position;
+  contact.normal = touch.normal;
+  contact.distance = touch.distance;
+  contact.friction = body_.m_cfg.kDF * object.getFriction();
+  body_.pointContacts().push_back(contact);
+}
+
+/// Ascending. In the compound's space the paths of all the body's points lie in the box around where the body's box is
+/// now and where it would be: children outside of it meet nothing.
+std::vector<int> BodyContacts::childrenNear(const btCompoundShape& compound, const ShapePath& path) const {
+  LeafGatherer children;
+  const btDbvt* tree = compound.getDynamicAabbTree();
+  const btBroadphaseProxy* body = body_.getBroadphaseHandle();
+  if (!tree || !body) {
+    children.items.resize(static_cast<std::size_t>(compound.getNumChildShapes()));
+    std::iota(children.items.begin(), children.items.end(), 0);
+    return std::move(children.items);
   }
+  btVector3 low, high, laterLow, laterHigh;
+  btTransformAabb(body->m_aabbMin, body->m_aabbMax, 0, path.now.inverse(), low, high);
+  btTransformAabb(body->m_aabbMin, body->m_aabbMax, 0, path.predicted.inverse(), laterLow, laterHigh);
+  low.setMin(laterLow);
+  high.setMax(laterHigh);
+  tree->collideTV(tree->m_root, btDbvtVolume::FromMM(low, high), children);
+  std::sort(children.items.begin(), children.items.end());
+  return std::move(children.items);
 }
 
 void BodyContacts::forget(const btCollisionObject& object) {
-  const auto isOf = [&](const KnownShape& known) { return known.object == &object; };
-  known_.erase(std::remove_if(known_.begin(), known_.end(), isOf), known_.end());
-  const auto kept = static_cast<std::size_t>(body_.m_nodeRigidContacts.size());
-  for (std::size_t k = 0; k < std::min(kept, touches_.size()); ++k) {
-    if (body_.m_nodeRigidContacts[static_cast<int>(k)].m_cti.m_colObj == &object) touches_[k].node = -1;
+  const auto found = known_.find(&object);
+  if (found != known_.end()) {
+    for (const auto& [number, shape] : found->second.shapes) remembered_ -= shape.isRemembered;
+    known_.erase(found);
+  }
+  if (!bodyLives()) return;
+  // The last step's are told of until the next one.
+  for (PointContact& contact : body_.pointContacts()) {
+    if (contact.object == &object) contact.object = nullptr;
   }
 }
 
-ShapeMemory& BodyContacts::memoryOf(const btCollisionShape& shape, const btCollisionObject& object) {
+void BodyContacts::forgetUnused(KnownObject& object) {
+  for (auto shape = object.shapes.begin(); shape != object.shapes.end();) {
+    const bool used = object.step - shape->second.lastStep < kForgottenAfter;
+    if (!used) remembered_ -= shape->second.isRemembered;
+    shape = used ? std::next(shape) : object.shapes.erase(shape);
+  }
+}
+
+KnownShape& BodyContacts::knownShape(const btCollisionShape& shape, std::uint64_t number,
+                                     const btCollisionObject& object) {
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);
-  for (KnownShape& known : known_) {
-    if (known.object != &object || known.number != shapeNumber_) continue;
-    if (known.shape != &shape || known.low != low || known.high != high) known = {};
-    known.object = &object;
-    known.number = shapeNumber_;
-    known.shape = &shape;
-    known.low = low;
-    known.high = high;
-    return known.memory;
+  KnownObject& all = known_[&object];
+  KnownShape& known = all.shapes[number];
+  if (known.shape != &shape || known.low != low || known.high != high) {
+    known.memory = {};
+    known.hull = nullptr;
   }
-  if (known_.size() >= kMostKnown) return overflow_ = {};
-  known_.push_back({&object, shapeNumber_, &shape, low, high, {}});
-  return known_.back().memory;
+  known.shape = &shape;
+  known.low = low;
+  known.high = high;
+  known.lastStep = all.step;
+  return known;
 }
 
-ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape) {
+ShapeMemory& BodyContacts::memoryOf(KnownShape& known) {
+  if (!known.isRemembered && remembered_ < maxRemembered_) {
+    known.isRemembered = true;
+    ++remembered_;
+  }
+  return known.isRemembered ? known.memory : overflow_ = {};
+}
+
+ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& known) {
   if (const std::optional<ExactShape> exact = ExactShape::of(shape)) {
     exact_.take(*exact);
     return &exact_;
   }
-  if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE && hull_.take(static_cast<const btConvexHullShape&>(shape))) {
-    return &hull_;
+  if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE) {
+    const bool hasFaces = hull_.take(static_cast<const btConvexHullShape&>(shape));
+    known.hull = hull_.faces();
+    if (hasFaces) return &hull_;
   }
   if (shape.isConvex() && !shape.isConvex2d()) {
     convex_.take(static_cast<const btConvexShape&>(shape));

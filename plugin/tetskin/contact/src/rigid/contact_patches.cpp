@@ -8,7 +8,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <tuple>
 
 namespace tetskin {
 namespace {
@@ -21,18 +20,16 @@ constexpr int kPatchesPerCluster = 12;
 /// Points that the same nodes carry, while patches are collected.
 struct LoosePatch {
   std::vector<int> nodes;
-  std::vector<btScalar> weights, acting;               ///< of the nodes, point by point
+  std::vector<btScalar> weights;                       ///< of the nodes, point by point
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< rest space
 
   std::size_t pointCount() const { return weights.size() / nodes.size(); }
 };
 
 void dropRepeated(std::vector<Point>& points) {
-  const auto key = [](const Point& point) { return std::tie(point.weights, point.clamped); };
-  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
-  points.erase(
-      std::unique(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) == key(b); }),
-      points.end());
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.weights < b.weights; });
+  const auto same = [](const Point& a, const Point& b) { return a.weights == b.weights; };
+  points.erase(std::unique(points.begin(), points.end(), same), points.end());
 }
 
 /// points  of one tet
@@ -42,7 +39,6 @@ LoosePatch patchOf(std::vector<Point> points) {
   dropRepeated(points);
   for (const Point& point : points) {
     patch.weights.insert(patch.weights.end(), point.weights.begin(), point.weights.end());
-    patch.acting.insert(patch.acting.end(), point.clamped.begin(), point.clamped.end());
   }
   return patch;
 }
@@ -93,12 +89,9 @@ EmbeddedTriangle embeddedTriangle(const Embedding& embedding, const std::array<i
 void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3>& shares, LoosePatch& patch) {
   const std::size_t first = patch.weights.size();
   patch.weights.resize(first + triangle.nodes.size(), 0);
-  patch.acting.resize(patch.weights.size(), 0);
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t index = first + triangle.indices[c][k];
-      patch.weights[index] += shares[c] * triangle.corners[c].weights[k];
-      patch.acting[index] += shares[c] * triangle.corners[c].clamped[k];
+      patch.weights[first + triangle.indices[c][k]] += shares[c] * triangle.corners[c].weights[k];
     }
   }
 }
@@ -153,7 +146,6 @@ void append(const LoosePatch& loose, ContactPatches& to) {
   patch.spread = spreadOf(loose);
   to.nodes.insert(to.nodes.end(), loose.nodes.begin(), loose.nodes.end());
   to.weights.insert(to.weights.end(), loose.weights.begin(), loose.weights.end());
-  to.acting.insert(to.acting.end(), loose.acting.begin(), loose.acting.end());
   to.pointCount += loose.pointCount();
   to.patches.push_back(patch);
 }

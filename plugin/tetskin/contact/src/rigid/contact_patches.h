@@ -5,6 +5,7 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
+#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/core/embedding.h>
 
 #include <cstdint>
@@ -29,16 +30,13 @@ struct PatchCluster {
   btScalar spread = 1;                         ///< the largest of its patches
 };
 
-/// The corners of a triangle may each be in a tet of its own.
-constexpr std::size_t kMostCarriers = 12;
+constexpr std::size_t kMostCarriers = kMaxPointNodes;
 
 struct ContactPatches {
   std::vector<ContactPatch> patches;
   std::vector<PatchCluster> clusters;
   std::vector<int> nodes, clusterNodes;
-  std::vector<btScalar> weights;  ///< where a point is: of the nodes of its patch, point by point
-  /// The same of the closest point of its tet for a vertex outside: those by which it acts, none of them negative.
-  std::vector<btScalar> acting;
+  std::vector<btScalar> weights;  ///< of the nodes of its patch, point by point; below 0 for what lies beyond them
   std::size_t pointCount = 0;
 };
 

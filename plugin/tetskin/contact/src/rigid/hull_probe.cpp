@@ -5,13 +5,12 @@
 #include <tetskin/contact/src/rigid/hull_probe.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace tetskin {
 namespace {
-
-/// Hulls that are kept, of shapes that may be long gone.
-constexpr std::size_t kMostHulls = 64;
 
 std::vector<btVector3> cornersOfFace(const btConvexHullComputer& hull, int face) {
   std::vector<btVector3> corners;
@@ -96,13 +95,21 @@ btVector3 HullFaces::offsetFrom(std::size_t face, const btVector3& point) const 
   return toBullet(nearest);
 }
 
-bool HullProbe::take(const btConvexHullShape& shape) {
-  auto found = known_.find(&shape);
-  if (found == known_.end() || !found->second.fits(shape)) {
-    if (known_.size() >= kMostHulls) known_.clear();
-    found = known_.insert_or_assign(&shape, HullFaces(shape)).first;
+/// Several objects may have one shape, and shapes may be changed in place.
+std::shared_ptr<const HullFaces> HullProbe::find(const btConvexHullShape& shape) {
+  const auto found = known_.find(&shape);
+  std::shared_ptr<const HullFaces> faces = found == known_.end() ? nullptr : found->second.lock();
+  if (faces && faces->fits(shape)) return faces;
+  for (auto hull = known_.begin(); hull != known_.end();) {
+    hull = hull->second.expired() ? known_.erase(hull) : std::next(hull);
   }
-  faces_ = &found->second;
+  faces = std::make_shared<const HullFaces>(shape);
+  known_[&shape] = faces;
+  return faces;
+}
+
+bool HullProbe::take(const btConvexHullShape& shape) {
+  faces_ = find(shape);
   all_.resize(faces_->planes().size());
   std::iota(all_.begin(), all_.end(), std::size_t{0});
   return !faces_->empty();

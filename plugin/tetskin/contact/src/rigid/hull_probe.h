@@ -9,6 +9,7 @@
 #include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -60,13 +61,16 @@ class HullProbe : public ShapeProbe {
   /// Inside, to the nearest face; outside, to the nearest point of those faces that look to the point.
   ShapeDistance at(const btVector3& point) const override;
   ShapeBound bound() const override { return bound_; }
+  /// Of the hull taken; made anew for a later one unless they are kept as long.
+  const std::shared_ptr<const HullFaces>& faces() const { return faces_; }
 
  private:
+  std::shared_ptr<const HullFaces> find(const btConvexHullShape& shape);
   ShapeDistance outside(const btVector3& point, const ShapeDistance& highest) const;
   bool keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach, std::vector<std::size_t>& kept);
 
-  std::unordered_map<const btCollisionShape*, HullFaces> known_;
-  const HullFaces* faces_ = nullptr;
+  std::unordered_map<const btCollisionShape*, std::weak_ptr<const HullFaces>> known_;
+  std::shared_ptr<const HullFaces> faces_;
   std::vector<std::size_t> all_, entered_, narrowed_;  ///< faces
   std::vector<btScalar> heights_;
   ShapeBound bound_;

@@ -11,26 +11,18 @@
 namespace tetskin {
 namespace {
 
-/// Cosine: points whose normals are as near as that stop a node together.
-constexpr btScalar kSameWay = btScalar(0.7);
-
-bool sameWay(const NodeTouch& a, const NodeTouch& b) {
-  return a.normal.dot(b.normal) > kSameWay;
-}
-
-/// Of two points that one node carries: the one that goes deeper, as far as both let it.
-void join(const NodeTouch& other, NodeTouch& touch) {
-  const NodeTouch before = touch;
-  if (other.predicted < touch.predicted) touch = other;
-  if (sameWay(before, other)) touch.room = std::min(before.room, other.room);
-  touch.node = before.node;
-  touch.next = before.next;
-}
-
 /// Steps on the way of a point. After these it counts as meeting what it has come near to.
 constexpr int kMostSteps = 24;
 /// How near counts as met, over the margin.
 constexpr btScalar kMet = btScalar(0.05);
+/// Over the slack: how far the points of a patch that touch may be from those of them that are chosen.
+constexpr btScalar kSpacing = 4;
+/// Cosine: a patch in one tet moves as a whole, and on a plane a few points hold it.
+constexpr btScalar kSamePlane = btScalar(0.9999);
+/// How far it goes to the plane in a step at most, over the slack.
+constexpr btScalar kCalm = btScalar(0.25);
+/// How much farther apart others must be than a point that goes deeper by one.
+constexpr btScalar kDepthsWorth = 3;
 /// Steps after which what was clear is looked at again.
 constexpr unsigned kRemembered = 16;
 
@@ -74,15 +66,17 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
 
 }  // namespace
 
-TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar share, btScalar slack)
-    : patches_(std::move(patches)), margin_(margin), share_(share), slack_(slack) {
+TouchSearch::TouchSearch(ContactPatches patches, btScalar margin, btScalar slack)
+    : patches_(std::move(patches)), margin_(margin), slack_(slack) {
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
-void TouchSearch::begin(const std::vector<NodePath>& nodes) {
+void TouchSearch::begin(const std::vector<NodePath>& nodes, btScalar speculation) {
+  assert(speculation >= 0);
   nodes_ = &nodes;
+  speculation_ = speculation;
+  reach_ = margin_ + speculation;
   clustersRead_ = false;
-  placeOf_.resize(nodes.size(), -1);
   local_.resize(nodes.size());
 }
 
@@ -99,14 +93,17 @@ void TouchSearch::readClusters() {
   }
 }
 
-const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
+const std::vector<PointTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory) {
   assert(nodes_);
   probe_ = &probe;
   shape_ = shape;
   touches_.clear();
   memory_ = &memory;
   ++memory.steps;
-  if (isAllClear()) return touches_;
+  if (isAllClear()) {
+    memory.touched.clear();
+    return touches_;
+  }
   readClusters();
   toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
   turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
@@ -120,10 +117,14 @@ const std::vector<NodeTouch>& TouchSearch::find(ShapeProbe& probe, const ShapePa
     allClear = allClear && left > slack_ / 2;
   }
   if (allClear) rememberAllClear();
-  for (const NodeTouch& touch : touches_) placeOf_[static_cast<std::size_t>(touch.node)] = -1;
-  std::stable_sort(touches_.begin(), touches_.end(),
-                   [](const NodeTouch& a, const NodeTouch& b) { return a.node < b.node; });
+  rememberTouched();
   return touches_;
+}
+
+void TouchSearch::rememberTouched() {
+  memory_->touched.clear();
+  for (const PointTouch& touch : touches_) memory_->touched.push_back(touch.point);
+  std::sort(memory_->touched.begin(), memory_->touched.end());
 }
 
 void TouchSearch::prepare(ShapeMemory& memory) const {
@@ -140,7 +141,9 @@ bool TouchSearch::isAllClear() const {
       !(shape_.now == memory_->place && shape_.predicted == memory_->place)) {
     return false;
   }
-  const btScalar most = btScalar(0.25) * slack_ * slack_ / (spread_ * spread_);
+  const btScalar left = btScalar(0.5) * slack_ - std::max(speculation_ - memory_->speculation, btScalar(0));
+  if (!(left > 0)) return false;
+  const btScalar most = left * left / (spread_ * spread_);
   for (std::size_t n = 0; n < nodes_->size(); ++n) {
     const NodePath& path = (*nodes_)[n];
     if ((path.now - memory_->nodes[n]).length2() >= most) return false;
@@ -152,6 +155,7 @@ bool TouchSearch::isAllClear() const {
 void TouchSearch::rememberAllClear() {
   memory_->clearUntil = memory_->steps + kRemembered;
   memory_->place = shape_.now;
+  memory_->speculation = speculation_;
   memory_->nodes.resize(nodes_->size());
   for (std::size_t n = 0; n < nodes_->size(); ++n) memory_->nodes[n] = (*nodes_)[n].now;
 }
@@ -168,7 +172,7 @@ btScalar TouchSearch::clearance(std::size_t cluster, const Ball& ball) const {
   if (!(memory_->clusterClear[cluster] > 0)) return 0;
   const Ball& known = memory_->clusterBalls[cluster];
   const btScalar grown = std::max(ball.radius - known.radius, btScalar(0));
-  return memory_->clusterClear[cluster] - (ball.centre - known.centre).length() - grown;
+  return memory_->clusterClear[cluster] - speculation_ - (ball.centre - known.centre).length() - grown;
 }
 
 /// Returns by how much all of the cluster is clear, or 0.
@@ -187,15 +191,16 @@ btScalar TouchSearch::searchCluster(std::size_t cluster, const Ball& ball, bool 
       left = std::min(left, still);
       continue;
     }
-    if (!entered && !probe_->enter(ball, margin_ + slack_)) {
+    if (!entered && !probe_->enter(ball, reach_ + slack_)) {
       memory_->clusterBalls[cluster] = ball;
-      memory_->clusterClear[cluster] = slack_;
+      memory_->clusterClear[cluster] = slack_ + speculation_;
       return slack_;
     }
     if (!entered) bound = probe_->bound();
     entered = true;
-    remember(p, searchPatch(patch, bound));
-    left = std::min(left, memory_->clear[p]);
+    const btScalar clear = searchPatch(patch, bound);
+    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
+    left = std::min(left, clear);
   }
   return left;
 }
@@ -222,7 +227,7 @@ btScalar TouchSearch::clearance(const ContactPatch& patch, btScalar known) const
     const btVector3& from = memory_->carriers[patch.firstNode + n];
     moved = std::max({moved, (carriers_[n].now - from).length2(), (carriers_[n].predicted - from).length2()});
   }
-  return known - btSqrt(moved) * patch.spread;
+  return known - speculation_ - btSqrt(moved) * patch.spread;
 }
 
 void TouchSearch::remember(std::size_t patch, btScalar clear) {
@@ -233,7 +238,7 @@ void TouchSearch::remember(std::size_t patch, btScalar clear) {
 
 /// Returns how far all its points are, where they begin, from meeting anything.
 btScalar TouchSearch::searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound) {
-  const btScalar far = lowestHeight(patch, clusterBound) - margin_;
+  const btScalar far = lowestHeight(patch, clusterBound) - reach_;
   if (far > slack_) return far;
   BoxOfPaths box;
   btScalar longest = 0;
@@ -242,10 +247,10 @@ btScalar TouchSearch::searchPatch(const ContactPatch& patch, const ShapeBound& c
     longest = std::max(longest, (carriers_[n].predicted - carriers_[n].now).length2());
   }
   // So far that a point's whole way is within reach of where it begins.
-  const btScalar reach = margin_ + slack_ + btSqrt(longest) * patch.spread;
+  const btScalar reach = reach_ + slack_ + btSqrt(longest) * patch.spread;
   const CarrierPaths carriers{carriers_.data(), patch.nodeCount, patch.spread};
   if (!probe_->narrow(carriers, box.ball(patch.spread), reach)) return slack_;
-  const btScalar nearer = lowestHeight(patch, probe_->bound()) - margin_;
+  const btScalar nearer = lowestHeight(patch, probe_->bound()) - reach_;
   return nearer > 0 ? nearer : searchPoints(patch);
 }
 
@@ -263,6 +268,7 @@ btScalar TouchSearch::lowestHeight(const ContactPatch& patch, const ShapeBound& 
 
 btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
   const btScalar* weights = &patches_.weights[patch.firstWeight];
+  const std::size_t first = touches_.size();
   btScalar clear = slack_;
   for (std::uint32_t p = 0; p < patch.pointCount; ++p, weights += patch.nodeCount) {
     btScalar now = 0, predicted = 0;
@@ -270,9 +276,10 @@ btScalar TouchSearch::searchPoints(const ContactPatch& patch) {
       now += weights[n] * heights_[0][n];
       predicted += weights[n] * heights_[1][n];
     }
-    const btScalar height = std::min(now, predicted) - margin_;
+    const btScalar height = std::min(now, predicted) - reach_;
     clear = std::min(clear, height > 0 ? height : touch(patch, p));
   }
+  chooseTouches(first);
   return clear;
 }
 
@@ -289,45 +296,59 @@ NodePath TouchSearch::pathOf(const ContactPatch& patch, std::uint32_t point) con
 /// Returns how far the point is from meeting anything.
 btScalar TouchSearch::touch(const ContactPatch& patch, std::uint32_t point) {
   const NodePath path = pathOf(patch, point);
-  const Meeting met = firstMet(*probe_, path, margin_);
+  const Meeting met = firstMet(*probe_, path, reach_);
   if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
   const btVector3& normal = met.distance.normal;
-  NodeTouch touch;
+  PointTouch touch;
   touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
   // What is too near is pushed out, wherever it goes.
-  if (!(touch.predicted < 0 || touch.distance < 0)) return 0;
+  if (!(touch.predicted < speculation_ || touch.distance < speculation_)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
+  touch.patch = static_cast<std::uint32_t>(&patch - patches_.patches.data());
   touch.point = patch.firstPoint + point;
-  touch.room = touch.distance;
-  keep(patch, point, touch);
+  touches_.push_back(touch);
   return 0;
 }
 
-/// The nodes that carry a point hold it.
-void TouchSearch::keep(const ContactPatch& patch, std::uint32_t point, const NodeTouch& touch) {
-  const btScalar* acting = &patches_.acting[patch.firstWeight + point * patch.nodeCount];
-  const btScalar least = std::min(share_, *std::max_element(acting, acting + patch.nodeCount));
-  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-    if (acting[n] < least) continue;
-    const int node = patches_.nodes[patch.firstNode + n];
-    keepAt(node, touch);
+/// Of the patch's: the one that goes deepest, and then the ones farthest from those that are chosen. What was touched
+/// in the step before has some lead, so that the choice does not change from step to step: what rests sticks to it.
+void TouchSearch::chooseTouches(std::size_t first) {
+  if (touches_.size() - first <= 2) return;
+  const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto lead = [&](const PointTouch& touch) {
+    const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
+    return known ? kSpacing * slack_ : btScalar(0);
+  };
+  chosen_.clear();
+  auto next = std::min_element(begin, touches_.end(), [&](const PointTouch& a, const PointTouch& b) {
+    return a.predicted - lead(a) < b.predicted - lead(b);
+  });
+  apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
+  // Lies or slides on a plane: where it falls onto one, points between those that are chosen go in.
+  const bool flat = std::all_of(begin, touches_.end(), [&](const PointTouch& touch) {
+    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < kCalm * slack_;
+  });
+  const std::size_t few = first < kManyTouches ? kMinTouches : 2;
+  const std::size_t enough = flat ? few : kMaxTouches;
+  const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
+  for (;;) {
+    chosen_.push_back(*next);
+    if (chosen_.size() == enough) break;
+    btScalar most = -BT_LARGE_FLOAT;
+    for (auto at = begin; at != touches_.end(); ++at) {
+      btScalar& apart = apart_[static_cast<std::size_t>(at - begin)];
+      apart = std::min(apart, (at->position - chosen_.back().position).length());
+      const btScalar gain = apart + lead(*at) - kDepthsWorth * at->predicted;
+      if (apart <= enoughApart() || gain <= most) continue;
+      most = gain;
+      next = at;
+    }
+    if (!(most > -BT_LARGE_FLOAT)) break;
   }
-}
-
-/// One for each direction in which the node is stopped: at an edge, by its two sides.
-void TouchSearch::keepAt(int node, const NodeTouch& touch) {
-  int& first = placeOf_[static_cast<std::size_t>(node)];
-  int at = first;
-  while (at >= 0 && !sameWay(touch, touches_[static_cast<std::size_t>(at)])) {
-    at = touches_[static_cast<std::size_t>(at)].next;
-  }
-  if (at >= 0) return join(touch, touches_[static_cast<std::size_t>(at)]);
-  touches_.push_back(touch);
-  touches_.back().node = node;
-  touches_.back().next = first;
-  first = static_cast<int>(touches_.size()) - 1;
+  touches_.erase(begin, touches_.end());
+  touches_.insert(touches_.end(), chosen_.begin(), chosen_.end());
 }
 
 }  // namespace tetskin

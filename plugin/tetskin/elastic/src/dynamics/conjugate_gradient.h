@@ -36,6 +36,8 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   bool converged() const { return rho_ <= target_; }
   /// The square of the residual's norm at which it has.
   double enough() const { return target_; }
+  /// The square of the residual's norm, as it is.
+  double squaredResidual() const { return rho_; }
   int iterations() const { return iterations_; }
 
  private:

@@ -150,6 +150,7 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
     *this = {};
     return;
   }
+  findInverseInertia();
   const Vector3d own = seconds * (spin_ - mass_ * arm.cross(velocity_));  // beside the motion of what is held
   switch (held.kind) {
     case HeldNodes::Nothing:
@@ -164,6 +165,15 @@ void PartMotion::find(const PartMoments& moments, const Vector3d& near, const He
     case HeldNodes::Fixed:
       turn_ = held.turn;
   }
+}
+
+void PartMotion::findInverseInertia() {
+  const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), second_);
+  if (held_.kind == HeldNodes::Nothing || held_.kind == HeldNodes::Point) inverseInertia_ = inertia.inverse();
+  if (held_.kind == HeldNodes::Line) {
+    inverseInertia_ = held_.axis * held_.axis.transpose() / held_.axis.dot(inertia * held_.axis);
+  }
+  if (!inverseInertia_.allFinite()) inverseInertia_.setZero();
 }
 
 RigidVelocity PartMotion::velocities(double seconds) const {
@@ -186,16 +196,31 @@ double PartMotion::leastInertia() const {
   return std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues()[0]);
 }
 
+double PartMotion::compliance(const Vector3d& point, const Vector3d& direction) const {
+  const Vector3d moment = (point - about_).cross(direction);
+  const bool free = held_.kind == HeldNodes::Nothing;
+  const double moved = free && mass_ > 0.0 ? direction.squaredNorm() / mass_ : 0.0;
+  return moved + moment.dot(inverseInertia_ * moment);
+}
+
 RigidVelocity PartMotion::excess(const PartMomentum& now, const Vector3d& impulse, const Vector3d& torque) const {
-  const Vector3d spin = vectorOf(now.spin) - spin_ - torque;
+  const Vector3d momentum = vectorOf(now.momentum) - momentum_ - impulse, spin = vectorOf(now.spin) - spin_ - torque;
+  return rigidWith(momentum, spin, turn_);
+}
+
+RigidVelocity PartMotion::withMomentum(const PartMomentum& own) const {
+  return rigidWith(vectorOf(own.momentum), vectorOf(own.spin), Matrix3d::Identity());
+}
+
+RigidVelocity PartMotion::rigidWith(const Vector3d& momentum, const Vector3d& spin, const Matrix3d& turn) const {
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
-  const Matrix3d inertia = inertiaOf(turn_, second_);
-  if (held_.kind == HeldNodes::Nothing && mass_ > 0.0) push = (vectorOf(now.momentum) - momentum_ - impulse) / mass_;
+  const Matrix3d inertia = inertiaOf(turn, second_);
+  if (held_.kind == HeldNodes::Nothing && mass_ > 0.0) push = momentum / mass_;
   if (held_.kind == HeldNodes::Nothing || held_.kind == HeldNodes::Point) rate = inertia.partialPivLu().solve(spin);
   if (held_.kind == HeldNodes::Line) rate = held_.axis * (held_.axis.dot(spin) / held_.axis.dot(inertia * held_.axis));
   if (!push.allFinite()) push.setZero();
   if (!rate.allFinite()) rate.setZero();
-  return rigidVelocity(about_, push, crossMatrix(rate) * turn_);
+  return rigidVelocity(about_, push, crossMatrix(rate) * turn);
 }
 
 RigidVelocity PartMotion::chord(const PartMomentum& now, const PartMoments& moments, const Vector3d& near,

@@ -98,6 +98,9 @@ class PartMotion {
   double reach() const;
   /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
   double leastInertia() const;
+  /// By how much a unit impulse at a point changes the velocity there, both in a direction, as far as the part moves as
+  /// one: of what is held, about a node or a line; 0 where more is.
+  double compliance(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
   /// What must be taken from velocities that have this momentum, about `about()`, for them to have what the part had at
   /// the step's beginning: internal forces cannot change it, but a solve that is cut short does. A rigid motion of the
@@ -106,6 +109,9 @@ class PartMotion {
   /// impulse, torque  what else has acted on it in the step
   RigidVelocity excess(const PartMomentum& now, const Eigen::Vector3d& impulse, const Eigen::Vector3d& torque) const;
 
+  /// The rigid motion with this momentum, about `about()`, as far as the part is not held.
+  RigidVelocity withMomentum(const PartMomentum& own) const;
+
   /// What must be added to velocities in which something else has turned the part: the turn is a straight motion, in
   /// proportion to where nodes are, and becomes a chord. Momenta stay.
   /// now, moments  of these velocities
@@ -113,12 +119,18 @@ class PartMotion {
                       double seconds) const;
 
  private:
+  void findInverseInertia();
+  /// With this momentum about `about_`, of the part as a rotation has turned it.
+  RigidVelocity rigidWith(const Eigen::Vector3d& momentum, const Eigen::Vector3d& spin,
+                          const Eigen::Matrix3d& turn) const;
+
   HeldNodes held_;
   Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   double mass_ = 0.0;
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();  ///< about `about_`
   Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero(), central_ = second_;  ///< of mass, about `about_` and its centre
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inverseInertia_ = Eigen::Matrix3d::Zero();  ///< about `about_`; of what can turn about a point
 };
 
 }  // namespace tetskin::elastic_detail

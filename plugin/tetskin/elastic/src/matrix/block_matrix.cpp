@@ -116,6 +116,7 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
     part.inverse = freeInverse_.data();
     table.assemble(part);
   });
+  saved_.clear();
   free();
 }
 
@@ -123,6 +124,43 @@ template <class S>
 void BlockMatrix<S>::free() {
   diagonal_ = freeDiagonal_;
   inverse_ = freeInverse_;
+  // Backwards: a block may have been added to twice.
+  for (auto saved = saved_.rbegin(); saved != saved_.rend(); ++saved) {
+    for (std::size_t k = 0; k < 9; ++k) saved->block[k * kGroup] = saved->values[k];
+  }
+  saved_.clear();
+}
+
+template <class S>
+S* BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) {
+  const std::size_t chunk = slot / kGroup, lane = slot % kGroup;
+  for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
+    if (pattern_.neighbours[kGroup * e + lane] == neighbour) return &blocks_[kernels::kWideBlock * e + lane];
+  }
+  return nullptr;
+}
+
+template <class S>
+void BlockMatrix<S>::addTo(S* block, const S addition[6]) {
+  SavedBlock saved;
+  saved.block = block;
+  for (std::size_t k = 0; k < 9; ++k) saved.values[k] = block[k * kGroup];
+  saved_.push_back(saved);
+  constexpr std::size_t kPlaces[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  for (std::size_t k = 0; k < 9; ++k) block[k * kGroup] += addition[kPlaces[k]];
+}
+
+template <class S>
+bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block[6]) {
+  const std::size_t slots[2] = {slotOf(first), slotOf(second)};
+  if (slots[0] == slots[1]) return false;
+  S* const one = blockOf(slots[0], slots[1]);
+  S* const other = blockOf(slots[1], slots[0]);
+  if (!one || !other) return false;
+  if (mass(first) == S(0) || mass(second) == S(0)) return true;
+  addTo(one, block);
+  addTo(other, block);
+  return true;
 }
 
 template <class S>

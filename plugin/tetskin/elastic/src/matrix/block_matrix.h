@@ -65,7 +65,11 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// Adds to a node's diagonal block what resists its motion, xx xy xz yy yz zz: no negative eigenvalue. Before the
   /// node is fixed.
   void resist(std::size_t node, const S block[6]);
-  /// All but the held ones are free again, and meet no resistance.
+  /// Adds a symmetric block, xx xy xz yy yz zz, to the blocks of two nodes, in both of their rows. False, and nothing
+  /// done, where the two are the same or have no tet in common: the matrix has no such block. Nothing is added where
+  /// one is held. Cost O(neighbours of a node)
+  bool couple(std::size_t first, std::size_t second, const S block[6]);
+  /// All but the held ones are free again, meet no resistance, and are coupled by elasticity alone.
   void free();
 
   /// The inverse of the node's diagonal block, as if it were free: xx xy xz yy yz zz. 0 where it is held.
@@ -91,6 +95,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   S* solution() { return solution_.data(); }
   const S* solution() const { return solution_.data(); }
   const S* stepPoints() const { return stepPoints_.data(); }
+  const S* step() const { return step_.data(); }
 
  private:
   kernels::RowWork<S> work(std::size_t firstChunk, std::size_t lastChunk) const;
@@ -100,12 +105,22 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void byColours(bool forwards, ParallelFor* threads, Kernel&& kernel) const;
   double summed() const;
   void setInverse(std::size_t slot, const S inverse[6]);
+  /// The first scalar of the block of two slots, one of each nine a lane of a group; null: there is none.
+  S* blockOf(std::size_t slot, std::size_t neighbour);
+  void addTo(S* block, const S addition[6]);
+
+  /// What a block was before something was added.
+  struct SavedBlock {
+    S* block = nullptr;
+    S values[9] = {};
+  };
 
   BlockPattern pattern_;
   AlignedVector<S> masses_, blocks_, diagonal_, inverse_, freeDiagonal_, freeInverse_;
   AlignedVector<S> residual_, direction_, rest_, step_, solution_;  // wide
   AlignedVector<S> stepPoints_, lowerPoints_;
   mutable std::vector<S> partial_;  // by task
+  std::vector<SavedBlock> saved_;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -145,12 +145,13 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
   explicit Shape(BodyWithTrees& body) : btSoftBodyCollisionShape(&body), body_(body) {}
   btScalar getMargin() const override {
     body_.keepFaceTree();
-    return btSoftBodyCollisionShape::getMargin();
+    return btSoftBodyCollisionShape::getMargin() + body_.speculation();
   }
   void getAabb(const btTransform& transform, btVector3& low, btVector3& high) const override {
     btSoftBodyCollisionShape::getAabb(transform, low, high);
     if (!(body_.reach() >= 0)) return;
-    const btVector3 around(body_.reach(), body_.reach(), body_.reach());
+    const btScalar reach = body_.reach() + body_.speculation();
+    const btVector3 around(reach, reach, reach);
     for (int n = 0; n < body_.m_nodes.size(); ++n) {
       const btSoftBody::Node& node = body_.m_nodes[n];
       const btVector3 predicted = transform * (node.m_x + body_.m_sst.sdt * node.m_v);
@@ -172,6 +173,10 @@ BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<b
 
 BodyWithTrees* bodyWithTrees(btSoftBody& body) {
   return dynamic_cast<BodyWithTrees*>(&body);
+}
+
+const BodyWithTrees* bodyWithTrees(const btSoftBody& body) {
+  return dynamic_cast<const BodyWithTrees*>(&body);
 }
 
 void BodyWithTrees::makeTrees(bool faces) {

@@ -10,9 +10,11 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/export.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tetskin {
@@ -51,11 +53,25 @@ class BodyWithTrees : public btSoftBody {
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
   /// What has to live as long as the body: one thing, of whoever puts it there.
   std::shared_ptr<void>& companion() { return companion_; }
+  /// tetskin::contact's, who finds where the body's surface meets rigid bodies; gone where nobody does.
+  const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
+  void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
+
+  /// What the body is to stay outside of in this step: whoever searches puts it there, the solver takes it up, and
+  /// clears it when a step begins.
+  PointContacts& pointContacts() { return pointContacts_; }
+  const PointContacts& pointContacts() const { return pointContacts_; }
 
   /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
   /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
   btScalar reach() const { return reach_; }
+
+  /// How far from what it may meet a body's points count as touching, while a step looks for that, beside what is kept
+  /// between them. Forces that will hold both are not known yet: what rests on something that rests is predicted to
+  /// fall with it, or away from it. 0: none, as outside of steps.
+  void setSpeculation(btScalar distance) { speculation_ = distance; }
+  btScalar speculation() const { return speculation_; }
 
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;
@@ -67,12 +83,15 @@ class BodyWithTrees : public btSoftBody {
   void keepFaceTree();
 
   Kind kind_ = Kind::None;
-  btScalar reach_ = -1;
+  btScalar reach_ = -1, speculation_ = 0;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
+  PointContacts pointContacts_;
+  std::weak_ptr<void> surfaceContacts_;
 };
 
 /// Of a body that `makeSoftBody` has made; null for others.
 TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
+TETSKIN_BULLET_API const BodyWithTrees* bodyWithTrees(const btSoftBody& body);
 
 }  // namespace tetskin

@@ -38,7 +38,7 @@ BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
   for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
     v->assign(4 * matrix_.slotCount(), S(0));
   }
-  for (AlignedVector<S>* v : {&rightSide_, &image_}) v->assign(matrix_.wideSize(), S(0));
+  for (AlignedVector<S>* v : {&rightSide_, &image_, &began_}) v->assign(matrix_.wideSize(), S(0));
 }
 
 /// Slots without node, which have no mass, belong to the first.
@@ -204,7 +204,8 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
       if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
     }
   }
-  stiff_ = seconds * (seconds + damping_) * stiffnessOverInertia_ > kStiff;
+  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
+  stiff_ = stiffnessNumber_ > kStiff;
   moveRigidly(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
   assembleIfNeeded(seconds, allowedTurn(seconds), threads);
@@ -219,14 +220,21 @@ double BodyDynamics<S>::roundingSpeed(double seconds) const {
 }
 
 template <class S>
-void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                                        const std::array<double, 3>& direction) const {
+  if (!tets_) return 0.0;
+  const PartMotion& motion = motions_[partOf_[matrix_.slotOf(node)]];
+  return motion.compliance(Eigen::Vector3d(point[0], point[1], point[2]),
+                           Eigen::Vector3d(direction[0], direction[1], direction[2]));
+}
+
+template <class S>
+void BodyDynamics<S>::startLater(double seconds) {
   S* solution = matrix_.solution();
-  S* residual = matrix_.residual();
   squaredDeviation_ = 0.0;
   if (!tets_) {
     std::fill_n(solution, matrix_.wideSize(), S(0));
     std::fill(rightSide_.begin(), rightSide_.end(), S(0));
-    std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }
   const auto dt = static_cast<S>(seconds);
@@ -235,6 +243,7 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
     S* deviation = &relative_[4 * slot];
     for (std::size_t k = 0; k < 3; ++k) {
       const S impulse = mass * deviation[k];
+      began_[wide + k * kGroup] = deviation[k];
       rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
       if (stiff_ && mass != S(0)) {
         squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
@@ -243,7 +252,13 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
       solution[wide + k * kGroup] = deviation[k];
     }
   });
-  if (stiff_ && held_ == 0) {
+}
+
+template <class S>
+void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+  startLater(seconds);
+  S* residual = matrix_.residual();
+  if (!tets_ || (stiff_ && held_ == 0)) {
     std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }
@@ -262,6 +277,28 @@ double BodyDynamics<S>::squaredSolution() const {
     }
   });
   return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::squaredChange() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto change = static_cast<double>(solution[wide + k * kGroup] - began_[wide + k * kGroup]);
+      sum += static_cast<double>(matrix_.massAt(slot)) * change * change;
+    }
+  });
+  return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::squaredByMatrix() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  for (std::size_t k = 0; k < image_.size(); ++k)
+    sum += static_cast<double>(solution[k]) * static_cast<double>(image_[k]);
+  return std::max(sum, 0.0);
 }
 
 template <class S>
@@ -327,6 +364,54 @@ void BodyDynamics<S>::bendTurns(double seconds) {
     double v[3];
     chords[partOf_[slot]].at(&points_[4 * slot], v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+bool BodyDynamics<S>::rigidMotions(std::size_t part, AlignedVector<S> (&motions)[kRigidMotions]) const {
+  double mass = 0.0, centroid[3] = {};
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != part) continue;
+    if (matrix_.massAt(slot) == S(0)) return false;
+    const auto m = static_cast<double>(matrix_.massAt(slot));
+    mass += m;
+    for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(moved_[4 * slot + k]);
+  }
+  if (!(mass > 0.0)) return false;
+  for (AlignedVector<S>& motion : motions) motion.assign(4 * matrix_.slotCount(), S(0));
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != part) continue;
+    S arm[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      arm[k] = moved_[4 * slot + k] - static_cast<S>(centroid[k] / mass);
+      motions[k][4 * slot + k] = S(1);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {  // about axis k
+      motions[3 + k][4 * slot + (k + 1) % 3] = -arm[(k + 2) % 3];
+      motions[3 + k][4 * slot + (k + 2) % 3] = arm[(k + 1) % 3];
+    }
+  }
+  return true;
+}
+
+template <class S>
+void BodyDynamics<S>::keepRigidPart() {
+  S* solution = matrix_.solution();
+  std::vector<PartMomentum> own(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    double v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
+    own[partOf_[slot]].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[partOf_[slot]].about().data());
+  });
+  std::vector<RigidVelocity> rigid;
+  for (std::size_t k = 0; k < motions_.size(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    rigid[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] = static_cast<S>(v[k]);
   });
 }
 

@@ -27,6 +27,8 @@ namespace tetskin::elastic_detail {
 template <class S>
 class TETSKIN_ELASTIC_API BodyDynamics {
  public:
+  static constexpr std::size_t kRigidMotions = 6;
+
   /// rest  may be empty: a body without elasticity, of masses alone
   BodyDynamics(RestTets rest, std::size_t nodes);
 
@@ -57,15 +59,31 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// After `predict`: the right side of the step, which is of the matrix's residual and of `startAgain`, too. The
   /// solution, a velocity beside the rigid motion's, has its start: of a soft body what it was, of a stiff one 0.
   void start(double seconds, ParallelFor* threads);
+  /// The same without the residual: `startAgain` follows.
+  void startLater(double seconds);
   /// The square of the error in the solution, in the norm of the masses, that matters no more than a relative one in
   /// the residual: above 0 for stiff bodies, whose residual begins at what rounding leaves.
   double squaredDeviation() const { return squaredDeviation_; }
   /// Of the last `predict`.
   bool isStiff() const { return stiff_; }
+  /// dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia, of the last `predict`: how much
+  /// faster deformations are taken back than a step lasts.
+  double stiffnessNumber() const { return stiffnessNumber_; }
   /// The square of the solution's norm, by masses.
   double squaredSolution() const;
+  /// The solution if no force acted, wide: what the velocities that the step began with, all else that acts included,
+  /// are beside the rigid motion.
+  const S* deviation() const { return began_.data(); }
+  /// The same of how the solution differs from the velocities that the step began with, all else that acts included.
+  double squaredChange() const;
+  /// The square of the solution's norm by the matrix, as `startAgain` has found it.
+  double squaredByMatrix() const;
   /// Velocities that hardly change a position, by its last digits.
   double roundingSpeed(double seconds) const;
+  /// By how much a unit impulse on the part of this node changes the velocity of a point there, both in a direction,
+  /// as far as the part moves as one. World space, of the last `predict`.
+  double rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                         const std::array<double, 3>& direction) const;
   void rightSide(std::size_t node, S out[3]) const;
   /// residual = right side - A solution, of the solution as it is. Add what else acts to the residual.
   void startAgain(ParallelFor* threads);
@@ -77,6 +95,12 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   S* scratchPoints() { return relative_.data(); }
   double energy(ParallelFor* threads);
 
+  /// The rigid motions of a part as its forces are taken at: kRigidMotions velocities, 4 scalars a slot. False, and
+  /// nothing written, where something of the part is held, or it has no mass.
+  bool rigidMotions(std::size_t part, AlignedVector<S> (&motions)[kRigidMotions]) const;
+  std::size_t partCount() const { return motions_.size(); }
+  /// The solution becomes the rigid motion that has its momentum, of each part as far as it is not held.
+  void keepRigidPart();
   /// The solution loses the linear and the angular momentum that internal forces cannot give, but a solve that is cut
   /// short does: see `PartMotion::excess`.
   /// impulse  of a node, by what else has acted on it in the step; none: nothing has
@@ -102,8 +126,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::optional<CorotatedTets<S>> tets_;
   AlignedVector<S> points_, moved_, velocities_, relative_, forces_;  ///< by slot; moved_: x0, less where its part is
   AlignedVector<S> rightSide_, image_;                                ///< wide
+  AlignedVector<S> began_;                                            ///< wide: the solution if no force acted
   double damping_ = 0.0, alpha_ = 0.0;
   bool stiff_ = false;
+  double stiffnessNumber_ = 0.0;
   bool changed_ = true;                ///< masses or material, since the last assembly
   std::size_t held_;                   ///< nodes
   std::vector<std::uint32_t> partOf_;  ///< by slot: which of the parts that share no node

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Bodies at rest: a ball and boxes, in cages that lie around them or are their own lattice.
+#pragma once
+
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/cage.h>
+#include <tetskin/core/triangle_mesh.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace tetskin::contact_demo {
+
+/// About the origin, in metres.
+struct BodyModel {
+  TriangleMesh mesh;
+  Cage cage;
+  std::shared_ptr<const SoftBodyBinding> binding;
+  double size = 1.0;    ///< largest side of the mesh's box
+  double volume = 1.0;  ///< of the mesh
+};
+
+using ModelPtr = std::shared_ptr<const BodyModel>;
+
+/// How often each vertex of a mesh stands in it. Copies lie 1e-6 sizes beside it, as contact takes no place twice.
+struct Copies {
+  int count = 1;
+};
+
+/// A ball of radius 0.5: an icosphere of 10 x 4^level + 2 vertices, turned so that none is at its lowest point, in a
+/// built cage.
+ModelPtr makeBall(std::size_t tets = 1000, int level = 4, Copies copies = {});
+
+/// A box in a built cage of some 1,000 tets, its surface a grid.
+/// divisions  of its longest edge
+ModelPtr makeBox(const Eigen::Vector3d& halfExtents, int divisions = 16, Copies copies = {});
+
+/// A box of so many cubes, of six tets each, with its surface four times as fine as the cubes.
+ModelPtr makeLattice(const Eigen::Vector3i& cubes, double edge);
+
+}  // namespace tetskin::contact_demo

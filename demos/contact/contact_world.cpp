@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "contact/contact_world.h"
+
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "contact/extremes.h"
+#include "scenes/input_error.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kPoisson = 0.3;
+
+btTransform at(const Vector3d& centre) {
+  return btTransform(btQuaternion::getIdentity(), toBullet(centre));
+}
+
+Cage moved(Cage cage, const Isometry3d& to) {
+  for (Vector3d& node : cage.nodes) node = to * node;
+  return cage;
+}
+
+SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, Kind kind, const Isometry3d& at) {
+  SoftBodyOptions soft;
+  soft.mass = options.mass;
+  soft.friction = options.friction;
+  soft.damping = options.damping;
+  soft.poissonRatio = kPoisson;
+  soft.solverTolerance = options.tolerance;
+  soft.maxIterations = 1000;  // no figure is to be that of a solve which was broken off
+  const double density = options.mass / model.volume;
+  soft.youngsModulus =
+      options.youngsModulus > 0.0 ? options.youngsModulus : options.stiffness * density * scenes::kEarth * model.size;
+  soft.forceModel = kind == Kind::Bullet ? ForceModel::LinearElasticity : ForceModel::Corotated;
+  if (options.pinned) {
+    soft.pinned = [pinned = options.pinned, toRest = at.inverse()](const Vector3d& p) { return pinned(toRest * p); };
+  }
+  return soft;
+}
+
+}  // namespace
+
+SoftObject::SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
+                       std::vector<double> stiffnessScale)
+    : deformable_(deformable),
+      contact_(contact),
+      model_(std::move(model)),
+      youngsModulus_(youngsModulus),
+      stiffnessScale_(std::move(stiffnessScale)) {
+  scenes::require(skin_.bind(soft(), model_->binding));
+}
+
+void SoftObject::push(const Vector3d& velocity, const Vector3d& spin) {
+  const Vector3d centroid = motion().centroid;
+  for (int n = 0; n < soft().m_nodes.size(); ++n) {
+    btSoftBody::Node& node = soft().m_nodes[n];
+    node.m_v += toBullet(velocity + spin.cross(toEigen(node.m_x) - centroid));
+    node.m_vn = node.m_v;
+  }
+}
+
+double SoftObject::energy() const {
+  return kineticEnergy(soft()) + elasticEnergy(*model_, soft(), youngsModulus_, kPoisson, stiffnessScale_);
+}
+
+std::optional<Vector3d> SoftObject::contactImpulse() const {
+  if (!contact_) return std::nullopt;
+  Vector3d sum = Vector3d::Zero();
+  for (const SurfaceContactPoint& point : contact_->contacts()) sum += toEigen(point.impulse);
+  return sum;
+}
+
+const std::vector<Vector3d>& SoftObject::surface() {
+  skin_.markMoved();
+  surface_.assign(skin_.positions().size(), Vector3d::Constant(std::nan("")));
+  if (skin_.update() != UpdateStatus::Updated) return surface_;
+  for (std::size_t v = 0; v < surface_.size(); ++v) {
+    surface_[v] = Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(skin_.positions()[v]).cast<double>();
+  }
+  return surface_;
+}
+
+double SoftObject::gap(const Distance& distance) {
+  double least = HUGE_VAL;
+  for (const Vector3d& p : surface()) lower(least, distance(p));
+  return least;
+}
+
+double SoftObject::floorGap() {
+  return gap([](const Vector3d& p) { return p.y(); });
+}
+
+ContactWorld::ContactWorld(Run& run, const Vector3d& gravity)
+    : run_(run),
+      world_(run.kind == Kind::Bullet ? scenes::Force::LinearElasticity : scenes::Force::Elastic, toBullet(gravity)),
+      gravity_(gravity) {}
+
+ContactWorld::~ContactWorld() {
+  for (const auto& constraint : constraints_) bullet().removeConstraint(constraint.get());
+  for (const auto& collider : colliders_) bullet().removeCollisionObject(collider.get());
+  for (const auto& body : multiBodies_) bullet().removeMultiBody(body.get());
+  for (const auto& ghost : ghosts_) bullet().removeCollisionObject(ghost.get());
+}
+
+btDeformableMultiBodyDynamicsWorld& ContactWorld::bullet() {
+  return static_cast<btDeformableMultiBodyDynamicsWorld&>(world_.bullet());
+}
+
+SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, const Isometry3d& at) {
+  const SoftBodyOptions soft = softOptions(*model, options, run_.kind, at);
+  auto made = DeformableBody::add(bullet(), moved(model->cage, at), soft);
+  scenes::require(made.status());
+  deformables_.push_back(std::move(made).value());
+  btSoftBody& body = deformables_.back()->body();
+  if (!options.sleeps) body.setActivationState(DISABLE_DEACTIVATION);
+  const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
+  if (bySurface) {
+    SurfaceContactOptions contact;
+    contact.margin = kMargin * model->size;
+    auto touching = SurfaceContact::add(bullet(), body, *model->binding, model->mesh, contact);
+    scenes::require(touching.status());
+    contacts_.push_back(std::move(touching).value());
+  }
+  const std::vector<double> scale = withCage(model->cage, soft).stiffnessScale;
+  soft_.push_back(std::make_unique<SoftObject>(*deformables_.back(), bySurface ? contacts_.back().get() : nullptr,
+                                               std::move(model), soft.youngsModulus, scale));
+  return *soft_.back();
+}
+
+SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, const Vector3d& centre) {
+  Isometry3d at = Isometry3d::Identity();
+  at.translation() = centre;
+  return addSoft(std::move(model), options, at);
+}
+
+SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x,
+                                    double z) {
+  // What `SoftBodyOptions::margin` is by default.
+  constexpr double kNodeMargin = 0.02;
+  const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
+  const Box3 box = boundingBox(bySurface ? model->mesh.positions : model->cage.nodes);
+  const double margin = bySurface ? kMargin * model->size : kNodeMargin * box.sizes().maxCoeff();
+  return addSoft(model, options, Vector3d(x, height + margin - box.min().y(), z));
+}
+
+btRigidBody& ContactWorld::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass) {
+  btRigidBody& body = world_.addRigid(std::move(shape), at, mass);
+  if (mass > 0.0) {
+    body.setActivationState(DISABLE_DEACTIVATION);
+    rigid_.push_back(&body);
+  }
+  return body;
+}
+
+btRigidBody& ContactWorld::addBox(const Vector3d& centre, const Vector3d& halfExtents, double mass) {
+  return addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)), at(centre), mass);
+}
+
+btRigidBody& ContactWorld::addSphere(const Vector3d& centre, double radius, double mass) {
+  return addRigid(std::make_unique<btSphereShape>(static_cast<btScalar>(radius)), at(centre), mass);
+}
+
+btRigidBody& ContactWorld::addFloor() {
+  return addBox({0, -1, 0}, {20, 1, 20});
+}
+
+void ContactWorld::addTrigger(double halfExtent) {
+  btRigidBody& trigger = addBox(Vector3d::Zero(), Vector3d::Constant(halfExtent));
+  trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+}
+
+void ContactWorld::addGhost(double halfExtent) {
+  shapes_.push_back(std::make_unique<btBoxShape>(toBullet(Vector3d::Constant(halfExtent))));
+  ghosts_.push_back(std::make_unique<btGhostObject>());
+  btGhostObject& ghost = *ghosts_.back();
+  ghost.setCollisionShape(shapes_.back().get());
+  ghost.setWorldTransform(btTransform::getIdentity());
+  ghost.setInterpolationWorldTransform(btTransform::getIdentity());
+  ghost.setCollisionFlags(ghost.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  bullet().addCollisionObject(&ghost);
+}
+
+btRigidBody& ContactWorld::makeKinematic(btRigidBody& body) {
+  body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  return body;
+}
+
+void ContactWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
+  bullet().addConstraint(constraint.get(), true);
+  constraints_.push_back(std::move(constraint));
+}
+
+btMultiBody& ContactWorld::addMultiBody(std::unique_ptr<btMultiBody> body, int link,
+                                        std::unique_ptr<btCollisionShape> shape) {
+  bullet().addMultiBody(body.get());
+  btAlignedObjectArray<btQuaternion> turns;
+  btAlignedObjectArray<btVector3> origins;
+  body->forwardKinematics(turns, origins);
+  auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), link);
+  collider->setCollisionShape(shape.get());
+  collider->setFriction(1);
+  const btTransform where = link < 0 ? body->getBaseWorldTransform() : body->getLink(link).m_cachedWorldTransform;
+  collider->setWorldTransform(where);
+  collider->setInterpolationWorldTransform(where);
+  (link < 0 ? body->setBaseCollider(collider.get()) : void(body->getLink(link).m_collider = collider.get()));
+  bullet().addCollisionObject(collider.get());
+  colliders_.push_back(std::move(collider));
+  shapes_.push_back(std::move(shape));
+  multiBodies_.push_back(std::move(body));
+  return *multiBodies_.back();
+}
+
+void ContactWorld::setGravity(const Vector3d& gravity) {
+  gravity_ = gravity;
+  bullet().setGravity(toBullet(gravity));
+}
+
+void ContactWorld::step(double seconds) {
+  world_.step(seconds);
+  ++run_.steps;
+  run_.iterations += world_.iterations();
+}
+
+void ContactWorld::simulate(double seconds, const std::function<void()>& after, double step) {
+  const auto steps = std::lround(seconds / step);
+  for (long k = 0; k < steps; ++k) {
+    this->step(step);
+    if (after) after();
+  }
+}
+
+Momentum ContactWorld::momentum() const {
+  Momentum sum;
+  for (const auto& body : soft_) addMomentum(sum, body->soft());
+  for (const btRigidBody* body : rigid_) addMomentum(sum, *body);
+  for (const auto& body : multiBodies_) addMomentum(sum, *body);
+  return sum;
+}
+
+double ContactWorld::energy() const {
+  double energy = 0.0;
+  for (const auto& body : soft_) {
+    const RigidMotion motion = body->motion();
+    energy += body->energy() - motion.mass * gravity_.dot(motion.centroid);
+  }
+  for (const btRigidBody* body : rigid_) {
+    const double mass = 1.0 / static_cast<double>(body->getInvMass());
+    energy += kineticEnergy(*body) - mass * gravity_.dot(toEigen(body->getCenterOfMassPosition()));
+  }
+  for (const auto& body : multiBodies_) energy += kineticEnergy(*body);
+  return energy;
+}
+
+}  // namespace tetskin::contact_demo

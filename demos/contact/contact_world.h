@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A world in which contact is measured, with all that moves in it.
+#pragma once
+
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/contact/surface_contact.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contact/body_model.h"
+#include "contact/motion.h"
+#include "contact/run.h"
+#include "scenes/world.h"
+
+class btGhostObject;
+class btMultiBody;
+class btMultiBodyLinkCollider;
+class btTypedConstraint;
+
+namespace tetskin::contact_demo {
+
+constexpr double kStep = 1.0 / 240;
+/// Kept between a surface and what it touches, over the body's size: the exact gap at rest.
+constexpr double kMargin = 0.002;
+
+/// Of a point of world space from an obstacle.
+using Distance = std::function<double(const Eigen::Vector3d&)>;
+
+struct BodyOptions {
+  double stiffness = 50.0;     ///< Young's modulus over density x gravity x size
+  double youngsModulus = 0.0;  ///< Pa; above 0: instead
+  double mass = 1.0;           ///< kg
+  double friction = 0.5;       ///< combined with any obstacle of the scene
+  double damping = 0.02;       ///< seconds
+  double tolerance = 5e-3;     ///< of the library's solver
+  bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever the run's kind is
+  bool sleeps = false;         ///< it may fall asleep
+  std::function<bool(const Eigen::Vector3d&)> pinned;  ///< of nodes at rest, in the model's space
+};
+
+/// A soft body in a ContactWorld, which owns it.
+class SoftObject {
+ public:
+  /// contact  null where its nodes meet rigid bodies
+  SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
+             std::vector<double> stiffnessScale);
+
+  DeformableBody& deformable() { return deformable_; }
+  btSoftBody& soft() { return deformable_.body(); }
+  const btSoftBody& soft() const { return deformable_.body(); }
+  const BodyModel& model() const { return *model_; }
+
+  /// Adds to the velocities of all nodes.
+  void push(const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
+
+  RigidMotion motion() const { return rigidMotionOf(soft()); }
+  double fastest() const { return fastestNode(soft()); }
+  double energy() const;  ///< kinetic and elastic
+  /// Of all contacts in the last step; nothing where its nodes meet rigid bodies, of which nobody tells.
+  std::optional<Eigen::Vector3d> contactImpulse() const;
+  /// The mesh's vertices as they are now, world space.
+  const std::vector<Eigen::Vector3d>& surface();
+  /// Least distance of the mesh's vertices, metres.
+  double gap(const Distance& distance);
+  /// To the floor's plane, y = 0.
+  double floorGap();
+
+ private:
+  DeformableBody& deformable_;
+  const SurfaceContact* contact_;
+  ModelPtr model_;
+  double youngsModulus_;
+  std::vector<double> stiffnessScale_;
+  SoftBodySkin skin_;
+  std::vector<Eigen::Vector3d> surface_;
+};
+
+class ContactWorld {
+ public:
+  explicit ContactWorld(Run& run, const Eigen::Vector3d& gravity = Eigen::Vector3d(0, -scenes::kEarth, 0));
+  ~ContactWorld();
+  ContactWorld(const ContactWorld&) = delete;
+  ContactWorld& operator=(const ContactWorld&) = delete;
+
+  SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Isometry3d& at);
+  SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Vector3d& centre);
+  /// The same, its lowest point just in touch with a horizontal plane.
+  SoftObject& addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x = 0.0,
+                        double z = 0.0);
+
+  // Rigid bodies never fall asleep; their friction is 1, so that the soft body's counts. mass  0: fixed
+  btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double mass = 0.0);
+  btRigidBody& addSphere(const Eigen::Vector3d& centre, double radius, double mass = 0.0);
+  btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass = 0.0);
+  /// A large box with its upper side at y = 0.
+  btRigidBody& addFloor();
+  /// A box about the origin that hears of contacts, and answers none: by its flags, or as a ghost.
+  void addTrigger(double halfExtent);
+  void addGhost(double halfExtent);
+  /// One that the scene moves, by its world transform before each step.
+  static btRigidBody& makeKinematic(btRigidBody& body);
+  void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
+  /// Finished. link  that collides: -1: the base
+  btMultiBody& addMultiBody(std::unique_ptr<btMultiBody> body, int link, std::unique_ptr<btCollisionShape> shape);
+
+  btDeformableMultiBodyDynamicsWorld& bullet();
+  void setGravity(const Eigen::Vector3d& gravity);
+  void step(double seconds = kStep);
+  /// Steps of one length. after  each
+  void simulate(double seconds, const std::function<void()>& after = {}, double step = kStep);
+
+  /// Of all that can move.
+  Momentum momentum() const;
+  /// Kinetic, elastic, and potential above y = 0; of multibodies, the kinetic one of their bases.
+  double energy() const;
+
+ private:
+  Run& run_;
+  scenes::World world_;
+  Eigen::Vector3d gravity_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btGhostObject>> ghosts_;
+  std::vector<std::unique_ptr<btMultiBody>> multiBodies_;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
+  std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
+  std::vector<btRigidBody*> rigid_;
+  std::vector<std::unique_ptr<DeformableBody>> deformables_;
+  std::vector<std::unique_ptr<SurfaceContact>> contacts_;
+  std::vector<std::unique_ptr<SoftObject>> soft_;
+};
+
+}  // namespace tetskin::contact_demo

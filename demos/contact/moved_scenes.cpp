@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Plates that the scene moves, and plates that are thin.
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+
+#include "contact/contact_world.h"
+#include "contact/extremes.h"
+#include "contact/scene_list.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A plate that is moved along one axis.
+class MovedPlate {
+ public:
+  MovedPlate(ContactWorld& world, const Vector3d& centre, const Vector3d& halfExtents, const Vector3d& direction)
+      : body_(ContactWorld::makeKinematic(world.addBox(centre, halfExtents))),
+        centre_(centre),
+        half_(halfExtents.cwiseProduct(direction).norm()),
+        direction_(direction) {}
+
+  /// Before the step in which it goes so far.
+  void advance(double distance) {
+    centre_ += distance * direction_;
+    body_.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(centre_)));
+  }
+  /// From the side that it moves towards.
+  double distance(const Vector3d& p) const { return (p - centre_).dot(direction_) - half_; }
+
+ private:
+  btRigidBody& body_;
+  Vector3d centre_;
+  double half_;
+  Vector3d direction_;
+};
+
+const Vector3d kPlateHalf(1.5, 0.2, 1.5), kPlateCentre(0, -0.2, 0);
+
+BodyOptions movedBody(double stiffness) {
+  BodyOptions options;
+  options.stiffness = stiffness;
+  return options;
+}
+
+/// A plate moves up under a ball, and throws it.
+void kick(Run& run, double stiffness, double speed) {
+  ContactWorld world(run);
+  MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
+  SoftObject& ball = world.addSoftOn(0.0, makeBall(), movedBody(stiffness));
+  double gap = HUGE_VAL;
+  for (int k = 0; k < 36; ++k) {
+    plate.advance(speed * kStep);
+    world.step();
+    lower(gap, ball.gap([&](const Vector3d& p) { return plate.distance(p); }));
+  }
+  run.report("least gap, S", gap);
+}
+
+/// A plate lifts a box; the gap once it does so steadily.
+void carry(Run& run, double stiffness) {
+  constexpr double kSpeed = 1.0;
+  ContactWorld world(run);
+  MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
+  SoftObject& box = world.addSoftOn(0.0, makeBox({0.5, 0.25, 0.5}), movedBody(stiffness));
+  double gap = 0.0;
+  for (int k = 0; k < 480; ++k) {
+    plate.advance(kSpeed * kStep);
+    world.step();
+    gap = box.gap([&](const Vector3d& p) { return plate.distance(p); });
+  }
+  run.report("gap, S", gap - kMargin);
+}
+
+/// Two plates close on a cube by a tenth of its width, and hold it by friction.
+void grip(Run& run, double stiffness) {
+  constexpr double kSpeed = 0.25, kPressed = 0.05;
+  ContactWorld world(run);
+  const Vector3d half(0.2, 1, 1);
+  const double start = 0.5 + kMargin + half.x();
+  MovedPlate left(world, {-start, 0, 0}, half, Vector3d::UnitX());
+  MovedPlate right(world, {start, 0, 0}, half, -Vector3d::UnitX());
+  SoftObject& cube = world.addSoft(makeBox({0.5, 0.5, 0.5}), movedBody(stiffness), Vector3d(0, 0, 0));
+  const auto simulate = [&](double seconds, double speed) {
+    for (long k = 0; k < std::lround(seconds / kStep); ++k) {
+      left.advance(speed * kStep);
+      right.advance(speed * kStep);
+      world.step();
+    }
+  };
+  simulate(kPressed / kSpeed, kSpeed);
+  simulate(1, 0);
+  const double before = cube.motion().centroid.y();
+  simulate(2, 0);
+  run.report("sinks in 2 s, S", before - cube.motion().centroid.y());
+}
+
+/// A ball falls on a plate of a fiftieth of its size.
+void fallOnThin(Run& run, double stiffness, double speed) {
+  ContactWorld world(run);
+  const double half = 0.01;
+  world.addBox({0, -half, 0}, {2, half, 2});
+  SoftObject& ball = world.addSoft(makeBall(), movedBody(stiffness), Vector3d(0, 1, 0));
+  ball.push(Vector3d(0, -speed, 0));
+  double gap = HUGE_VAL;
+  world.simulate(0.5, [&] { lower(gap, ball.floorGap()); });
+  run.report("least gap, S", gap);
+}
+
+}  // namespace
+
+void addMovedScenes(ContactScenes& scenes) {
+  for (const double k : {50.0, 500.0}) {
+    const std::string end = "/k" + text(k);
+    for (const double v : {2.0, 10.0}) {
+      scenes.push_back({"moved plate/kicks at " + text(v) + end, [=](Run& run) { kick(run, k, v); }});
+    }
+    scenes.push_back({"moved plate/carries" + end, [=](Run& run) { carry(run, k); }});
+    scenes.push_back({"gripped" + end, [=](Run& run) { grip(run, k); }});
+    scenes.push_back({"thin plate/15" + end, [=](Run& run) { fallOnThin(run, k, 15); }});
+  }
+}
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "contact/promise.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "contact/scene_list.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+bool beginsWith(const std::string& name, const char* start) {
+  return name.compare(0, std::strlen(start), start) == 0;
+}
+
+}  // namespace
+
+const std::vector<Promise>& promises() {
+  static const std::vector<Promise> all = {
+      {"free flight", "linear momentum lost", -kNone, 1e-5},
+      {"free flight", "angular momentum lost", -kNone, 1e-5},
+      {"hit", "linear momentum lost", -kNone, 1e-3},
+      {"hit", "angular momentum lost", -kNone, 1e-3},
+      {"hit", "energy over its start", -kNone, 1.001},
+      {"hit in trigger", "linear momentum lost", -kNone, 1e-3},
+      {"hit in trigger", "angular momentum lost", -kNone, 1e-3},
+      {"hit in ghost", "linear momentum lost", -kNone, 1e-3},
+      {"hit in ghost", "angular momentum lost", -kNone, 1e-3},
+      {"hit by multibody", "linear momentum lost", -kNone, 1e-2},
+      {"hit by multibody", "angular momentum lost", -kNone, 1e-2},
+      {"between", "linear momentum lost", -kNone, 1e-2},
+      {"between", "angular momentum lost", -kNone, 1e-2},
+      {"between", "energy over its start", -kNone, 1.001},
+      {"application/anchor", "stretch over that by hand", 0.9, 1.1},
+      {"application/anchor", "speed, m/s", -kNone, 0.005},
+      {"application/plate and soft", "speed, m/s", -kNone, 0.005},
+      {"application/plate and soft", "below its place, m", -kNone, 0.02},
+      {"application/stack of five", "speed, m/s", -kNone, 0.005},
+      {"application/stack of five", "below its place, m", -kNone, 0.02},
+      {"application/slope", "speed, m/s", -kNone, 1e-4},
+      {"application/slope", "asleep", 1.0, 1.0},
+      {"application/mouse", "speed, m/s", -kNone, 0.01},
+      {"plate", "sinks, S", -kNone, 0.001},
+      {"heavy", "box's speed, S/s", -kNone, 0.01},
+      {"heavy", "box leaves its place, S", -kNone, 0.05},
+      {"roll/undamped", "acceleration over rigid", 0.9, 1.1},
+      {"roll/by default", "ratio of the two", 0.9, 1.1},
+      {"table/0.8", "drift in 3 s, S", -kNone, 0.001},
+      {"table/0.6", "drift in 3 s, S", 0.1, kNone},
+      {"table/in its middle", "spin over the table's", 0.995, 1.005},
+      {"creep", "contact points move in 5 s, S", -kNone, 0.0005},
+      {"stop", "distance over a point's", 0.97, 1.03},
+      {"copies", "10 of each: distance off", -kNone, 0.001},
+      {"copies", "300 of each: distance off", -kNone, 0.001},
+      {"energy", "energy over its start", -kNone, 1.001},
+      {"energy/ball lands", "least gap, S", -0.009, kNone},
+      {"energy/box lands", "least gap, S", -0.009, kNone},
+      {"energy/crushed by 50kg at 10/k50", "least gap, S", -0.0258, kNone},
+      {"energy/crushed by 50kg at 10/k500", "least gap, S", -0.0305, kNone},
+      {"energy/squeezed", "least gap, S", -0.001, kNone},
+      {"moved plate/kicks", "least gap, S", -0.009, kNone},
+      {"gripped", "sinks in 2 s, S", -0.0005, 0.0005},
+      {"thin plate", "least gap, S", -0.009, kNone},
+      {"rest", "gap, S", -0.001, 0.001},
+      {"rest/box", "fastest node, m/s", -kNone, 0.005},
+      {"rest", "push over weight", 0.999, 1.001},
+      {"deep", "fastest node, S/s", -kNone, 2.2},
+      {"deep", "gap at the end, S", -0.005, kNone},
+  };
+  return all;
+}
+
+const Promise* promiseFor(const std::string& scene, const std::string& figure) {
+  const Promise* best = nullptr;
+  for (const Promise& promise : promises()) {
+    if (figure != promise.figure || !beginsWith(scene, promise.scene)) continue;
+    if (!best || std::strlen(promise.scene) > std::strlen(best->scene)) best = &promise;
+  }
+  return best;
+}
+
+std::string text(const Promise& promise) {
+  if (promise.least == promise.most) return text(promise.least);
+  if (std::isinf(promise.least)) return "<= " + text(promise.most);
+  if (std::isinf(promise.most)) return ">= " + text(promise.least);
+  return text(promise.least) + " .. " + text(promise.most);
+}
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "contact/report.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "contact/promise.h"
+#include "contact/scene_list.h"
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+nlohmann::ordered_json toJson(const SceneResult& result, const Figure& figure) {
+  nlohmann::ordered_json json;
+  json["name"] = figure.name;
+  json["value"] = figure.value;
+  if (const Promise* promise = promiseFor(result.scene, figure.name)) {
+    if (std::isfinite(promise->least)) json["least"] = promise->least;
+    if (std::isfinite(promise->most)) json["most"] = promise->most;
+  }
+  json["held"] = holds(result, figure);
+  return json;
+}
+
+SceneResult resultFrom(const nlohmann::json& json) {
+  SceneResult result;
+  result.scene = json.at("scene").get<std::string>();
+  for (const auto& figure : json.at("figures")) {
+    const auto& value = figure.at("value");
+    // JSON has no other way to say that it is not a number.
+    result.figures.push_back(
+        {figure.at("name").get<std::string>(), value.is_null() ? std::nan("") : value.get<double>()});
+  }
+  return result;
+}
+
+/// What a scene's name ends with where there are several of it: "k50", "1e9Pa"; empty: there is one.
+std::string stiffnessIn(const std::string& scene) {
+  const std::string last = scene.substr(scene.rfind('/') + 1);
+  const bool isRelative = last.size() > 1 && last[0] == 'k' && std::isdigit(static_cast<unsigned char>(last[1]));
+  const bool isPressure = last.size() > 2 && last.compare(last.size() - 2, 2, "Pa") == 0;
+  return isRelative || isPressure ? last : "";
+}
+
+/// The worst of the figures of which this is promised, by stiffness, in the order in which these were run.
+using WorstFigures = std::vector<std::pair<std::string, double>>;
+
+WorstFigures worstFor(const Promise& promise, const SceneResults& results) {
+  WorstFigures worst;
+  for (const SceneResult& result : results) {
+    const std::string stiffness = stiffnessIn(result.scene);
+    for (const Figure& figure : result.figures) {
+      if (promiseFor(result.scene, figure.name) != &promise) continue;
+      const auto found = std::find_if(worst.begin(), worst.end(), [&](const auto& w) { return w.first == stiffness; });
+      if (found == worst.end()) {
+        worst.emplace_back(stiffness, figure.value);
+      } else if (!(promise.slack(figure.value) >= promise.slack(found->second))) {
+        found->second = figure.value;
+      }
+    }
+  }
+  return worst;
+}
+
+std::string cell(const Promise& promise, const WorstFigures& worst) {
+  std::string cell;
+  for (const auto& [stiffness, value] : worst) {
+    char digits[32];
+    const bool tiny = value != 0.0 && std::abs(value) < 1e-3;
+    std::snprintf(digits, sizeof digits, tiny ? "%.1e" : "%.4g", value);
+    cell += (cell.empty() ? "" : ", ") + (promise.holds(value) ? digits : "**" + std::string(digits) + "**");
+  }
+  return cell;
+}
+
+/// "roll/undamped, k300, k3000".
+std::string heading(const Promise& promise, const WorstFigures& worst) {
+  std::string heading = promise.scene;
+  for (const auto& [stiffness, value] : worst) {
+    const bool isNamed = stiffness.empty() || heading.find("/" + stiffness) != std::string::npos;
+    if (!isNamed) heading += ", " + stiffness;
+  }
+  return heading;
+}
+
+}  // namespace
+
+bool holds(const SceneResult& result, const Figure& figure) {
+  const Promise* promise = promiseFor(result.scene, figure.name);
+  return !promise || promise->holds(figure.value);
+}
+
+void print(const SceneResult& result) {
+  std::printf("%-42s %6ld steps  %5.1f iterations a step  %6.2f s\n", result.scene.c_str(), result.steps,
+              result.iterationsPerStep, result.seconds);
+  for (const Figure& figure : result.figures) {
+    const Promise* promise = promiseFor(result.scene, figure.name);
+    std::printf("    %-32s %12.6g   %-16s %s\n", figure.name.c_str(), figure.value,
+                promise ? text(*promise).c_str() : "",
+                !promise                       ? ""
+                : promise->holds(figure.value) ? "holds"
+                                               : "NOT HELD");
+  }
+  std::fflush(stdout);
+}
+
+nlohmann::ordered_json toJson(const SceneResults& results) {
+  auto json = nlohmann::ordered_json::array();
+  for (const SceneResult& result : results) {
+    nlohmann::ordered_json one;
+    one["scene"] = result.scene;
+    one["steps"] = result.steps;
+    one["iterations_per_step"] = result.iterationsPerStep;
+    one["seconds"] = result.seconds;
+    auto& figures = one["figures"] = nlohmann::ordered_json::array();
+    for (const Figure& figure : result.figures) figures.push_back(toJson(result, figure));
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+SceneResults readResults(const std::string& path) {
+  const std::optional<std::string> text = scenes::contentsOf(path);
+  if (!text) throw scenes::InputError(path + ": cannot be read");
+  try {
+    SceneResults results;
+    for (const auto& json : nlohmann::json::parse(*text)) results.push_back(resultFrom(json));
+    return results;
+  } catch (const nlohmann::json::exception& error) {
+    throw scenes::InputError(path + ": no results of this program: " + error.what());
+  }
+}
+
+std::string toMarkdown(const std::vector<ResultColumn>& columns) {
+  std::string table = "| scenes | figure | promised |", rule = "|---|---|---|";
+  for (const ResultColumn& column : columns) {
+    table += " " + column.title + " |";
+    rule += "---|";
+  }
+  table += "\n" + rule + "\n";
+  for (const Promise& promise : promises()) {
+    std::string cells;
+    WorstFigures first;
+    for (const ResultColumn& column : columns) {
+      const WorstFigures worst = worstFor(promise, column.results);
+      if (first.empty()) first = worst;
+      cells += " " + cell(promise, worst) + " |";
+    }
+    if (first.empty()) continue;
+    table += "| " + heading(promise, first) + " | " + promise.figure + " | " + text(promise) + " |" + cells + "\n";
+  }
+  return table;
+}
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// One scene's run: with what it is solved, and what was measured in it.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tetskin::contact_demo {
+
+/// What solves soft bodies, and what of them meets rigid ones.
+enum class Kind {
+  Surface,  ///< the library's solver, and the visual surface
+  Nodes,    ///< the library's solver, and the cage's nodes
+  Bullet,   ///< Bullet's solver and linear elasticity, and the cage's nodes
+};
+
+struct Figure {
+  std::string name;
+  double value = 0.0;
+};
+
+/// Filled by a scene.
+struct Run {
+  explicit Run(Kind which) : kind(which) {}
+
+  /// What is not a number has no sign, however it came about.
+  void report(const std::string& name, double value) {
+    figures.push_back({name, std::isnan(value) ? std::nan("") : value});
+  }
+
+  Kind kind;
+  std::vector<Figure> figures;
+  long steps = 0, iterations = 0;  ///< of all worlds; iterations of the library's solver
+};
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The scenes in which contact is measured: each a function that makes its own world.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "contact/run.h"
+
+namespace tetskin::contact_demo {
+
+struct ContactScene {
+  std::string name;
+  std::function<void(Run&)> run;
+  /// Those with which it can be run.
+  std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+
+  bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
+};
+
+using ContactScenes = std::vector<ContactScene>;
+
+void addHitScenes(ContactScenes& scenes);
+void addApplicationScenes(ContactScenes& scenes);
+void addRestScenes(ContactScenes& scenes);
+void addLoadScenes(ContactScenes& scenes);
+void addFrictionScenes(ContactScenes& scenes);
+void addEnergyScenes(ContactScenes& scenes);
+void addMovedScenes(ContactScenes& scenes);
+
+const ContactScenes& contactScenes();
+
+/// "50", "0.05", for names.
+std::string text(double value);
+
+}  // namespace tetskin::contact_demo

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/solver/contact_row.h>
+
+#include <algorithm>
+
+namespace tetskin {
+namespace {
+
+/// a a^T
+btMatrix3x3 square(const btVector3& a) {
+  return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
+          a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
+}
+
+/// Along the surface, the offset included.
+btVector3 slip(const ContactRow& row, const btVector3& u) {
+  return u - row.normal.dot(u) * row.normal + row.offsetVelocity;
+}
+
+}  // namespace
+
+btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state) {
+  using State = ContactRow::State;
+  if (row.joined) {
+    state = State::Sticks;
+    return -row.stiffness * (u + row.offsetVelocity);
+  }
+  const btScalar wanted = -row.stiffness * (row.normal.dot(u) + row.gapVelocity);
+  const btScalar normal = std::min(std::max(wanted, row.lowest), row.highest);
+  state = State::Apart;
+  if (normal != wanted) return normal * row.normal;
+  state = State::Sticks;
+  btVector3 along = -row.tangentStiffness * slip(row, u);
+  const btScalar most = row.friction * row.normalBound, length = along.length();
+  if (length > most && !sticks) {
+    state = State::Slides;
+    along *= most / length;
+  }
+  return normal * row.normal + along;
+}
+
+btMatrix3x3 tangentAt(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
+  using State = ContactRow::State;
+  const btMatrix3x3 one = btMatrix3x3::getIdentity();
+  if (row.joined) return one * row.stiffness;
+  if (state == State::Apart) return one * btScalar(0);
+  const btMatrix3x3 across = one - square(row.normal);
+  btMatrix3x3 along = across * row.tangentStiffness;
+  if (state == State::Slides) {
+    const btVector3 slipping = slip(row, u);
+    const btScalar speed = std::max(slipping.length(), SIMD_EPSILON);
+    along = (across - square(slipping / speed) * (1 - kept)) * (row.friction * row.normalBound / speed);
+  }
+  return square(row.normal) * row.stiffness + along;
+}
+
+}  // namespace tetskin

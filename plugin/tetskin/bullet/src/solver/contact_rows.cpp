@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/contact_rows.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+/// D over effective masses: gaps give way by a twentieth of what the nodes alone would.
+constexpr double kStiffness = 20.0;
+/// T over D.
+constexpr btScalar kTangentShare = btScalar(0.3);
+/// The same as the first of anchors: more costs iterations, and is not seen.
+constexpr double kAnchorStiffness = 1000.0;
+/// Sizes of the body per second at which what is in each other is pushed apart, at most.
+constexpr btScalar kPushingOut = 1;
+/// Last digits of a position.
+constexpr btScalar kRounding = 2;
+/// Weights below do not count where rows share a node.
+constexpr btScalar kSmallWeight = btScalar(0.02);
+/// Cosine: contacts of one point whose normals are as near as that are the same from step to step.
+constexpr btScalar kSameNormal = btScalar(0.7);
+/// Numbers of points of Bullet's contacts of faces begin here.
+constexpr std::uint32_t kFirstFace = 0x80000000U;
+
+btScalar sizeOf(const btSoftBody& body) {
+  const btVector3 size = body.m_bounds[1] - body.m_bounds[0];
+  return std::max({size.x(), size.y(), size.z()});
+}
+
+std::array<double, 3> numbersOf(const btVector3& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+
+void addNode(int node, btScalar weight, PointContact& contact) {
+  contact.nodes[contact.nodeCount] = node;
+  contact.weights[contact.nodeCount++] = weight;
+}
+
+int indexIn(const btSoftBody& body, const btSoftBody::Node* node) {
+  return static_cast<int>(node - &body.m_nodes[0]);
+}
+
+/// What Bullet's own contacts have in common.
+/// speculation  that Bullet takes for a part of the margin
+PointContact bulletsContact(const btSoftBody::DeformableRigidContact& from, btScalar speculation) {
+  PointContact contact;
+  contact.object = from.m_cti.m_colObj;
+  contact.normal = from.m_cti.m_normal;
+  contact.distance = from.m_cti.m_offset + speculation;
+  contact.friction = from.m_c3;
+  return contact;
+}
+
+/// Bullet's own contacts of the body with rigid objects.
+void readBulletsContacts(const btSoftBody& body, btScalar speculation, PointContacts& contacts) {
+  contacts.clear();
+  for (int k = 0; k < body.m_nodeRigidContacts.size(); ++k) {
+    const auto& from = body.m_nodeRigidContacts[k];
+    PointContact& contact = contacts.emplace_back(bulletsContact(from, speculation));
+    addNode(indexIn(body, from.m_node), 1, contact);
+    contact.point = static_cast<std::uint32_t>(contact.nodes[0]);
+    contact.position = from.m_node->m_x;
+  }
+  for (int k = 0; k < body.m_faceRigidContacts.size(); ++k) {
+    const auto& from = body.m_faceRigidContacts[k];
+    PointContact& contact = contacts.emplace_back(bulletsContact(from, speculation));
+    contact.point = kFirstFace + static_cast<std::uint32_t>(from.m_face - &body.m_faces[0]);
+    contact.position = btVector3(0, 0, 0);
+    for (int c = 0; c < 3; ++c) {
+      addNode(indexIn(body, from.m_face->m_n[c]), from.m_bary[c], contact);
+      contact.position += from.m_bary[c] * from.m_face->m_n[c]->m_x;
+    }
+  }
+}
+
+bool isFinite(const PointContact& contact) {
+  return std::isfinite(contact.distance) && !isNoNumber(contact.normal) && !isNoNumber(contact.position);
+}
+
+bool anyFree(const SolvedBody& body, const ContactRow& row) {
+  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
+    if (body.body->m_nodes[row.nodes[k]].m_im > 0) return true;
+  }
+  return false;
+}
+
+/// Over what it meets.
+btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
+  btVector3 sum(0, 0, 0);
+  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
+    sum += row.weights[k] * fromPoint(body.dynamics->velocity(static_cast<std::size_t>(row.nodes[k])));
+  }
+  return sum - rigids.velocityAt(row.rigid, *row.object, seconds);
+}
+
+/// A kinematic body is already where the step takes it when contacts are looked for: by how much it has moved to there,
+/// over seconds, the gap is less than when the step begins.
+btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
+  const btVector3 moved = rigids.velocityAt(row.rigid, *row.object, seconds);
+  return row.object->isKinematicObject() ? row.normal.dot(moved) : btScalar(0);
+}
+
+ContactRow rowOf(std::size_t index, PointContact& contact) {
+  ContactRow row;
+  row.body = index;
+  row.contact = &contact;
+  row.point = contact.point;
+  row.object = contact.object;
+  row.nodeCount = contact.nodeCount;
+  row.nodes = contact.nodes;
+  row.weights = contact.weights;
+  row.position = contact.position;
+  row.normal = contact.normal;
+  row.friction = contact.friction;
+  return row;
+}
+
+/// What positions there are rounded by, by axis: far from the origin, a last digit is no depth to be pushed out of.
+btVector3 roundingOf(const btVector3& position) {
+  return kRounding * SIMD_EPSILON * position.absolute();
+}
+
+/// Without what is rounding.
+btVector3 seenPart(const btVector3& offset, const btVector3& position) {
+  const btVector3 rounding = roundingOf(position);
+  btVector3 seen = offset;
+  for (int k = 0; k < 3; ++k) {
+    if (btFabs(offset[k]) <= rounding[k]) seen[k] = 0;
+  }
+  return seen;
+}
+
+/// Where the point sticks, and what it was pushed with.
+void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
+  const btTransform& frame = row.object->getWorldTransform();
+  row.stickingPlace = frame.invXform(row.position);
+  const auto less = [](const Sticking& a, const Sticking& b) { return a.point < b.point; };
+  Sticking key;
+  key.point = row.point;
+  const auto range = std::equal_range(body.sticking->begin(), body.sticking->end(), key, less);
+  for (auto known = range.first; known != range.second; ++known) {
+    if (known->object != row.object || known->normal.dot(row.normal) < kSameNormal) continue;
+    row.stickingPlace = known->place;
+    btVector3 offset = row.position - frame * known->place;
+    offset -= row.normal.dot(offset) * row.normal;
+    row.offsetVelocity = seenPart(offset, row.position) / seconds;
+    row.normalBound = known->normalForce * seconds;
+    row.stuck = known->stuck;
+    return;
+  }
+}
+
+/// Of the nodes by themselves in a direction, as stiff as they are coupled; of any for those that are joined.
+double compliance(const SolvedBody& body, const ContactRow& row, const btVector3& direction) {
+  double sum = 0.0;
+  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
+    btScalar inverse[6];
+    body.dynamics->matrix().freeInverse(static_cast<std::size_t>(row.nodes[k]), inverse);
+    sum += static_cast<double>(row.weights[k] * row.weights[k] * direction.dot(symmetricMatrix(inverse) * direction));
+  }
+  const auto node = static_cast<std::size_t>(row.nodes[0]);
+  return sum + body.dynamics->rigidCompliance(node, numbersOf(row.position), numbersOf(direction));
+}
+
+double effectiveMass(const SolvedBody& body, const ContactRow& row, const RigidUnknowns& rigids) {
+  const auto along = [&](const btVector3& direction) {
+    return compliance(body, row, direction) + rigids.compliance(row.rigid, direction);
+  };
+  const double sum = row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
+  return sum > 0.0 ? 1.0 / sum : 0.0;
+}
+
+/// The offset from where the point sticks as the step leaves it; where it slides, as much as friction holds.
+Sticking stickingOf(const ContactRow& row, btScalar seconds) {
+  Sticking kept;
+  kept.point = row.point;
+  kept.object = row.object;
+  kept.normal = row.normal;
+  const btScalar along = row.normal.dot(row.impulse);
+  kept.normalForce = along / seconds;
+  kept.place = row.stickingPlace;
+  kept.stuck = row.state == ContactRow::State::Sticks;
+  if (row.state != ContactRow::State::Slides || !(row.tangentStiffness > 0)) return kept;
+  const btVector3 reached = (row.slip + row.offsetVelocity) * seconds;
+  const btVector3 held = -(row.impulse - along * row.normal) * (seconds / row.tangentStiffness);
+  kept.place += row.object->getWorldTransform().getBasis().transpose() * (reached - held);
+  return kept;
+}
+
+}  // namespace
+
+void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds) {
+  rows_.clear();
+  for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
+    SolvedBody& body = bodies.bodies()[b];
+    if (!body.elastic) continue;
+    const std::size_t before = rows_.size();
+    addBody(b, body, rigids, seconds);
+    addAnchors(b, body, rigids, seconds);
+    body.rowCount = static_cast<int>(rows_.size() - before);
+  }
+  setStiffness(bodies, rigids);
+}
+
+void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
+  auto* own = bodyWithTrees(*body.body);
+  readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
+  if (own) own->setSpeculation(0);
+  const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
+  const auto add = [&](PointContact& contact) {
+    contact.impulse.setZero();
+    if (!contact.object || !contact.object->hasContactResponse() || !isFinite(contact)) return;
+    ContactRow row = rowOf(index, contact);
+    if (!anyFree(body, row)) return;
+    row.rigid = rigids.at(*row.object, row.position);
+    row.relative = relativeVelocity(body, row, rigids, seconds);
+    if (isNoNumber(row.relative)) return;
+    const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
+    const btScalar seen =
+        gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
+    row.gapVelocity = std::max(seen / seconds, -pushingOut);
+    recall(body, seconds, row);
+    rows_.push_back(row);
+  };
+  for (PointContact& contact : *body.bulletsContacts) add(contact);
+  if (!own) return;
+  for (PointContact& contact : own->pointContacts()) add(contact);
+}
+
+void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
+  const auto& anchors = body.body->m_deformableAnchors;
+  for (int k = 0; k < anchors.size(); ++k) {
+    if (!(anchors[k].m_node->m_im > 0) || !anchors[k].m_cti.m_colObj) continue;
+    ContactRow row;
+    row.body = index;
+    row.joined = true;
+    row.object = anchors[k].m_cti.m_colObj;
+    row.nodeCount = 1;
+    row.nodes[0] = indexIn(*body.body, anchors[k].m_node);
+    row.weights[0] = 1;
+    row.normal.setValue(0, 1, 0);
+    row.position = row.object->getWorldTransform() * anchors[k].m_local;
+    row.rigid = rigids.at(*row.object, row.position);
+    row.offsetVelocity = (anchors[k].m_node->m_x - row.position) / seconds;
+    row.relative = relativeVelocity(body, row, rigids, seconds);
+    rows_.push_back(row);
+  }
+}
+
+/// Nodes that many rows share are no stiffer than by one.
+void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids) {
+  std::vector<std::vector<btScalar>> loads(bodies.bodies().size());
+  for (const ContactRow& row : rows_) {
+    std::vector<btScalar>& load = loads[row.body];
+    load.resize(bodies.bodies()[row.body].dynamics->nodeCount(), 0);
+    for (std::uint32_t k = 0; k < row.nodeCount && !row.joined; ++k) {
+      load[static_cast<std::size_t>(row.nodes[k])] += std::abs(row.weights[k]);
+    }
+  }
+  for (ContactRow& row : rows_) {
+    btScalar share = 1;
+    for (std::uint32_t k = 0; k < row.nodeCount && !row.joined; ++k) {
+      if (std::abs(row.weights[k]) < kSmallWeight) continue;
+      share = std::max(share, loads[row.body][static_cast<std::size_t>(row.nodes[k])]);
+    }
+    const double mass = effectiveMass(bodies.bodies()[row.body], row, rigids);
+    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
+    row.tangentStiffness = kTangentShare * row.stiffness;
+    row.effectiveMass = static_cast<btScalar>(mass);
+  }
+}
+
+void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
+  for (SolvedBody& body : bodies.bodies()) body.sticking->clear();
+  for (const ContactRow& row : rows_) {
+    if (row.contact) row.contact->impulse = row.impulse;
+    if (row.joined || row.state == ContactRow::State::Apart) continue;
+    bodies.bodies()[row.body].sticking->push_back(stickingOf(row, seconds));
+  }
+  for (SolvedBody& body : bodies.bodies()) {
+    std::stable_sort(body.sticking->begin(), body.sticking->end(),
+                     [](const Sticking& a, const Sticking& b) { return a.point < b.point; });
+  }
+}
+
+}  // namespace tetskin

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: the contacts and anchors of a step as rows, with what is remembered of the step before.
+#pragma once
+
+#include <tetskin/bullet/src/solver/contact_row.h>
+#include <tetskin/bullet/src/solver/solver_bodies.h>
+
+#include <vector>
+
+namespace tetskin {
+
+class ContactRows {
+ public:
+  /// Of all bodies that are elastic here: the points that a search has left in the body, Bullet's contacts of nodes and
+  /// faces with rigid objects, and its anchors. After velocities have been read.
+  void collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
+  /// What the next step begins with; tells contacts their impulses.
+  void finish(SolverBodies& bodies, btScalar seconds) const;
+
+  std::vector<ContactRow>& rows() { return rows_; }
+  const std::vector<ContactRow>& rows() const { return rows_; }
+
+ private:
+  void addBody(std::size_t index, SolvedBody& body, RigidUnknowns& rigids, btScalar seconds);
+  void addAnchors(std::size_t index, const SolvedBody& body, RigidUnknowns& rigids, btScalar seconds);
+  void setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids);
+
+  std::vector<ContactRow> rows_;
+};
+
+}  // namespace tetskin

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: rigid bodies and multibodies that a step solves for together with the soft bodies they
+// meet.
+//
+// What is unknown is by how much the solve changes their velocities, beside what Bullet has made of them in this step.
+// They have few degrees of freedom, and are eliminated: with J the velocity of a row's point over these, H the
+// stiffness of the row and M the masses,
+//   (M + sum J^T H J) dV = sum J^T f,    dV = (1 + M^-1 sum J^T H J)^-1 M^-1 sum J^T f
+// in which only inverse masses occur, so that an axis may be locked.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+
+#include <Eigen/Core>
+#include <unordered_map>
+#include <vector>
+
+class btCollisionObject;
+class btMultiBody;
+class btRigidBody;
+
+namespace tetskin {
+
+/// A point of a rigid object.
+struct RigidPoint {
+  int unknown = -1;   ///< in RigidUnknowns; below 0: the object moves as it is prescribed
+  btVector3 arm;      ///< of a rigid body: from its centre of mass
+  int jacobian = -1;  ///< of a link of a multibody: in RigidUnknowns
+};
+
+/// A rigid body or a whole multibody.
+struct RigidUnknown {
+  btRigidBody* rigid = nullptr;
+  btMultiBody* multiBody = nullptr;
+  Eigen::Index size = 6;        ///< degrees of freedom
+  Eigen::Index first = 0;       ///< of them in its system's vectors
+  Eigen::MatrixXd inverseMass;  ///< size x size
+};
+
+class RigidUnknowns {
+ public:
+  /// When a step begins.
+  void clear();
+
+  /// Where an object is met: of one that is free to move, which becomes an unknown.
+  RigidPoint at(const btCollisionObject& object, const btVector3& position);
+  /// Its place in `list`; below 0: it is none, or not yet.
+  int find(const btCollisionObject& object) const;
+  /// For a RigidPoint of a rigid body: a row of a joint, whose velocity is along x alone.
+  int addScalarJacobian(const btVector3& linear, const btVector3& angular);
+  /// Of the object there, as Bullet has left it: that of the straight way which a point of it goes in the step.
+  btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
+
+  const std::vector<RigidUnknown>& list() const { return unknowns_; }
+  std::vector<RigidUnknown>& list() { return unknowns_; }
+
+  // With vectors of a system: the unknowns' places there are set.
+  /// What changed velocities do to the point.
+  btVector3 velocity(const RigidPoint& at, const Eigen::VectorXd& change) const;
+  /// Adds J^T times the impulse on the object.
+  void addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const;
+  /// Adds sign x J_a^T H J_b.
+  void addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
+                    Eigen::MatrixXd& to) const;
+  /// By how much a unit impulse at the point changes its velocity in a direction.
+  double compliance(const RigidPoint& at, const btVector3& direction) const;
+  /// Changes the velocities of a body in Bullet.
+  static void apply(const RigidUnknown& unknown, const Eigen::VectorXd& change);
+
+ private:
+  using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  Jacobian jacobianOf(const RigidPoint& at) const;
+  int add(const btCollisionObject& object);
+  btVector3 carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity,
+                      btScalar seconds);
+  int addLinkPoint(const btCollisionObject& object, const btVector3& position);
+
+  std::vector<RigidUnknown> unknowns_;
+  std::unordered_map<const void*, int> places_;  ///< by rigid body or multibody
+  std::vector<Jacobian> jacobians_;
+  std::unordered_map<const btCollisionObject*, btTransform> placesNow_, placesBefore_;  ///< of kinematic bodies
+};
+
+}  // namespace tetskin

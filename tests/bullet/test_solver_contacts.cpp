@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Contacts and anchors of nodes with rigid bodies, in scenes that are checked by hand.
+#include "rigid_bodies.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::ball;
+using test::FlyingBlock;
+using test::forEachSubstep;
+using test::latticeCage;
+using test::momentumOf;
+using test::Rigid;
+using test::spinOf;
+using test::TetskinWorld;
+
+std::unique_ptr<btCollisionShape> plate() {
+  return std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.05), btScalar(0.6)));
+}
+
+double distance(const btVector3& a, const btVector3& b) {
+  return static_cast<double>((a - b).length());
+}
+
+TEST(SolverContacts, KeepMomentumAndAngularMomentum) {
+  for (const double mass : {0.05, 1.0, 20.0}) {
+    FlyingBlock of;
+    Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(btScalar(0.25), btScalar(4.7), btScalar(0.1)));
+    of.body().setVelocity(btVector3(0, -2, 0));
+    const btVector3 momentum = momentumOf(of.body()), spin = spinOf(of.body());
+    double lost = 0.0, lostSpin = 0.0, turned = 0.0;
+    forEachSubstep(of.world, 60, [&] {
+      lost = std::max(lost, distance(momentumOf(of.body()) + rigid.momentum(), momentum));
+      lostSpin = std::max(lostSpin, distance(spinOf(of.body()) + rigid.spin(), spin));
+      turned = std::max(turned, distance(spinOf(of.body()), spin));
+      EXPECT_EQ(of.world.bodySolver().unconverged(), 0);
+    });
+    EXPECT_GT(turned, 0.01) << "they have met";
+    EXPECT_LT(lost, 1e-5 * 2.0) << mass;
+    EXPECT_LT(lostSpin, 1e-5 * 2.0 * 5.0) << mass << ", at five metres";
+  }
+}
+
+TEST(SolverContacts, HoldABodyOnAPlateThatLiesOnTheFloor) {
+  FlyingBlock of(0.13);
+  of.world.deformable().setGravity(btVector3(0, -10, 0));
+  Rigid under(of.world, plate(), btScalar(0.1), btVector3(0, btScalar(0.05), 0));
+  forEachSubstep(of.world, 240, [] {});
+  double highest = 0.0, lowest = 1.0, fastest = 0.0;
+  forEachSubstep(of.world, 24, [&] {
+    highest = std::max(highest, under.height());
+    lowest = std::min(lowest, under.height());
+    fastest = std::max(fastest, test::rmsSpeed(of.body()));
+  });
+  EXPECT_GT(lowest, 0.05 - 0.001);
+  EXPECT_LT(highest, 0.05 + 0.001);
+  EXPECT_LT(fastest, 0.005);
+  EXPECT_LT(under.body->getAngularVelocity().length(), 0.01);
+}
+
+/// A bar of 1 kg and a box of 2 hang from four nodes: (M + m / 2) g L / (E A).
+TEST(SolverContacts, HangABoxByAnchorsAsFarAsByHand) {
+  TetskinWorld world;
+  TetMesh cage = latticeCage(1, 4, 1, 0.25);
+  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.125, 2, -0.125);
+  SoftBodyOptions options;
+  options.youngsModulus = 2e4;
+  options.poissonRatio = 0;
+  options.damping = 0.08;
+  options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 2.99; };
+  const auto bar = added(world, cage, options);
+  btSoftBody& soft = bar->body();
+  Rigid box(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))), 2,
+            btVector3(0, btScalar(1.8), 0));
+  world.deformable().removeRigidBody(box.body.get());
+  world.deformable().addRigidBody(box.body.get(), 2, 0);  // held, and met by nothing
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    if (soft.m_nodes[n].m_x.y() < btScalar(2.01)) soft.appendDeformableAnchor(n, box.body.get());
+  }
+  ASSERT_EQ(soft.m_deformableAnchors.size(), 4);
+  forEachSubstep(world, 360, [] {});
+  double mass = 0.0, moment = 0.0;  // of the bar below its top
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    const double m = soft.m_nodes[n].m_im > 0 ? 1.0 / static_cast<double>(soft.m_nodes[n].m_im) : 0.0;
+    mass += m;
+    moment += m * (3.0 - cage.nodes[static_cast<std::size_t>(n)].y());
+  }
+  EXPECT_NEAR(moment, 0.5, 0.1) << mass;
+  const double byHand = (2.0 * 1.0 + moment) * 10.0 / (2e4 * 0.0625);
+  EXPECT_NEAR(1.8 - box.height(), byHand, 0.01 * byHand);
+  EXPECT_LT(box.body->getLinearVelocity().length(), 0.002);
+  EXPECT_LT(box.body->getAngularVelocity().length(), 0.005);
+  soft.m_deformableAnchors.clear();
+}
+
+std::vector<btVector3> placesOf(const btSoftBody& body) {
+  std::vector<btVector3> places;
+  for (int n = 0; n < body.m_nodes.size(); ++n) places.push_back(body.m_nodes[n].m_x);
+  return places;
+}
+
+/// A block falls onto a box.
+struct Landing {
+  Landing() : of(0.35), box(of.world, plate(), btScalar(0.5), btVector3(btScalar(0.1), btScalar(0.05), 0)) {
+    of.world.deformable().setGravity(btVector3(0, -10, 0));
+  }
+  void step() {
+    forEachSubstep(of.world, 1, [] {});
+  }
+  /// Where all of it is, the box behind the nodes.
+  std::vector<btVector3> places() {
+    std::vector<btVector3> all = placesOf(of.body());
+    all.push_back(box.body->getWorldTransform().getOrigin());
+    for (int k = 0; k < 3; ++k) all.push_back(box.body->getWorldTransform().getBasis()[k]);
+    return all;
+  }
+
+  FlyingBlock of;
+  Rigid box;
+};
+
+TEST(SolverContacts, InATriggerHaveTheSameBits) {
+  const auto placesWith = [](bool trigger) {
+    Landing scene;
+    std::unique_ptr<Rigid> around;
+    if (trigger) {
+      around = std::make_unique<Rigid>(scene.of.world, std::make_unique<btBoxShape>(btVector3(5, 5, 5)), 0,
+                                       btVector3(0, 0, 0));
+      around->body->setCollisionFlags(around->body->getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    }
+    for (int k = 0; k < 120; ++k) scene.step();
+    return scene.places();
+  };
+  const auto without = placesWith(false);
+  EXPECT_LT(without[0].y(), 0.2) << "it has landed";
+  EXPECT_EQ(placesWith(true), without);
+}
+
+TEST(SolverContacts, OfTwoWorldsDoNotKnowEachOther) {
+  const auto alone = [] {
+    Landing scene;
+    for (int k = 0; k < 100; ++k) scene.step();
+    return scene.places();
+  }();
+  Landing first;
+  auto second = std::make_unique<Landing>();
+  for (int k = 0; k < 100; ++k) {
+    first.step();
+    if (k < 60) second->step();
+    if (k == 60) second.reset();
+  }
+  EXPECT_EQ(first.places(), alone);
+}
+
+/// A block of 1 kg lies on a plate of 1 kg that a motor holds level, 0.6 m from its hinge: 12 Nm, 0.05 Nms a step.
+TEST(SolverContacts, AreHeldByAHingeAsFarAsItsMotorCan) {
+  for (const double most : {0.2, 0.02}) {
+    FlyingBlock of(0.57);
+    of.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid lever(of.world, plate(), 1, btVector3(0, btScalar(0.5), 0));
+    const btVector3 pivot(btScalar(-0.6), 0, 0);
+    btHingeConstraint hinge(*lever.body, pivot, btVector3(0, 0, 1));
+    hinge.enableAngularMotor(true, 0, static_cast<btScalar>(most));
+    of.world.deformable().addConstraint(&hinge);
+    double apart = 0.0;
+    forEachSubstep(of.world, 100, [&] {
+      apart = std::max(apart,
+                       distance(lever.body->getWorldTransform() * pivot, btVector3(btScalar(-0.6), btScalar(0.5), 0)));
+    });
+    if (most > 0.05) {
+      EXPECT_NEAR(lever.height(), 0.5, 0.002);
+      EXPECT_GT(test::lowest(of.body()), 0.54);
+      EXPECT_LT(test::rmsSpeed(of.body()), 0.02);
+    } else {
+      EXPECT_LT(lever.height(), 0.4) << "more than it can";
+    }
+    EXPECT_LT(apart, 0.003) << "it stays on its hinge";
+    of.world.deformable().removeConstraint(&hinge);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin

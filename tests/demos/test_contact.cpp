@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "command.h"
+
+namespace tetskin {
+namespace {
+
+using test::CommandFolder;
+using test::CommandResult;
+
+/// Of a scene, by name.
+std::map<std::string, nlohmann::json> figuresOf(const nlohmann::json& scene) {
+  std::map<std::string, nlohmann::json> figures;
+  for (const auto& figure : scene["figures"]) figures[figure["name"]] = figure;
+  return figures;
+}
+
+/// Momentum and energy are summed up here, not by the solver: where nothing meets, nothing is lost but by rounding.
+TEST(Contact, LosesNothingInFreeFlight) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_CONTACT, {"--only", "free flight", "--json", "c.json"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  const auto scenes = folder.json("c.json");
+  ASSERT_EQ(scenes.size(), 2u);
+  for (const auto& scene : scenes) {
+    const auto figures = figuresOf(scene);
+    EXPECT_LT(figures.at("linear momentum lost")["value"].get<double>(), 1e-6) << scene;
+    EXPECT_LT(figures.at("angular momentum lost")["value"].get<double>(), 1e-5) << scene;
+    EXPECT_NEAR(figures.at("energy over its start")["value"].get<double>(), 1.0, 1e-5) << scene;
+  }
+}
+
+TEST(Contact, SaysWhatIsPromisedAndWhetherItHolds) {
+  const CommandFolder folder;
+  const CommandResult result =
+      folder.run(TETSKIN_CONTACT, {"--only", "thin plate", "--json", "c.json", "--markdown", "c.md"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  for (const auto& scene : folder.json("c.json")) {
+    const auto gap = figuresOf(scene).at("least gap, S");
+    EXPECT_TRUE(gap["held"].get<bool>()) << scene;
+    EXPECT_GE(gap["value"].get<double>(), gap["least"].get<double>()) << scene;
+    EXPECT_EQ(gap.count("most"), 0u) << scene;
+  }
+  EXPECT_NE(folder.read("c.md").find("| thin plate, k50, k500 | least gap, S | >= -0.009 |"), std::string::npos)
+      << folder.read("c.md");
+  EXPECT_NE(result.out.find(" holds\n"), std::string::npos) << result.out;
+}
+
+/// Bullet's solver, of which nothing is promised, loses 4 % of the momentum here.
+TEST(Contact, PromisesNothingOfBulletsSolver) {
+  const CommandFolder folder;
+  const CommandResult result =
+      folder.run(TETSKIN_CONTACT, {"--only", "hit/1kg/k50", "--force", "bullet", "--json", "b.json"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("NOT HELD"), std::string::npos) << result.out;
+  const auto bullet = folder.json("b.json");
+  EXPECT_FALSE(figuresOf(bullet[0]).at("linear momentum lost")["held"].get<bool>()) << bullet;
+
+  const CommandResult beside = folder.run(
+      TETSKIN_CONTACT, {"--only", "free flight/k500", "--bullet", "b.json", "--markdown", "c.md", "--quiet"});
+  ASSERT_EQ(beside.status, 0) << beside.out << beside.err;
+  const std::string table = folder.read("c.md");
+  EXPECT_NE(table.find("| tetskin-surface | Bullet |"), std::string::npos) << table;
+  EXPECT_NE(table.find("| hit, k50, k500 | linear momentum lost | <= 0.001 |  | **"), std::string::npos) << table;
+}
+
+TEST(Contact, RefusesWhatItDoesNotKnow) {
+  const CommandFolder folder;
+  test::expectRefused(folder.run(TETSKIN_CONTACT, {"--only", "flying"}), "flying");
+  test::expectRefused(folder.run(TETSKIN_CONTACT, {"--force", "magic"}), "magic");
+  folder.write("other.json", "{\"a\": 1}");
+  test::expectRefused(folder.run(TETSKIN_CONTACT, {"--before", "other.json", "--only", "thin"}), "other.json");
+}
+
+}  // namespace
+}  // namespace tetskin
