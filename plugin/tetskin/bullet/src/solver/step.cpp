@@ -158,7 +158,7 @@ void DeformableSolver::Parts::predict() {
   for (SolvedBody& of : bodies.bodies()) readNodes(*of.body, false, *of.dynamics);
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
-    // With other forces, what these do is known by what the body does without contacts.
+    // With other forces, the limits of what these leave are known by what the step begins with.
     first.waits = first.wasTouched && system.forces.empty();
   }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& of, ParallelFor* inner) { predictVelocities(of, inner); });
@@ -215,10 +215,10 @@ void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inn
   dynamics.matrix().free();
   if (of.waits) return dynamics.startLater(static_cast<double>(dt()));
   dynamics.start(static_cast<double>(dt()), inner);
-  if (of.elastic) solveAlone(of, inner);
+  if (of.elastic) solveAlone(of, of.wasTouched ? 0 : of.limits->iterations, inner);
 }
 
-void DeformableSolver::Parts::solveAlone(SolvedBody& of, ParallelFor* inner) const {
+void DeformableSolver::Parts::solveAlone(SolvedBody& of, int iterations, ParallelFor* inner) const {
   const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
   limits.tolerance = of.limits->tolerance;
@@ -226,7 +226,7 @@ void DeformableSolver::Parts::solveAlone(SolvedBody& of, ParallelFor* inner) con
   limits.floor = std::max(kUnseen * seconds, of.dynamics->roundingSpeed(seconds));
   limits.enough = limits.tolerance * limits.tolerance * of.dynamics->squaredDeviation();
   of.solve->start({&of.dynamics->matrix()}, limits, {}, inner);
-  of.solve->iterate(limits.iterations, inner);
+  of.solve->iterate(iterations, inner);
   of.iterations = of.solve->iterations();
 }
 
@@ -304,7 +304,7 @@ void DeformableSolver::Parts::collectRows() {
   collectRigidRowsOfWorlds();
   joinByRigids();
   for (SolvedBody& of : bodies.bodies()) {
-    if (of.waits && of.rowCount > 0) goOn(of);
+    if (of.wasTouched && of.rowCount > 0) goOn(of);
   }
 }
 
@@ -402,7 +402,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
     // Of a body that waited for contacts, and has none, all; else on from where it stopped.
     if (first.waits) {
       first.dynamics->startAgain(inner);
-      solveAlone(first, inner);
+      solveAlone(first, first.limits->iterations, inner);
     } else {
       first.solve->iterate(first.limits->iterations, inner);
       first.iterations = first.solve->iterations();
