@@ -5,6 +5,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/bullet/src/solver/rigid_unknowns.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace tetskin {
