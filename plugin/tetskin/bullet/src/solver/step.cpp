@@ -218,7 +218,7 @@ void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inn
   if (of.elastic) solveAlone(of, of.wasTouched ? 0 : of.limits->iterations, inner);
 }
 
-void DeformableSolver::Parts::solveAlone(SolvedBody& of, int iterations, ParallelFor* inner) const {
+void DeformableSolver::Parts::solveAlone(SolvedBody& of, int most, ParallelFor* inner) const {
   const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
   limits.tolerance = of.limits->tolerance;
@@ -226,7 +226,7 @@ void DeformableSolver::Parts::solveAlone(SolvedBody& of, int iterations, Paralle
   limits.floor = std::max(kUnseen * seconds, of.dynamics->roundingSpeed(seconds));
   limits.enough = limits.tolerance * limits.tolerance * of.dynamics->squaredDeviation();
   of.solve->start({&of.dynamics->matrix()}, limits, {}, inner);
-  of.solve->iterate(iterations, inner);
+  of.solve->iterate(most, inner);
   of.iterations = of.solve->iterations();
 }
 

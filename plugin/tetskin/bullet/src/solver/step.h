@@ -48,8 +48,8 @@ struct DeformableSolver::Parts {
   /// The impulses of other forces.
   void applyOthers();
   void predictVelocities(SolvedBody& of, ParallelFor* inner);
-  /// iterations  at most
-  void solveAlone(SolvedBody& of, int iterations, ParallelFor* inner) const;
+  /// most  iterations
+  void solveAlone(SolvedBody& of, int most, ParallelFor* inner) const;
   void writePrediction(SolvedBody& of) const;
   void speculate(const SolvedBody& of) const;
   void predictPositions(SolvedBody& of);
