@@ -121,7 +121,7 @@ class RigidRowCollector {
 
 /// The rows of a joint, as Bullet's solver asks for them.
 struct JointRows {
-  static constexpr int kMost = 6, kStride = 16;
+  static constexpr std::size_t kMost = 6, kStride = 16;
   std::array<btScalar, kMost * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
       highest{};
 
@@ -133,7 +133,7 @@ struct JointRows {
     info.m_J1angularAxis = angularA.data();
     info.m_J2linearAxis = linearB.data();
     info.m_J2angularAxis = angularB.data();
-    info.rowskip = kStride;
+    info.rowskip = static_cast<int>(kStride);
     info.m_constraintError = rest.data();
     info.cfm = softness.data();
     info.m_lowerLimit = lowest.data();
@@ -144,7 +144,7 @@ struct JointRows {
 };
 
 btVector3 vectorAt(const std::array<btScalar, JointRows::kMost * JointRows::kStride>& from, int row) {
-  const auto at = static_cast<std::size_t>(row * JointRows::kStride);
+  const auto at = static_cast<std::size_t>(row) * JointRows::kStride;
   return {from[at], from[at + 1], from[at + 2]};
 }
 
@@ -152,7 +152,7 @@ btVector3 vectorAt(const std::array<btScalar, JointRows::kMost * JointRows::kStr
 void RigidRowCollector::addJoint(btTypedConstraint& joint) {
   btTypedConstraint::btConstraintInfo1 counts{};
   joint.getInfo1(&counts);
-  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > JointRows::kMost) return;
+  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMost)) return;
   JointRows from;
   from.lowest.fill(-BT_LARGE_FLOAT);
   from.highest.fill(BT_LARGE_FLOAT);
@@ -174,7 +174,7 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
     row.rigid = at(b, -vectorAt(from.linearB, k), -vectorAt(from.angularB, k));
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     if (!(row.effectiveMass > 0)) continue;
-    const auto place = static_cast<std::size_t>(k * JointRows::kStride);
+    const auto place = static_cast<std::size_t>(k) * JointRows::kStride;
     row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
     if (from.softness[place] > 0) {
       row.stiffness = std::min(row.stiffness, row.effectiveMass / from.softness[place]);
