@@ -29,8 +29,7 @@ std::optional<PartUnknown> PartUnknown::make(const Dynamics& dynamics, std::size
       const Eigen::Vector3d motion = toEigen(fromPoint(&unknown.motions[i][4 * matrix.slotOf(n)]));
       unknown.began[indexOf(i)] += motion.dot(toEigen(began));
       for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-        unknown.mass(indexOf(i), indexOf(k)) +=
-            motion.dot(toEigen(fromWide(&unknown.images[k][matrix.wideOf(n)])));
+        unknown.mass(indexOf(i), indexOf(k)) += motion.dot(toEigen(fromWide(&unknown.images[k][matrix.wideOf(n)])));
       }
     }
   }

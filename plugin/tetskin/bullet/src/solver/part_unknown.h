@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to DeformableSolver: the rigid motion of a part of a stiff body as an unknown of its own, beside which the
-// nodes' velocities are. Sweeps would be slow to find it, and of the stiffest bodies rounding would hide what it weighs.
+// nodes' velocities are. Sweeps would be slow to find it, and of the stiffest bodies rounding would hide what it
+// weighs.
 #pragma once
 
 #include <tetskin/bullet/src/forces/forced_bodies.h>

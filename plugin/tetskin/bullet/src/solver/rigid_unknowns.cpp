@@ -199,8 +199,7 @@ void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, E
   if (at.unknown < 0) return;
   const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    to.segment(of.first, of.size) +=
-        jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
+    to.segment(of.first, of.size) += jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
     return;
   }
   const Eigen::Vector3d force = toEigen(impulse);

@@ -156,8 +156,8 @@ void DeformableSolver::Parts::predict() {
   for (SolvedBody& of : bodies.bodies()) {
     writePrediction(of);
     clearContacts(*of.body);
-    if (of.elastic) speculate(of);
     predictPositions(of);
+    if (of.elastic) speculate(of);
   }
 }
 

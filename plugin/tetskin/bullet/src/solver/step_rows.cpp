@@ -34,6 +34,8 @@ void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
   for (int n = 0; n < of.body->m_nodes.size(); ++n) fastest = std::max(fastest, of.body->m_nodes[n].m_v.length2());
   const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
   own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
+  // The box that the broadphase is given has it; the trees, which are fitted to the margin, have not.
+  of.body->updateBounds();
 }
 
 void DeformableSolver::Parts::collectRows() {

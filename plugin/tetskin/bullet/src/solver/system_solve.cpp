@@ -68,7 +68,6 @@ SolveReport SystemSolve::solve() {
     length = derivative ? searchLine() : btScalar(1);
     if (length < 1) moveBack(length);
     refreshBounds();
-    if (length == 1 && solve.squaredResidual() <= accepted_ && staysLinear()) break;
   }
   for (std::size_t k = 0; k < states_.size(); ++k) bodyAt(k).dynamics->matrix().free();
   moveOutOfParts();
@@ -152,10 +151,10 @@ bool SystemSolve::start(int pass) {
   }
   auto& solve = *bodyAt(0).solve;
   solve.start(std::move(matrices), limits, std::move(extra), threads_);
-  accepted_ = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
+  const double accepted = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(compliance_ * fewResidual_);
-  return squared <= accepted_;
+  return squared <= accepted;
 }
 
 void SystemSolve::keepState() {
@@ -224,21 +223,6 @@ void SystemSolve::addApart(std::size_t first, std::size_t last, std::uint32_t i,
     addSymmetric(row.tangent, weight, blocks[i][i]);
     addSymmetric(row.tangent, weight, blocks[j][j]);
   }
-}
-
-/// Whether all rows are at the end of the pass what it took them for, and none slides: then its linear system was the
-/// true one, and what it has left is what there is. Rows have their impulses of there.
-bool SystemSolve::staysLinear() {
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    ContactRow& row = *system_.rows[r];
-    const btVector3 u = before_[r] + stepped_[r];
-    ContactRow::State state{};
-    const btVector3 impulse = impulseAt(row, u, false, state);
-    if (state != row.state || state == ContactRow::State::Slides) return false;
-    row.impulse = impulse;
-    row.slip = u - row.normal.dot(u) * row.normal;
-  }
-  return true;
 }
 
 /// Friction is bounded by the normal impulses as the pass has them.

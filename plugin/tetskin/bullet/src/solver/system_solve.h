@@ -55,7 +55,6 @@ class SystemSolve {
   void addToNodes(const ContactRow& row, const btVector3& impulse);
   btVector3 velocityOf(std::size_t row) const;
   btVector3 nodesOf(const ContactRow& row, bool steps) const;
-  bool staysLinear();
   void refreshBounds();
   void giveMomentum();
 
@@ -94,14 +93,13 @@ class SystemSolve {
   std::vector<BodyState> states_;  ///< by body of the system
   std::vector<PartUnknown> parts_;
   std::vector<RowMotions> rowMotions_;  ///< by row: Z where it acts
-  std::vector<int> rowParts_;                            ///< by row: in `parts_`, or below 0
+  std::vector<int> rowParts_;           ///< by row: in `parts_`, or below 0
   // Few unknowns: V of rigid bodies, and then q of parts.
   Eigen::Index rigidSize_ = 0, fewSize_ = 0;
   Vector few_, fewStep_, fewResidual_;  ///< as they are; of the pass, their growth and what is left of their equations
   Vector partsBefore_;                  ///< momenta of parts when the pass began
   Vector rigidMomentum_, rigidPush_;    ///< M V, and its growth in the pass
   Matrix inverseMass_, compliance_;     ///< M^-1; the inverse of the few unknowns' matrix
-  double accepted_ = 0.0;  ///< of the pass: the square of a residual that is converged
   std::vector<btVector3> before_, stepped_;  ///< by row: u when the pass began, and by how much it changed
 };
 
