@@ -33,6 +33,7 @@ nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit) {
 void tellSolve(const SolveTotals& totals, nlohmann::ordered_json& json) {
   using Value = nlohmann::ordered_json;
   const bool solved = totals.steps > 0;
+  json["steps_solved"] = totals.steps;
   json["iterations_per_step"] = solved ? Value(totals.iterationsPerStep()) : Value();
   json["passes_per_step"] = solved ? Value(totals.passesPerStep()) : Value();
   json["steps_unconverged"] = solved ? Value(totals.unconverged) : Value();

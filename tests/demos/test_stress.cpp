@@ -31,7 +31,8 @@ TEST_F(StressCommand, QuickCasesHold) {
   EXPECT_GT(cases.size(), 100u);
   std::set<std::string> names, ours;
   std::set<bool> bounded;
-  int gained = 0, notConverged = 0;
+  int gained = 0;
+  double steps = 0, unconverged = 0;
   const std::string markdown = folder.read("s.md");
   for (const auto& row : cases) {
     const std::string name = row["name"];
@@ -53,7 +54,14 @@ TEST_F(StressCommand, QuickCasesHold) {
     const bool solved = row["force"] == "tetskin" && row["status"].get<std::string>().find("refused") != 0;
     EXPECT_EQ(row.at("iterations_per_step").is_null(), !solved) << row;
     EXPECT_EQ(row.at("passes_per_step").is_null(), !solved) << row;
-    notConverged += solved && row.at("steps_unconverged") != 0;
+    EXPECT_EQ(row.at("steps_solved") > 0, solved) << row;
+    if (solved) {
+      steps += row["steps_solved"].get<double>();
+      unconverged += row["steps_unconverged"].get<double>();
+      // Where rigid bodies slide on rigid ones under a soft one, or balls rain on it, friction's bounds creep from pass
+      // to pass; how often is a matter of the last bit, and of the processor.
+      EXPECT_LE(row["steps_unconverged"], row["steps_solved"].get<double>() / 2) << row;
+    }
     gained += row.at("bullet_cannot_tetskin_can") == true;
     EXPECT_NE(result.out.find(name), std::string::npos) << name;
     EXPECT_NE(markdown.find("| " + name + " |"), std::string::npos) << name;
@@ -61,8 +69,7 @@ TEST_F(StressCommand, QuickCasesHold) {
   EXPECT_EQ(bounded.size(), 2u) << "it tells what explodes from what does not";
   EXPECT_EQ(ours, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage",
                                          "claim", "contact", "soft_contact", "split"}));
-  // Where rigid bodies slide on rigid ones under a soft one, friction's bounds creep from pass to pass.
-  EXPECT_LE(notConverged, 5);
+  EXPECT_LE(unconverged, 0.005 * steps);
   EXPECT_GT(gained, 5) << "what Bullet's force cannot hold, and ours can";
   EXPECT_NE(markdown.find("| bullet cannot, tetskin can |"), std::string::npos);
 #ifdef TETSKIN_PYTHON

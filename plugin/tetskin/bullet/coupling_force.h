@@ -26,9 +26,6 @@ class TETSKIN_BULLET_API CouplingForce : public btDeformableLagrangianForce {
   /// nodes is a small part of what a body's residual is measured by.
   virtual double tolerance() const { return 1.0; }
 
-  /// Whether it moves this rigid body, too, in this step: then nobody else solves for it.
-  virtual bool moves(const btCollisionObject& object) const;
-
   /// Of Bullet's implicit solve: nothing.
   void addScaledForces(btScalar, TVStack&) override {}
   /// Likewise.

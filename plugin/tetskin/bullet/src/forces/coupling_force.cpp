@@ -7,10 +7,6 @@ namespace tetskin {
 
 CouplingForce::~CouplingForce() = default;
 
-bool CouplingForce::moves(const btCollisionObject&) const {
-  return false;
-}
-
 btDeformableLagrangianForceType CouplingForce::getForceType() {
   return kOwnForceType;
 }

@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/solver/rigid_unknowns.h>
 
 #include <Eigen/Geometry>
@@ -14,18 +15,18 @@ namespace {
 /// Radians in a step, and a share of the velocity, that Bullet's velocities of kinematic bodies may be off by.
 constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
 
-Eigen::Vector3d toEigenVector(const btVector3& v) {
-  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
-}
-btVector3 fromEigenVector(const Eigen::Vector3d& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
-}
-
 /// a x
 Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d m;
   m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
   return m;
+}
+
+/// Of a point of a rigid body.
+Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
+  return jacobian;
 }
 
 /// As btRigidBody::applyImpulse has it; symmetric where factors lock single axes.
@@ -99,7 +100,7 @@ int RigidUnknowns::find(const btCollisionObject& object) const {
 
 int RigidUnknowns::addScalarJacobian(const btVector3& linear, const btVector3& angular) {
   Jacobian jacobian = Jacobian::Zero(3, 6);
-  jacobian.row(0) << toEigenVector(linear).transpose(), toEigenVector(angular).transpose();
+  jacobian.row(0) << toEigen(linear).transpose(), toEigen(angular).transpose();
   jacobians_.push_back(std::move(jacobian));
   return static_cast<int>(jacobians_.size()) - 1;
 }
@@ -155,7 +156,7 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
       sum += jacobian.col(k) * static_cast<double>(body.getVelocityVector()[k]);
     }
-    return fromEigenVector(sum);
+    return toBullet(sum);
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};
@@ -181,33 +182,29 @@ btVector3 RigidUnknowns::carriedBy(const btCollisionObject& object, const btVect
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {
-  if (at.jacobian >= 0) return jacobians_[static_cast<std::size_t>(at.jacobian)];
-  Jacobian jacobian(3, 6);
-  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigenVector(at.arm));
-  return jacobian;
+  return at.jacobian >= 0 ? jacobians_[static_cast<std::size_t>(at.jacobian)] : Jacobian(bodyJacobian(at));
 }
 
 btVector3 RigidUnknowns::velocity(const RigidPoint& at, const Eigen::VectorXd& change) const {
   if (at.unknown < 0) return {0, 0, 0};
   const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    return fromEigenVector(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(of.first, of.size));
+    return toBullet(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(of.first, of.size));
   }
   const Eigen::Vector3d linear = change.segment<3>(of.first), angular = change.segment<3>(of.first + 3);
-  return fromEigenVector(linear) + fromEigenVector(angular).cross(at.arm);
+  return toBullet(linear) + toBullet(angular).cross(at.arm);
 }
 
 void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const {
   if (at.unknown < 0) return;
   const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    to.segment(of.first, of.size) +=
-        jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigenVector(impulse);
+    to.segment(of.first, of.size) += jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
     return;
   }
-  const Eigen::Vector3d force = toEigenVector(impulse);
+  const Eigen::Vector3d force = toEigen(impulse);
   to.segment<3>(of.first) += force;
-  to.segment<3>(of.first + 3) += toEigenVector(at.arm).cross(force);
+  to.segment<3>(of.first + 3) += toEigen(at.arm).cross(force);
 }
 
 void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
@@ -215,13 +212,17 @@ void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const
   if (a.unknown < 0 || b.unknown < 0) return;
   const RigidUnknown &first = unknowns_[static_cast<std::size_t>(a.unknown)],
                      &second = unknowns_[static_cast<std::size_t>(b.unknown)];
+  if (a.jacobian < 0 && b.jacobian < 0) {  // nearly always: without a matrix on the heap
+    to.block<6, 6>(first.first, second.first) += sign * bodyJacobian(a).transpose() * h * bodyJacobian(b);
+    return;
+  }
   to.block(first.first, second.first, first.size, second.size) += sign * jacobianOf(a).transpose() * h * jacobianOf(b);
 }
 
 double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {
   if (at.unknown < 0) return 0.0;
   const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
-  const Eigen::VectorXd moment = jacobianOf(at).transpose() * toEigenVector(direction);
+  const Eigen::VectorXd moment = jacobianOf(at).transpose() * toEigen(direction);
   return moment.dot(of.inverseMass * moment);
 }
 
@@ -230,8 +231,8 @@ void RigidUnknowns::apply(const RigidUnknown& unknown, const Eigen::VectorXd& ch
   if (!part.allFinite()) return;
   if (unknown.rigid) {
     btRigidBody& rigid = *unknown.rigid;
-    rigid.setLinearVelocity(rigid.getLinearVelocity() + fromEigenVector(part.head<3>()));
-    rigid.setAngularVelocity(rigid.getAngularVelocity() + fromEigenVector(part.segment<3>(3)));
+    rigid.setLinearVelocity(rigid.getLinearVelocity() + toBullet(part.head<3>()));
+    rigid.setAngularVelocity(rigid.getAngularVelocity() + toBullet(part.segment<3>(3)));
     return;
   }
   std::vector<btScalar> delta(static_cast<std::size_t>(unknown.size));

@@ -15,15 +15,12 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/bullet/src/solver/rigid_rows.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace tetskin {
 namespace {
@@ -89,12 +86,6 @@ btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
     if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
   }
   return v;
-}
-
-/// Null where it is not known: of a body that is not elastic, or has been moved since.
-btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
-  if (!of.elastic) return nullptr;
-  return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
 }
 
 /// Several bodies side by side, or one in pieces.
@@ -165,22 +156,9 @@ void DeformableSolver::Parts::predict() {
   for (SolvedBody& of : bodies.bodies()) {
     writePrediction(of);
     clearContacts(*of.body);
-    if (of.elastic) speculate(of);
     predictPositions(of);
+    if (of.elastic) speculate(of);
   }
-}
-
-/// Twice as far as gravity takes anything in a step: one of two that are in touch may be predicted to fall, and neither
-/// does. And a share of the body's own way: what is stopped by some points turns others in.
-void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
-  constexpr btScalar kShareOfWay = btScalar(0.2);
-  auto* own = bodyWithTrees(*of.body);
-  const btDiscreteDynamicsWorld* world = worldOf(of);
-  if (!own || !world) return;
-  btScalar fastest = 0;
-  for (int n = 0; n < of.body->m_nodes.size(); ++n) fastest = std::max(fastest, of.body->m_nodes[n].m_v.length2());
-  const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
-  own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
 }
 
 /// The world tells its own in each step.
@@ -189,24 +167,6 @@ void DeformableSolver::Parts::useOwnSettings() {
   solver.setLineSearch(false);
   solver.m_useProjection = true;
   solver.setStrainLimiting(true);
-}
-
-/// As btDeformableBackwardEulerObjective::applyExplicitForce, where elastic forces are explicit.
-void DeformableSolver::Parts::applyOthers() {
-  for (SolvedBody& of : bodies.bodies()) {
-    if (of.needsDeformation) of.body->advanceDeformation();
-  }
-  VectorStack& impulses = solver.m_residual;
-  for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledExplicitForce(dt(), impulses);
-  for (SolvedBody& of : bodies.bodies()) {
-    for (int n = 0; n < of.body->m_nodes.size(); ++n) {
-      btSoftBody::Node& node = of.body->m_nodes[n];
-      node.m_vn = node.m_v;
-      node.m_v += node.m_im * impulses[of.first + n];
-      impulses[of.first + n].setZero();
-      if (!of.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
-    }
-  }
 }
 
 void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inner) {
@@ -286,84 +246,6 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
   }
 }
 
-/// As btDeformableBackwardEulerObjective::computeResidual.
-void DeformableSolver::Parts::addOthers() {
-  for (int i = 0; i < forces().size(); ++i) {
-    btDeformableLagrangianForce& force = *forces()[i];
-    if (force.getForceType() == BT_MOUSE_PICKING_FORCE) {
-      force.addScaledForces(dt(), solver.m_residual);
-    } else {
-      force.addScaledDampingForce(dt(), solver.m_residual);
-    }
-  }
-}
-
-void DeformableSolver::Parts::collectRows() {
-  rigids.clear();
-  rows.collect(bodies, rigids, dt());
-  collectRigidRowsOfWorlds();
-  joinByRigids();
-  for (SolvedBody& of : bodies.bodies()) {
-    if (of.wasTouched && of.rowCount > 0) goOn(of);
-  }
-}
-
-/// What rests goes on to rest: the solution begins with the velocities of the step before.
-void DeformableSolver::Parts::goOn(SolvedBody& of) {
-  Dynamics& dynamics = *of.dynamics;
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-    if (!(node.m_im > 0)) continue;
-    toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
-  }
-  // What stiff bodies deform by does not last.
-  if (dynamics.isStiff()) dynamics.keepRigidPart();
-}
-
-void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
-  if (rigids.list().empty()) return;
-  std::vector<btDiscreteDynamicsWorld*> worlds;
-  for (const SolvedBody& of : bodies.bodies()) {
-    btDiscreteDynamicsWorld* world = worldOf(of);
-    if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
-    worlds.push_back(world);
-    collectRigidRows(*world, dt(), rigids, rows.rows());
-  }
-}
-
-/// Soft bodies are solved for together where rows lead from one to the other by rigid bodies.
-void DeformableSolver::Parts::joinByRigids() {
-  const std::size_t bodyCount = bodies.bodies().size();
-  DisjointSets sets(bodyCount + rigids.list().size());
-  const auto rigidSet = [&](const RigidPoint& point) { return static_cast<int>(bodyCount) + point.unknown; };
-  for (const ContactRow& row : rows.rows()) {
-    if (row.nodeCount > 0 && row.rigid.unknown >= 0) sets.unite(static_cast<int>(row.body), rigidSet(row.rigid));
-    if (row.own.unknown >= 0 && row.rigid.unknown >= 0) sets.unite(rigidSet(row.own), rigidSet(row.rigid));
-  }
-  std::unordered_map<int, std::vector<std::size_t>> groups;  // bodies, by set
-  for (std::size_t b = 0; b < bodyCount; ++b) groups[sets.find(static_cast<int>(b))].push_back(b);
-  for (std::size_t b = 0; b < bodyCount; ++b) {
-    const auto& group = groups[sets.find(static_cast<int>(b))];
-    if (group.front() == b && group.size() > 1) bodies.join(group);
-  }
-  std::vector<SolvedSystem*> systemOf(bodyCount, nullptr);
-  for (SolvedSystem& system : bodies.systems()) {
-    for (const std::size_t b : system.bodies) systemOf[b] = &system;
-  }
-  const auto systemOfSet = [&](int member) -> SolvedSystem* {
-    const auto group = groups.find(sets.find(member));
-    return group == groups.end() ? nullptr : systemOf[group->second.front()];
-  };
-  for (ContactRow& row : rows.rows()) {
-    const RigidPoint& any = row.own.unknown >= 0 ? row.own : row.rigid;
-    SolvedSystem* system = row.nodeCount > 0 ? systemOf[row.body] : systemOfSet(rigidSet(any));
-    if (system) system->rows.push_back(&row);
-  }
-  for (std::size_t r = 0; r < rigids.list().size(); ++r) {
-    if (SolvedSystem* system = systemOfSet(static_cast<int>(bodyCount + r))) system->rigids.push_back(r);
-  }
-}
-
 // ---- solve
 
 /// What Bullet's forces have a part in is solved here, one after the other, each by all threads; the rest side by side.
@@ -410,68 +292,6 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
   }
   const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.touched;
   if (free && first.elastic) first.dynamics->removeMomentum();
-}
-
-void DeformableSolver::Parts::addOtherResiduals(const SolvedSystem& system) {
-  const bool withForces = !system.forces.empty();
-  if (withForces) {
-    for (const std::size_t b : system.bodies) {
-      const SolvedBody& of = bodies.bodies()[b];
-      const auto& matrix = of.dynamics->matrix();
-      for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-        const int number = of.first + static_cast<int>(n);
-        step[number] = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
-                       solver.m_backupVelocity[number];
-      }
-    }
-    multiplyOthers(system);
-  }
-  for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    auto& matrix = of.dynamics->matrix();
-    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      const std::size_t wide = matrix.wideOf(n);
-      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[of.first + static_cast<int>(n)];
-      if (withForces) residual -= fromWide(&extras[b][wide]);
-      toWide(residual, matrix.residual() + wide);
-    }
-  }
-}
-
-void DeformableSolver::Parts::beginProducts(const SolvedSystem& system) {
-  for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    const auto& matrix = of.dynamics->matrix();
-    if (system.forces.empty()) {
-      extras[b].assign(matrix.wideSize(), btScalar(0));
-      continue;
-    }
-    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
-    }
-  }
-  if (!system.forces.empty()) multiplyOthers(system);
-}
-
-void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
-  for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    for (int n = 0; n < of.body->m_nodes.size(); ++n) image[of.first + n].setZero();
-  }
-  for (btDeformableLagrangianForce* force : system.forces) {
-    force->addScaledDampingForceDifferential(-dt(), step, image);
-    if (force->getForceType() == BT_MOUSE_PICKING_FORCE) {
-      force->addScaledElasticForceDifferential(-dt() * dt(), step, image);
-    }
-  }
-  for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    const auto& matrix = of.dynamics->matrix();
-    extras[b].resize(matrix.wideSize(), btScalar(0));
-    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
-    }
-  }
 }
 
 // ---- contacts

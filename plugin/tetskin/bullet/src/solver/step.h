@@ -42,7 +42,7 @@ struct DeformableSolver::Parts {
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
-  // Of predict.
+  // Of predict; forces: step_forces.cpp.
   /// Of what is left to Bullet's code in a step that is solved here.
   void useOwnSettings();
   /// The impulses of other forces.
@@ -51,10 +51,9 @@ struct DeformableSolver::Parts {
   /// most  iterations
   void solveAlone(SolvedBody& of, int most, ParallelFor* inner) const;
   void writePrediction(SolvedBody& of) const;
-  void speculate(const SolvedBody& of) const;
   void predictPositions(SolvedBody& of);
 
-  // Of assemble.
+  // Of assemble; rows: step_rows.cpp.
   void readContacts(SolvedBody& of);
   void addOthers();
   /// Of contacts and anchors, and of what rigid bodies are held by beside; each to the system that it acts on.
@@ -62,6 +61,7 @@ struct DeformableSolver::Parts {
   void collectRigidRowsOfWorlds();
   void joinByRigids();
   void goOn(SolvedBody& of);
+  void speculate(const SolvedBody& of) const;
 
   // Of solve.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);

@@ -95,10 +95,6 @@ void TouchForce::addScaledDampingForce(btScalar, TVStack& force) {
   for (const auto& part : parts_) part->addTo(force);
 }
 
-bool TouchForce::moves(const btCollisionObject& object) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part->moves(object); });
-}
-
 void TouchForce::addScaledDampingForceDifferential(btScalar, const TVStack& dv, TVStack& df) {
   for (const auto& part : parts_) part->addResistance(dv, df);
 }

@@ -40,7 +40,6 @@ class Acting {
   virtual bool spent() const = 0;
   /// What shares its mass with all others of the same: null for none.
   virtual const void* partner() const { return nullptr; }
-  virtual bool moves(const btCollisionObject&) const { return false; }
 
   /// Before a step of dt seconds. sharers: of the same partner
   virtual void begin(btScalar dt, int sharers) = 0;
@@ -72,7 +71,6 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
 
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
   double tolerance() const override { return 5e-4; }
-  bool moves(const btCollisionObject& object) const override;
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
   void reinitialize(bool nodeUpdated) override;

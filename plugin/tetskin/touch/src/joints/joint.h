@@ -50,7 +50,6 @@ class Joint : public Acting {
   void drop() override;
   bool spent() const override { return !body(); }
   const void* partner() const override { return partner_->mass(); }
-  bool moves(const btCollisionObject& object) const override { return !spent() && partner_->object() == &object; }
   void begin(btScalar dt, int sharers) override;
   void addTo(VectorStack& impulses) override;
   void addResistance(const VectorStack& change, VectorStack& impulses) const override;

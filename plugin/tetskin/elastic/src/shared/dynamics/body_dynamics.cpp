@@ -20,7 +20,7 @@ constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
 /// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
 constexpr double kFullTurnStep = 1.0 / 240.0;
 /// A matrix of rotations that are older by an angle of phi takes rigid turning for strain; the stress of it turns the
-/// body, by dt^2 phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So much is let be:
+/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So much is let be:
 /// from 1 to 0.01 held.
 constexpr double kMostGain = 0.1;
 /// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
@@ -104,7 +104,9 @@ template <class S>
 void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads) {
   const double alpha = alphaFor(seconds);
   const double share = turnShare * std::min(1.0, seconds / kFullTurnStep);
-  const bool turned = tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * kMostTurn);
+  // A stiff part turns as one, and may be a single tet among many of other parts.
+  const double most = turnShare < 1.0 ? kMeanTurn : kMostTurn;
+  const bool turned = tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * most);
   if (!changed_ && alpha == alpha_ && !turned) return;
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
   alpha_ = alpha;
@@ -188,8 +190,8 @@ void BodyDynamics<S>::moveRigidly(double seconds) {
 
 /// The angle by which tets may turn before the matrix is made anew, over that of a soft body.
 template <class S>
-double BodyDynamics<S>::allowedTurn(double seconds) const {
-  return std::min(1.0, std::sqrt(kMostGain / (seconds * seconds * stiffnessOverInertia_)) / kMeanTurn);
+double BodyDynamics<S>::allowedTurn() const {
+  return std::min(1.0, std::sqrt(kMostGain / stiffnessNumber_) / kMeanTurn);
 }
 
 template <class S>
@@ -208,7 +210,7 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
   stiff_ = stiffnessNumber_ > kStiff;
   moveRigidly(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
-  assembleIfNeeded(seconds, allowedTurn(seconds), threads);
+  assembleIfNeeded(seconds, allowedTurn(), threads);
 }
 
 template <class S>

@@ -119,7 +119,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void findMotions(double seconds);
   void moveRigidly(double seconds);
   void assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads);
-  double allowedTurn(double seconds) const;
+  double allowedTurn() const;
   std::vector<PartMomentum> momentaNow() const;
 
   BlockMatrix<S> matrix_;
