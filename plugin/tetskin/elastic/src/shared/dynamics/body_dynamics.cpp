@@ -20,8 +20,8 @@ constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
 /// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
 constexpr double kFullTurnStep = 1.0 / 240.0;
 /// A matrix of rotations that are older by an angle of phi takes rigid turning for strain; the stress of it turns the
-/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So much is let be:
-/// from 1 to 0.01 held.
+/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So
+/// much is let be: from 1 to 0.01 held.
 constexpr double kMostGain = 0.1;
 /// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
 constexpr double kStiff = 1e3;
