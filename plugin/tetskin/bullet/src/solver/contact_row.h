@@ -23,19 +23,24 @@
 
 namespace tetskin {
 
-/// Of a point, of a soft body or of a rigid one, against an object.
-struct ContactRow {
-  enum class State { Apart, Sticks, Slides };
-
-  // The point. Its impulse is the row's; the object's is the opposite, at the same place.
+/// A point that nodes of a soft body carry, or a point of a rigid object.
+struct RowEnd {
   std::size_t body = 0;         ///< in SolverBodies::bodies; of a rigid point: unused
   std::uint32_t nodeCount = 0;  ///< 0: a rigid point
   std::array<int, kMaxPointNodes> nodes{};
   std::array<btScalar, kMaxPointNodes> weights{};
-  RigidPoint own;  ///< of a rigid point
-  // The object.
-  const btCollisionObject* object = nullptr;
-  RigidPoint rigid;
+  RigidPoint rigid;  ///< of a rigid point
+
+  bool isSoft() const { return nodeCount > 0; }
+};
+
+/// Of a point against another.
+struct ContactRow {
+  enum class State { Apart, Sticks, Slides };
+
+  /// The first one's impulse is the row's; the second one's is the opposite, at the same place.
+  std::array<RowEnd, 2> ends;
+  const btCollisionObject* object = nullptr;  ///< that the second is of
 
   btVector3 position;               ///< of both, when the step begins
   PointContact* contact = nullptr;  ///< that it is of, if any
@@ -61,6 +66,11 @@ struct ContactRow {
   btMatrix3x3 tangent;         ///< H, by which it falls as they grow
   State state = State::Apart;
 };
+
+/// Of an end's impulse and velocity in the row's.
+constexpr int signOf(std::size_t end) {
+  return end == 0 ? 1 : -1;
+}
 
 /// Where a point has stuck, or slid to, in a step.
 struct Sticking {

@@ -82,38 +82,39 @@ bool isFinite(const PointContact& contact) {
   return std::isfinite(contact.distance) && !isNoNumber(contact.normal) && !isNoNumber(contact.position);
 }
 
-bool anyFree(const SolvedBody& body, const ContactRow& row) {
-  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
-    if (body.body->m_nodes[row.nodes[k]].m_im > 0) return true;
+bool anyFree(const SolvedBody& body, const RowEnd& end) {
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    if (body.body->m_nodes[end.nodes[k]].m_im > 0) return true;
   }
   return false;
 }
 
 /// Over what it meets.
 btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
+  const RowEnd& own = row.ends[0];
   btVector3 sum(0, 0, 0);
-  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
-    sum += row.weights[k] * fromPoint(body.dynamics->velocity(static_cast<std::size_t>(row.nodes[k])));
+  for (std::uint32_t k = 0; k < own.nodeCount; ++k) {
+    sum += own.weights[k] * fromPoint(body.dynamics->velocity(static_cast<std::size_t>(own.nodes[k])));
   }
-  return sum - rigids.velocityAt(row.rigid, *row.object, seconds);
+  return sum - rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
 }
 
 /// A kinematic body is already where the step takes it when contacts are looked for: by how much it has moved to there,
 /// over seconds, the gap is less than when the step begins.
 btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
-  const btVector3 moved = rigids.velocityAt(row.rigid, *row.object, seconds);
+  const btVector3 moved = rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
   return row.object->isKinematicObject() ? row.normal.dot(moved) : btScalar(0);
 }
 
 ContactRow rowOf(std::size_t index, PointContact& contact) {
   ContactRow row;
-  row.body = index;
+  row.ends[0].body = index;
+  row.ends[0].nodeCount = contact.nodeCount;
+  row.ends[0].nodes = contact.nodes;
+  row.ends[0].weights = contact.weights;
   row.contact = &contact;
   row.point = contact.point;
   row.object = contact.object;
-  row.nodeCount = contact.nodeCount;
-  row.nodes = contact.nodes;
-  row.weights = contact.weights;
   row.position = contact.position;
   row.normal = contact.normal;
   row.friction = contact.friction;
@@ -156,20 +157,25 @@ void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
 }
 
 /// Of the nodes by themselves in a direction, as stiff as they are coupled; of any for those that are joined.
-double compliance(const SolvedBody& body, const ContactRow& row, const btVector3& direction) {
+double compliance(const SolvedBody& body, const RowEnd& end, const btVector3& position, const btVector3& direction) {
   double sum = 0.0;
-  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
     btScalar inverse[6];
-    body.dynamics->matrix().freeInverse(static_cast<std::size_t>(row.nodes[k]), inverse);
-    sum += static_cast<double>(row.weights[k] * row.weights[k] * direction.dot(symmetricMatrix(inverse) * direction));
+    body.dynamics->matrix().freeInverse(static_cast<std::size_t>(end.nodes[k]), inverse);
+    sum += static_cast<double>(end.weights[k] * end.weights[k] * direction.dot(symmetricMatrix(inverse) * direction));
   }
-  const auto node = static_cast<std::size_t>(row.nodes[0]);
-  return sum + body.dynamics->rigidCompliance(node, numbersOf(row.position), numbersOf(direction));
+  const auto node = static_cast<std::size_t>(end.nodes[0]);
+  return sum + body.dynamics->rigidCompliance(node, numbersOf(position), numbersOf(direction));
 }
 
-double effectiveMass(const SolvedBody& body, const ContactRow& row, const RigidUnknowns& rigids) {
+double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const RigidUnknowns& rigids) {
   const auto along = [&](const btVector3& direction) {
-    return compliance(body, row, direction) + rigids.compliance(row.rigid, direction);
+    double sum = 0.0;
+    for (const RowEnd& end : row.ends) {
+      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], end, row.position, direction)
+                          : rigids.compliance(end.rigid, direction);
+    }
+    return sum;
   };
   const double sum = row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
   return sum > 0.0 ? 1.0 / sum : 0.0;
@@ -216,8 +222,8 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     contact.impulse.setZero();
     if (!contact.object || !contact.object->hasContactResponse() || !isFinite(contact)) return;
     ContactRow row = rowOf(index, contact);
-    if (!anyFree(body, row)) return;
-    row.rigid = rigids.at(*row.object, row.position);
+    if (!anyFree(body, row.ends[0])) return;
+    row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.relative = relativeVelocity(body, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
     const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
@@ -237,15 +243,15 @@ void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnk
   for (int k = 0; k < anchors.size(); ++k) {
     if (!(anchors[k].m_node->m_im > 0) || !anchors[k].m_cti.m_colObj) continue;
     ContactRow row;
-    row.body = index;
+    row.ends[0].body = index;
+    row.ends[0].nodeCount = 1;
+    row.ends[0].nodes[0] = indexIn(*body.body, anchors[k].m_node);
+    row.ends[0].weights[0] = 1;
     row.joined = true;
     row.object = anchors[k].m_cti.m_colObj;
-    row.nodeCount = 1;
-    row.nodes[0] = indexIn(*body.body, anchors[k].m_node);
-    row.weights[0] = 1;
     row.normal.setValue(0, 1, 0);
     row.position = row.object->getWorldTransform() * anchors[k].m_local;
-    row.rigid = rigids.at(*row.object, row.position);
+    row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.offsetVelocity = (anchors[k].m_node->m_x - row.position) / seconds;
     row.relative = relativeVelocity(body, row, rigids, seconds);
     rows_.push_back(row);
@@ -256,19 +262,24 @@ void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnk
 void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids) {
   std::vector<std::vector<btScalar>> loads(bodies.bodies().size());
   for (const ContactRow& row : rows_) {
-    std::vector<btScalar>& load = loads[row.body];
-    load.resize(bodies.bodies()[row.body].dynamics->nodeCount(), 0);
-    for (std::uint32_t k = 0; k < row.nodeCount && !row.joined; ++k) {
-      load[static_cast<std::size_t>(row.nodes[k])] += std::abs(row.weights[k]);
+    for (const RowEnd& end : row.ends) {
+      if (row.joined || !end.isSoft()) continue;
+      std::vector<btScalar>& load = loads[end.body];
+      load.resize(bodies.bodies()[end.body].dynamics->nodeCount(), 0);
+      for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+        load[static_cast<std::size_t>(end.nodes[k])] += std::abs(end.weights[k]);
+      }
     }
   }
   for (ContactRow& row : rows_) {
     btScalar share = 1;
-    for (std::uint32_t k = 0; k < row.nodeCount && !row.joined; ++k) {
-      if (std::abs(row.weights[k]) < kSmallWeight) continue;
-      share = std::max(share, loads[row.body][static_cast<std::size_t>(row.nodes[k])]);
+    for (const RowEnd& end : row.ends) {
+      for (std::uint32_t k = 0; k < end.nodeCount && !row.joined; ++k) {
+        if (std::abs(end.weights[k]) < kSmallWeight) continue;
+        share = std::max(share, loads[end.body][static_cast<std::size_t>(end.nodes[k])]);
+      }
     }
-    const double mass = effectiveMass(bodies.bodies()[row.body], row, rigids);
+    const double mass = effectiveMass(bodies, row, rigids);
     row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
@@ -280,7 +291,7 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
   for (const ContactRow& row : rows_) {
     if (row.contact) row.contact->impulse = row.impulse;
     if (row.joined || row.state == ContactRow::State::Apart) continue;
-    bodies.bodies()[row.body].sticking->push_back(stickingOf(row, seconds));
+    bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
   }
   for (SolvedBody& body : bodies.bodies()) {
     std::stable_sort(body.sticking->begin(), body.sticking->end(),

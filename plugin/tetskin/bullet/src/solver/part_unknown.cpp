@@ -94,13 +94,13 @@ void PartUnknown::addMotions(const Vector6& q, Dynamics& dynamics) const {
   }
 }
 
-RowMotions PartUnknown::motionsAt(const Dynamics& dynamics, const ContactRow& row) const {
+RowMotions PartUnknown::motionsAt(const Dynamics& dynamics, const RowEnd& end) const {
   RowMotions at;
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     btVector3 sum(0, 0, 0);
-    for (std::uint32_t n = 0; n < row.nodeCount; ++n) {
-      const std::size_t slot = dynamics.matrix().slotOf(static_cast<std::size_t>(row.nodes[n]));
-      sum += row.weights[n] * fromPoint(&motions[k][4 * slot]);
+    for (std::uint32_t n = 0; n < end.nodeCount; ++n) {
+      const std::size_t slot = dynamics.matrix().slotOf(static_cast<std::size_t>(end.nodes[n]));
+      sum += end.weights[n] * fromPoint(&motions[k][4 * slot]);
     }
     at.col(indexOf(k)) = toEigen(sum);
   }

@@ -41,7 +41,7 @@ struct PartUnknown {
   /// Adds Z q to the solution.
   void addMotions(const Vector6& q, Dynamics& dynamics) const;
   /// Z where a row of the body acts; 0 where it is of another part.
-  RowMotions motionsAt(const Dynamics& dynamics, const ContactRow& row) const;
+  RowMotions motionsAt(const Dynamics& dynamics, const RowEnd& end) const;
 
  private:
   void findImages(const Dynamics& dynamics, bool rounded, ParallelFor* threads);

@@ -22,7 +22,8 @@ constexpr std::size_t kMaxUnknowns = 24;
 constexpr btScalar kStuck = btScalar(0.99);
 
 double massOf(const ContactRow& row, const RigidUnknowns& rigids) {
-  const double sum = rigids.compliance(row.own, row.normal) + rigids.compliance(row.rigid, row.normal);
+  const double sum =
+      rigids.compliance(row.ends[0].rigid, row.normal) + rigids.compliance(row.ends[1].rigid, row.normal);
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
@@ -87,14 +88,14 @@ class RigidRowCollector {
     ContactRow row;
     row.object = &b;
     row.position = from.getPositionWorldOnB();
-    row.own = pointOf(a, row.position);
-    row.rigid = pointOf(b, row.position);
+    row.ends[0].rigid = pointOf(a, row.position);
+    row.ends[1].rigid = pointOf(b, row.position);
     row.normal = from.m_normalWorldOnB;
     row.friction = from.m_combinedFriction;
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
     row.tangentStiffness = row.stiffness;
-    row.relative = rigids_.velocityAt(row.own, a, 0) - rigids_.velocityAt(row.rigid, b, 0);
+    row.relative = rigids_.velocityAt(row.ends[0].rigid, a, 0) - rigids_.velocityAt(row.ends[1].rigid, b, 0);
     const btVector3 along = from.m_appliedImpulseLateral1 * from.m_lateralFrictionDir1 +
                             from.m_appliedImpulseLateral2 * from.m_lateralFrictionDir2;
     const btScalar pushed = from.m_appliedImpulse;
@@ -169,9 +170,9 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
       if (point.unknown >= 0) point.jacobian = rigids_.addScalarJacobian(linear, angular);
       return point;
     };
-    row.own = at(a, vectorAt(from.linearA, k), vectorAt(from.angularA, k));
+    row.ends[0].rigid = at(a, vectorAt(from.linearA, k), vectorAt(from.angularA, k));
     // The other side's row has its own sign.
-    row.rigid = at(b, -vectorAt(from.linearB, k), -vectorAt(from.angularB, k));
+    row.ends[1].rigid = at(b, -vectorAt(from.linearB, k), -vectorAt(from.angularB, k));
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     if (!(row.effectiveMass > 0)) continue;
     const auto place = static_cast<std::size_t>(k) * JointRows::kStride;

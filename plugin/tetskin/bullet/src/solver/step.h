@@ -59,7 +59,7 @@ struct DeformableSolver::Parts {
   /// Of contacts and anchors, and of what rigid bodies are held by beside; each to the system that it acts on.
   void collectRows();
   void collectRigidRowsOfWorlds();
-  void joinByRigids();
+  void joinByRows();
   void goOn(SolvedBody& of);
   void speculate(const SolvedBody& of) const;
 

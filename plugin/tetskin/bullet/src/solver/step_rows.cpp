@@ -42,7 +42,7 @@ void DeformableSolver::Parts::collectRows() {
   rigids.clear();
   rows.collect(bodies, rigids, dt());
   collectRigidRowsOfWorlds();
-  joinByRigids();
+  joinByRows();
   for (SolvedBody& of : bodies.bodies()) {
     if (of.wasTouched && of.rowCount > 0) goOn(of);
   }
@@ -71,14 +71,18 @@ void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
   }
 }
 
-/// Soft bodies are solved for together where rows lead from one to the other by rigid bodies.
-void DeformableSolver::Parts::joinByRigids() {
+/// Soft bodies are solved for together where rows lead from one to the other, or by way of rigid bodies.
+void DeformableSolver::Parts::joinByRows() {
   const std::size_t bodyCount = bodies.bodies().size();
   DisjointSets sets(bodyCount + rigids.list().size());
-  const auto rigidSet = [&](const RigidPoint& point) { return static_cast<int>(bodyCount) + point.unknown; };
+  // Below 0: what moves as it is prescribed.
+  const auto memberOf = [&](const RowEnd& end) {
+    if (end.isSoft()) return static_cast<int>(end.body);
+    return end.rigid.unknown < 0 ? -1 : static_cast<int>(bodyCount) + end.rigid.unknown;
+  };
   for (const ContactRow& row : rows.rows()) {
-    if (row.nodeCount > 0 && row.rigid.unknown >= 0) sets.unite(static_cast<int>(row.body), rigidSet(row.rigid));
-    if (row.own.unknown >= 0 && row.rigid.unknown >= 0) sets.unite(rigidSet(row.own), rigidSet(row.rigid));
+    const int first = memberOf(row.ends[0]), second = memberOf(row.ends[1]);
+    if (first >= 0 && second >= 0) sets.unite(first, second);
   }
   std::unordered_map<int, std::vector<std::size_t>> groups;  // bodies, by set
   for (std::size_t b = 0; b < bodyCount; ++b) groups[sets.find(static_cast<int>(b))].push_back(b);
@@ -95,9 +99,8 @@ void DeformableSolver::Parts::joinByRigids() {
     return group == groups.end() ? nullptr : systemOf[group->second.front()];
   };
   for (ContactRow& row : rows.rows()) {
-    const RigidPoint& any = row.own.unknown >= 0 ? row.own : row.rigid;
-    SolvedSystem* system = row.nodeCount > 0 ? systemOf[row.body] : systemOfSet(rigidSet(any));
-    if (system) system->rows.push_back(&row);
+    const int member = std::max(memberOf(row.ends[0]), memberOf(row.ends[1]));
+    if (SolvedSystem* system = member < 0 ? nullptr : systemOfSet(member)) system->rows.push_back(&row);
   }
   for (std::size_t r = 0; r < rigids.list().size(); ++r) {
     if (SolvedSystem* system = systemOfSet(static_cast<int>(bodyCount + r))) system->rigids.push_back(r);

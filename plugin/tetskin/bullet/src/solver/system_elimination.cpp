@@ -45,8 +45,7 @@ void SystemSolve::numberRigids() {
 }
 
 void SystemSolve::collectParts() {
-  rowParts_.assign(system_.rows.size(), -1);
-  rowMotions_.assign(system_.rows.size(), RowMotions::Zero());
+  endParts_.assign(system_.rows.size(), {});
   for (const std::size_t b : system_.bodies) {
     const SolvedBody& of = step_.bodies.bodies()[b];
     // What others do to the nodes is not asked of parts.
@@ -64,12 +63,12 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
   unknown->body = body;
   unknown->first = fewSize_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.nodeCount == 0 || row.body != body) continue;
-    const RowMotions motions = unknown->motionsAt(dynamics, row);
-    if (motions.isZero(0.0)) continue;
-    rowMotions_[r] = motions;
-    rowParts_[r] = static_cast<int>(parts_.size());
+    for (std::size_t e = 0; e < 2; ++e) {
+      const RowEnd& end = system_.rows[r]->ends[e];
+      if (!end.isSoft() || end.body != body) continue;
+      const RowMotions motions = unknown->motionsAt(dynamics, end);
+      if (!motions.isZero(0.0)) endParts_[r][e] = {static_cast<int>(parts_.size()), motions};
+    }
   }
   parts_.push_back(std::move(*unknown));
   fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
@@ -107,25 +106,39 @@ void SystemSolve::matchParts() {
   }
 }
 
+bool SystemSolve::meetsFew(std::size_t r) const {
+  const ContactRow& row = *system_.rows[r];
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (row.ends[e].rigid.unknown >= 0 || endParts_[r][e].part >= 0) return true;
+  }
+  return false;
+}
+
+/// Of the part's six among the few unknowns.
+Eigen::Index SystemSolve::firstOf(const EndPart& of) const {
+  return parts_[static_cast<std::size_t>(of.part)].first;
+}
+
 /// What the few unknowns do to the velocity of a row.
 btVector3 SystemSolve::fewVelocity(std::size_t r, const Vector& few) const {
-  const ContactRow& row = *system_.rows[r];
-  btVector3 sum = step_.rigids.velocity(row.own, few) - step_.rigids.velocity(row.rigid, few);
-  if (rowParts_[r] >= 0) {
-    const PartUnknown& part = parts_[static_cast<std::size_t>(rowParts_[r])];
-    sum += toBullet(rowMotions_[r] * few.segment<6>(part.first));
+  btVector3 sum(0, 0, 0);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const EndPart& of = endParts_[r][e];
+    btVector3 velocity = step_.rigids.velocity(system_.rows[r]->ends[e].rigid, few);
+    if (of.part >= 0) velocity += toBullet(of.motions * few.segment<6>(firstOf(of)));
+    sum += btScalar(signOf(e)) * velocity;
   }
   return sum;
 }
 
 /// The other way round: what an impulse of the row is to the few unknowns.
 void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
-  const ContactRow& row = *system_.rows[r];
-  step_.rigids.addImpulse(row.own, push, to);
-  step_.rigids.addImpulse(row.rigid, -push, to);
-  if (rowParts_[r] < 0) return;
-  const PartUnknown& part = parts_[static_cast<std::size_t>(rowParts_[r])];
-  to.segment<6>(part.first) += rowMotions_[r].transpose() * toEigen(push);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const EndPart& of = endParts_[r][e];
+    const btVector3 own = btScalar(signOf(e)) * push;
+    step_.rigids.addImpulse(system_.rows[r]->ends[e].rigid, own, to);
+    if (of.part >= 0) to.segment<6>(firstOf(of)) += of.motions.transpose() * toEigen(own);
+  }
 }
 
 /// Without rows: what rigid bodies and parts have of momentum.
@@ -141,27 +154,34 @@ void SystemSolve::findFewResiduals() {
 /// Of the few unknowns, but for the masses of rigid bodies: what rows, and the masses of parts, couple them by.
 SystemSolve::Matrix SystemSolve::fewMatrix() const {
   Matrix few = Matrix::Zero(fewSize_, fewSize_);
-  const RigidUnknowns& rigids = step_.rigids;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state == ContactRow::State::Apart) continue;
-    const Eigen::Matrix3d h = toEigenMatrix(row.tangent);
-    rigids.addStiffness(row.rigid, row.rigid, h, 1.0, few);
-    rigids.addStiffness(row.own, row.own, h, 1.0, few);
-    rigids.addStiffness(row.rigid, row.own, h, -1.0, few);
-    rigids.addStiffness(row.own, row.rigid, h, -1.0, few);
-    if (rowParts_[r] < 0) continue;
-    const Eigen::Index first = parts_[static_cast<std::size_t>(rowParts_[r])].first;
-    few.block<6, 6>(first, first) += rowMotions_[r].transpose() * h * rowMotions_[r];
-    for (Eigen::Index k = 0; k < 6 && row.rigid.unknown >= 0; ++k) {
-      Vector push = Vector::Zero(rigidSize_);
-      rigids.addImpulse(row.rigid, toBullet(h * rowMotions_[r].col(k)), push);
-      few.col(first + k).head(rigidSize_) -= push;
-      few.row(first + k).head(rigidSize_) -= push.transpose();
+    if (system_.rows[r]->state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
+    for (std::size_t a = 0; a < 2; ++a) {
+      for (std::size_t b = 0; b < 2; ++b) addFewStiffness(r, a, b, h, few);
     }
   }
   for (const PartUnknown& part : parts_) few.block<6, 6>(part.first, part.first) += part.mass;
   return few;
+}
+
+/// Of two ends of a row; what couples a rigid body and a part is added both ways from the part's end.
+void SystemSolve::addFewStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
+                                  Matrix& few) const {
+  const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
+  const double sign = signOf(a) * signOf(b);
+  step_.rigids.addStiffness(first.rigid, second.rigid, h, sign, few);
+  const EndPart &part = endParts_[r][a], &other = endParts_[r][b];
+  if (part.part < 0) return;
+  if (other.part >= 0) {
+    few.block<6, 6>(firstOf(part), firstOf(other)) += sign * part.motions.transpose() * h * other.motions;
+  }
+  for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
+    Vector push = Vector::Zero(rigidSize_);
+    step_.rigids.addImpulse(second.rigid, toBullet(sign * h * part.motions.col(k)), push);
+    few.col(firstOf(part) + k).head(rigidSize_) += push;
+    few.row(firstOf(part) + k).head(rigidSize_) += push.transpose();
+  }
 }
 
 /// Rows of rigid bodies are multiplied by M^-1, in which axes may be locked.
@@ -184,13 +204,11 @@ void SystemSolve::addFew(const Vector& few, bool toResiduals) {
   const btScalar sign = toResiduals ? btScalar(-1) : btScalar(1);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    if (row.nodeCount == 0 || row.state == ContactRow::State::Apart) continue;
-    if (row.rigid.unknown < 0 && rowParts_[r] < 0) continue;
+    if (row.state == ContactRow::State::Apart || !meetsFew(r)) continue;
     const btVector3 push = sign * (row.tangent * fewVelocity(r, few));
-    const auto& matrix = step_.bodies.bodies()[row.body].dynamics->matrix();
-    for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
-      btScalar* to = target(row.body) + matrix.wideOf(static_cast<std::size_t>(row.nodes[k]));
-      toWide(fromWide(to) + row.weights[k] * push, to);
+    for (std::size_t e = 0; e < 2; ++e) {
+      const RowEnd& end = row.ends[e];
+      if (end.isSoft()) addToNodes(end, btScalar(signOf(e)) * push, target(end.body));
     }
   }
   for (const PartUnknown& part : parts_) {
@@ -203,8 +221,8 @@ SystemSolve::Vector SystemSolve::fewOf() const {
   Vector few = Vector::Zero(fewSize_);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    if (row.nodeCount == 0 || row.state == ContactRow::State::Apart) continue;
-    if (row.rigid.unknown >= 0 || rowParts_[r] >= 0) addRowPush(r, -(row.tangent * nodesOf(row, true)), few);
+    if (row.state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    addRowPush(r, -(row.tangent * nodesOf(row, true)), few);
   }
   for (const PartUnknown& part : parts_) {
     few.segment<6>(part.first) -= part.imageProducts(dynamicsOf(part).matrix().step());
@@ -212,8 +230,20 @@ SystemSolve::Vector SystemSolve::fewOf() const {
   return few;
 }
 
+/// What couples the nodes of two ends: the matrices have each end's own blocks.
+void SystemSolve::addCrossProducts() {
+  for (const ContactRow* row : system_.rows) {
+    if (!row->ends[0].isSoft() || !row->ends[1].isSoft() || row->state == ContactRow::State::Apart) continue;
+    for (std::size_t e = 0; e < 2; ++e) {
+      const RowEnd &end = row->ends[e], &other = row->ends[1 - e];
+      addToNodes(end, -(row->tangent * nodesOf(other, true)), step_.extras[end.body].data());
+    }
+  }
+}
+
 void SystemSolve::addProducts(std::vector<const btScalar*>& added) {
   step_.beginProducts(system_);
+  addCrossProducts();
   if (fewSize_ > 0) addFew(compliance_ * fewOf(), false);
   for (std::size_t k = 0; k < system_.bodies.size(); ++k) added[k] = step_.extras[system_.bodies[k]].data();
 }

@@ -24,7 +24,7 @@ void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
   for (int k = 0; k < 6; ++k) to[k] += factor * entries[k];
 }
 
-bool sameNodes(const ContactRow& a, const ContactRow& b) {
+bool sameNodes(const RowEnd& a, const RowEnd& b) {
   return a.body == b.body && a.nodeCount == b.nodeCount &&
          std::equal(a.nodes.begin(), a.nodes.begin() + a.nodeCount, b.nodes.begin());
 }
@@ -35,6 +35,8 @@ SystemSolve::SystemSolve(DeformableSolver::Parts& step, const SolvedSystem& syst
     : step_(step), system_(system), threads_(threads) {
   assert(!system.bodies.empty());
   states_.resize(system.bodies.size());
+  joinsSoft_ = std::any_of(system.rows.begin(), system.rows.end(),
+                           [](const ContactRow* row) { return row->ends[0].isSoft() && row->ends[1].isSoft(); });
   numberRigids();
   collectParts();
   moveIntoParts();
@@ -42,6 +44,10 @@ SystemSolve::SystemSolve(DeformableSolver::Parts& step, const SolvedSystem& syst
 
 SolvedBody& SystemSolve::bodyAt(std::size_t k) const {
   return step_.bodies.bodies()[system_.bodies[k]];
+}
+
+elastic_detail::BlockMatrix<btScalar>& SystemSolve::matrixOf(const RowEnd& end) const {
+  return step_.bodies.bodies()[end.body].dynamics->matrix();
 }
 
 SolveReport SystemSolve::solve() {
@@ -79,7 +85,7 @@ SolveReport SystemSolve::solve() {
 void SystemSolve::beginBounds() {
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
-    if (row.normalBound > 0 || row.joined || row.nodeCount == 0) continue;
+    if (row.normalBound > 0 || row.joined || !row.ends[0].isSoft()) continue;
     const btScalar towards = row.normal.dot(velocityOf(r)) + row.gapVelocity;
     row.normalBound = row.effectiveMass * std::max(-towards, btScalar(0));
   }
@@ -110,28 +116,32 @@ void SystemSolve::evaluateRows(btScalar kept, bool first) {
   }
 }
 
-btVector3 SystemSolve::nodesOf(const ContactRow& row, bool steps) const {
+btVector3 SystemSolve::nodesOf(const RowEnd& end, bool steps) const {
   btVector3 sum(0, 0, 0);
-  if (row.nodeCount == 0) return sum;
-  const auto& matrix = step_.bodies.bodies()[row.body].dynamics->matrix();
-  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
-    const auto node = static_cast<std::size_t>(row.nodes[k]);
-    sum += row.weights[k] * (steps ? fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(node))
+  if (!end.isSoft()) return sum;
+  const auto& matrix = matrixOf(end);
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    const auto node = static_cast<std::size_t>(end.nodes[k]);
+    sum += end.weights[k] * (steps ? fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(node))
                                    : fromWide(matrix.solution() + matrix.wideOf(node)));
   }
   return sum;
+}
+
+btVector3 SystemSolve::nodesOf(const ContactRow& row, bool steps) const {
+  return nodesOf(row.ends[0], steps) - nodesOf(row.ends[1], steps);
 }
 
 btVector3 SystemSolve::velocityOf(std::size_t r) const {
   return system_.rows[r]->relative + nodesOf(*system_.rows[r], false) + fewVelocity(r, few_);
 }
 
-void SystemSolve::addToNodes(const ContactRow& row, const btVector3& impulse) {
-  if (row.nodeCount == 0) return;
-  auto& matrix = step_.bodies.bodies()[row.body].dynamics->matrix();
-  for (std::uint32_t k = 0; k < row.nodeCount; ++k) {
-    btScalar* to = matrix.residual() + matrix.wideOf(static_cast<std::size_t>(row.nodes[k]));
-    toWide(fromWide(to) + row.weights[k] * impulse, to);
+/// to  of the end's body, wide
+void SystemSolve::addToNodes(const RowEnd& end, const btVector3& impulse, btScalar* to) const {
+  const auto& matrix = matrixOf(end);
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    btScalar* at = to + matrix.wideOf(static_cast<std::size_t>(end.nodes[k]));
+    toWide(fromWide(at) + end.weights[k] * impulse, at);
   }
 }
 
@@ -146,7 +156,7 @@ bool SystemSolve::start(int pass) {
   elastic_detail::ConjugateGradient<btScalar>::Matrices matrices;
   for (std::size_t k = 0; k < states_.size(); ++k) matrices.push_back(&bodyAt(k).dynamics->matrix());
   elastic_detail::ConjugateGradient<btScalar>::Extra extra;
-  if (!system_.forces.empty() || fewSize_ > 0) {
+  if (!system_.forces.empty() || fewSize_ > 0 || joinsSoft_) {
     extra = [this](std::vector<const btScalar*>& added) { addProducts(added); };
   }
   auto& solve = *bodyAt(0).solve;
@@ -170,35 +180,42 @@ void SystemSolve::addImpulses() {
   findFewResiduals();
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    addToNodes(row, row.impulse);
+    for (std::size_t e = 0; e < 2; ++e) {
+      if (row.ends[e].isSoft())
+        addToNodes(row.ends[e], btScalar(signOf(e)) * row.impulse, matrixOf(row.ends[e]).residual());
+    }
     addRowPush(r, row.impulse - row.given, fewResidual_);
   }
 }
 
 /// Rows of one tet at once.
 void SystemSolve::addTangents() {
-  for (std::size_t first = 0; first < system_.rows.size();) {
-    std::size_t last = first + 1;
-    while (last < system_.rows.size() && sameNodes(*system_.rows[first], *system_.rows[last])) ++last;
-    addBlocks(first, last);
-    first = last;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const auto endAt = [&](std::size_t r) -> const RowEnd& { return system_.rows[r]->ends[e]; };
+    for (std::size_t first = 0; first < system_.rows.size();) {
+      std::size_t last = first + 1;
+      while (last < system_.rows.size() && sameNodes(endAt(first), endAt(last))) ++last;
+      if (endAt(first).isSoft()) addBlocks(e, first, last);
+      first = last;
+    }
   }
 }
 
 /// Of nodes that no tet has both the matrix has no block: they are as stiff each by itself as they are together.
-void SystemSolve::addBlocks(std::size_t first, std::size_t last) {
-  const ContactRow& any = *system_.rows[first];
-  if (any.nodeCount == 0) return;
-  auto& matrix = step_.bodies.bodies()[any.body].dynamics->matrix();
+/// end  of the rows
+void SystemSolve::addBlocks(std::size_t end, std::size_t first, std::size_t last) {
+  const RowEnd& any = system_.rows[first]->ends[end];
+  auto& matrix = matrixOf(any);
   btScalar blocks[kMaxPointNodes][kMaxPointNodes][6] = {};  // the lower triangle
   for (std::size_t r = first; r < last; ++r) {
     const ContactRow& row = *system_.rows[r];
     if (row.state == ContactRow::State::Apart) continue;
     const btMatrix3x3& h = row.tangent;
     const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
-    for (std::uint32_t i = 0; i < row.nodeCount; ++i) {
+    const auto& weights = row.ends[end].weights;
+    for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
       for (std::uint32_t j = 0; j <= i; ++j) {
-        const btScalar weight = row.weights[i] * row.weights[j];
+        const btScalar weight = weights[i] * weights[j];
         for (int k = 0; k < 6; ++k) blocks[i][j][k] += weight * tangent[k];
       }
     }
@@ -206,7 +223,7 @@ void SystemSolve::addBlocks(std::size_t first, std::size_t last) {
   for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
     for (std::uint32_t j = 0; j < i; ++j) {
       const auto a = static_cast<std::size_t>(any.nodes[i]), b = static_cast<std::size_t>(any.nodes[j]);
-      if (!matrix.couple(a, b, blocks[i][j])) addApart(first, last, i, j, blocks);
+      if (!matrix.couple(a, b, blocks[i][j])) addApart(end, first, last, i, j, blocks);
     }
   }
   for (std::uint32_t i = 0; i < any.nodeCount; ++i) {
@@ -214,12 +231,12 @@ void SystemSolve::addBlocks(std::size_t first, std::size_t last) {
   }
 }
 
-void SystemSolve::addApart(std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
+void SystemSolve::addApart(std::size_t end, std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
                            btScalar (&blocks)[kMaxPointNodes][kMaxPointNodes][6]) const {
   for (std::size_t r = first; r < last; ++r) {
     const ContactRow& row = *system_.rows[r];
     if (row.state == ContactRow::State::Apart) continue;
-    const btScalar weight = std::abs(row.weights[i] * row.weights[j]);
+    const btScalar weight = std::abs(row.ends[end].weights[i] * row.ends[end].weights[j]);
     addSymmetric(row.tangent, weight, blocks[i][i]);
     addSymmetric(row.tangent, weight, blocks[j][j]);
   }
@@ -249,12 +266,16 @@ void SystemSolve::giveMomentum() {
   }
   for (const ContactRow* row : system_.rows) {
     const btVector3 more = row->impulse - row->given;
-    step_.rigids.addImpulse(row->own, more, push);
-    step_.rigids.addImpulse(row->rigid, -more, push);
-    for (std::uint32_t n = 0; n < row->nodeCount; ++n) {
-      auto& to = impulses[places[row->body]][static_cast<std::size_t>(row->nodes[n])];
-      for (int k = 0; k < 3; ++k) {
-        to[static_cast<std::size_t>(k)] += static_cast<double>(row->weights[n]) * static_cast<double>(row->impulse[k]);
+    for (std::size_t e = 0; e < 2; ++e) {
+      const RowEnd& end = row->ends[e];
+      const btScalar sign = btScalar(signOf(e));
+      step_.rigids.addImpulse(end.rigid, sign * more, push);
+      for (std::uint32_t n = 0; n < end.nodeCount; ++n) {
+        auto& to = impulses[places[end.body]][static_cast<std::size_t>(end.nodes[n])];
+        for (int k = 0; k < 3; ++k) {
+          const auto of = static_cast<double>(sign * row->impulse[k]);
+          to[static_cast<std::size_t>(k)] += static_cast<double>(end.weights[n]) * of;
+        }
       }
     }
   }

@@ -35,11 +35,17 @@ class SystemSolve {
  private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
+  /// The part that an end of a row is of.
+  struct EndPart {
+    int part = -1;                            ///< in `parts_`; below 0: none that is solved for by itself
+    RowMotions motions = RowMotions::Zero();  ///< Z there
+  };
   struct BodyState {
     std::vector<btScalar> solution, residual;  ///< wide, when a pass began; of elasticity and others alone
   };
 
   SolvedBody& bodyAt(std::size_t k) const;
+  elastic_detail::BlockMatrix<btScalar>& matrixOf(const RowEnd& end) const;
 
   // A pass: system_solve.cpp.
   void beginBounds();
@@ -49,12 +55,13 @@ class SystemSolve {
   void keepState();
   void addImpulses();
   void addTangents();
-  void addBlocks(std::size_t first, std::size_t last);
-  void addApart(std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
+  void addBlocks(std::size_t end, std::size_t first, std::size_t last);
+  void addApart(std::size_t end, std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
                 btScalar (&blocks)[kMaxPointNodes][kMaxPointNodes][6]) const;
-  void addToNodes(const ContactRow& row, const btVector3& impulse);
+  void addToNodes(const RowEnd& end, const btVector3& impulse, btScalar* to) const;
   btVector3 velocityOf(std::size_t row) const;
   btVector3 nodesOf(const ContactRow& row, bool steps) const;
+  btVector3 nodesOf(const RowEnd& end, bool steps) const;
   void refreshBounds();
   void giveMomentum();
 
@@ -69,9 +76,13 @@ class SystemSolve {
   void matchParts();
   void findFewResiduals();
   Matrix fewMatrix() const;
+  void addFewStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h, Matrix& few) const;
+  Eigen::Index firstOf(const EndPart& of) const;
   void eliminate();
   void addFew(const Vector& few, bool toResiduals);
   Vector fewOf() const;
+  bool meetsFew(std::size_t row) const;
+  void addCrossProducts();
   void addProducts(std::vector<const btScalar*>& added);
   void moveFew();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
@@ -90,10 +101,10 @@ class SystemSolve {
   DeformableSolver::Parts& step_;
   const SolvedSystem& system_;
   ParallelFor* threads_;
+  bool joinsSoft_ = false;         ///< any row two points of soft bodies
   std::vector<BodyState> states_;  ///< by body of the system
   std::vector<PartUnknown> parts_;
-  std::vector<RowMotions> rowMotions_;  ///< by row: Z where it acts
-  std::vector<int> rowParts_;           ///< by row: in `parts_`, or below 0
+  std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
   // Few unknowns: V of rigid bodies, and then q of parts.
   Eigen::Index rigidSize_ = 0, fewSize_ = 0;
   Vector few_, fewStep_, fewResidual_;  ///< as they are; of the pass, their growth and what is left of their equations
