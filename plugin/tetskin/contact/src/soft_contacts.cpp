@@ -11,7 +11,6 @@ namespace tetskin {
 namespace {
 
 using contact_detail::ContactForce;
-using contact_detail::ContactRow;
 
 Status invalidContact(const char* message) {
   return {StatusCode::InvalidOption, message};
@@ -40,7 +39,7 @@ bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, 
 
 struct SoftContacts::Parts {
   Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, DeformableSolver& ofSolver, const SoftContactOptions& options)
-      : world(ofWorld), solver(ofSolver), force(ofSolver, ofWorld.getWorldInfo(), options) {}
+      : world(ofWorld), solver(ofSolver), force(options) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
   DeformableSolver& solver;
@@ -99,10 +98,11 @@ IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
 
 std::vector<SoftContact> SoftContacts::contacts() const {
   std::vector<SoftContact> contacts;
-  for (const ContactRow& row : parts_->force.rows()) {
-    if (!row.live()) continue;
+  for (const SoftPointContact& from : parts_->force.contacts()) {
+    const btScalar impulse = from.normal.dot(from.impulse);
+    if (!(impulse > 0)) continue;
     contacts.push_back(
-        {row.sides[0].of->body, row.sides[1].of->body, row.point, row.normal, row.distance, row.impulse});
+        {from.body, btSoftBody::upcast(from.object), from.position, from.normal, from.distance, impulse});
   }
   return contacts;
 }

@@ -77,7 +77,7 @@ struct Sticking {
   std::uint32_t point = 0;
   const btCollisionObject* object = nullptr;
   btVector3 normal;
-  btVector3 place;           ///< in the object's frame
+  btVector3 place;           ///< in the object's frame; against a soft body: how far it is from there, world space
   btScalar normalForce = 0;  ///< of the step
   bool stuck = false;        ///< and did not slide
 };

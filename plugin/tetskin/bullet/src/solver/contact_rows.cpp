@@ -82,21 +82,26 @@ bool isFinite(const PointContact& contact) {
   return std::isfinite(contact.distance) && !isNoNumber(contact.normal) && !isNoNumber(contact.position);
 }
 
-bool anyFree(const SolvedBody& body, const RowEnd& end) {
+bool isFree(const SolverBodies& bodies, const RowEnd& end) {
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
-    if (body.body->m_nodes[end.nodes[k]].m_im > 0) return true;
+    if (bodies.bodies()[end.body].body->m_nodes[end.nodes[k]].m_im > 0) return true;
   }
   return false;
 }
 
-/// Over what it meets.
-btVector3 relativeVelocity(const SolvedBody& body, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
-  const RowEnd& own = row.ends[0];
+/// Where nothing is solved for yet; 0 of what no nodes carry.
+btVector3 carriedVelocity(const SolverBodies& bodies, const RowEnd& end) {
   btVector3 sum(0, 0, 0);
-  for (std::uint32_t k = 0; k < own.nodeCount; ++k) {
-    sum += own.weights[k] * fromPoint(body.dynamics->velocity(static_cast<std::size_t>(own.nodes[k])));
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    const auto node = static_cast<std::size_t>(end.nodes[k]);
+    sum += end.weights[k] * fromPoint(bodies.bodies()[end.body].dynamics->velocity(node));
   }
-  return sum - rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
+  return sum;
+}
+
+/// Over what it meets, which is rigid.
+btVector3 relativeVelocity(const SolverBodies& bodies, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
+  return carriedVelocity(bodies, row.ends[0]) - rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
 }
 
 /// A kinematic body is already where the step takes it when contacts are looked for: by how much it has moved to there,
@@ -126,6 +131,10 @@ btVector3 roundingOf(const btVector3& position) {
   return kRounding * SIMD_EPSILON * position.absolute();
 }
 
+btScalar seenGap(btScalar gap, const ContactRow& row) {
+  return gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
+}
+
 /// Without what is rounding.
 btVector3 seenPart(const btVector3& offset, const btVector3& position) {
   const btVector3 rounding = roundingOf(position);
@@ -147,7 +156,7 @@ void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
   for (auto known = range.first; known != range.second; ++known) {
     if (known->object != row.object || known->normal.dot(row.normal) < kSameNormal) continue;
     row.stickingPlace = known->place;
-    btVector3 offset = row.position - frame * known->place;
+    btVector3 offset = row.ends[1].isSoft() ? known->place : row.position - frame * known->place;
     offset -= row.normal.dot(offset) * row.normal;
     row.offsetVelocity = seenPart(offset, row.position) / seconds;
     row.normalBound = known->normalForce * seconds;
@@ -191,29 +200,66 @@ Sticking stickingOf(const ContactRow& row, btScalar seconds) {
   kept.normalForce = along / seconds;
   kept.place = row.stickingPlace;
   kept.stuck = row.state == ContactRow::State::Sticks;
+  if (row.ends[1].isSoft()) kept.place = (row.slip + row.offsetVelocity) * seconds;
   if (row.state != ContactRow::State::Slides || !(row.tangentStiffness > 0)) return kept;
   const btVector3 reached = (row.slip + row.offsetVelocity) * seconds;
   const btVector3 held = -(row.impulse - along * row.normal) * (seconds / row.tangentStiffness);
+  if (row.ends[1].isSoft()) {
+    kept.place = held;
+    return kept;
+  }
   kept.place += row.object->getWorldTransform().getBasis().transpose() * (reached - held);
   return kept;
 }
 
 }  // namespace
 
-void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds) {
+void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<ContactSource*>& sources,
+                          btScalar seconds) {
   rows_.clear();
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
     SolvedBody& body = bodies.bodies()[b];
     if (!body.elastic) continue;
     const std::size_t before = rows_.size();
-    addBody(b, body, rigids, seconds);
-    addAnchors(b, body, rigids, seconds);
+    addBody(bodies, b, rigids, seconds);
+    addAnchors(bodies, b, rigids, seconds);
     body.rowCount = static_cast<int>(rows_.size() - before);
+  }
+  for (ContactSource* source : sources) {
+    for (SoftPointContact& contact : source->find(seconds)) addSoft(bodies, contact, seconds);
   }
   setStiffness(bodies, rigids);
 }
 
-void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
+/// What sleeps is not moved by it.
+void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btScalar seconds) {
+  contact.impulse.setZero();
+  const std::size_t index = bodies.placeOf(contact.body);
+  if (index == bodies.bodies().size() || !isFinite(contact)) return;
+  ContactRow row = rowOf(index, contact);
+  const auto* object = btSoftBody::upcast(contact.object);
+  const std::size_t other = bodies.placeOf(object);
+  const bool moves = other < bodies.bodies().size();
+  if (moves) {
+    row.ends[1].body = other;
+    row.ends[1].nodeCount = 4;
+    std::copy(contact.objectNodes.begin(), contact.objectNodes.end(), row.ends[1].nodes.begin());
+    std::copy(contact.objectWeights.begin(), contact.objectWeights.end(), row.ends[1].weights.begin());
+  }
+  row.relative = carriedVelocity(bodies, row.ends[0]) - carriedVelocity(bodies, row.ends[1]);
+  const bool anyFree = isFree(bodies, row.ends[0]) || isFree(bodies, row.ends[1]);
+  if (!anyFree || isNoNumber(row.relative)) return;
+  const btScalar pushingOut = kPushingOut * std::min(sizeOf(*contact.body), sizeOf(*object));
+  row.gapVelocity = std::max(seenGap(contact.distance, row) / seconds, -pushingOut);
+  recall(bodies.bodies()[index], seconds, row);
+  rows_.push_back(row);
+  for (const RowEnd& end : row.ends) {
+    if (end.isSoft()) ++bodies.bodies()[end.body].rowCount;
+  }
+}
+
+void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
+  SolvedBody& body = bodies.bodies()[index];
   auto* own = bodyWithTrees(*body.body);
   readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
   if (own) own->setSpeculation(0);
@@ -222,14 +268,12 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
     contact.impulse.setZero();
     if (!contact.object || !contact.object->hasContactResponse() || !isFinite(contact)) return;
     ContactRow row = rowOf(index, contact);
-    if (!anyFree(body, row.ends[0])) return;
+    if (!isFree(bodies, row.ends[0])) return;
     row.ends[1].rigid = rigids.at(*row.object, row.position);
-    row.relative = relativeVelocity(body, row, rigids, seconds);
+    row.relative = relativeVelocity(bodies, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
     const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
-    const btScalar seen =
-        gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
-    row.gapVelocity = std::max(seen / seconds, -pushingOut);
+    row.gapVelocity = std::max(seenGap(gap, row) / seconds, -pushingOut);
     recall(body, seconds, row);
     rows_.push_back(row);
   };
@@ -238,7 +282,8 @@ void ContactRows::addBody(std::size_t index, SolvedBody& body, RigidUnknowns& ri
   for (PointContact& contact : own->pointContacts()) add(contact);
 }
 
-void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnknowns& rigids, btScalar seconds) {
+void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
+  const SolvedBody& body = bodies.bodies()[index];
   const auto& anchors = body.body->m_deformableAnchors;
   for (int k = 0; k < anchors.size(); ++k) {
     if (!(anchors[k].m_node->m_im > 0) || !anchors[k].m_cti.m_colObj) continue;
@@ -253,7 +298,7 @@ void ContactRows::addAnchors(std::size_t index, const SolvedBody& body, RigidUnk
     row.position = row.object->getWorldTransform() * anchors[k].m_local;
     row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.offsetVelocity = (anchors[k].m_node->m_x - row.position) / seconds;
-    row.relative = relativeVelocity(body, row, rigids, seconds);
+    row.relative = relativeVelocity(bodies, row, rigids, seconds);
     rows_.push_back(row);
   }
 }
@@ -287,11 +332,17 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
 }
 
 void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
-  for (SolvedBody& body : bodies.bodies()) body.sticking->clear();
+  for (SolvedBody& body : bodies.bodies()) {
+    body.sticking->clear();
+    *body.touches = false;
+  }
   for (const ContactRow& row : rows_) {
     if (row.contact) row.contact->impulse = row.impulse;
     if (row.joined || row.state == ContactRow::State::Apart) continue;
     bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
+    for (const RowEnd& end : row.ends) {
+      if (end.isSoft()) *bodies.bodies()[end.body].touches = true;
+    }
   }
   for (SolvedBody& body : bodies.bodies()) {
     std::stable_sort(body.sticking->begin(), body.sticking->end(),

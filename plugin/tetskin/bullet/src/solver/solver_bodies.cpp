@@ -109,7 +109,8 @@ void SolverBodies::lendKept() {
     const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
     of.sticking = &kept.sticking;
     of.bulletsContacts = &kept.bulletsContacts;
-    of.wasTouched = !kept.sticking.empty();
+    of.touches = &kept.touches;
+    of.wasTouched = kept.touches;
     of.paddedTrees = &kept.paddedTrees;
     of.solve = &kept.solve;
     if (kept.paddedTrees.points.size() != 3 * nodes) kept.paddedTrees.ready = false;

@@ -39,6 +39,7 @@ struct SolvedBody {
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;            ///< in this step; of bodies that are coupled, the first one's are for all
   int rowCount = 0;              ///< of contacts and anchors
+  bool* touches = nullptr;       ///< for the next step
   bool wasTouched = false;       ///< in the step before
   bool waits = false;            ///< it is solved for when contacts are known, and not before
   std::vector<FixedNode> fixed;  ///< but held ones
@@ -83,6 +84,8 @@ class SolverBodies {
   std::vector<SolvedSystem>& systems() { return systems_; }
   /// The body of a node, by its number.
   SolvedBody& bodyOf(int node);
+  /// In `bodies`; as many as there are if it is not awake.
+  std::size_t placeOf(const btSoftBody* body) const;
 
  private:
   void listAwake();
@@ -94,12 +97,11 @@ class SolverBodies {
   std::vector<std::vector<std::size_t>> coupledBy(const btDeformableLagrangianForce& force) const;
   /// The places of the awake bodies that a force acts on itself, and may couple.
   std::vector<std::size_t> actedOnBy(const btDeformableLagrangianForce& force) const;
-  /// In `bodies`; as many as there are if it is not awake.
-  std::size_t placeOf(const btSoftBody* body) const;
 
   struct Kept {
     std::unique_ptr<Dynamics> masses;  ///< of a body without elastic force
     std::vector<Sticking> sticking;
+    bool touches = false;  ///< any row acts on it
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;

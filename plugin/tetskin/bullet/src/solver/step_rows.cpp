@@ -40,7 +40,11 @@ void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
 
 void DeformableSolver::Parts::collectRows() {
   rigids.clear();
-  rows.collect(bodies, rigids, dt());
+  std::vector<ContactSource*> sources;
+  for (int i = 0; i < forces().size(); ++i) {
+    if (auto* source = dynamic_cast<ContactSource*>(forces()[i])) sources.push_back(source);
+  }
+  rows.collect(bodies, rigids, sources, dt());
   collectRigidRowsOfWorlds();
   joinByRows();
   for (SolvedBody& of : bodies.bodies()) {

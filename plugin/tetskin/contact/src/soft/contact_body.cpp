@@ -53,13 +53,6 @@ void ContactBody::measureTravel(const btVector3& newMiddle) {
   read_ = positions;
 }
 
-void ContactBody::writePositions() {
-  for (std::size_t n = 0; n < positions.size(); ++n) {
-    btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
-    node.m_x = node.m_q = positions[n];
-  }
-}
-
 const ContactBox& ContactBody::carry(int run) {
   const ShapeData& of = data();
   const auto r = static_cast<std::size_t>(run);

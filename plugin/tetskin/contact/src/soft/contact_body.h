@@ -47,8 +47,6 @@ class ContactBody {
   /// The boxes that these return, after `fit`.
   const ContactBox& runBox(int run) const { return runBoxes_[static_cast<std::size_t>(run)]; }
   const ContactBox& tetBox(int tet) const { return boxes_[static_cast<std::size_t>(tet)]; }
-  /// After some positions have changed a little: the nodes get them.
-  void writePositions();
 
   /// Of a run that has been carried.
   btVector3 sampleAt(int sample) const {
@@ -57,8 +55,6 @@ class ContactBody {
   }
   /// Of a point of a tet.
   btVector3 velocityAt(int tet, const btScalar weights[4]) const;
-  bool movable(int node) const { return awake && body->m_nodes[node].m_im > 0; }
-  btScalar inverseMass(int node) const { return awake ? body->m_nodes[node].m_im : 0; }
 
   btSoftBody* body;
   std::shared_ptr<const ContactShape> shape;
@@ -70,7 +66,7 @@ class ContactBody {
   ContactBox box;
   btVector3 middle{0, 0, 0};  ///< of the nodes
   double travelled = 0;       ///< in all steps so far, of the nodes against their middle: no less than the furthest has
-  std::vector<btVector3> positions, velocities;        ///< by node; velocities are the solver's to fill
+  std::vector<btVector3> positions;                    ///< by node
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, after `fit`
   std::vector<btScalar> samples[3];                    ///< coordinates, one after the other
 
