@@ -98,7 +98,7 @@ IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
 
 std::vector<SoftContact> SoftContacts::contacts() const {
   std::vector<SoftContact> contacts;
-  for (const SoftPointContact& from : parts_->force.contacts()) {
+  for (const SoftPointContact& from : parts_->force.lastContacts()) {
     const btScalar impulse = from.normal.dot(from.impulse);
     if (!(impulse > 0)) continue;
     contacts.push_back(

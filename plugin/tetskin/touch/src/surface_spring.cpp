@@ -80,14 +80,13 @@ btTransform at(const btVector3& pivot) {
 }  // namespace
 
 struct SurfaceSpring::Parts {
-  Parts(btDiscreteDynamicsWorld& world, const SurfacePoint& point, std::unique_ptr<Partner> partner,
-        const JointSettings& settings)
-      : owner(world, std::make_shared<Joint>(point, std::move(partner), settings)) {}
+  Parts(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings)
+      : owner(std::make_shared<Joint>(point, std::move(partner), settings)) {}
 
   static Result<std::unique_ptr<SurfaceSpring>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                      std::unique_ptr<Partner> partner, const Options& options) {
     const JointSettings settings = settingsOf(world, point, *partner, options);
-    auto parts = std::make_unique<Parts>(world, point, std::move(partner), settings);
+    auto parts = std::make_unique<Parts>(point, std::move(partner), settings);
     return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(parts)));
   }
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Options& options) {
@@ -154,12 +153,12 @@ TouchStatus SurfaceSpring::status() const {
 }
 
 btVector3 SurfaceSpring::force() const {
-  return toBullet(parts_->owner.joint().load().head<3>());
+  return parts_->owner.joint().force();
 }
 
 btScalar SurfaceSpring::stretch() const {
   if (status() != TouchStatus::Ok) return 0;
-  return static_cast<btScalar>(parts_->owner.joint().offset().head<3>().norm());
+  return parts_->owner.joint().offset().length();
 }
 
 void SurfaceSpring::release() {

@@ -16,9 +16,6 @@ using touch_detail::JointOwner;
 using touch_detail::JointSettings;
 using touch_detail::Partner;
 
-/// As a spring's: a body of ten times the soft one's weight hangs on it within 1e-5 of a size.
-constexpr double kWeldStiffness = 3e4;
-
 /// Where the point is, in the object's own space.
 btTransform anchorIn(const btTransform& object, const SurfacePoint& point) {
   return btTransform(btMatrix3x3::getIdentity(), object.invXform(*point.position()));
@@ -27,18 +24,15 @@ btTransform anchorIn(const btTransform& object, const SurfacePoint& point) {
 }  // namespace
 
 struct SurfaceWeld::Parts {
-  Parts(btDiscreteDynamicsWorld& world, const SurfacePoint& point, std::unique_ptr<Partner> partner,
-        const JointSettings& settings)
-      : owner(world, std::make_shared<Joint>(point, std::move(partner), settings)) {}
+  Parts(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings)
+      : owner(std::make_shared<Joint>(point, std::move(partner), settings)) {}
 
-  static Result<std::unique_ptr<SurfaceWeld>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
-                                                   std::unique_ptr<Partner> partner, bool collide) {
+  static Result<std::unique_ptr<SurfaceWeld>> make(const SurfacePoint& point, std::unique_ptr<Partner> partner,
+                                                   bool collide) {
     JointSettings settings;
     settings.turns = true;
-    settings.stiffness = kWeldStiffness;
     settings.collide = collide;
-    return std::unique_ptr<SurfaceWeld>(
-        new SurfaceWeld(std::make_unique<Parts>(world, point, std::move(partner), settings)));
+    return std::unique_ptr<SurfaceWeld>(new SurfaceWeld(std::make_unique<Parts>(point, std::move(partner), settings)));
   }
 
   JointOwner owner;
@@ -50,32 +44,31 @@ SurfaceWeld::~SurfaceWeld() = default;
 Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                       btRigidBody& rigid, bool collide) {
   if (Status status = JointOwner::check(world, point); !status.ok()) return status;
-  return Parts::make(world, point, touch_detail::rigidPartner(rigid, anchorIn(rigid.getWorldTransform(), point)),
-                     collide);
+  return Parts::make(point, touch_detail::rigidPartner(rigid, anchorIn(rigid.getWorldTransform(), point)), collide);
 }
 
 Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                       btMultiBodyLinkCollider& link, bool collide) {
   if (Status status = JointOwner::check(world, point); !status.ok()) return status;
-  return Parts::make(world, point, touch_detail::linkPartner(link, anchorIn(link.getWorldTransform(), point)), collide);
+  return Parts::make(point, touch_detail::linkPartner(link, anchorIn(link.getWorldTransform(), point)), collide);
 }
 
 TouchStatus SurfaceWeld::status() const {
   return parts_->owner.status();
 }
 btVector3 SurfaceWeld::force() const {
-  return toBullet(parts_->owner.joint().load().head<3>());
+  return parts_->owner.joint().force();
 }
 btVector3 SurfaceWeld::torque() const {
-  return toBullet(parts_->owner.joint().load().tail<3>());
+  return parts_->owner.joint().torque();
 }
 btScalar SurfaceWeld::separation() const {
   if (status() != TouchStatus::Ok) return 0;
-  return static_cast<btScalar>(parts_->owner.joint().offset().head<3>().norm());
+  return parts_->owner.joint().offset().length();
 }
 btScalar SurfaceWeld::turn() const {
   if (status() != TouchStatus::Ok) return 0;
-  return static_cast<btScalar>(parts_->owner.joint().offset().tail<3>().norm());
+  return parts_->owner.joint().turn();
 }
 void SurfaceWeld::release() {
   parts_->owner.release();

@@ -13,6 +13,21 @@ btMatrix3x3 square(const btVector3& a) {
           a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
 }
 
+btVector3 jointImpulse(const ContactRow& row, const btVector3& u, ContactRow::State& state) {
+  const btVector3 wanted = -row.stiffness * (row.directions * (u + row.offsetVelocity));
+  const btScalar length = wanted.length();
+  state = length > row.highest ? ContactRow::State::Slides : ContactRow::State::Sticks;
+  return length > row.highest ? wanted * (row.highest / length) : wanted;
+}
+
+/// As of friction.
+btMatrix3x3 jointTangent(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
+  if (state == ContactRow::State::Sticks) return row.directions * row.stiffness;
+  const btVector3 way = row.directions * (u + row.offsetVelocity);
+  const btScalar length = std::max(way.length(), SIMD_EPSILON);
+  return (row.directions - square(way / length) * (1 - kept)) * (row.highest / length);
+}
+
 /// Along the surface, the offset included.
 btVector3 slip(const ContactRow& row, const btVector3& u) {
   return u - row.normal.dot(u) * row.normal + row.offsetVelocity;
@@ -22,10 +37,7 @@ btVector3 slip(const ContactRow& row, const btVector3& u) {
 
 btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state) {
   using State = ContactRow::State;
-  if (row.joined) {
-    state = State::Sticks;
-    return -row.stiffness * (u + row.offsetVelocity);
-  }
+  if (row.joined) return jointImpulse(row, u, state);
   const btScalar wanted = -row.stiffness * (row.normal.dot(u) + row.gapVelocity);
   const btScalar normal = std::min(std::max(wanted, row.lowest), row.highest);
   state = State::Apart;
@@ -43,7 +55,7 @@ btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, Cont
 btMatrix3x3 tangentAt(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
   using State = ContactRow::State;
   const btMatrix3x3 one = btMatrix3x3::getIdentity();
-  if (row.joined) return one * row.stiffness;
+  if (row.joined) return jointTangent(row, u, state, kept);
   if (state == State::Apart) return one * btScalar(0);
   const btMatrix3x3 across = one - square(row.normal);
   btMatrix3x3 along = across * row.tangentStiffness;

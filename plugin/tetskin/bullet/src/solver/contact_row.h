@@ -18,7 +18,7 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
-#include <tetskin/bullet/src/shared/bodies/point_contacts.h>
+#include <tetskin/bullet/src/shared/solver/row_source.h>
 #include <tetskin/bullet/src/solver/rigid_unknowns.h>
 
 namespace tetskin {
@@ -42,13 +42,16 @@ struct ContactRow {
   std::array<RowEnd, 2> ends;
   const btCollisionObject* object = nullptr;  ///< that the second is of
 
-  btVector3 position;               ///< of both, when the step begins
-  PointContact* contact = nullptr;  ///< that it is of, if any
-  std::uint32_t point = 0;          ///< its number
-  bool joined = false;              ///< in all directions, pulling, too
+  btVector3 position;                                   ///< of both, when the step begins
+  PointContact* contact = nullptr;                      ///< that it is of, if any
+  std::uint32_t point = 0;                              ///< its number
+  bool joined = false;                                  ///< by a penalty that pulls, too, no more than `highest`
+  PointJoint* joint = nullptr;                          ///< that it is of, if any
+  btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< of a joined one: a projection to those that are held
 
   btVector3 normal;
-  btScalar lowest = 0, highest = BT_LARGE_FLOAT;  ///< of the impulse along the normal
+  btScalar lowest = 0,
+           highest = BT_LARGE_FLOAT;  ///< of the impulse along the normal; of a joined one, in any direction
   btScalar friction = 0;
   btScalar stiffness = 0;             ///< D, in masses
   btScalar tangentStiffness = 0;      ///< T

@@ -186,6 +186,7 @@ double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const Ri
     }
     return sum;
   };
+  if (row.joined && row.stiffness > 0) return 0.0;  // nobody asks
   const double sum = row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
@@ -214,7 +215,7 @@ Sticking stickingOf(const ContactRow& row, btScalar seconds) {
 
 }  // namespace
 
-void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<ContactSource*>& sources,
+void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources,
                           btScalar seconds) {
   rows_.clear();
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
@@ -225,8 +226,13 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std
     addAnchors(bodies, b, rigids, seconds);
     body.rowCount = static_cast<int>(rows_.size() - before);
   }
-  for (ContactSource* source : sources) {
-    for (SoftPointContact& contact : source->find(seconds)) addSoft(bodies, contact, seconds);
+  for (RowSource* source : sources) {
+    if (auto* contacts = source->contacts(seconds)) {
+      for (SoftPointContact& contact : *contacts) addSoft(bodies, contact, seconds);
+    }
+    if (auto* joints = source->joints(seconds)) {
+      for (PointJoint& joint : *joints) addJoint(bodies, joint, rigids, seconds);
+    }
   }
   setStiffness(bodies, rigids);
 }
@@ -256,6 +262,37 @@ void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btSca
   for (const RowEnd& end : row.ends) {
     if (end.isSoft()) ++bodies.bodies()[end.body].rowCount;
   }
+}
+
+/// What sleeps holds still.
+void ContactRows::addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknowns& rigids, btScalar seconds) {
+  joint.impulse.setZero();
+  const std::size_t index = bodies.placeOf(joint.body);
+  if (index == bodies.bodies().size() || isNoNumber(joint.offset)) return;
+  ContactRow row;
+  row.ends[0].body = index;
+  row.ends[0].nodeCount = joint.nodeCount;
+  row.ends[0].nodes = joint.nodes;
+  row.ends[0].weights = joint.weights;
+  row.joined = true;
+  row.joint = &joint;
+  row.object = joint.object;
+  row.position = joint.anchor;
+  row.normal.setValue(0, 1, 0);
+  row.directions = joint.directions;
+  row.stiffness = joint.stiffness;
+  row.highest = joint.most;
+  row.offsetVelocity = joint.offset / seconds;
+  row.relative = carriedVelocity(bodies, row.ends[0]);
+  // A kinematic one is where the step takes it.
+  if (row.object && row.object->isActive() && !row.object->isKinematicObject()) {
+    row.ends[1].rigid = rigids.at(*row.object, row.position);
+    row.relative -= rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
+  }
+  if (!isFree(bodies, row.ends[0]) && row.ends[1].rigid.unknown < 0) return;
+  if (isNoNumber(row.relative)) return;
+  rows_.push_back(row);
+  ++bodies.bodies()[index].rowCount;
 }
 
 void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
@@ -325,7 +362,9 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
       }
     }
     const double mass = effectiveMass(bodies, row, rigids);
-    row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
+    if (!(row.stiffness > 0)) {
+      row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
+    }
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
   }
@@ -338,11 +377,12 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
   }
   for (const ContactRow& row : rows_) {
     if (row.contact) row.contact->impulse = row.impulse;
-    if (row.joined || row.state == ContactRow::State::Apart) continue;
-    bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
+    if (row.joint) row.joint->impulse = row.impulse;
+    if (row.state == ContactRow::State::Apart) continue;
     for (const RowEnd& end : row.ends) {
       if (end.isSoft()) *bodies.bodies()[end.body].touches = true;
     }
+    if (!row.joined) bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
   }
   for (SolvedBody& body : bodies.bodies()) {
     std::stable_sort(body.sticking->begin(), body.sticking->end(),

@@ -4,7 +4,7 @@
 // Internal to DeformableSolver: the contacts and anchors of a step as rows, with what is remembered of the step before.
 #pragma once
 
-#include <tetskin/bullet/src/shared/solver/contact_source.h>
+#include <tetskin/bullet/src/shared/solver/row_source.h>
 #include <tetskin/bullet/src/solver/contact_row.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
 
@@ -16,9 +16,8 @@ class ContactRows {
  public:
   /// Of all bodies that are elastic here: the points that a search has left in the body, Bullet's contacts of nodes and
   /// faces with rigid objects, and its anchors. After velocities have been read.
-  /// sources  of contacts among soft bodies
-  void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<ContactSource*>& sources,
-               btScalar seconds);
+  /// sources  of contacts among soft bodies, and of joints
+  void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources, btScalar seconds);
   /// What the next step begins with; tells contacts their impulses.
   void finish(SolverBodies& bodies, btScalar seconds) const;
 
@@ -28,6 +27,7 @@ class ContactRows {
  private:
   void addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
   void addSoft(SolverBodies& bodies, SoftPointContact& contact, btScalar seconds);
+  void addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknowns& rigids, btScalar seconds);
   void addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
   void setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids);
 

@@ -298,6 +298,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
 
 void DeformableSolver::Parts::finishContacts() {
   rows.finish(bodies, dt());
+  for (RowSource* source : rowSources()) source->finish(dt());
 }
 
 // ---- write back

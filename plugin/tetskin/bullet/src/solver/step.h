@@ -58,6 +58,7 @@ struct DeformableSolver::Parts {
   void addOthers();
   /// Of contacts and anchors, and of what rigid bodies are held by beside; each to the system that it acts on.
   void collectRows();
+  std::vector<RowSource*> rowSources();
   void collectRigidRowsOfWorlds();
   void joinByRows();
   void goOn(SolvedBody& of);

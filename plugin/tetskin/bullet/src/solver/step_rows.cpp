@@ -38,13 +38,17 @@ void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
   of.body->updateBounds();
 }
 
+std::vector<RowSource*> DeformableSolver::Parts::rowSources() {
+  std::vector<RowSource*> sources;
+  for (int i = 0; i < forces().size(); ++i) {
+    if (auto* source = dynamic_cast<RowSource*>(forces()[i])) sources.push_back(source);
+  }
+  return sources;
+}
+
 void DeformableSolver::Parts::collectRows() {
   rigids.clear();
-  std::vector<ContactSource*> sources;
-  for (int i = 0; i < forces().size(); ++i) {
-    if (auto* source = dynamic_cast<ContactSource*>(forces()[i])) sources.push_back(source);
-  }
-  rows.collect(bodies, rigids, sources, dt());
+  rows.collect(bodies, rigids, rowSources(), dt());
   collectRigidRowsOfWorlds();
   joinByRows();
   for (SolvedBody& of : bodies.bodies()) {

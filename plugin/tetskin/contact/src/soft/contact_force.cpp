@@ -80,7 +80,7 @@ void ContactForce::removeSoftBody(btSoftBody* body) {
   gone_.push_back(body);
 }
 
-std::vector<SoftPointContact>& ContactForce::find(btScalar seconds) {
+std::vector<SoftPointContact>* ContactForce::contacts(btScalar seconds) {
   contacts_.clear();
   for (const auto& of : bodies_) {
     of->readable = false;
@@ -89,7 +89,7 @@ std::vector<SoftPointContact>& ContactForce::find(btScalar seconds) {
   for (const auto& [first, second] : pairsThatMeet()) {
     if (first->awake || second->awake) findInPair(*first, *second, seconds);
   }
-  return contacts_;
+  return &contacts_;
 }
 
 ContactForce::BodyPairs ContactForce::pairsThatMeet() {

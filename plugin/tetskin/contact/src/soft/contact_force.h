@@ -6,7 +6,7 @@
 #pragma once
 
 #include <tetskin/bullet/coupling_force.h>
-#include <tetskin/bullet/src/shared/solver/contact_source.h>
+#include <tetskin/bullet/src/shared/solver/row_source.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace tetskin::contact_detail {
 
-class ContactForce : public CouplingForce, public ContactSource {
+class ContactForce : public CouplingForce, public RowSource {
  public:
   explicit ContactForce(const SoftContactOptions& options) : options_(options) {}
 
@@ -24,9 +24,9 @@ class ContactForce : public CouplingForce, public ContactSource {
   ContactBody* find(const btSoftBody& body) const;
   bool isGone(const btSoftBody& body) const;
   /// Of the last step.
-  const std::vector<SoftPointContact>& contacts() const { return contacts_; }
+  const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
 
-  std::vector<SoftPointContact>& find(btScalar seconds) override;
+  std::vector<SoftPointContact>* contacts(btScalar seconds) override;
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;

@@ -22,19 +22,14 @@ class Load : public Acting {
   btSoftBody* body() const override { return watched_ && life_.expired() ? nullptr : body_; }
   void drop() override { body_ = nullptr; }
   bool spent() const override { return !body() || left_ == 0; }
-  void begin(btScalar dt, int) override {
-    dt_ = static_cast<double>(dt);
+  void addLoads(btScalar seconds, VectorStack& impulses) override {
     --left_;
-  }
-  void addTo(VectorStack& impulses) override {
     if (!body_->isActive()) return;
     for (const NodePush& of : forces_) {
       const btSoftBody::Node& node = body_->m_nodes[of.node];
-      if (node.m_im > 0) impulses[node.index] += toBullet(dt_ * of.push);
+      if (node.m_im > 0) impulses[node.index] += toBullet(static_cast<double>(seconds) * of.push);
     }
   }
-  void addResistance(const VectorStack&, VectorStack&) const override {}
-  void finish() override {}
 
  private:
   btSoftBody* body_;
@@ -42,7 +37,6 @@ class Load : public Acting {
   std::weak_ptr<const void> life_;
   NodePushes forces_;
   int left_;
-  double dt_ = 0;
 };
 
 /// Kept by the body, or by the point that asks.

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
 #include <tetskin/touch/src/forces/touch_force.h>
 
 #include <algorithm>
-#include <map>
 
 namespace tetskin::touch_detail {
 
@@ -43,23 +41,13 @@ void TouchForce::remove(const Acting& part) {
   if (parts_.empty()) leave();
 }
 
-void TouchForce::watch(btDiscreteDynamicsWorld& world) {
-  if (world_) return;
-  world_ = &world;
-  world.addAction(this);
-}
-
 /// Bullet may be walking over the list.
 void TouchForce::leave() {
-  if (world_) world_->removeAction(this);
-  world_ = nullptr;
   if (listed_) replaceByNothing(*solver_.getLagrangianForceArray(), this);
   listed_ = false;
-  pairs_.clear();
 }
 
 void TouchForce::removeSoftBody(btSoftBody* body) {
-  removal_ = true;
   for (const auto& part : parts_) {
     if (part->body() == body) part->drop();
   }
@@ -72,35 +60,25 @@ void TouchForce::eraseSpent() {
   if (parts_.empty()) leave();
 }
 
-void TouchForce::reinitialize(bool) {
-  const bool removal = removal_;
-  removal_ = false;
-  if (removal) return;
+/// As the first in a step.
+void TouchForce::addScaledExplicitForce(btScalar scale, TVStack& force) {
   eraseSpent();
-  beginAll(solver_.m_objective->m_dt);
+  for (const auto& part : parts_) part->addLoads(scale, force);
 }
 
-void TouchForce::beginAll(btScalar dt) {
-  pairs_.clear();
-  std::map<const void*, int> sharers;
-  for (const auto& part : parts_) ++sharers[part->partner()];
+std::vector<PointJoint>* TouchForce::joints(btScalar seconds) {
+  joints_.clear();
+  firsts_.clear();
   for (const auto& part : parts_) {
-    part->begin(dt, sharers[part->partner()]);
-    btSoftBody* body = part->body();
-    if (body && body->isActive()) pairs_.push_back({body, body});
+    firsts_.push_back(joints_.size());
+    part->addJoints(seconds, joints_);
   }
+  return &joints_;
 }
 
-void TouchForce::addScaledDampingForce(btScalar, TVStack& force) {
-  for (const auto& part : parts_) part->addTo(force);
-}
-
-void TouchForce::addScaledDampingForceDifferential(btScalar, const TVStack& dv, TVStack& df) {
-  for (const auto& part : parts_) part->addResistance(dv, df);
-}
-
-void TouchForce::updateAction(btCollisionWorld*, btScalar) {
-  for (const auto& part : parts_) part->finish();
+void TouchForce::finish(btScalar seconds) {
+  for (std::size_t k = 0; k < firsts_.size(); ++k) parts_[k]->finish(seconds, joints_.data() + firsts_[k]);
+  firsts_.clear();
 }
 
 }  // namespace tetskin::touch_detail

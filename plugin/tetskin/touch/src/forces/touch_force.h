@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: all that acts at points of the bodies of one world, as one force in its list. What a
-// DeformableSolver calls, in a step:
-//   reinitialize                              begin
-//   addScaledDampingForce                     addTo
-//   addScaledDampingForceDifferential         addResistance, for velocities that the solve tries
-// and Bullet's world:
-//   updateAction, once positions are final    finish
+// Internal to tetskin::touch: all that acts at points of the bodies of one world, in its list of forces, where a
+// DeformableSolver finds it: loads as explicit forces, joints as rows.
 #pragma once
 
-#include <LinearMath/btIDebugDraw.h>
-
-#include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <tetskin/bullet/coupling_force.h>
+#include <tetskin/bullet/src/shared/solver/row_source.h>
 
 #include <memory>
-
-class btDiscreteDynamicsWorld;
 
 namespace tetskin {
 class DeformableSolver;
@@ -27,7 +18,7 @@ namespace tetskin::touch_detail {
 
 using VectorStack = btAlignedObjectArray<btVector3>;
 
-/// One of them. Vectors are by node number, as Bullet has it.
+/// One of them.
 class Acting {
  public:
   virtual ~Acting() = default;
@@ -38,20 +29,16 @@ class Acting {
   virtual void drop() = 0;
   /// It will not act any more.
   virtual bool spent() const = 0;
-  /// What shares its mass with all others of the same: null for none.
-  virtual const void* partner() const { return nullptr; }
 
-  /// Before a step of dt seconds. sharers: of the same partner
-  virtual void begin(btScalar dt, int sharers) = 0;
-  /// What it does at the velocities that nodes have now: impulses.
-  virtual void addTo(VectorStack& impulses) = 0;
-  /// By how much less, for a change of these.
-  virtual void addResistance(const VectorStack& change, VectorStack& impulses) const = 0;
-  /// Positions are those after the step.
-  virtual void finish() = 0;
+  /// What it does in a step of so many seconds, by node number, as Bullet has it: impulses.
+  virtual void addLoads(btScalar /*seconds*/, VectorStack& /*impulses*/) {}
+  /// What it holds in the step.
+  virtual void addJoints(btScalar /*seconds*/, std::vector<PointJoint>& /*joints*/) {}
+  /// joints  those that it has added, with their impulses
+  virtual void finish(btScalar /*seconds*/, const PointJoint* /*joints*/) {}
 };
 
-class TouchForce : public CouplingForce, public btActionInterface, public std::enable_shared_from_this<TouchForce> {
+class TouchForce : public CouplingForce, public RowSource, public std::enable_shared_from_this<TouchForce> {
  public:
   explicit TouchForce(DeformableSolver& solver) : solver_(solver) {}
   ~TouchForce() override;
@@ -66,32 +53,26 @@ class TouchForce : public CouplingForce, public btActionInterface, public std::e
   void add(std::shared_ptr<Acting> part);
   /// The world must be there. Ignores what was dropped.
   void remove(const Acting& part);
-  /// To be told when positions are final.
-  void watch(btDiscreteDynamicsWorld& world);
 
+  std::vector<PointJoint>* joints(btScalar seconds) override;
+  void finish(btScalar seconds) override;
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
-  double tolerance() const override { return 5e-4; }
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
-  void reinitialize(bool nodeUpdated) override;
-  void addScaledExplicitForce(btScalar, TVStack&) override {}
-  void addScaledDampingForce(btScalar scale, TVStack& force) override;
-  void addScaledDampingForceDifferential(btScalar scale, const TVStack& dv, TVStack& df) override;
-
-  void updateAction(btCollisionWorld* world, btScalar dt) override;
-  void debugDraw(btIDebugDraw*) override {}
+  void addScaledExplicitForce(btScalar scale, TVStack& force) override;
+  void addScaledDampingForce(btScalar, TVStack&) override {}
+  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
 
  private:
   void eraseSpent();
-  void beginAll(btScalar dt);
   void leave();
 
   DeformableSolver& solver_;
-  btDiscreteDynamicsWorld* world_ = nullptr;  ///< of which it is an action
   std::vector<std::shared_ptr<Acting>> parts_;
-  std::vector<std::array<btSoftBody*, 2>> pairs_;
+  std::vector<PointJoint> joints_;
+  std::vector<std::size_t> firsts_;                ///< in `joints_`, by part
+  std::vector<std::array<btSoftBody*, 2>> pairs_;  ///< none
   bool listed_ = false;
-  bool removal_ = false;  ///< Bullet calls `reinitialize` next, and it is no step
 };
 
 }  // namespace tetskin::touch_detail

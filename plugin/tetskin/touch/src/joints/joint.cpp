@@ -4,24 +4,18 @@
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 namespace tetskin::touch_detail {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// The unit of a spring's frequency: one over Bullet's usual substep.
 constexpr double kUnitRate = 240.0;
-/// Of the force allowed, what a spring gives at least that was too strong before.
-constexpr double kLeastShare = 0.01;
 /// Stiffer, or more damped, than this nothing is, in any precision.
 constexpr double kStiffest = 1e9;
 /// What moves faster, in lengths a second, wakes what sleeps at the other end; Bullet's own threshold of sleep.
-constexpr double kWakingSpeed = 0.04;
+constexpr btScalar kWakingSpeed = btScalar(0.04);
 
 /// Of all nodes that can move: a body hangs as heavily on light ones.
 double meanNodeMass(const btSoftBody& body) {
@@ -35,16 +29,9 @@ double meanNodeMass(const btSoftBody& body) {
   return count > 0 ? sum / count : 1.0;
 }
 
-/// What it takes to turn the nodes of a point, all of one mass.
-double inertiaAt(const Lever& lever, double nodeMass) {
-  double about = 0.0;
-  for (const LeverNode& of : lever) about += of.angular.squaredNorm();
-  return about > 0.0 ? 3.0 * nodeMass / about : nodeMass;
-}
-
-Vector3d turnOf(const Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
+btMatrix3x3 square(const btVector3& a) {
+  return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
+          a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
 }
 
 }  // namespace
@@ -54,10 +41,9 @@ Joint::Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const 
       partner_(std::move(partner)),
       settings_(settings),
       nodeMass_(meanNodeMass(*point.body())),
-      lever_(leverOf(point.data(), *point.body())),
-      places_(placesOf(lever_, *point.body())),
-      turned_(partner_->anchor().getBasis()),
+      carried_(carriedPoint()),
       anchorBefore_(partner_->anchor()) {
+  if (settings.turns) weld();
   btCollisionObject* other = partner_->object();
   if (settings.collide || !other) return;
   // An entry for each joint: another one may go before this one does.
@@ -74,133 +60,157 @@ void Joint::drop() {
   if (of && hidden_) of->m_collisionDisabledObjects.remove(partner_->object());
   hidden_ = false;
   dropped_ = true;
-  active_ = false;
 }
 
-Vector6 Joint::offset() const {
-  return offsetOf(leverOf(point_.data(), *point_.body()));
+Joint::Carried Joint::carriedPoint() const {
+  Carried carried;
+  const PointData& data = point_.data();
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (data.shares[c] == 0) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int node = data.corners[c].nodes[k];
+      const auto last = carried.nodes.begin() + carried.nodeCount;
+      const auto found = std::find(carried.nodes.begin(), last, node);
+      if (found == last) carried.nodes[carried.nodeCount++] = node;
+      carried.weights[static_cast<std::size_t>(found - carried.nodes.begin())] +=
+          data.shares[c] * data.corners[c].weights[k];
+    }
+  }
+  return carried;
 }
 
-Vector6 Joint::offsetOf(const Lever& lever) const {
-  Vector6 way = Vector6::Zero();
+/// In the tet of the corner that has most of the point.
+Joint::Carried Joint::pointBeside(const btVector3& at) const {
+  const PointData& data = point_.data();
+  const auto c =
+      static_cast<std::size_t>(std::max_element(data.shares.begin(), data.shares.end()) - data.shares.begin());
+  const Tet& nodes = data.corners[c].nodes;
+  const auto place = [&](std::size_t k) -> const btVector3& { return point_.body()->m_nodes[nodes[k]].m_x; };
+  const btVector3 a = place(0) - place(3), b = place(1) - place(3), d = place(2) - place(3);
+  const btScalar volume = a.dot(b.cross(d));
+  const btVector3 r = at - place(3);
+  Carried carried;
+  carried.nodeCount = 4;
+  std::copy(nodes.begin(), nodes.end(), carried.nodes.begin());
+  carried.weights = {r.dot(b.cross(d)) / volume, r.dot(d.cross(a)) / volume, r.dot(a.cross(b)) / volume};
+  carried.weights[3] = 1 - carried.weights[0] - carried.weights[1] - carried.weights[2];
+  return carried;
+}
+
+/// The points beside are as far from the point as the tet is wide; of a flat tet there are none.
+void Joint::weld() {
   const btTransform anchor = partner_->anchor();
-  way.head<3>() = toEigen(anchor.getOrigin() - linearPosition(point_.data(), *point_.body()));
-  if (!settings_.turns) return way;
-  const Matrix3d wanted = turnSince(places_, lever, *point_.body()) * toMatrix(turned_);
-  way.tail<3>() = turnOf(toMatrix(anchor.getBasis()) * wanted.transpose());
-  return way;
+  btScalar farthest = 0;
+  for (std::uint32_t k = 0; k < carried_.nodeCount; ++k) {
+    farthest = std::max(farthest, (point_.body()->m_nodes[carried_.nodes[k]].m_x - anchor.getOrigin()).length());
+  }
+  for (int k = 0; k < 2; ++k) {
+    beside_[k] = pointBeside(anchor.getOrigin() + farthest * anchor.getBasis().getColumn(k));
+    for (const btScalar weight : beside_[k].weights) {
+      if (!std::isfinite(weight)) return;
+    }
+  }
+  arm_ = farthest;
 }
 
-bool Joint::softMoves() const {
-  return point_.body()->isActive();
+btVector3 Joint::positionOf(const Carried& point) const {
+  const btVector3 first = point_.body()->m_nodes[point.nodes[0]].m_x;
+  btVector3 sum(0, 0, 0);
+  for (std::uint32_t k = 1; k < point.nodeCount; ++k) {
+    sum += point.weights[k] * (point_.body()->m_nodes[point.nodes[k]].m_x - first);
+  }
+  return first + sum;
 }
 
-/// What has come to rest stays so: each of the two may sleep while the other holds still.
+btVector3 Joint::offset() const {
+  return positionOf(carried_) - partner_->anchor().getOrigin();
+}
+
+btScalar Joint::turn() const {
+  if (!(arm_ > 0)) return 0;
+  const btVector3 point = positionOf(carried_);
+  const btVector3 x = (positionOf(beside_[0]) - point).normalized();
+  const btVector3 z = x.cross(positionOf(beside_[1]) - point).normalized(), y = z.cross(x);
+  const btMatrix3x3 now(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
+  btQuaternion turned;
+  (now * partner_->anchor().getBasis().transpose()).getRotation(turned);
+  return turned.getAngleShortestPath();
+}
+
+btVector3 Joint::velocityOfPoint() const {
+  btVector3 sum(0, 0, 0);
+  for (std::uint32_t k = 0; k < carried_.nodeCount; ++k) {
+    sum += carried_.weights[k] * point_.body()->m_nodes[carried_.nodes[k]].m_v;
+  }
+  return sum;
+}
+
+/// What has come to rest stays so. What hangs on the body would fall if that slept first.
 void Joint::wake() {
   const btTransform anchor = partner_->anchor();
   const bool moved = !(anchor == anchorBefore_);
   anchorBefore_ = anchor;
   btCollisionObject* other = partner_->object();
   if (!other) return;
+  btSoftBody& own = *point_.body();
   if (other->isStaticOrKinematicObject()) {
-    if (moved && !softMoves()) point_.body()->activate();
+    if (moved && !own.isActive()) own.activate();
     return;
   }
-  if (softMoves() == other->isActive()) return;
-  const double speed = softMoves() ? pointVelocity().head<3>().norm() : partner_->speed();
-  if (speed > kWakingSpeed) softMoves() ? other->activate() : point_.body()->activate();
+  if (other->isActive()) {
+    if (!own.isActive()) own.activate();
+    own.setDeactivationTime(0);
+  } else if (own.isActive() && velocityOfPoint().length() > kWakingSpeed) {
+    other->activate();
+  }
 }
 
-void Joint::begin(btScalar dt, int sharers) {
-  active_ = false;
-  if (spent() || !(dt > 0) || point_.status() != TouchStatus::Ok) return;
-  lever_ = leverOf(point_.data(), *point_.body());
-  dt_ = static_cast<double>(dt);
-  sharers_ = sharers;
-  offset_ = offsetOf(lever_);
-  began_ = pointVelocity();
-  active_ = true;
-  wake();
+PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
+  PointJoint row;
+  row.body = point_.body();
+  row.nodeCount = point.nodeCount;
+  row.nodes = point.nodes;
+  row.weights = point.weights;
+  row.object = partner_->object();
+  row.anchor = anchor;
+  row.offset = positionOf(point) - anchor;
+  return row;
 }
 
-Vector6 Joint::pointVelocity(bool split) const {
-  Vector6 v = Vector6::Zero();
-  if (!softMoves()) return v;
-  v.head<3>() = velocityOf(lever_, *point_.body(), split);
-  if (settings_.turns) v.tail<3>() = spinOf(lever_, *point_.body(), split);
-  return v;
-}
-
-void Joint::measure() {
-  partner_->begin();
-  response_ = sharers_ * partner_->response();
+void Joint::makeSpring(btScalar seconds, PointJoint& row) const {
+  const auto dt = static_cast<double>(seconds);
   const double mass = 4.0 * nodeMass_, rate = std::min(settings_.stiffness, kStiffest) * kUnitRate * kUnitRate;
   const double k = rate * mass;
   const double d = 2.0 * std::min(settings_.damping, kStiffest) * std::sqrt(k * mass);
-  double c = dt_ * (k * dt_ + d);
-  wanted_ = partner_->velocity();
-  wanted_.head<3>() += k * dt_ / (k * dt_ + d) * offset_.head<3>() / dt_;
-  if (std::isfinite(settings_.maxForce)) {
-    // What it comes to is known when the step is solved: until then, what it would be if the point went on as it does.
-    // What it has been too much, it gives less in the next step.
-    const double most = c * (wanted_ - began_).head<3>().norm();
-    const double allowed = std::max(settings_.maxForce * dt_ - excess_, kLeastShare * settings_.maxForce * dt_);
-    if (most > allowed) c *= allowed / most;
-  }
-  compliance_.head<3>().setConstant(1.0 / c);
-  if (settings_.turns) {
-    const double turning = rate * inertiaAt(lever_, nodeMass_);
-    compliance_.tail<3>().setConstant(1.0 / (dt_ * dt_ * turning));
-    wanted_.tail<3>() += offset_.tail<3>() / dt_;
-  }
-  matrix_ = inverse();
+  row.stiffness = static_cast<btScalar>(dt * (k * dt + d));
+  row.offset *= static_cast<btScalar>(k * dt / (k * dt + d));
+  if (std::isfinite(settings_.maxForce)) row.most = static_cast<btScalar>(settings_.maxForce * dt);
 }
 
-Matrix6 Joint::inverse() const {
-  Matrix6 given = response_;
-  given.diagonal() += compliance_;
-  if (settings_.turns) return given.inverse();
-  Matrix6 only = Matrix6::Zero();
-  only.topLeftCorner<3, 3>() = given.topLeftCorner<3, 3>().inverse();
-  return only;
-}
-
-void Joint::spread(const Vector6& impulse, VectorStack& impulses) const {
-  if (!softMoves()) return;
-  for (const LeverNode& of : lever_) {
-    const btSoftBody::Node& node = point_.body()->m_nodes[of.node];
-    if (node.m_im == 0) continue;
-    impulses[node.index] +=
-        toBullet(of.linear.transpose() * impulse.head<3>() + of.angular.transpose() * impulse.tail<3>());
+void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
+  added_ = 0;
+  if (spent() || point_.status() != TouchStatus::Ok) return;
+  wake();
+  const btTransform anchor = partner_->anchor();
+  joints.push_back(rowOf(carried_, anchor.getOrigin()));
+  if (!settings_.turns) makeSpring(seconds, joints.back());
+  added_ = 1;
+  for (int k = 0; k < 2 && arm_ > 0; ++k, ++added_) {
+    const btVector3 axis = anchor.getBasis().getColumn(k);
+    joints.push_back(rowOf(beside_[k], anchor.getOrigin() + arm_ * axis));
+    joints.back().directions =
+        k == 0 ? btMatrix3x3::getIdentity() - square(axis) : square(anchor.getBasis().getColumn(2));
   }
 }
 
-void Joint::addTo(VectorStack& impulses) {
-  if (!active_) return;
-  measure();
-  spread(impulse(false), impulses);
-}
-
-void Joint::addResistance(const VectorStack& change, VectorStack& impulses) const {
-  if (!active_ || !softMoves()) return;
-  Vector6 faster = Vector6::Zero();
-  for (const LeverNode& of : lever_) {
-    const btSoftBody::Node& node = point_.body()->m_nodes[of.node];
-    if (node.m_im == 0) continue;
-    const Vector3d by = toEigen(change[node.index]);
-    faster.head<3>() += of.linear * by;
-    faster.tail<3>() += of.angular * by;
+void Joint::finish(btScalar seconds, const PointJoint* joints) {
+  force_.setZero();
+  torque_.setZero();
+  for (int k = 0; k < added_; ++k) {
+    force_ += joints[k].impulse / seconds;
+    torque_ += (joints[k].anchor - joints[0].anchor).cross(joints[k].impulse) / seconds;
   }
-  spread(matrix_ * faster, impulses);
-}
-
-void Joint::finish() {
-  load_.setZero();
-  if (!active_ || spent()) return;
-  const Vector6 given = impulse();
-  load_ = given / dt_;
-  excess_ = std::max(excess_ + given.head<3>().norm() - settings_.maxForce * dt_, 0.0);
-  partner_->apply(-given, dt_, sharers_);
+  added_ = 0;
 }
 
 }  // namespace tetskin::touch_detail

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: a point tied to something, by a spring along, and for welds by one about, which are
-// solved for implicitly, and with the masses of both sides.
+// Internal to tetskin::touch: what holds a point of a surface to something: springs, ball joints, welds.
 //
-// In a step the point moves with v, and what it is tied to with u + K (-P), where P is the impulse that the joint gives
-// the point, u is what the partner would do without, and K its response. A spring of stiffness k and damping d gives
-//     P = dt k (s + dt (u - K P - v)) + dt d (u - K P - v),   s: from point to partner when the step begins
-// so that
-//     P = (1/c + K)^-1 (q s / dt + u - v),   c = dt (k dt + d),   q = k dt / (k dt + d)
-// It is linear in v, which is what the solve of the soft body wants; and however stiff the spring, it only adds the
-// partner's mass to the nodes.
+// A spring is a row: with c = dt (k dt + d), the impulse -c (u + q s / dt), s the way from the anchor to the point, u
+// the point's velocity over the anchor's at the end of the step, and q = k dt / (k dt + d), of k alone where nothing
+// damps. It is implicit in both velocities, so that it is stable at any stiffness.
+//
+// A weld is three such rows, as stiff as the solver takes for joints: of the point, in all directions; of a point
+// beside it along the anchor's x, in y and z; of one along its y, in z. Six directions, as many as there are to hold.
 #pragma once
 
 #include <tetskin/touch/src/forces/touch_force.h>
@@ -23,9 +21,9 @@ namespace tetskin::touch_detail {
 
 struct JointSettings {
   bool turns = false;                                         ///< a weld: about, too
-  double stiffness = 10;                                      ///< as SurfaceSpringOptions
-  double damping = 0;                                         ///< as SurfaceSpringOptions; along only
-  double maxForce = std::numeric_limits<double>::infinity();  ///< along only
+  double stiffness = 10;                                      ///< as SurfaceSpringOptions; of springs
+  double damping = 0;                                         ///< likewise
+  double maxForce = std::numeric_limits<double>::infinity();  ///< likewise
   bool collide = false;
 };
 
@@ -41,32 +39,35 @@ class Joint : public Acting {
   Partner& partnerOf() { return *partner_; }
   JointSettings& settings() { return settings_; }
   bool dropped() const { return dropped_; }
-  /// Of the last step, on the point: force and moment.
-  const Vector6& load() const { return load_; }
-  /// From the point to the partner, now: a way and a turn. The point must be Ok.
-  Vector6 offset() const;
+  /// Of the last step, on the point.
+  const btVector3& force() const { return force_; }
+  const btVector3& torque() const { return torque_; }
+  /// From the anchor to the point, now. The point must be Ok.
+  btVector3 offset() const;
+  /// Of a weld: the angle by which the two have turned to each other, in radians.
+  btScalar turn() const;
 
   btSoftBody* body() const override { return dropped_ ? nullptr : point_.body(); }
   void drop() override;
   bool spent() const override { return !body(); }
-  const void* partner() const override { return partner_->mass(); }
-  void begin(btScalar dt, int sharers) override;
-  void addTo(VectorStack& impulses) override;
-  void addResistance(const VectorStack& change, VectorStack& impulses) const override;
-  void finish() override;
+  void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override;
+  void finish(btScalar seconds, const PointJoint* joints) override;
 
  private:
+  /// Carried by nodes.
+  struct Carried {
+    std::uint32_t nodeCount = 0;
+    std::array<int, kMaxPointNodes> nodes{};
+    std::array<btScalar, kMaxPointNodes> weights{};
+  };
+  Carried carriedPoint() const;
+  Carried pointBeside(const btVector3& at) const;
+  btVector3 positionOf(const Carried& point) const;
+  btVector3 velocityOfPoint() const;
+  void weld();
   void wake();
-  bool softMoves() const;
-  Vector6 offsetOf(const Lever& lever) const;
-  Vector6 pointVelocity(bool split = true) const;
-  /// Of the partner as it is now: what the impulse is made of.
-  void measure();
-  /// What gives the impulse for an error in velocity, if all of this gives way to it.
-  Matrix6 inverse() const;
-  /// split  with the velocities by which contacts push bodies apart; else the solve has them already
-  Vector6 impulse(bool split = true) const { return matrix_ * (wanted_ - pointVelocity(split)); }
-  void spread(const Vector6& impulse, VectorStack& impulses) const;
+  PointJoint rowOf(const Carried& point, const btVector3& anchor) const;
+  void makeSpring(btScalar seconds, PointJoint& row) const;
 
   SurfacePoint point_;
   std::unique_ptr<Partner> partner_;
@@ -74,23 +75,12 @@ class Joint : public Acting {
   double nodeMass_;  ///< the mean
   bool dropped_ = false;
   bool hidden_ = false;  ///< body and partner do not collide, by us
-  Lever lever_;
-  std::vector<Eigen::Vector3d> places_;  ///< of its nodes when the joint was made; welds only
-  btMatrix3x3 turned_;                   ///< the partner then
-  btTransform anchorBefore_;             ///< the partner's, when last looked at
-  Vector6 load_ = Vector6::Zero();
-  double excess_ = 0;  ///< of impulses over what is allowed, not yet made good
-
-  // Of the step.
-  bool active_ = false;
-  double dt_ = 0;
-  int sharers_ = 1;
-  Vector6 offset_ = Vector6::Zero();      ///< s
-  Vector6 began_ = Vector6::Zero();       ///< v
-  Vector6 compliance_ = Vector6::Zero();  ///< 1/c
-  Vector6 wanted_ = Vector6::Zero();      ///< q s / dt + u
-  Matrix6 response_ = Matrix6::Zero();    ///< K
-  Matrix6 matrix_ = Matrix6::Zero();      ///< (1/c + K)^-1
+  Carried carried_;
+  btScalar arm_ = 0;          ///< of a weld: how far beside the other two are; 0: it holds the point alone
+  Carried beside_[2];         ///< of a weld
+  btTransform anchorBefore_;  ///< the partner's, when last looked at
+  int added_ = 0;             ///< rows in this step
+  btVector3 force_{0, 0, 0}, torque_{0, 0, 0};
 };
 
 }  // namespace tetskin::touch_detail

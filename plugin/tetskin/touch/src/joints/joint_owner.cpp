@@ -24,10 +24,9 @@ Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoin
   return refusal("springs and welds", {kUseDeformableSolver});
 }
 
-JointOwner::JointOwner(btDiscreteDynamicsWorld& world, std::shared_ptr<Joint> joint)
+JointOwner::JointOwner(std::shared_ptr<Joint> joint)
     : joint_(std::move(joint)), force_(TouchForce::of(*deformableSolverOf(*joint_->point().body()))) {
   force_->add(joint_);
-  force_->watch(world);
   joint_->point().body()->activate();
   if (btCollisionObject* other = joint_->partnerOf().object()) other->activate();
 }

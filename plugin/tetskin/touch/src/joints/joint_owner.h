@@ -16,7 +16,7 @@ class JointOwner {
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point);
 
   /// The two are checked.
-  JointOwner(btDiscreteDynamicsWorld& world, std::shared_ptr<Joint> joint);
+  explicit JointOwner(std::shared_ptr<Joint> joint);
   ~JointOwner() { release(); }
   JointOwner(const JointOwner&) = delete;
   JointOwner& operator=(const JointOwner&) = delete;
