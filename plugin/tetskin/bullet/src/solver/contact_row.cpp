@@ -37,6 +37,10 @@ btVector3 slip(const ContactRow& row, const btVector3& u) {
 
 btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state) {
   using State = ContactRow::State;
+  if (row.constant) {
+    state = State::Apart;
+    return row.impulse;
+  }
   if (row.joined) return jointImpulse(row, u, state);
   const btScalar wanted = -row.stiffness * (row.normal.dot(u) + row.gapVelocity);
   const btScalar normal = std::min(std::max(wanted, row.lowest), row.highest);

@@ -46,6 +46,7 @@ struct ContactRow {
   PointContact* contact = nullptr;                      ///< that it is of, if any
   std::uint32_t point = 0;                              ///< its number
   bool joined = false;                                  ///< by a penalty that pulls, too, no more than `highest`
+  bool constant = false;                                ///< the impulse is what it is at the beginning: a load
   PointJoint* joint = nullptr;                          ///< that it is of, if any
   btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< of a joined one: a projection to those that are held
 

@@ -186,7 +186,6 @@ double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const Ri
     }
     return sum;
   };
-  if (row.joined && row.stiffness > 0) return 0.0;  // nobody asks
   const double sum = row.joined ? (along({1, 0, 0}) + along({0, 1, 0}) + along({0, 0, 1})) / 3 : along(row.normal);
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
@@ -266,7 +265,7 @@ void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btSca
 
 /// What sleeps holds still.
 void ContactRows::addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknowns& rigids, btScalar seconds) {
-  joint.impulse.setZero();
+  if (!joint.constant) joint.impulse.setZero();
   const std::size_t index = bodies.placeOf(joint.body);
   if (index == bodies.bodies().size() || isNoNumber(joint.offset)) return;
   ContactRow row;
@@ -280,9 +279,11 @@ void ContactRows::addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknown
   row.position = joint.anchor;
   row.normal.setValue(0, 1, 0);
   row.directions = joint.directions;
+  row.constant = joint.constant;
   row.stiffness = joint.stiffness;
   row.highest = joint.most;
   row.offsetVelocity = joint.offset / seconds;
+  if (row.constant) row.impulse = joint.impulse;
   row.relative = carriedVelocity(bodies, row.ends[0]);
   // A kinematic one is where the step takes it.
   if (row.object && row.object->isActive() && !row.object->isKinematicObject()) {
@@ -354,6 +355,7 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
     }
   }
   for (ContactRow& row : rows_) {
+    if (row.constant) continue;
     btScalar share = 1;
     for (const RowEnd& end : row.ends) {
       for (std::uint32_t k = 0; k < end.nodeCount && !row.joined; ++k) {
@@ -362,9 +364,9 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
       }
     }
     const double mass = effectiveMass(bodies, row, rigids);
-    if (!(row.stiffness > 0)) {
-      row.stiffness = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
-    }
+    // What is stiffer would not be seen, and what is left of a solve would push by it.
+    const auto most = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
+    row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, most) : most;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
   }
@@ -378,7 +380,7 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
   for (const ContactRow& row : rows_) {
     if (row.contact) row.contact->impulse = row.impulse;
     if (row.joint) row.joint->impulse = row.impulse;
-    if (row.state == ContactRow::State::Apart) continue;
+    if (row.state == ContactRow::State::Apart && !row.constant) continue;
     for (const RowEnd& end : row.ends) {
       if (end.isSoft()) *bodies.bodies()[end.body].touches = true;
     }

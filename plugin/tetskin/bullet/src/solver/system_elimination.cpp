@@ -50,10 +50,16 @@ void SystemSolve::collectParts() {
     const SolvedBody& of = step_.bodies.bodies()[b];
     // What others do to the nodes is not asked of parts.
     if (!of.elastic || of.rowCount == 0 || !system_.forces.empty() || !of.fixed.empty()) continue;
-    if (of.dynamics->stiffnessNumber() < kStiffPart) continue;
+    if (of.dynamics->stiffnessNumber() < kStiffPart && !isJoined(b)) continue;
     for (std::size_t part = 0; part < std::min(of.dynamics->partCount(), kMaxParts); ++part) addPart(b, part);
   }
   few_ = fewStep_ = fewResidual_ = Vector::Zero(fewSize_);
+}
+
+bool SystemSolve::isJoined(std::size_t body) const {
+  return std::any_of(system_.rows.begin(), system_.rows.end(), [&](const ContactRow* row) {
+    return row->joined && !row->constant && row->ends[0].isSoft() && row->ends[0].body == body;
+  });
 }
 
 void SystemSolve::addPart(std::size_t body, std::size_t part) {
@@ -271,6 +277,18 @@ void SystemSolve::moveFew() {
   }
   rigidPush_ = left.head(rigidSize_);
   rigidMomentum_ += rigidPush_;
+}
+
+/// What is left is small by what it moves, and by impulses need not be: of stiff rows. The few unknowns take it, so that
+/// momentum by the rows' impulses is theirs, and changes little.
+void SystemSolve::settleFew() {
+  if (fewSize_ == 0) return;
+  const Vector change = compliance_ * fewResidual_;
+  few_ += change;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * fewVelocity(r, change);
+  }
 }
 
 std::size_t SystemSolve::placeOf(std::size_t body) const {

@@ -75,6 +75,7 @@ SolveReport SystemSolve::solve() {
     if (length < 1) moveBack(length);
     refreshBounds();
   }
+  if (!system_.rows.empty()) settleFew();
   for (std::size_t k = 0; k < states_.size(); ++k) bodyAt(k).dynamics->matrix().free();
   moveOutOfParts();
   giveMomentum();
@@ -253,6 +254,15 @@ void SystemSolve::refreshBounds() {
 
 // ---- finish
 
+/// By a joint to what moves as it is prescribed: that takes any momentum, and a point that is as stiff as that feels
+/// where in the step its impulse acts.
+bool SystemSolve::isHung(std::size_t body) const {
+  return std::any_of(system_.rows.begin(), system_.rows.end(), [&](const ContactRow* row) {
+    const RowEnd& end = row->ends[0];
+    return row->joined && !row->constant && end.isSoft() && end.body == body && row->ends[1].rigid.unknown < 0;
+  });
+}
+
 /// Rigid bodies get the sum of what rows push them with; soft ones lose the momentum that a solve which is cut short
 /// gives them beside it. Where other forces act on the system, their part is not known here.
 void SystemSolve::giveMomentum() {
@@ -282,7 +292,7 @@ void SystemSolve::giveMomentum() {
   const Vector change = inverseMass_ * push;
   for (const std::size_t r : system_.rigids) RigidUnknowns::apply(step_.rigids.list()[r], change);
   for (std::size_t k = 0; k < states_.size() && system_.forces.empty(); ++k) {
-    if (!bodyAt(k).elastic || !bodyAt(k).fixed.empty()) continue;
+    if (!bodyAt(k).elastic || !bodyAt(k).fixed.empty() || isHung(system_.bodies[k])) continue;
     bodyAt(k).dynamics->removeMomentum([&](std::size_t node) { return impulses[k][node]; });
   }
 }

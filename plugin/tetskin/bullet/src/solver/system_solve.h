@@ -63,11 +63,13 @@ class SystemSolve {
   btVector3 nodesOf(const ContactRow& row, bool steps) const;
   btVector3 nodesOf(const RowEnd& end, bool steps) const;
   void refreshBounds();
+  bool isHung(std::size_t body) const;
   void giveMomentum();
 
   // The few unknowns: system_elimination.cpp.
   void numberRigids();
   void collectParts();
+  bool isJoined(std::size_t body) const;
   void addPart(std::size_t body, std::size_t part);
   Dynamics& dynamicsOf(const PartUnknown& part) const;
   void moveIntoParts();
@@ -85,6 +87,7 @@ class SystemSolve {
   void addCrossProducts();
   void addProducts(std::vector<const btScalar*>& added);
   void moveFew();
+  void settleFew();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
   btVector3 fewVelocity(std::size_t row, const Vector& few) const;
   std::size_t placeOf(std::size_t body) const;

@@ -22,12 +22,16 @@ class Load : public Acting {
   btSoftBody* body() const override { return watched_ && life_.expired() ? nullptr : body_; }
   void drop() override { body_ = nullptr; }
   bool spent() const override { return !body() || left_ == 0; }
-  void addLoads(btScalar seconds, VectorStack& impulses) override {
+  void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override {
     --left_;
-    if (!body_->isActive()) return;
     for (const NodePush& of : forces_) {
-      const btSoftBody::Node& node = body_->m_nodes[of.node];
-      if (node.m_im > 0) impulses[node.index] += toBullet(static_cast<double>(seconds) * of.push);
+      PointJoint& load = joints.emplace_back();
+      load.body = body_;
+      load.constant = true;
+      load.nodeCount = 1;
+      load.nodes[0] = of.node;
+      load.weights[0] = 1;
+      load.impulse = toBullet(static_cast<double>(seconds) * of.push);
     }
   }
 

@@ -60,13 +60,8 @@ void TouchForce::eraseSpent() {
   if (parts_.empty()) leave();
 }
 
-/// As the first in a step.
-void TouchForce::addScaledExplicitForce(btScalar scale, TVStack& force) {
-  eraseSpent();
-  for (const auto& part : parts_) part->addLoads(scale, force);
-}
-
 std::vector<PointJoint>* TouchForce::joints(btScalar seconds) {
+  eraseSpent();
   joints_.clear();
   firsts_.clear();
   for (const auto& part : parts_) {

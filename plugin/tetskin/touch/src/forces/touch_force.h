@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to tetskin::touch: all that acts at points of the bodies of one world, in its list of forces, where a
-// DeformableSolver finds it: loads as explicit forces, joints as rows.
+// DeformableSolver finds it and asks for rows.
 #pragma once
 
 #include <tetskin/bullet/coupling_force.h>
@@ -16,8 +16,6 @@ class DeformableSolver;
 
 namespace tetskin::touch_detail {
 
-using VectorStack = btAlignedObjectArray<btVector3>;
-
 /// One of them.
 class Acting {
  public:
@@ -30,9 +28,7 @@ class Acting {
   /// It will not act any more.
   virtual bool spent() const = 0;
 
-  /// What it does in a step of so many seconds, by node number, as Bullet has it: impulses.
-  virtual void addLoads(btScalar /*seconds*/, VectorStack& /*impulses*/) {}
-  /// What it holds in the step.
+  /// What it pushes, or holds, in the step.
   virtual void addJoints(btScalar /*seconds*/, std::vector<PointJoint>& /*joints*/) {}
   /// joints  those that it has added, with their impulses
   virtual void finish(btScalar /*seconds*/, const PointJoint* /*joints*/) {}
@@ -59,7 +55,7 @@ class TouchForce : public CouplingForce, public RowSource, public std::enable_sh
   const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
   void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
-  void addScaledExplicitForce(btScalar scale, TVStack& force) override;
+  void addScaledExplicitForce(btScalar, TVStack&) override {}
   void addScaledDampingForce(btScalar, TVStack&) override {}
   void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
 

@@ -31,8 +31,9 @@ struct PointJoint {
   btScalar stiffness = 0;                               ///< impulse over velocity; 0: as stiff as need be
   btScalar most = BT_LARGE_FLOAT;                       ///< of the impulse
   btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< a projection: along which it is held
-  /// Of the object on the soft body in the step: force times seconds. Written by the solver.
+  /// Of the object on the soft body in the step: force times seconds. Written by the solver, unless it is constant.
   btVector3 impulse{0, 0, 0};
+  bool constant = false;  ///< a load: nothing is held, the impulse is given
 };
 
 class RowSource {
