@@ -145,7 +145,8 @@ btVector3 Joint::velocityOfPoint() const {
   return sum;
 }
 
-/// What has come to rest stays so. What hangs on the body would fall if that slept first.
+/// What has come to rest stays so. What hangs on the body would fall if that slept first; it waits until the other would
+/// sleep, too.
 void Joint::wake() {
   const btTransform anchor = partner_->anchor();
   const bool moved = !(anchor == anchorBefore_);
@@ -159,7 +160,7 @@ void Joint::wake() {
   }
   if (other->isActive()) {
     if (!own.isActive()) own.activate();
-    own.setDeactivationTime(0);
+    if (other->getActivationState() != WANTS_DEACTIVATION) own.setDeactivationTime(0);
   } else if (own.isActive() && velocityOfPoint().length() > kWakingSpeed) {
     other->activate();
   }
