@@ -9,8 +9,6 @@ namespace {
 
 /// Cosine from which two normals are of one side: edges may be rounded while a sample slides over them.
 constexpr btScalar kSameSide = btScalar(0.5);
-/// Length of a gradient below which it has no direction: on the middle of a thin part.
-constexpr btScalar kNoDirection = btScalar(0.1);
 /// A side follows its sample along the surface by so many projections.
 constexpr int kProjections = 2;
 /// Steps back along its motion in which the way is looked for that a sample has come.

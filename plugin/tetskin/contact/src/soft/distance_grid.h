@@ -14,6 +14,9 @@
 namespace tetskin::contact_detail {
 
 /// What the grid tells at a point.
+/// Length of a gradient below which it has no direction: on the middle of a thin part.
+constexpr btScalar kNoDirection = btScalar(0.1);
+
 struct GridDistance {
   btScalar distance = 0;  ///< below 0 inside
   btVector3 gradient{0, 0, 0};

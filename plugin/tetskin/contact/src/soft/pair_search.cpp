@@ -16,6 +16,8 @@ constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 constexpr btScalar kSlackCubes = btScalar(0.5);
 /// Cosine between normals from which two contacts of a node are one.
 constexpr btScalar kOneWay = btScalar(0.7);
+/// Cosine between the normals of two surfaces below which they can touch.
+constexpr btScalar kOpposing = btScalar(-0.3);
 /// A side that is farther away at rest, in mean edges, is of another part.
 constexpr btScalar kOneSide = 1;
 
@@ -126,6 +128,18 @@ btVector3 PairSearch::restMotion(int sample, const Place& place) const {
   return motion;
 }
 
+/// Whether the sample's own surface looks against the normal: what slides along another one does not catch on its edges
+/// by the sides of its own.
+bool PairSearch::opposes(int sample, int run, const btVector3& normal) const {
+  const ShapeData& of = now_.first->data();
+  const int tet = of.runs[static_cast<std::size_t>(run)].tet;
+  const DeformedTet& deformed = now_.first->deformed(tet);
+  if (deformed.flat) return true;
+  const btVector3 own = carriedGradient(of, tet, deformed, of.sampleNormals[static_cast<std::size_t>(sample)]);
+  const btScalar length = own.length();
+  return !(length > SIMD_EPSILON) || own.dot(normal) < kOpposing * length;
+}
+
 void PairSearch::touch(int sample, int run, const Place& place) {
   const ShapeData& in = now_.second->data();
   const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
@@ -135,6 +149,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
   const btScalar length = normal.length();
   if (!(length > SIMD_EPSILON)) return;
+  if (!opposes(sample, run, normal / length)) return;
   Touch made;
   made.distance = found.distance / length;
   if (made.distance > now_.reach) return;

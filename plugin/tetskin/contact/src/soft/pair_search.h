@@ -58,6 +58,7 @@ class PairSearch {
   void offer(int tet, int sample, int k);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
+  bool opposes(int sample, int run, const btVector3& normal) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};
