@@ -37,8 +37,7 @@ std::vector<std::pair<std::size_t, std::size_t>> pairsOfBoxesThatMeet(const std:
     pairs.emplace_back(order[k], order[k]);
     for (std::size_t next = k + 1; next < order.size() && boxes[order[next]].low[axis] <= box.high[axis]; ++next) {
       if (!box.meets(boxes[order[next]])) continue;
-      pairs.emplace_back(order[k], order[next]);
-      pairs.emplace_back(order[next], order[k]);
+      pairs.push_back(std::minmax(order[k], order[next]));
     }
   }
   std::sort(pairs.begin(), pairs.end());

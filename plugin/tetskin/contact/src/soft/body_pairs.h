@@ -11,8 +11,8 @@
 
 namespace tetskin::contact_detail {
 
-/// Pairs of places in the list of boxes that meet, both ways around and each with itself, in the order of their first
-/// places and then of their second ones. Cost O(n log n) for bodies that lie apart along some axis.
+/// Pairs of places in the list of boxes that meet, each once, and each place with itself, in the order of the smaller
+/// places and then of the larger ones. Cost O(n log n) for bodies that lie apart along some axis.
 std::vector<std::pair<std::size_t, std::size_t>> pairsOfBoxesThatMeet(const std::vector<ContactBox>& boxes);
 
 }  // namespace tetskin::contact_detail

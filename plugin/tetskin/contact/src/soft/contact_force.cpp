@@ -14,6 +14,10 @@ namespace {
 constexpr btScalar kNearCubes = btScalar(0.1);
 /// A body at this speed, in lengths a second, wakes what sleeps where it touches; Bullet's own threshold of sleep.
 constexpr btScalar kWakingSpeed = btScalar(0.04);
+/// Deeper than this, in sizes of the smaller one, two bodies overlap.
+constexpr btScalar kDeep = btScalar(0.03);
+/// Of the normals of what is inside, the least sum that has a direction: what is within another has none.
+constexpr btScalar kNoWay = btScalar(0.05);
 /// Numbers of points begin here: others than those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
 
@@ -68,8 +72,8 @@ void ContactForce::exclude(const btSoftBody& body) {
   contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(),
                                  [&](const auto& contact) { return contact.body == &body || contact.object == &body; }),
                   contacts_.end());
-  for (auto kept = pairMemory_.begin(); kept != pairMemory_.end();) {
-    kept = kept->first.first == id || kept->first.second == id ? pairMemory_.erase(kept) : std::next(kept);
+  for (auto kept = meetings_.begin(); kept != meetings_.end();) {
+    kept = kept->first.first == id || kept->first.second == id ? meetings_.erase(kept) : std::next(kept);
   }
   bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == of; }));
 }
@@ -111,19 +115,41 @@ ContactForce::BodyPairs ContactForce::pairsThatMeet() {
 /// near  in the order of their ids
 void ContactForce::forgetAllBut(const BodyPairs& near) {
   auto pair = near.begin();
-  for (auto known = pairMemory_.begin(); known != pairMemory_.end();) {
+  for (auto known = meetings_.begin(); known != meetings_.end();) {
     const auto idsOf = [](const auto& of) { return std::make_pair(of.first->id, of.second->id); };
     while (pair != near.end() && idsOf(*pair) < known->first) ++pair;
     const bool isNear = pair != near.end() && idsOf(*pair) == known->first;
-    known = isNear ? std::next(known) : pairMemory_.erase(known);
+    known = isNear ? std::next(known) : meetings_.erase(known);
   }
 }
 
 void ContactForce::findInPair(ContactBody& first, ContactBody& second, btScalar seconds) {
-  touches_.clear();
-  const btScalar reach = kReachCubes * second.data().grid.spacing();
-  search_.find(first, second, reach, seconds, pairMemory_[{first.id, second.id}], touches_);
-  for (const Touch& touch : touches_) addContact(first, second, touch, seconds);
+  Meeting& meeting = meetings_[{first.id, second.id}];
+  const btVector3 before = meeting.apart;
+  meeting.apart = search(first, second, seconds, meeting);
+  if (before.isZero() && !meeting.apart.isZero()) search(first, second, seconds, meeting);
+  for (const Touch& touch : touches_[0]) addContact(first, second, touch, seconds);
+  for (const Touch& touch : touches_[1]) addContact(second, first, touch, seconds);
+}
+
+/// Returns which way the first is to leave the second, if they overlap: down the gradient of the volume that they have
+/// in common, the integral of either's normal over what of its surface is within the other.
+btVector3 ContactForce::search(ContactBody& first, ContactBody& second, btScalar seconds, Meeting& meeting) {
+  const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
+  const auto in = [&](ContactBody& a, ContactBody& b, int k) {
+    const btScalar reach = kReachCubes * b.data().grid.spacing();
+    touches_[k].clear();
+    return search_.find(a, b, reach, seconds, k == 0 ? meeting.apart : -meeting.apart, deep, meeting.memories[k],
+                        touches_[k]);
+  };
+  const Overlap own = in(first, second, 0);
+  touches_[1].clear();
+  if (&first == &second) return {0, 0, 0};
+  const Overlap other = in(second, first, 1);
+  if (std::min(own.deepest, other.deepest) > -deep) return {0, 0, 0};
+  const btVector3 gradient = other.normals - own.normals;
+  const btScalar length = gradient.length();
+  return length > kNoWay * static_cast<btScalar>(own.inside + other.inside) ? gradient / length : btVector3(0, 0, 0);
 }
 
 void ContactForce::addContact(const ContactBody& first, const ContactBody& second, const Touch& touch,

@@ -35,10 +35,16 @@ class ContactForce : public CouplingForce, public RowSource {
   void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
 
  private:
+  /// What two bodies, or one with itself, keep from step to step.
+  struct Meeting {
+    PairMemory memories[2];    ///< of the first in the second, and the other way round
+    btVector3 apart{0, 0, 0};  ///< which way the first is to leave the second; 0 unless they overlap
+  };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
   BodyPairs pairsThatMeet();
   void forgetAllBut(const BodyPairs& near);
   void findInPair(ContactBody& first, ContactBody& second, btScalar seconds);
+  btVector3 search(ContactBody& first, ContactBody& second, btScalar seconds, Meeting& meeting);
   void addContact(const ContactBody& first, const ContactBody& second, const Touch& touch, btScalar seconds);
 
   SoftContactOptions options_;
@@ -46,8 +52,8 @@ class ContactForce : public CouplingForce, public RowSource {
   std::vector<const btSoftBody*> gone_;
   int nextId_ = 0;
   PairSearch search_;
-  std::map<std::pair<int, int>, PairMemory> pairMemory_;  ///< by the bodies' ids
-  std::vector<Touch> touches_;
+  std::map<std::pair<int, int>, Meeting> meetings_;  ///< by the bodies' ids
+  std::vector<Touch> touches_[2];                    ///< of the first in the second, and the other way round
   std::vector<SoftPointContact> contacts_;
   std::vector<std::array<btSoftBody*, 2>> pairs_;  ///< none
 };

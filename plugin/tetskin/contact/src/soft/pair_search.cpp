@@ -41,9 +41,10 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
 
 }  // namespace
 
-void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, PairMemory& memory,
-                      std::vector<Touch>& touches) {
-  now_ = {&first, &second, reach, dt, &memory.sides};
+Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
+                         btScalar deep, PairMemory& memory, std::vector<Touch>& touches) {
+  now_ = {&first, &second, reach, dt, apart, deep, &memory.sides};
+  overlap_ = {};
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
   memory.sides.beginStep();
@@ -51,6 +52,7 @@ void PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, b
   const btScalar slack = kSlackCubes * second.data().grid.spacing();
   if (!memory.candidates.hold(first, second)) memory.candidates.find(first, second, slack);
   for (const int run : candidates_->runs()) placeRun(run);
+  return overlap_;
 }
 
 void PairSearch::placeRun(int run) {
@@ -128,16 +130,25 @@ btVector3 PairSearch::restMotion(int sample, const Place& place) const {
   return motion;
 }
 
-/// Whether the sample's own surface looks against the normal: what slides along another one does not catch on its edges
-/// by the sides of its own.
-bool PairSearch::opposes(int sample, int run, const btVector3& normal) const {
+/// Of the sample's own surface, world space; 0 where it is not known.
+btVector3 PairSearch::ownNormal(int sample, int run) const {
   const ShapeData& of = now_.first->data();
   const int tet = of.runs[static_cast<std::size_t>(run)].tet;
   const DeformedTet& deformed = now_.first->deformed(tet);
-  if (deformed.flat) return true;
+  if (deformed.flat) return {0, 0, 0};
   const btVector3 own = carriedGradient(of, tet, deformed, of.sampleNormals[static_cast<std::size_t>(sample)]);
   const btScalar length = own.length();
-  return !(length > SIMD_EPSILON) || own.dot(normal) < kOpposing * length;
+  return length > SIMD_EPSILON ? own / length : btVector3(0, 0, 0);
+}
+
+/// Which way the touch pushes; false: none. Surfaces touch that look against each other: what slides along another one
+/// does not catch on its edges by the sides of its own. What is deep inside leaves by one way for all of it, as the
+/// nearest ones would tear it; what is less deep beside it does not hold it back.
+bool PairSearch::direct(const btVector3& own, Touch& touch) const {
+  const bool overlaps = !now_.apart.isZero();
+  if (overlaps && touch.distance < -now_.deep) touch.normal = now_.apart;
+  if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
+  return own.isZero() || own.dot(touch.normal) < kOpposing;
 }
 
 void PairSearch::touch(int sample, int run, const Place& place) {
@@ -149,7 +160,6 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
   const btScalar length = normal.length();
   if (!(length > SIMD_EPSILON)) return;
-  if (!opposes(sample, run, normal / length)) return;
   Touch made;
   made.distance = found.distance / length;
   if (made.distance > now_.reach) return;
@@ -160,6 +170,13 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   made.tet = place.tet;
   std::copy(place.weights, place.weights + 4, made.weights);
   made.normal = normal / length;
+  const btVector3 own = ownNormal(sample, run);
+  if (made.distance < 0) {
+    overlap_.deepest = std::min(overlap_.deepest, made.distance);
+    overlap_.normals += own;
+    ++overlap_.inside;
+  }
+  if (!direct(own, made)) return;
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 

@@ -21,10 +21,17 @@ struct Touch {
   int next = -1;          ///< another of the same node
 };
 
-/// What a pair of bodies keeps from step to step.
+/// What a pair of bodies keeps from step to step, of the first's samples in the second.
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
+};
+
+/// By how much one body is in another.
+struct Overlap {
+  btScalar deepest = 0;        ///< distance, below 0
+  btVector3 normals{0, 0, 0};  ///< sum over the samples that are inside: of their own surface, each of length 1
+  int inside = 0;              ///< as many
 };
 
 /// Finds the touches of pairs, one after the other; keeps its memory.
@@ -33,10 +40,11 @@ class PairSearch {
   /// Both read; they may be one body.
   /// reach    of contacts, world space: those farther apart are left out
   /// dt       seconds, of the step that has led here
+  /// apart    which way the first is to leave the second, where it is deep in it, and from which depth on; or 0
   /// touches  appended to: for each node of the first body the deepest, of the samples that it carries most, and of
   ///          those that are pushed another way
-  void find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, PairMemory& memory,
-            std::vector<Touch>& touches);
+  Overlap find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
+               btScalar deep, PairMemory& memory, std::vector<Touch>& touches);
 
  private:
   /// A place of a sample in the second body: where that folds, there are several.
@@ -50,6 +58,8 @@ class PairSearch {
     ContactBody* first;
     ContactBody* second;
     btScalar reach, dt;
+    btVector3 apart;
+    btScalar deep;
     ContactSides* sides;
   };
 
@@ -58,7 +68,8 @@ class PairSearch {
   void offer(int tet, int sample, int k);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
-  bool opposes(int sample, int run, const btVector3& normal) const;
+  btVector3 ownNormal(int sample, int run) const;
+  bool direct(const btVector3& own, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};
@@ -68,6 +79,7 @@ class PairSearch {
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;
   std::vector<int> touchOfNode_;
+  Overlap overlap_;
 };
 
 }  // namespace tetskin::contact_detail
