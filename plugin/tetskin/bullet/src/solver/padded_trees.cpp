@@ -13,36 +13,6 @@ namespace {
 /// fitted.
 constexpr btScalar kPadding = 2;
 
-/// Around all of a body.
-struct BodyBox {
-  const SolvedBody* of;
-  btVector3 low, high;
-  bool met;
-};
-
-std::vector<BodyBox> boxesOf(const std::vector<SolvedBody>& bodies) {
-  std::vector<BodyBox> boxes;
-  for (const SolvedBody& of : bodies) {
-    const btDbvtNode* root = of.body->m_ndbvt.m_root;
-    // What is not a number has no place among the others.
-    if (!root || !std::isfinite(root->volume.Mins().x())) continue;
-    boxes.push_back({&of, root->volume.Mins(), root->volume.Maxs(), false});
-  }
-  return boxes;
-}
-
-/// By a sweep along x.
-void findMeetings(std::vector<BodyBox>& boxes) {
-  std::sort(boxes.begin(), boxes.end(), [](const BodyBox& a, const BodyBox& b) { return a.low.x() < b.low.x(); });
-  for (std::size_t a = 0; a < boxes.size(); ++a) {
-    for (std::size_t b = a + 1; b < boxes.size() && boxes[b].low.x() <= boxes[a].high.x(); ++b) {
-      const bool apart = boxes[b].low.y() > boxes[a].high.y() || boxes[b].high.y() < boxes[a].low.y() ||
-                         boxes[b].low.z() > boxes[a].high.z() || boxes[b].high.z() < boxes[a].low.z();
-      if (!apart) boxes[a].met = boxes[b].met = true;
-    }
-  }
-}
-
 }  // namespace
 
 bool meetsSoftBodies(btSoftBody& body) {
@@ -67,6 +37,13 @@ void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
   keep(dynamics);
 }
 
+void PaddedTrees::fitBefore(btSoftBody& body, btScalar step) {
+  if (holds(step)) return;
+  body.updateNodeTree(true, false);
+  if (!body.m_fdbvt.empty()) body.updateFaceTree(true, false);
+  ready = false;
+}
+
 void PaddedTrees::keep(Dynamics& dynamics) {
   points.resize(3 * dynamics.nodeCount());
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points[3 * n]);
@@ -84,17 +61,15 @@ btScalar PaddedTrees::furthest(Dynamics& dynamics) const {
   return btSqrt(most);
 }
 
-void HiddenBodies::hideLonely(const std::vector<SolvedBody>& bodies, btScalar dt) {
-  std::vector<BodyBox> boxes = boxesOf(bodies);
-  findMeetings(boxes);
-  for (const BodyBox& box : boxes) {
-    btSoftBody& body = *box.of->body;
-    PaddedTrees& trees = *box.of->paddedTrees;
-    const bool held = trees.holds(btSqrt(body.m_maxSpeedSquared) * dt);
-    if (box.met || !held || !body.isActive() || meetsSoftBodies(body)) {
-      trees.ready = false;  // Bullet fits them tightly
+void HiddenBodies::hide(const std::vector<SolvedBody>& bodies, btScalar dt) {
+  for (const SolvedBody& of : bodies) {
+    btSoftBody& body = *of.body;
+    const bool hides = body.isActive() && !meetsSoftBodies(body);
+    if (!hides) {
+      of.paddedTrees->ready = false;  // Bullet fits them tightly
       continue;
     }
+    of.paddedTrees->fitBefore(body, btSqrt(body.m_maxSpeedSquared) * dt);
     hidden_.emplace_back(&body, body.getActivationState());
     body.forceActivationState(ISLAND_SLEEPING);
   }

@@ -30,6 +30,8 @@ struct PaddedTrees {
   /// Fits them, unless they hold the nodes.
   /// step  how far the fastest node moves in this step
   void fit(btSoftBody& body, Dynamics& dynamics, btScalar step);
+  /// As Bullet does when a step has been solved: they hold the nodes at the end of it, too.
+  void fitBefore(btSoftBody& body, btScalar step);
   /// Whether they still hold nodes that move so far in this step.
   bool holds(btScalar step) const { return ready && drift + step < pad; }
 
@@ -38,12 +40,12 @@ struct PaddedTrees {
   btScalar furthest(Dynamics& dynamics) const;
 };
 
-/// Bodies that are marked as sleeping. Bullet looks between the solve and the integration for what soft bodies meet
-/// among each other, and refits their trees for it. Where nothing can be met it need not: it passes over bodies that
-/// sleep.
+/// Bodies that are marked as sleeping. Bullet looks between the solve and the integration for nodes that go through
+/// faces of other soft bodies, whether or not these are to collide, takes their velocity over them, and refits trees
+/// for it. Of bodies that are not to meet others by Bullet it shall not, and passes over those that sleep.
 class HiddenBodies {
  public:
-  void hideLonely(const std::vector<SolvedBody>& bodies, btScalar dt);
+  void hide(const std::vector<SolvedBody>& bodies, btScalar dt);
   /// Unless somebody has woken a body, or put it to sleep, or taken it out of the world.
   void show(const btAlignedObjectArray<btSoftBody*>& alive);
 

@@ -308,7 +308,7 @@ void DeformableSolver::Parts::writeBack() {
     if (of.solvedAgain) of.dynamics->bendTurns(static_cast<double>(dt()));
     writeVelocities(of);
   }
-  hidden.hideLonely(bodies.bodies(), dt());
+  hidden.hide(bodies.bodies(), dt());
 }
 
 void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
