@@ -154,10 +154,10 @@ SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const 
   return addSoft(model, options, Vector3d(x, height + margin - box.min().y(), z));
 }
 
-void ContactWorld::touchOthers(SoftObject& body) {
+void ContactWorld::touchOthers(SoftObject& body, const ContactShapeOptions& options) {
   std::shared_ptr<const ContactShape>& shape = shapesOfModels_[&body.model()];
   if (!shape) {
-    auto made = makeContactShape(body.model().cage, body.model().mesh);
+    auto made = makeContactShape(body.model().cage, body.model().mesh, options);
     scenes::require(made.status());
     shape = std::move(made).value();
   }

@@ -97,7 +97,8 @@ class ContactWorld {
                         double z = 0.0);
 
   /// A soft body meets all others of which this was said, at their visual surfaces.
-  void touchOthers(SoftObject& body);
+  /// shape  counts for the first body of a model, of whose shape there is one
+  void touchOthers(SoftObject& body, const ContactShapeOptions& shape = {});
   /// Of these, in the last step.
   std::vector<SoftContact> softContacts() const { return world_.softContacts(); }
   /// The least of their distances, metres, at most 0: below 0 they are so deep in each other.

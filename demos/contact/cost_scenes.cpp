@@ -112,7 +112,7 @@ void apart(Run& run) {
 
 void addCostScenes(ContactScenes& scenes) {
   scenes.push_back({"many springs", manySprings, {Kind::Surface}});
-  scenes.push_back({"apart", apart, {Kind::Surface}});
+  scenes.push_back({"thousand bodies apart", apart, {Kind::Surface}});
 }
 
 }  // namespace tetskin::contact_demo

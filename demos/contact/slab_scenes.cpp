@@ -5,7 +5,9 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "contact/contact_world.h"
@@ -72,6 +74,20 @@ void slide(Run& run, double stiffness) {
   run.report("fastest node, S/s", bodies.box.fastest());
 }
 
+/// The same without friction, of which nothing but the slab's own damping takes velocity.
+void slideFreely(Run& run, double stiffness) {
+  SlabOptions slab;
+  slab.stiffness = stiffness;
+  slab.friction = 0.0;
+  ContactWorld world(run);
+  const BoxOnSlab bodies = addBoxOnSlab(world, slab);
+  world.simulate(1);
+  const double before = bodies.box.motion().velocity.x();
+  bodies.box.push(Vector3d(kSpeed, 0, 0));
+  world.simulate(0.3);
+  run.report("velocity kept", (bodies.box.motion().velocity.x() - before) / kSpeed);
+}
+
 /// What a world's gravity is where nobody sets it in Bullet's `btSoftBodyWorldInfo`, which is none of the bodies'.
 void forgetGravity(ContactWorld& world) {
   world.bullet().getWorldInfo().m_gravity = btVector3(0, -10, 0);
@@ -135,6 +151,7 @@ void addSlabScenes(ContactScenes& scenes) {
   };
   for (const double k : {50.0, 500.0}) {
     add("soft slide/k" + text(k), [=](Run& run) { slide(run, k); });
+    add("soft slide/frictionless/k" + text(k), [=](Run& run) { slideFreely(run, k); });
   }
   add("pad/weightless, frictionless", [](Run& run) { glide(run, 0.0); });
   add("pad/weightless, rough", [](Run& run) { glide(run, 0.5); });
