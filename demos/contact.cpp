@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Contact with rigid bodies beside what comes out by hand: momentum, friction, rolling, energy, rest.
+// Contact, and what joins bodies, beside what comes out by hand: momentum, friction, rolling, energy, rest.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -77,7 +77,7 @@ int run(const ContactOptions& options) {
 
 int main(int argc, char** argv) {
   ContactOptions options;
-  CommandLine line("Contact with rigid bodies, beside what comes out by hand. S is a body's size.",
+  CommandLine line("Contact and joints, beside what comes out by hand. S is a body's size.",
                    {{{"tetskin_contact --json contact.json", "all scenes: a minute"},
                      {"tetskin_contact --only copies", "those with this in their names"},
                      {"tetskin_contact --only stop --force bullet", "by Bullet's own solver"}},

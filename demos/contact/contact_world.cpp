@@ -154,6 +154,22 @@ SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const 
   return addSoft(model, options, Vector3d(x, height + margin - box.min().y(), z));
 }
 
+void ContactWorld::touchOthers(SoftObject& body, const ContactShapeOptions& options) {
+  std::shared_ptr<const ContactShape>& shape = shapesOfModels_[&body.model()];
+  if (!shape) {
+    auto made = makeContactShape(body.model().cage, body.model().mesh, options);
+    scenes::require(made.status());
+    shape = std::move(made).value();
+  }
+  world_.touchEachOther(body.soft(), shape);
+}
+
+double ContactWorld::deepest() const {
+  double deepest = 0.0;
+  for (const SoftContact& contact : softContacts()) lower(deepest, static_cast<double>(contact.distance));
+  return deepest;
+}
+
 btRigidBody& ContactWorld::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass) {
   btRigidBody& body = world_.addRigid(std::move(shape), at, mass);
   if (mass > 0.0) {

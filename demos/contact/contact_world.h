@@ -5,10 +5,12 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -94,6 +96,14 @@ class ContactWorld {
   SoftObject& addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x = 0.0,
                         double z = 0.0);
 
+  /// A soft body meets all others of which this was said, at their visual surfaces.
+  /// shape  counts for the first body of a model, of whose shape there is one
+  void touchOthers(SoftObject& body, const ContactShapeOptions& shape = {});
+  /// Of these, in the last step.
+  std::vector<SoftContact> softContacts() const { return world_.softContacts(); }
+  /// The least of their distances, metres, at most 0: below 0 they are so deep in each other.
+  double deepest() const;
+
   // Rigid bodies never fall asleep; their friction is 1, so that the soft body's counts. mass  0: fixed
   btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double mass = 0.0);
   btRigidBody& addSphere(const Eigen::Vector3d& centre, double radius, double mass = 0.0);
@@ -133,6 +143,7 @@ class ContactWorld {
   std::vector<std::unique_ptr<DeformableBody>> deformables_;
   std::vector<std::unique_ptr<SurfaceContact>> contacts_;
   std::vector<std::unique_ptr<SoftObject>> soft_;
+  std::map<const BodyModel*, std::shared_ptr<const ContactShape>> shapesOfModels_;
 };
 
 }  // namespace tetskin::contact_demo

@@ -28,6 +28,15 @@ Matrix3d inertiaOf(const btRigidBody& body) {
   return turn * toEigen(body.getLocalInertia()).asDiagonal() * turn.transpose();
 }
 
+/// From a tet's first node to the others, as columns.
+/// position  of a node
+template <class Position>
+Matrix3d edgesOf(const Position& position, const Tet& tet) {
+  Matrix3d edges;
+  for (std::size_t k = 0; k < 3; ++k) edges.col(static_cast<int>(k)) = position(tet[k + 1]) - position(tet[0]);
+  return edges;
+}
+
 double massOf(const btSoftBody::Node& node) {
   return node.m_im > 0 ? 1.0 / static_cast<double>(node.m_im) : 0.0;
 }
@@ -92,6 +101,12 @@ double fastestNode(const btSoftBody& body) {
   return fastest;
 }
 
+int invertedTets(const BodyModel& model, const btSoftBody& body) {
+  const auto position = [&](int n) { return toEigen(body.m_nodes[n].m_x); };
+  return static_cast<int>(std::count_if(model.cage.tets.begin(), model.cage.tets.end(),
+                                        [&](const Tet& tet) { return !(edgesOf(position, tet).determinant() > 0.0); }));
+}
+
 double kineticEnergy(const btSoftBody& body) {
   double energy = 0.0;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -116,11 +131,6 @@ double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youn
                      const std::vector<double>& stiffnessScale) {
   const double mu = youngsModulus / (2.0 * (1.0 + poissonRatio));
   const double lambda = youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
-  const auto edgesOf = [](const auto& position, const Tet& tet) {
-    Matrix3d edges;
-    for (std::size_t k = 0; k < 3; ++k) edges.col(static_cast<int>(k)) = position(tet[k + 1]) - position(tet[0]);
-    return edges;
-  };
   double energy = 0.0;
   for (std::size_t t = 0; t < model.cage.tets.size(); ++t) {
     const Tet& tet = model.cage.tets[t];

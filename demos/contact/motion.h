@@ -41,6 +41,9 @@ RigidMotion rigidMotionOf(const btSoftBody& body);
 /// Of the fastest node, metres a second.
 double fastestNode(const btSoftBody& body);
 
+/// Of its tets, those that are inside out.
+int invertedTets(const BodyModel& model, const btSoftBody& body);
+
 double kineticEnergy(const btSoftBody& body);
 double kineticEnergy(const btRigidBody& body);
 double kineticEnergy(const btMultiBody& body);  ///< of its base

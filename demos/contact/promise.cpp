@@ -69,6 +69,19 @@ const std::vector<Promise>& promises() {
       {"rest", "push over weight", 0.999, 1.001},
       {"deep", "fastest node, S/s", -kNone, 2.2},
       {"deep", "gap at the end, S", -0.005, kNone},
+      {"soft stack", "least gap, S", -0.001, kNone},
+      {"soft collide", "linear momentum lost", -kNone, 1e-3},
+      {"soft collide", "angular momentum lost", -kNone, 1e-3},
+      {"soft collide", "energy over its start", -kNone, 1.001},
+      {"soft collide", "least gap, S", -0.02, kNone},
+      {"soft collide", "inverted tets, at most", -kNone, 0.0},
+      {"pad/weightless", "velocity over its start", 0.99, 1.01},
+      {"pad", "creeps, m/s", -kNone, 1e-4},
+      {"held bar", "angular momentum lost", -kNone, 1e-5},
+      {"links", "separation, S", -kNone, 1e-4},
+      {"links", "turn, rad", -kNone, 0.002},
+      {"links", "pull over weight", 0.999, 1.001},
+      {"links", "period over a rigid pendulum's", 0.99, 1.01},
   };
   return all;
 }

@@ -16,6 +16,10 @@ const ContactScenes& contactScenes() {
     addEnergyScenes(scenes);
     addMovedScenes(scenes);
     addRestScenes(scenes);
+    addSoftScenes(scenes);
+    addSlabScenes(scenes);
+    addJointScenes(scenes);
+    addCostScenes(scenes);
     return scenes;
   }();
   return all;

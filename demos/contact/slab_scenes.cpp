@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A soft box that slides, and one that lies, on a soft slab which is held at its bottom.
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "contact/contact_world.h"
+#include "contact/scene_list.h"
+#include "scenes/input_error.h"
+
+namespace tetskin::contact_demo {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kSpeed = 3.0, kGap = 0.001;
+const Vector3d kSlabHalf(1.6, 0.2, 0.6);
+
+/// Slab and box of one material, of which the box has k by its own size.
+struct SlabOptions {
+  double stiffness = 50.0, friction = 0.5;
+  Isometry3d turn = Isometry3d::Identity();  ///< of all, about the origin
+};
+
+struct BoxOnSlab {
+  SoftObject &slab, &box;
+};
+
+/// The slab's upper side is at y = 0, where the box lies, with room for a metre and a half along x, before they turn.
+BoxOnSlab addBoxOnSlab(ContactWorld& world, const SlabOptions& slab) {
+  constexpr double kMass = 1.0, kBehind = 0.9, kBottom = 0.01;
+  const ModelPtr boxModel = makeBox({0.5, 0.25, 0.5}), slabModel = makeBox(kSlabHalf, 32);
+  const double density = kMass / boxModel->volume;
+  BodyOptions options;
+  options.friction = slab.friction;
+  options.youngsModulus = slab.stiffness * density * scenes::kEarth * boxModel->size;
+  options.mass = kMass;
+  const Eigen::Translation3d above(0, 0.25 + kGap, 0), below(kBehind, -kSlabHalf.y(), 0);
+  SoftObject& box = world.addSoft(boxModel, options, slab.turn * Isometry3d(above));
+  options.mass = density * slabModel->volume;
+  options.pinned = [](const Vector3d& p) { return p.y() < -kSlabHalf.y() + kBottom; };
+  SoftObject& held = world.addSoft(slabModel, options, slab.turn * Isometry3d(below));
+  for (SoftObject* body : {&box, &held}) world.touchOthers(*body);
+  return {held, box};
+}
+
+/// The box is pushed once it lies; how far it slides, over how far a point would by the same steps.
+void slide(Run& run, double stiffness) {
+  SlabOptions slab;
+  slab.stiffness = stiffness;
+  ContactWorld world(run);
+  const BoxOnSlab bodies = addBoxOnSlab(world, slab);
+  world.simulate(1);
+  const double from = bodies.box.motion().centroid.x();
+  bodies.box.push(Vector3d(kSpeed, 0, 0));
+  double speed = kSpeed, point = 0.0, deepest = 0.0;
+  world.simulate(1.5, [&] {
+    // Implicit Euler stops short of v^2 / (2 mu g) by mu g dt / v of it.
+    speed = std::max(0.0, speed - slab.friction * scenes::kEarth * kStep);
+    point += speed * kStep;
+    deepest = std::min(deepest, world.deepest());
+  });
+  const double distance = bodies.box.motion().centroid.x() - from;
+  run.report("distance over a point's", distance / point);
+  run.report("distance over v^2 / (2 mu g)", distance * 2.0 * slab.friction * scenes::kEarth / (kSpeed * kSpeed));
+  run.report("least gap, S", deepest);
+  run.report("fastest node, S/s", bodies.box.fastest());
+}
+
+/// The same without friction, of which nothing but the slab's own damping takes velocity.
+void slideFreely(Run& run, double stiffness) {
+  SlabOptions slab;
+  slab.stiffness = stiffness;
+  slab.friction = 0.0;
+  ContactWorld world(run);
+  const BoxOnSlab bodies = addBoxOnSlab(world, slab);
+  world.simulate(1);
+  const double before = bodies.box.motion().velocity.x();
+  bodies.box.push(Vector3d(kSpeed, 0, 0));
+  world.simulate(0.3);
+  run.report("velocity kept", (bodies.box.motion().velocity.x() - before) / kSpeed);
+}
+
+/// What a world's gravity is where nobody sets it in Bullet's `btSoftBodyWorldInfo`, which is none of the bodies'.
+void forgetGravity(ContactWorld& world) {
+  world.bullet().getWorldInfo().m_gravity = btVector3(0, -10, 0);
+}
+
+/// Nothing presses the box onto the slab.
+void glide(Run& run, double friction) {
+  constexpr double kSlow = 0.5;
+  SlabOptions slab;
+  slab.friction = friction;
+  ContactWorld world(run, Vector3d::Zero());
+  forgetGravity(world);
+  const BoxOnSlab bodies = addBoxOnSlab(world, slab);
+  bodies.box.push(Vector3d(kSlow, 0, 0));
+  world.simulate(2);
+  run.report("velocity over its start", bodies.box.motion().velocity.x() / kSlow);
+}
+
+/// From the slab's own space, in which it lies level.
+const Isometry3d kToZ(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vector3d::UnitX()));
+
+/// How fast the box wanders along the slab.
+void reportCreep(Run& run, ContactWorld& world, const BoxOnSlab& bodies, const Isometry3d& turn) {
+  constexpr double kSeconds = 2.0;
+  world.simulate(2);
+  const Vector3d before = bodies.box.motion().centroid;
+  world.simulate(kSeconds);
+  Vector3d moved = turn.linear().transpose() * (bodies.box.motion().centroid - before);
+  run.report("sinks, m/s", -moved.y() / kSeconds);
+  moved.y() = 0.0;
+  run.report("creeps, m/s", moved.norm() / kSeconds);
+  run.report("fastest node, S/s", bodies.box.fastest());
+}
+
+void lie(Run& run, const Isometry3d& turn) {
+  SlabOptions slab;
+  slab.turn = turn;
+  ContactWorld world(run, turn * Vector3d(0, -scenes::kEarth, 0));
+  forgetGravity(world);
+  reportCreep(run, world, addBoxOnSlab(world, slab), turn);
+}
+
+/// The bodies' own gravity is at right angles to the world's.
+void lieByOwnGravity(Run& run) {
+  SlabOptions slab;
+  slab.turn = kToZ;
+  const Vector3d down(0, -scenes::kEarth, 0);
+  ContactWorld world(run, down);
+  const BoxOnSlab bodies = addBoxOnSlab(world, slab);
+  for (SoftObject* body : {&bodies.slab, &bodies.box}) {
+    scenes::require(body->deformable().setGravity(toBullet(Vector3d(kToZ * down))));
+  }
+  reportCreep(run, world, bodies, kToZ);
+}
+
+}  // namespace
+
+void addSlabScenes(ContactScenes& scenes) {
+  const auto add = [&](const std::string& name, const std::function<void(Run&)>& run) {
+    scenes.push_back({name, run, {Kind::Surface}});
+  };
+  for (const double k : {50.0, 500.0}) {
+    add("soft slide/k" + text(k), [=](Run& run) { slide(run, k); });
+    add("soft slide/frictionless/k" + text(k), [=](Run& run) { slideFreely(run, k); });
+  }
+  add("pad/weightless, frictionless", [](Run& run) { glide(run, 0.0); });
+  add("pad/weightless, rough", [](Run& run) { glide(run, 0.5); });
+  add("pad/gravity along y", [](Run& run) { lie(run, Isometry3d::Identity()); });
+  add("pad/gravity along z", [](Run& run) { lie(run, kToZ); });
+  add("pad/own gravity", lieByOwnGravity);
+}
+
+}  // namespace tetskin::contact_demo
