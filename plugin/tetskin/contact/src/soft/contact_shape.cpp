@@ -114,7 +114,7 @@ void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, Sha
   data.sampleRest.push_back(toBullet(rest));
   GridDistance at;
   const bool known = data.grid.at(data.sampleRest.back(), at) && at.gradient.length() > kNoDirection;
-  data.sampleNormals.push_back(known ? at.gradient.normalized() : btVector3(0, 0, 0));
+  data.sampleNormals.push_back(known ? at.gradient : btVector3(0, 0, 0));
 }
 
 /// Samples tet by tet; those of flat tets, which nothing is known of, are left out.

@@ -16,8 +16,10 @@ constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 constexpr btScalar kSlackCubes = btScalar(0.5);
 /// Cosine between normals from which two contacts of a node are one.
 constexpr btScalar kOneWay = btScalar(0.7);
-/// Cosine between the normals of two surfaces below which they can touch.
-constexpr btScalar kOpposing = btScalar(-0.3);
+/// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where not.
+constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
+/// Of a gradient's length, from which on the sample is on no edge.
+constexpr btScalar kOnFace = btScalar(0.9);
 /// A side that is farther away at rest, in mean edges, is of another part.
 constexpr btScalar kOneSide = 1;
 
@@ -144,11 +146,12 @@ btVector3 PairSearch::ownNormal(int sample, int run) const {
 /// Which way the touch pushes; false: none. Surfaces touch that look against each other: what slides along another one
 /// does not catch on its edges by the sides of its own. What is deep inside leaves by one way for all of it, as the
 /// nearest ones would tear it; what is less deep beside it does not hold it back.
-bool PairSearch::direct(const btVector3& own, Touch& touch) const {
+bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   const bool overlaps = !now_.apart.isZero();
-  if (overlaps && touch.distance < -now_.deep) touch.normal = now_.apart;
+  const bool deep = overlaps && touch.distance < -now_.deep;
+  if (deep) touch.normal = now_.apart;
   if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
-  return own.isZero() || own.dot(touch.normal) < kOpposing;
+  return own.isZero() || own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
 }
 
 void PairSearch::touch(int sample, int run, const Place& place) {
@@ -176,7 +179,8 @@ void PairSearch::touch(int sample, int run, const Place& place) {
     overlap_.normals += own;
     ++overlap_.inside;
   }
-  if (!direct(own, made)) return;
+  const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
+  if (!direct(own, onFace, made)) return;
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 

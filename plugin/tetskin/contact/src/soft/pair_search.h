@@ -69,7 +69,7 @@ class PairSearch {
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
   btVector3 ownNormal(int sample, int run) const;
-  bool direct(const btVector3& own, Touch& touch) const;
+  bool direct(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
 
   Search now_{};

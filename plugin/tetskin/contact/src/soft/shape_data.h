@@ -51,7 +51,7 @@ struct ShapeData {
   std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
   // Of the samples, what is read of many of them, one after the other.
   std::vector<btVector3> sampleRest;
-  std::vector<btVector3> sampleNormals;      ///< outwards, by the grid; 0 where that tells none
+  std::vector<btVector3> sampleNormals;      ///< outwards, by the grid; shorter than 1 on edges, 0 where it tells none
   std::vector<int> sampleNodes;              ///< of the largest clamped weight
   std::vector<btScalar> weights[4];          ///< once more
   std::vector<CarriedCells> carried;         ///< by tet; empty unless the cage is split
