@@ -14,9 +14,12 @@ constexpr btScalar kOnePlace = btScalar(0.3);
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 /// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
 constexpr btScalar kSlackCubes = btScalar(0.5);
+/// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
+constexpr btScalar kKeptCubes = btScalar(0.1);
 /// Cosine between normals from which two contacts of a node are one.
 constexpr btScalar kOneWay = btScalar(0.7);
-/// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where not.
+/// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where
+/// not.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
 /// Of a gradient's length, from which on the sample is on no edge.
 constexpr btScalar kOnFace = btScalar(0.9);
@@ -51,9 +54,13 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   touchOfNode_.assign(first.data().nodes.size(), -1);
   memory.sides.beginStep();
   candidates_ = &memory.candidates;
+  before_ = &memory.samples;
   const btScalar slack = kSlackCubes * second.data().grid.spacing();
   if (!memory.candidates.hold(first, second)) memory.candidates.find(first, second, slack);
   for (const int run : candidates_->runs()) placeRun(run);
+  memory.samples.clear();
+  for (const Touch& touch : touches) memory.samples.push_back(touch.sample);
+  std::sort(memory.samples.begin(), memory.samples.end());
   return overlap_;
 }
 
@@ -184,13 +191,19 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 
+/// Those that touched in the step before count as deeper: what rests would be held by others in each step, and shake.
+btScalar PairSearch::rankOf(const Touch& touch) const {
+  const bool touched = std::binary_search(before_->begin(), before_->end(), touch.sample);
+  return touched ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
+}
+
 void PairSearch::keepDeepest(const Touch& touch, int node) {
   int& head = touchOfNode_[static_cast<std::size_t>(node)];
   for (int t = head; t >= 0; t = (*touches_)[static_cast<std::size_t>(t)].next) {
     Touch& other = (*touches_)[static_cast<std::size_t>(t)];
     if (other.normal.dot(touch.normal) < kOneWay) continue;
     const int next = other.next;
-    if (touch.distance < other.distance) other = touch;
+    if (rankOf(touch) < rankOf(other)) other = touch;
     other.next = next;
     return;
   }

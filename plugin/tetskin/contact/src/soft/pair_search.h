@@ -25,6 +25,7 @@ struct Touch {
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
+  std::vector<int> samples;  ///< that touched, ascending
 };
 
 /// By how much one body is in another.
@@ -71,10 +72,12 @@ class PairSearch {
   btVector3 ownNormal(int sample, int run) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
+  btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
   const PairCandidates* candidates_ = nullptr;
-  std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in a tet
+  const std::vector<int>* before_ = nullptr;  ///< samples of the step before
+  std::vector<btScalar> inside_;              ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;
