@@ -62,6 +62,7 @@ double millisecondsOfSprings(Run& run, int count) {
   }
   for (int k = 0; k < kWarm; ++k) world.step();
   std::vector<double> milliseconds;
+  milliseconds.reserve(kSteps);
   for (int k = 0; k < kSteps; ++k) milliseconds.push_back(stepMilliseconds(world));
   return scenes::median(milliseconds);
 }
@@ -83,8 +84,8 @@ void addCubes(ContactWorld& world, const ModelPtr& model, bool touching) {
   BodyOptions options;
   options.byNodes = true;  // so that it is only contact among soft bodies that they look for
   for (int k = 0; k < kAlong * kAlong * kAlong; ++k) {
-    const Vector3d index(k % kAlong, k / kAlong % kAlong, k / (kAlong * kAlong));
-    SoftObject& cube = world.addSoft(model, options, Vector3d(apart * index));
+    const Eigen::Vector3i index(k % kAlong, k / kAlong % kAlong, k / (kAlong * kAlong));
+    SoftObject& cube = world.addSoft(model, options, Vector3d(apart * index.cast<double>()));
     if (touching) world.touchOthers(cube);
     cube.push(Vector3d(0, 0, 0), Vector3d(1, 2, 0.5));
   }
