@@ -78,7 +78,7 @@ int run(const ContactOptions& options) {
 int main(int argc, char** argv) {
   ContactOptions options;
   CommandLine line("Contact and joints, beside what comes out by hand. S is a body's size.",
-                   {{{"tetskin_contact --json contact.json", "all scenes: a minute"},
+                   {{{"tetskin_contact --json contact.json", "all scenes: two minutes"},
                      {"tetskin_contact --only copies", "those with this in their names"},
                      {"tetskin_contact --only stop --force bullet", "by Bullet's own solver"}},
                     "by the surface, a figure is not what is promised"});

@@ -51,6 +51,33 @@ TEST(Contact, SaysWhatIsPromisedAndWhetherItHolds) {
   EXPECT_NE(result.out.find(" holds\n"), std::string::npos) << result.out;
 }
 
+/// Where soft bodies meet each other, hang from multibodies or turn about what holds them.
+TEST(Contact, HoldsWhatIsPromisedOfSoftBodiesAmongThemselves) {
+  const CommandFolder folder;
+  for (const char* scenes : {"soft collide/off-centre at 10", "pad/weightless", "held bar", "links"}) {
+    const CommandResult result = folder.run(TETSKIN_CONTACT, {"--only", scenes, "--json", "c.json"});
+    ASSERT_EQ(result.status, 0) << result.out << result.err;
+    for (const auto& scene : folder.json("c.json")) {
+      int promised = 0;
+      for (const auto& figure : scene["figures"]) {
+        promised += figure.contains("least") || figure.contains("most");
+        EXPECT_TRUE(figure["held"].get<bool>()) << scene["scene"] << figure;
+      }
+      EXPECT_GT(promised, 0) << scene;
+    }
+  }
+}
+
+/// A box glides along a slab that it touches in some steps: else it would prove nothing of contact.
+TEST(Contact, TouchesTheSlabThatItGlidesAlong) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_CONTACT, {"--only", "pad/weightless", "--json", "c.json"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  for (const auto& scene : folder.json("c.json")) {
+    EXPECT_GT(figuresOf(scene).at("contact points")["value"].get<double>(), 0.05) << scene;
+  }
+}
+
 /// Bullet's solver, of which nothing is promised, loses 4 % of the momentum here.
 TEST(Contact, PromisesNothingOfBulletsSolver) {
   const CommandFolder folder;
