@@ -34,7 +34,7 @@ constexpr double kSecondsRun = 1.0;
 constexpr double kPoisson = 0.3;
 constexpr double kGravity = 9.81;
 /// Of the energy that a body began with and was given; of momentum; of the size of a reference. What is dragged by a
-/// point that is light beside what it leads, and what lands stiff and spinning, gains more in long steps.
+/// point that is light beside what it leads gains more in long steps.
 constexpr double kMostEnergy = 1.02, kMostDragged = 1.2, kMostLost = 1e-3, kMostSize = 1.2;
 /// E V times this is what the rounding of positions reads as elastic energy.
 constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 1e-11 : 1e-27;

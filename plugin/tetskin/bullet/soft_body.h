@@ -99,7 +99,7 @@ struct SoftBodyOptions {
   double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
   double solverTolerance = 5e-3;  ///< Corotated: of the residual over that without elasticity, 0 to below 1
-  int maxIterations = 100;        ///< Corotated: of the conjugate gradient in a step, at most
+  int maxIterations = 100;        ///< Corotated: of the conjugate gradient in a solve, at most; contact takes several
   double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every
   /// other soft body with trees, in each substep. Without them rays in the deformable world miss the body, those in the

@@ -23,7 +23,7 @@ struct ElasticMaterial {
 /// How closely the velocities of a step are solved for.
 struct SolverLimits {
   double tolerance = 5e-3;  ///< of the residual over that without elasticity; 0 to below 1
-  int iterations = 100;     ///< of the conjugate gradient in a step, at most; at least 1
+  int iterations = 100;     ///< of the conjugate gradient in each pass, at most; at least 1
 };
 
 using Dynamics = elastic_detail::BodyDynamics<btScalar>;
