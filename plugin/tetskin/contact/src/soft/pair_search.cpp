@@ -53,6 +53,20 @@ btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
   return gap;
 }
 
+Clearance outside(btScalar gap) {
+  Clearance clear;
+  clear.outside = static_cast<double>(gap);
+  return clear;
+}
+Clearance away(btScalar distance) {
+  Clearance clear;
+  clear.distance = static_cast<double>(distance);
+  return clear;
+}
+Clearance atSurface() {
+  return away(0);
+}
+
 }  // namespace
 
 Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
@@ -91,12 +105,12 @@ void PairSearch::touchRun(int run) {
   }
 }
 
-/// Returns how far the run's samples are from the surface in the tet; no more than that.
-btScalar PairSearch::testTet(int tet) {
-  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return gap;
+/// Of the run's samples.
+Clearance PairSearch::testTet(int tet) {
+  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return outside(gap);
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat) return 0;
-  if (const btScalar gap = gapTo(around_, of); gap > 0) return gap;
+  if (of.flat) return outside(0);
+  if (const btScalar gap = gapTo(around_, of); gap > 0) return outside(gap);
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run_.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run_.first)],
@@ -109,44 +123,46 @@ btScalar PairSearch::testTet(int tet) {
     const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
     inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
   }
-  btScalar clear = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
+  Clearance clear;
+  btScalar most = -BT_LARGE_FLOAT;
   for (int k = 0; k < count; ++k) {
     const btScalar weight = inside_[static_cast<std::size_t>(k)];
     if (weight >= kLeastWeight) {
-      clear = std::min(clear, offer(tet, run_.first + k, k));
+      clear.cut(offer(tet, run_.first + k, k));
     } else {
       most = std::max(most, weight);
     }
   }
-  return std::min(clear, (kLeastWeight - most) / of.steepest);
+  clear.cut(outside((kLeastWeight - most) / of.steepest));
+  return clear;
 }
 
-/// But for places that are known from a tet beside this one. Returns how far it is from the surface, no more than that.
-btScalar PairSearch::offer(int tet, int sample, int k) {
+/// But for places that are known from a tet beside this one.
+Clearance PairSearch::offer(int tet, int sample, int k) {
   const ShapeData& data = now_.second->data();
   const DeformedTet& deformed = now_.second->deformed(tet);
   Place place;
   deformed.weightsAt(now_.first->sampleAt(sample), place.weights);
-  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return 0;
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return atSurface();
   place.rest = restPoint(data, tet, place.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
     const btScalar moved = (place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
-    if (moved < own) return (own - moved) / deformed.restPerWorld;
+    if (moved < own) return outside((own - moved) / deformed.restPerWorld);
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
   for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return 0;
+    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return atSurface();
   }
-  if (!data.grid.at(place.rest, place.nearest)) return 0;
+  if (!data.grid.at(place.rest, place.nearest)) return atSurface();
   const btScalar distance = place.nearest.distance / deformed.restPerWorld;
-  if (distance > now_.reach) return distance;
+  if (distance > now_.reach) return away(distance);
   place.tet = tet;
   place.next = head;
   head = static_cast<int>(places_.size());
   places_.push_back(place);
-  return 0;
+  return atSurface();
 }
 
 /// By which the sample has moved in the body's rest space.

@@ -65,8 +65,8 @@ class PairSearch {
   };
 
   void beginRun(int run);
-  btScalar testTet(int tet);
-  btScalar offer(int tet, int sample, int k);
+  Clearance testTet(int tet);
+  Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
