@@ -21,6 +21,9 @@ constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where
 /// not.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
+/// Deeper than so many cubes of the grid what is no side of the own surface that slides along is held, too, unless the
+/// normals agree by this cosine.
+constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
 /// Of a gradient's length, from which on the sample is on no edge.
 constexpr btScalar kOnFace = btScalar(0.9);
 /// A side that is farther away at rest, in mean edges, is of another part.
@@ -53,6 +56,10 @@ btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
   return gap;
 }
 
+bool contains(const std::vector<int>& ascending, int sample) {
+  return std::binary_search(ascending.begin(), ascending.end(), sample);
+}
+
 Clearance outside(btScalar gap) {
   Clearance clear;
   clear.outside = static_cast<double>(gap);
@@ -76,16 +83,31 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
   memory.sides.beginStep();
-  before_ = &memory.samples;
+  touched_.swap(memory.touched);
+  pierced_.swap(memory.pierced);
   const btScalar slack = kSlackCubes * second.data().grid.spacing();
   memory.candidates.advance(first, second);
   if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
   memory.candidates.visit(
       reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
-  memory.samples.clear();
-  for (const Touch& touch : touches) memory.samples.push_back(touch.sample);
-  std::sort(memory.samples.begin(), memory.samples.end());
+  remember(memory);
   return overlap_;
+}
+
+/// A node that touches nothing in this step goes on by the sample that it touched with before.
+void PairSearch::remember(PairMemory& memory) const {
+  memory.touched.clear();
+  memory.pierced.clear();
+  const std::vector<int>& nodes = now_.first->data().sampleNodes;
+  for (const int sample : touched_) {
+    const int node = nodes[static_cast<std::size_t>(sample)];
+    if (touchOfNode_[static_cast<std::size_t>(node)] < 0) memory.touched.push_back(sample);
+  }
+  for (const Touch& touch : *touches_) {
+    memory.touched.push_back(touch.sample);
+    if (touch.pierces) memory.pierced.push_back(touch.sample);
+  }
+  for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
 }
 
 void PairSearch::beginRun(int run) {
@@ -200,7 +222,11 @@ bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   const bool deep = overlaps && touch.distance < -now_.deep;
   if (deep) touch.normal = now_.apart;
   if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
-  return own.isZero() || own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
+  if (own.isZero()) return true;
+  const bool pierced = contains(pierced_, touch.sample);
+  touch.pierces = pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing();
+  if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
+  return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
 }
 
 void PairSearch::touch(int sample, int run, const Place& place) {
@@ -235,8 +261,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
 
 /// Those that touched in the step before count as deeper: what rests would be held by others in each step, and shake.
 btScalar PairSearch::rankOf(const Touch& touch) const {
-  const bool touched = std::binary_search(before_->begin(), before_->end(), touch.sample);
-  return touched ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
+  return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {
