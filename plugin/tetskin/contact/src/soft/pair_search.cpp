@@ -224,7 +224,8 @@ bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
   if (own.isZero()) return true;
   const bool pierced = contains(pierced_, touch.sample);
-  touch.pierces = pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing();
+  touch.pierces =
+      !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
   if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
   return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
 }
