@@ -219,15 +219,25 @@ btVector3 PairSearch::ownNormal(int sample, int run) const {
 /// nearest ones would tear it; what is less deep beside it does not hold it back.
 bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   const bool overlaps = !now_.apart.isZero();
+  // Where bodies are in one place, their surfaces are, too.
+  if (overlaps && own.dot(touch.normal) > kAgreeing) touch.distance = std::min(touch.distance, -2 * now_.deep);
   const bool deep = overlaps && touch.distance < -now_.deep;
   if (deep) touch.normal = now_.apart;
   if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
   if (own.isZero()) return true;
   const bool pierced = contains(pierced_, touch.sample);
-  touch.pierces =
-      !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
+  touch.pierces = !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
   if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
   return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
+}
+
+void PairSearch::count(const btVector3& own, const Touch& touch) {
+  ++overlap_.reached;
+  overlap_.agreeing += own.dot(touch.normal) > kAgreeing ? 1 : 0;
+  if (!(touch.distance < 0)) return;
+  overlap_.deepest = std::min(overlap_.deepest, touch.distance);
+  overlap_.normals += own;
+  ++overlap_.inside;
 }
 
 void PairSearch::touch(int sample, int run, const Place& place) {
@@ -250,11 +260,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   std::copy(place.weights, place.weights + 4, made.weights);
   made.normal = normal / length;
   const btVector3 own = ownNormal(sample, run);
-  if (made.distance < 0) {
-    overlap_.deepest = std::min(overlap_.deepest, made.distance);
-    overlap_.normals += own;
-    ++overlap_.inside;
-  }
+  count(own, made);
   const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
   if (!direct(own, onFace, made)) return;
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
@@ -262,7 +268,8 @@ void PairSearch::touch(int sample, int run, const Place& place) {
 
 /// Those that touched in the step before count as deeper: what rests would be held by others in each step, and shake.
 btScalar PairSearch::rankOf(const Touch& touch) const {
-  return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
+  return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
+                                          : touch.distance;
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {

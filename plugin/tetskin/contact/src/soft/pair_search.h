@@ -30,11 +30,13 @@ struct PairMemory {
   std::vector<int> pierced;  ///< those that did so from beneath, in the last step
 };
 
-/// By how much one body is in another.
+/// By how much one body is in another, by its samples.
 struct Overlap {
   btScalar deepest = 0;        ///< distance, below 0
-  btVector3 normals{0, 0, 0};  ///< sum over the samples that are inside: of their own surface, each of length 1
+  btVector3 normals{0, 0, 0};  ///< sum over those that are inside: of their own surface, each of length 1
   int inside = 0;              ///< as many
+  int reached = 0;             ///< inside, or within reach
+  int agreeing = 0;            ///< of these, those whose surface looks as the other one does there
 };
 
 /// Finds the touches of pairs, one after the other; keeps its memory.
@@ -72,6 +74,7 @@ class PairSearch {
   Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
   void touch(int sample, int run, const Place& place);
+  void count(const btVector3& own, const Touch& touch);
   btVector3 restMotion(int sample, const Place& place) const;
   btVector3 ownNormal(int sample, int run) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
@@ -79,10 +82,10 @@ class PairSearch {
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
-  SampleRun run_;                             ///< in this one's turn
-  ContactBox around_;                         ///< its samples
-  std::vector<int> touched_, pierced_;        ///< samples of the step before
-  std::vector<btScalar> inside_;              ///< by sample of the run: its least weight in a tet
+  SampleRun run_;                       ///< in this one's turn
+  ContactBox around_;                   ///< its samples
+  std::vector<int> touched_, pierced_;  ///< samples of the step before
+  std::vector<btScalar> inside_;        ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;
