@@ -19,11 +19,9 @@ struct SurfaceSpringOptions {
   double stiffness = 0.0;
   /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
-  /// Most of the force. Where a step suddenly asks for more, that one may give up to twice as much, and the next ones
-  /// give so much less: on the mean of a twentieth of a second it holds to some hundredths. 0: to a point in space the
-  /// body's mass times the larger of 4 times the world's gravity and 20 of the body's sizes per second squared, so that
-  /// a target that jumps neither tears the body nor throws it: set more where it carries more than itself. To a body
-  /// unbounded, as is infinity.
+  /// Most of the force, to some hundredths in each step. 0: to a point in space the body's mass times the larger of 4 times the world's
+  /// gravity and 20 of the body's sizes per second squared, so that a target that jumps neither tears the body nor
+  /// throws it: set more where it carries more than itself. To a body unbounded, as is infinity.
   double maxForce = 0.0;
   /// Whether the body and what it is tied to may touch each other.
   bool collide = false;
@@ -36,7 +34,7 @@ struct SurfaceSpringOptions {
 ///     auto spring = tetskin::SurfaceSpring::add(*world, point).value();   // picked
 ///     spring->setTarget(mouse);                                           // dragged; let go by deleting it
 ///
-/// Deformable bodies of one world share one object in its list of forces, and of its actions. Delete springs before
+/// Deformable bodies of one world share one object in its list of forces. Delete springs before
 /// what they are tied to, and before the world. When the body goes first, they only say so; an application's own body
 /// must be released before.
 class TETSKIN_TOUCH_API SurfaceSpring {

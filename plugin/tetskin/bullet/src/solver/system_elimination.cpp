@@ -279,8 +279,8 @@ void SystemSolve::moveFew() {
   rigidMomentum_ += rigidPush_;
 }
 
-/// What is left is small by what it moves, and by impulses need not be: of stiff rows. The few unknowns take it, so that
-/// momentum by the rows' impulses is theirs, and changes little.
+/// What is left is small by what it moves, and by impulses need not be: of stiff rows. The few unknowns take it, so
+/// that momentum by the rows' impulses is theirs, and changes little.
 void SystemSolve::settleFew() {
   if (fewSize_ == 0) return;
   const Vector change = compliance_ * fewResidual_;
