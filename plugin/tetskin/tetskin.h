@@ -26,6 +26,7 @@
 #include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/force_record.h>
 #include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
