@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What bodies that touch by their nodes do to each other, as ForceRecord tells it.
+#include "recorded_forces.h"
 #include "rigid_bodies.h"
 
 #include <LinearMath/btIDebugDraw.h>
-#include <tetskin/bullet/force_record.h>
 
 #include <cmath>
 #include <memory>
@@ -13,34 +13,6 @@
 
 namespace tetskin::test {
 namespace {
-
-/// Of all bodies here: 1 kg, and Bullet's gravity is 10.
-constexpr double kWeight = 10.0;
-
-std::unique_ptr<ForceRecord> forcesIn(TetskinWorld& world) {
-  Result<std::unique_ptr<ForceRecord>> made = ForceRecord::add(world.deformable());
-  EXPECT_TRUE(made.ok()) << made.status().message;
-  return std::move(made).value();
-}
-
-btCollisionObject& floorOf(TetskinWorld& world) {
-  return *world.world->getCollisionObjectArray()[0];
-}
-
-void expectNear(const btVector3& is, const btVector3& shall, double tolerance) {
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(is[k], shall[k], tolerance) << "along axis " << k;
-}
-
-void expectNothing(const AppliedForces& forces) {
-  for (const Wrench& wrench : {forces.contact, forces.friction, forces.joints, forces.anchors}) {
-    EXPECT_TRUE(wrench.force.isZero());
-    EXPECT_TRUE(wrench.torque.isZero());
-  }
-}
-
-bool isNothing(const AppliedForces& forces) {
-  return forces.total().force.isZero() && forces.total().torque.isZero();
-}
 
 /// Of its mass.
 btVector3 centroidOf(const btSoftBody& body) {
@@ -86,6 +58,8 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.5, 2.01, -0.1);
   SoftBodyOptions firm;
   firm.relativeStiffness = 1000;
+  // Heavier at one end.
+  for (const Eigen::Vector3d& p : cage.nodes) firm.nodeMasses.push_back((1 + p.x()) / double(cage.nodeCount()));
   const auto bar = added(world, cage, firm);
   bar->body().setActivationState(DISABLE_DEACTIVATION);
   const auto support = [] { return std::make_unique<btBoxShape>(btVector3(0.5, 0.5, 0.5)); };
@@ -103,7 +77,7 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
     return static_cast<double>(origin.x() - centre.x()) + x;
   };
   const double a = -arm(left), b = arm(right);
-  EXPECT_GT(std::abs(a - b), 0.04);
+  EXPECT_GT(a, b + 0.1);
   const btVector3 onLeft = forces->on(*left.body).total().force, onRight = forces->on(*right.body).total().force;
   EXPECT_NEAR(-onLeft.y(), kWeight * b / (a + b), 0.01 * kWeight * b / (a + b));
   EXPECT_NEAR(-onRight.y(), kWeight * a / (a + b), 0.01 * kWeight * a / (a + b));
@@ -226,8 +200,8 @@ TEST(ForceRecord, IsNothingOnceAContactHasEnded) {
   ASSERT_FALSE(isNothing(at.onFloor()));
   at.block->body().translate(btVector3(0, 3, 0));
   step(at.world, 1);
-  expectNothing(at.onFloor());
-  expectNothing(at.forces->on(at.block->body()));
+  EXPECT_TRUE(isNothing(at.onFloor()));
+  EXPECT_TRUE(isNothing(at.forces->on(at.block->body())));
 }
 
 TEST(ForceRecord, StaysAsItIsWhileABodySleeps) {
@@ -243,16 +217,11 @@ TEST(ForceRecord, StaysAsItIsWhileABodySleeps) {
   at.block->body().activate();
   at.block->body().translate(btVector3(0, 3, 0));
   step(at.world, 1);
-  expectNothing(at.onFloor());
+  EXPECT_TRUE(isNothing(at.onFloor()));
 }
 
 TEST(ForceRecord, IsNotChangedByQueriesBetweenSteps) {
-  struct Nothing : btCollisionWorld::ContactResultCallback {
-    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-      return 0;
-    }
-  } nothing;
+  IgnoredResults nothing;
   RestingBlock at(60), same(60);
   const btVector3 before = at.onFloor().total().force;
   for (btCollisionObject* object : {&floorOf(at.world), static_cast<btCollisionObject*>(&at.block->body())}) {
@@ -274,17 +243,17 @@ TEST(ForceRecord, TellsNothingOfWhatHasLeftTheWorld) {
   step(world, 60);
   ASSERT_GT(forces->on(block->body()).total().force.y(), 0.5 * kWeight);
   world.deformable().removeRigidBody(under->body.get());
-  expectNothing(forces->on(*under->body));
-  expectNothing(forces->on(block->body()));
+  EXPECT_TRUE(isNothing(forces->on(*under->body)));
+  EXPECT_TRUE(isNothing(forces->on(block->body())));
   // In the world again, and another one at the same address: neither has been touched.
   world.deformable().addRigidBody(under->body.get());
-  expectNothing(forces->on(*under->body));
+  EXPECT_TRUE(isNothing(forces->on(*under->body)));
   step(world, 60);
   ASSERT_FALSE(isNothing(forces->on(*under->body)));
   under.reset();
-  expectNothing(forces->on(block->body()));
+  EXPECT_TRUE(isNothing(forces->on(block->body())));
   step(world, 1);
-  expectNothing(forces->on(block->body()));
+  EXPECT_TRUE(isNothing(forces->on(block->body())));
 }
 
 TEST(ForceRecord, OutlivesBodiesThatSleepOnEachOther) {
@@ -294,9 +263,9 @@ TEST(ForceRecord, OutlivesBodiesThatSleepOnEachOther) {
   for (int f = 0; f < 1200 && block->body().isActive(); ++f) step(world, 1);
   ASSERT_FALSE(isNothing(forces->on(floorOf(world))));
   block.reset();
-  expectNothing(forces->on(floorOf(world)));
+  EXPECT_TRUE(isNothing(forces->on(floorOf(world))));
   step(world, 2);
-  expectNothing(forces->on(floorOf(world)));
+  EXPECT_TRUE(isNothing(forces->on(floorOf(world))));
 }
 
 TEST(ForceRecord, MayBeAskedForTwiceAndChangesNoStep) {
