@@ -5,6 +5,7 @@
 #include "bullet/recorded_forces.h"
 #include "contact_test.h"
 #include "soft_fixtures.h"
+#include "support/allocation_count.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
@@ -222,6 +223,25 @@ TEST(ContactForces, AreNotChangedByQueriesBetweenSteps) {
   world.world->contactPairTest(&floorOf(world), &body.body->body(), nothing);
   EXPECT_EQ(forces->on(floorOf(world)).total().force, before.total().force);
   EXPECT_EQ(forces->on(floorOf(world)).total().torque, before.total().torque);
+}
+
+TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
+  Balls balls(btVector3(0, -10, 0));
+  btSoftBody &a = balls.add(Vector3d(3, 1, 0)), &b = balls.add(Vector3d(3, 1.83, 0));
+  TouchingBody body(*balls.world, ballMesh(24, 0.35), btVector3(0, btScalar(0.352), 0));
+  const auto forces = forcesIn(*balls.world);
+  step(*balls.world, 1);
+  ASSERT_FALSE(body.contact->contacts().empty());
+  ASSERT_FALSE(balls.contacts->contacts().empty());
+  // They have grown to what there is.
+  const std::size_t before = allocationCount();
+  const std::size_t told = body.contact->contacts().size() + balls.contacts->contacts().size();
+  const btScalar onB = forces->on(b, a).total().force.length();
+  const btScalar onFloor = forces->on(floorOf(*balls.world)).total().force.length();
+  EXPECT_EQ(allocationCount(), before);
+  EXPECT_GT(told, 1U);
+  EXPECT_GT(onB, 0);
+  EXPECT_GT(onFloor, 0);
 }
 
 TEST(ContactForces, StayWhileABodySleepsAndGoWithWhatItLiesOn) {
