@@ -29,8 +29,8 @@ struct AppliedForces {
   Wrench total() const;
 };
 
-/// The forces between soft bodies and what they touch or hang on: rigid bodies, links of multibodies, other soft bodies;
-/// what a gripper feels. By surface (`SurfaceContact`, `SoftContacts`) and by nodes alike.
+/// The forces between soft bodies and what they touch or hang on: rigid bodies, links of multibodies, other soft
+/// bodies; what a gripper feels. By surface (`SurfaceContact`, `SoftContacts`) and by nodes alike.
 ///
 ///     auto forces = ForceRecord::add(world).value();
 ///     ...
@@ -44,8 +44,8 @@ struct AppliedForces {
 /// does it act on others.
 ///
 /// Recorded is what a `DeformableSolver` solves for: of bodies of `ForceModel::Corotated`. Not of a body with itself,
-/// and not of rigid bodies among themselves, which Bullet's manifolds tell of. Torque on a kinematic body is about where
-/// Bullet has it in a step, which is where the whole `stepSimulation` takes it.
+/// and not of rigid bodies among themselves, which Bullet's manifolds tell of. Torque on a kinematic body is about
+/// where Bullet has it in a step, which is where the whole `stepSimulation` takes it.
 ///
 /// In the world's `debugDrawWorld`, with DBG_DrawContactPoints, it draws the points that are pushed in the last
 /// substep, their normals, and the forces there: one as large as the soft body's weight is drawn as long as the body.
