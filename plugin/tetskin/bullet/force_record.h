@@ -26,7 +26,10 @@ struct AppliedForces {
   Wrench anchors;   ///< Bullet's, of `appendDeformableAnchor`
 
   /// Their sum.
-  Wrench total() const;
+  Wrench total() const {
+    return {contact.force + friction.force + joints.force + anchors.force,
+            contact.torque + friction.torque + joints.torque + anchors.torque};
+  }
 };
 
 /// The forces between soft bodies and what they touch or hang on: rigid bodies, links of multibodies, other soft

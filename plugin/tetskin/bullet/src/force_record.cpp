@@ -9,11 +9,6 @@
 
 namespace tetskin {
 
-Wrench AppliedForces::total() const {
-  return {contact.force + friction.force + joints.force + anchors.force,
-          contact.torque + friction.torque + joints.torque + anchors.torque};
-}
-
 ForceRecord::ForceRecord(std::shared_ptr<RecordedForces> recorded) : recorded_(std::move(recorded)) {}
 
 ForceRecord::~ForceRecord() = default;
