@@ -18,6 +18,7 @@ struct Touch {
   btScalar weights[4] = {};  ///< in it
   btVector3 normal{0, 1, 0};
   btScalar distance = 0;  ///< world space; below 0: how deep
+  bool pierces = false;   ///< deeper than what slides along another surface can be, or was
   int next = -1;          ///< another of the same node
 };
 
@@ -25,7 +26,8 @@ struct Touch {
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
-  std::vector<int> samples;  ///< that touched, ascending
+  std::vector<int> touched;  ///< samples by which nodes did last, ascending
+  std::vector<int> pierced;  ///< those that did so from beneath, in the last step
 };
 
 /// By how much one body is in another.
@@ -64,9 +66,10 @@ class PairSearch {
     ContactSides* sides;
   };
 
+  void remember(PairMemory& memory) const;
   void beginRun(int run);
-  btScalar testTet(int tet);
-  btScalar offer(int tet, int sample, int k);
+  Clearance testTet(int tet);
+  Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
@@ -78,7 +81,7 @@ class PairSearch {
   Search now_{};
   SampleRun run_;                             ///< in this one's turn
   ContactBox around_;                         ///< its samples
-  const std::vector<int>* before_ = nullptr;  ///< samples of the step before
+  std::vector<int> touched_, pierced_;        ///< samples of the step before
   std::vector<btScalar> inside_;              ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
