@@ -21,6 +21,7 @@ inline tetskin::TetMesh fineTets;
 inline tetskin::TriangleMesh mesh;
 inline std::unique_ptr<tetskin::DeformableBody> body;
 inline btSoftBody* softBody = nullptr;  // the application's own
+inline btRigidBody* finger = nullptr;   // likewise
 inline tetskin::SkinOptions options;
 inline tetskin::SoftBodySkin skin;
 inline tetskin::Embedding embedding;

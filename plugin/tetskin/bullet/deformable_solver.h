@@ -10,6 +10,7 @@
 
 namespace tetskin {
 
+class ForceRecord;
 class SystemSolve;
 
 /// Bullet's solver of deformable bodies, with a solve of our own: what the application makes instead of a
@@ -72,6 +73,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Parts;
   friend struct Parts;
+  friend class ForceRecord;
   friend class SystemSolve;
   std::unique_ptr<Parts> parts_;
 };

@@ -114,8 +114,9 @@ class TETSKIN_CONTACT_API SoftContacts {
   /// What a body is to these contacts.
   IncludedBody statusOf(const btSoftBody& body) const;
 
-  /// Of the last step.
-  std::vector<SoftContact> contacts() const;
+  /// Those of the last step that push; without bodies that have left the world, or were excluded, since. This object's
+  /// own, valid until the next call; allocates only where there are more than ever.
+  const std::vector<SoftContact>& contacts() const;
 
  private:
   struct Parts;

@@ -73,8 +73,8 @@ class TETSKIN_CONTACT_API SurfaceContact {
   SurfaceContact& operator=(const SurfaceContact&) = delete;
 
   /// Those of the last substep in which the body was awake, each once, by obstacle; without obstacles that have left
-  /// the world since. Allocates the result.
-  std::vector<SurfaceContactPoint> contacts() const;
+  /// the world since. This object's own, valid until the next call; allocates only where there are more than ever.
+  const std::vector<SurfaceContactPoint>& contacts() const;
 
   /// Vertices and samples that may touch.
   std::size_t sampleCount() const;

@@ -40,6 +40,7 @@ struct SoftContacts::Parts {
   btDeformableMultiBodyDynamicsWorld& world;
   DeformableSolver& solver;
   ContactForce force;
+  std::vector<SoftContact> contacts;  ///< as last told
 };
 
 SoftContacts::SoftContacts(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -93,8 +94,9 @@ IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
   return parts_->force.isGone(body) ? IncludedBody::Gone : IncludedBody::Unknown;
 }
 
-std::vector<SoftContact> SoftContacts::contacts() const {
-  std::vector<SoftContact> contacts;
+const std::vector<SoftContact>& SoftContacts::contacts() const {
+  std::vector<SoftContact>& contacts = parts_->contacts;
+  contacts.clear();
   for (const SoftPointContact& from : parts_->force.lastContacts()) {
     const btScalar impulse = from.normal.dot(from.impulse);
     if (!(impulse > 0)) continue;

@@ -105,6 +105,7 @@ struct SurfaceContact::Parts {
   void end();
 
   std::shared_ptr<BodyContacts> contacts;
+  std::vector<SurfaceContactPoint> points;  ///< as last told
   btScalar marginBefore = 0;
 };
 
@@ -152,8 +153,10 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));
 }
 
-std::vector<SurfaceContactPoint> SurfaceContact::contacts() const {
-  return parts_->contacts->bodyLives() ? contactPoints(*parts_->contacts) : std::vector<SurfaceContactPoint>();
+const std::vector<SurfaceContactPoint>& SurfaceContact::contacts() const {
+  parts_->points.clear();
+  if (parts_->contacts->bodyLives()) addContactPoints(*parts_->contacts, parts_->points);
+  return parts_->points;
 }
 
 std::size_t SurfaceContact::sampleCount() const {

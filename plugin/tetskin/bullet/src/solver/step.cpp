@@ -15,6 +15,7 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/solver/recorded_forces.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
@@ -299,6 +300,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
 void DeformableSolver::Parts::finishContacts() {
   rows.finish(bodies, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
+  if (const auto record = recorded.lock()) record->record(bodies, rows.rows(), dt());
 }
 
 // ---- write back

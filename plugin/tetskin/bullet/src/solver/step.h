@@ -16,9 +16,12 @@
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 
+#include <memory>
 #include <vector>
 
 namespace tetskin {
+
+class RecordedForces;
 
 /// An error in velocity that nobody sees, over what the earth's gravity gives in a step.
 constexpr double kUnseen = 1e-3 * 9.81;
@@ -82,6 +85,7 @@ struct DeformableSolver::Parts {
   RigidUnknowns rigids;
   ContactRows rows;
   HiddenBodies hidden;
+  std::weak_ptr<RecordedForces> recorded;  ///< null where nobody asks
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;
   bool always = false;  ///< see DeformableSolver::solveAlways

@@ -11,7 +11,7 @@
 
 namespace tetskin {
 
-/// One for each point and object: nodes that a point is held by share it, and their impulses are added up.
-std::vector<SurfaceContactPoint> contactPoints(const BodyContacts& contacts);
+/// One for each point and object. The body must live.
+void addContactPoints(const BodyContacts& contacts, std::vector<SurfaceContactPoint>& points);
 
 }  // namespace tetskin

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btIDebugDraw.h>
+#include <tetskin/bullet/src/solver/recorded_forces.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tetskin {
+namespace {
+
+/// Arrows are as long as they would be here, where the world has no gravity.
+constexpr btScalar kEarthsGravity = btScalar(9.81);
+
+/// A base class's member may be named by way of a derived one.
+struct WorldMembers : btDeformableMultiBodyDynamicsWorld {
+  static btScalar& fixedTimeStep(btDeformableMultiBodyDynamicsWorld& world) {
+    return world.*(&WorldMembers::m_fixedTimeStep);
+  }
+};
+
+int idInWorld(const btCollisionObject& object) {
+  const btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+  return proxy ? proxy->m_uniqueId : 0;
+}
+
+void addScaled(btScalar factor, const AppliedForces& from, AppliedForces& to) {
+  const auto add = [&](const Wrench& wrench, Wrench& sum) {
+    sum.force += factor * wrench.force;
+    sum.torque += factor * wrench.torque;
+  };
+  add(from.contact, to.contact);
+  add(from.friction, to.friction);
+  add(from.joints, to.joints);
+  add(from.anchors, to.anchors);
+}
+
+void addImpulse(const btVector3& impulse, const btVector3& arm, Wrench& to) {
+  to.force += impulse;
+  to.torque += arm.cross(impulse);
+}
+
+/// Of a row on one of its ends.
+/// sign  of the row's impulse there
+void addRow(const ContactRow& row, btScalar sign, const btVector3& arm, AppliedForces& to) {
+  if (row.joined) return addImpulse(sign * row.impulse, arm, row.joint ? to.joints : to.anchors);
+  const btVector3 along = row.normal.dot(row.impulse) * row.normal;
+  addImpulse(sign * along, arm, to.contact);
+  addImpulse(sign * (row.impulse - along), arm, to.friction);
+}
+
+bool isNothing(const AppliedForces& forces) {
+  for (const Wrench& wrench : {forces.contact, forces.friction, forces.joints, forces.anchors}) {
+    if (!wrench.force.isZero() || !wrench.torque.isZero()) return false;
+  }
+  return true;
+}
+
+/// Of two objects, of which one is soft at least.
+template <class Participants>
+bool isAnyAwake(const SolverBodies& bodies, const Participants& participants) {
+  return std::any_of(participants.begin(), participants.end(), [&](const auto& participant) {
+    return participant.soft && bodies.placeOf(participant.soft) < bodies.bodies().size();
+  });
+}
+
+}  // namespace
+
+RecordedForces::RecordedForces(btDeformableMultiBodyDynamicsWorld& world) : world_(world) {
+  world_.addAction(this);
+}
+
+RecordedForces::~RecordedForces() {
+  world_.removeAction(this);
+}
+
+// ---- a substep
+
+void RecordedForces::record(const SolverBodies& bodies, const std::vector<ContactRow>& rows, btScalar seconds) {
+  if (stepBegins()) beginStep();
+  seconds_ += seconds;
+  for (Pair& pair : pairs_) {
+    if (!isAnyAwake(bodies, pair.participants)) pair.asleep += seconds;
+  }
+  points_.erase(std::remove_if(points_.begin(), points_.end(),
+                               [&](const Point& point) { return isAnyAwake(bodies, point.participants); }),
+                points_.end());
+  weights_.clear();
+  for (const ContactRow& row : rows) {
+    if (row.ends[0].isSoft() && !row.impulse.isZero()) add(bodies, row, seconds);
+  }
+}
+
+/// Bullet tells nobody where a stepSimulation begins. But it sets m_fixedTimeStep there, and reads it for the motion
+/// states of rigid bodies alone: a last digit more, 5e-10 s of a 240th, is still there in the substeps that follow. It
+/// is 0 where a stepSimulation has one substep, of any length.
+bool RecordedForces::stepBegins() {
+  btScalar& length = WorldMembers::fixedTimeStep(world_);
+  if (length == 0) return true;
+  if (length == mark_) return false;
+  mark_ = length = std::nextafter(length, std::numeric_limits<btScalar>::max());
+  return true;
+}
+
+void RecordedForces::beginStep() {
+  for (Pair& pair : pairs_) {
+    pair.before = {forcesOf(pair, 0), forcesOf(pair, 1)};
+    pair.impulses = {};
+    pair.asleep = 0;
+  }
+  seconds_ = 0;
+  dropRemoved();
+}
+
+/// And what has ended. Objects that are gone are looked for where the world has others than it had: that is for memory
+/// alone.
+void RecordedForces::dropRemoved() {
+  const bool anyRemoved = objectCount_ != world_.getNumCollisionObjects();
+  objectCount_ = world_.getNumCollisionObjects();
+  const auto goes = [&](const Pair& pair) {
+    const auto& [first, second] = pair.participants;
+    return (isNothing(pair.before[0]) && isNothing(pair.before[1])) ||
+           (anyRemoved && !(isPresent(first) && isPresent(second)));
+  };
+  const auto last = std::remove_if(pairs_.begin(), pairs_.end(), goes);
+  if (last == pairs_.end()) return;
+  pairs_.erase(last, pairs_.end());
+  places_.clear();
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const auto& [first, second] = pairs_[k].participants;
+    places_[{first.object, second.object}] = k;
+  }
+}
+
+void RecordedForces::add(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
+  const btSoftBody& body = *bodies.bodies()[row.ends[0].body].body;
+  if (row.object == &body) return;
+  Participants participants;
+  participants[0] = {&body, &body, idInWorld(body)};
+  if (row.object) participants[1] = {row.object, btSoftBody::upcast(row.object), idInWorld(*row.object)};
+  Pair& pair = pairOf(participants);
+  const bool turned = pair.participants[0].object != &body;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!participants[e].object) continue;
+    const btVector3 arm = armOf(row.ends[e], participants[e], row.position);
+    addRow(row, btScalar(signOf(e)), arm, pair.impulses[turned ? 1 - e : e]);
+  }
+  if (!row.joined && world_.getDebugDrawer()) {
+    points_.push_back({participants, row.position, row.normal, arrowOf(row.impulse / seconds, body)});
+  }
+}
+
+/// Either way round.
+RecordedForces::Pair& RecordedForces::pairOf(const Participants& participants) {
+  const auto& [first, second] = participants;
+  auto place = places_.find({first.object, second.object});
+  if (place == places_.end()) place = places_.find({second.object, first.object});
+  if (place == places_.end()) {
+    place = places_.emplace(std::make_pair(first.object, second.object), pairs_.size()).first;
+    pairs_.push_back({participants, {}, {}, 0});
+  }
+  Pair& pair = pairs_[place->second];
+  const std::size_t own = pair.participants[0].object == first.object ? 0 : 1;
+  const bool same = pair.participants[own].id == first.id && pair.participants[1 - own].id == second.id;
+  if (!same) {
+    pair = Pair();
+    pair.participants[own] = first;
+    pair.participants[1 - own] = second;
+  }
+  return pair;
+}
+
+// ---- where forces act
+
+btVector3 RecordedForces::armOf(const RowEnd& end, const Participant& participant, const btVector3& position) {
+  if (!participant.soft) return position - participant.object->getWorldTransform().getOrigin();
+  const btVector3& centroid = weightOf(*participant.soft).centroid;
+  // What sleeps has no end of its own in a row.
+  if (!end.isSoft()) return position - centroid;
+  btVector3 arm(0, 0, 0);
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    arm += end.weights[k] * (participant.soft->m_nodes[end.nodes[k]].m_x - centroid);
+  }
+  return arm;
+}
+
+/// Pinned nodes have no mass that moves; of a body of these alone all count the same.
+const RecordedForces::Weight& RecordedForces::weightOf(const btSoftBody& body) {
+  const auto [place, isNew] = weights_.emplace(&body, Weight());
+  Weight& weight = place->second;
+  if (!isNew) return weight;
+  btVector3 sum(0, 0, 0), any(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    any += node.m_x;
+    if (!(node.m_im > 0)) continue;
+    sum += node.m_x / node.m_im;
+    weight.mass += 1 / node.m_im;
+  }
+  weight.centroid = weight.mass > 0 ? sum / weight.mass : any / btScalar(body.m_nodes.size());
+  return weight;
+}
+
+// ---- what is asked for
+
+AppliedForces RecordedForces::on(const btCollisionObject& object, const btCollisionObject* other) const {
+  AppliedForces sum;
+  const int id = idInWorld(object);
+  for (const Pair& pair : pairs_) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Participant &own = pair.participants[side], &from = pair.participants[1 - side];
+      if (own.object != &object || own.id != id) continue;
+      if ((other && from.object != other) || !isPresent(from)) continue;
+      addScaled(1, forcesOf(pair, side), sum);
+    }
+  }
+  return sum;
+}
+
+AppliedForces RecordedForces::forcesOf(const Pair& pair, std::size_t side) const {
+  const btScalar awake = seconds_ - pair.asleep;
+  if (!(awake > 0)) return pair.before[side];
+  AppliedForces forces;
+  addScaled(1 / awake, pair.impulses[side], forces);
+  return forces;
+}
+
+/// What is not in the world may be gone: only its address is looked at.
+bool RecordedForces::isPresent(const Participant& participant) const {
+  if (!participant.object) return true;
+  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+  const int place = objects.findLinearSearch(const_cast<btCollisionObject*>(participant.object));
+  return place < objects.size() && idInWorld(*objects[place]) == participant.id;
+}
+
+// ---- drawing
+
+/// A force as large as the body's weight is as long as the body.
+btVector3 RecordedForces::arrowOf(const btVector3& force, const btSoftBody& body) {
+  const btVector3 size = body.m_bounds[1] - body.m_bounds[0];
+  const btScalar gravity = world_.getGravity().length(), mass = weightOf(body).mass;
+  const btScalar weight = mass * (gravity > 0 ? gravity : kEarthsGravity);
+  return weight > 0 ? force * (size[size.maxAxis()] / weight) : btVector3(0, 0, 0);
+}
+
+void RecordedForces::debugDraw(btIDebugDraw* drawer) {
+  if (!drawer || !(drawer->getDebugMode() & btIDebugDraw::DBG_DrawContactPoints)) return;
+  const btIDebugDraw::DefaultColors colors = drawer->getDefaultColors();
+  for (const Point& point : points_) {
+    if (!isPresent(point.participants[0]) || !isPresent(point.participants[1])) continue;
+    drawer->drawContactPoint(point.position, point.normal, 0, 0, colors.m_contactPoint);
+    drawer->drawLine(point.position, point.position + point.arrow, colors.m_contactPoint);
+  }
+}
+
+}  // namespace tetskin
