@@ -19,9 +19,9 @@ struct SurfaceSpringOptions {
   double stiffness = 0.0;
   /// Over the critical damping of that mass, against the target; 0 leaves what an implicit step damps anyway.
   double damping = 0.0;
-  /// Most of the force, to some hundredths in each step. 0: to a point in space the body's mass times the larger of 4 times the world's
-  /// gravity and 20 of the body's sizes per second squared, so that a target that jumps neither tears the body nor
-  /// throws it: set more where it carries more than itself. To a body unbounded, as is infinity.
+  /// Most of the force, to some hundredths in each step. 0: to a point in space the body's mass times the larger of 4
+  /// times the world's gravity and 20 of the body's sizes per second squared, so that a target that jumps neither tears
+  /// the body nor throws it: set more where it carries more than itself. To a body unbounded, as is infinity.
   double maxForce = 0.0;
   /// Whether the body and what it is tied to may touch each other.
   bool collide = false;
