@@ -62,6 +62,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
+  void processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) override;
+  using btDeformableBodySolver::processCollision;
   void setupDeformableSolve(bool implicit) override;
   void setConstraints(const btContactSolverInfo& info) override;
   void setLagrangeMultiplier() override;

@@ -15,6 +15,7 @@
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
+#include <tetskin/bullet/src/solver/sleepers.h>
 
 #include <vector>
 
@@ -79,6 +80,7 @@ struct DeformableSolver::Parts {
   DeformableSolver& solver;
   SolverBodies bodies;
   DrivenNodes driven;
+  Sleepers sleepers;
   RigidUnknowns rigids;
   ContactRows rows;
   HiddenBodies hidden;
