@@ -69,8 +69,11 @@ void DeformableSolver::predictMotion(btScalar dt) {
 
 /// Of a body and a rigid object whose boxes overlap.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
-  const bool meets = !parts_->solving || meetsRigid(*body, *object->getCollisionObject());
-  if (meets) btDeformableBodySolver::processCollision(body, object);
+  if (parts_->solving) {
+    if (!body->isActive() || !meetsRigid(*body, *object->getCollisionObject())) return;
+    parts_->obstacleChanges.notice(*body, *object);
+  }
+  btDeformableBodySolver::processCollision(body, object);
 }
 
 void DeformableSolver::setupDeformableSolve(bool implicit) {

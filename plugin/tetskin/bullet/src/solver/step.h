@@ -15,6 +15,7 @@
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
+#include <tetskin/bullet/src/solver/obstacle_changes.h>
 #include <tetskin/bullet/src/solver/sleepers.h>
 
 #include <vector>
@@ -81,6 +82,7 @@ struct DeformableSolver::Parts {
   SolverBodies bodies;
   DrivenNodes driven;
   Sleepers sleepers;
+  ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
   HiddenBodies hidden;
