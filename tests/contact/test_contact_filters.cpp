@@ -74,8 +74,7 @@ const Filter kFilters[] = {
      [](OnAPlatform& in, bool forbid) {
        in.rigid().getBroadphaseHandle()->m_collisionFilterMask = forbid ? ~btBroadphaseProxy::DefaultFilter : -1;
      }},
-    {"IgnoredByTheBody",
-     [](OnAPlatform& in, bool forbid) { in.soft().setIgnoreCollisionCheck(&in.rigid(), forbid); }},
+    {"IgnoredByTheBody", [](OnAPlatform& in, bool forbid) { in.soft().setIgnoreCollisionCheck(&in.rigid(), forbid); }},
     {"IgnoredByTheRigidBody",
      [](OnAPlatform& in, bool forbid) { in.rigid().setIgnoreCollisionCheck(&in.soft(), forbid); }},
     {"ResponseOfTheBody", [](OnAPlatform& in, bool forbid) { setFlag(in.soft(), forbid); }},
@@ -162,14 +161,10 @@ struct OnABall {
 using SoftChange = std::function<void(btSoftBody& body, const btSoftBody& other, bool forbid)>;
 
 const std::pair<const char*, SoftChange> kSoftFilters[] = {
-    {"Mask",
-     [](btSoftBody& body, const btSoftBody&, bool forbid) {
-       body.getBroadphaseHandle()->m_collisionFilterMask = forbid ? 0 : -1;
-     }},
-    {"Group",
-     [](btSoftBody& body, const btSoftBody&, bool forbid) {
-       body.getBroadphaseHandle()->m_collisionFilterGroup = forbid ? 0 : 1;
-     }},
+    {"Mask", [](btSoftBody& body, const btSoftBody&,
+                bool forbid) { body.getBroadphaseHandle()->m_collisionFilterMask = forbid ? 0 : -1; }},
+    {"Group", [](btSoftBody& body, const btSoftBody&,
+                 bool forbid) { body.getBroadphaseHandle()->m_collisionFilterGroup = forbid ? 0 : 1; }},
     {"Ignored",
      [](btSoftBody& body, const btSoftBody& other, bool forbid) { body.setIgnoreCollisionCheck(&other, forbid); }},
     {"Response", [](btSoftBody& body, const btSoftBody&, bool forbid) { setFlag(body, forbid); }},

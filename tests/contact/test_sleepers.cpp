@@ -291,8 +291,8 @@ TEST(SleepersOnSoftBodies, AreLiftedTogether) {
 }
 
 TEST(SleepersOnSoftBodies, FallAsleepFarFromTheOrigin) {
-  for (const Eigen::Vector3d& at : {Eigen::Vector3d(3000, 0, 3000), Eigen::Vector3d(10000, 0, 10000),
-                                    Eigen::Vector3d(0, 10000, 0)}) {
+  for (const Eigen::Vector3d& at :
+       {Eigen::Vector3d(3000, 0, 3000), Eigen::Vector3d(10000, 0, 10000), Eigen::Vector3d(0, 10000, 0)}) {
     SoftPile pile(at);
     step(*pile.world, 200);
     EXPECT_TRUE(pile.asleep()) << at.transpose();
