@@ -130,7 +130,7 @@ struct TouchingModel {
 
 /// Steps of a world in which everything has come to lie.
 void timeSettled(State& state, scenes::World& world, const Cage& cage) {
-  constexpr int kSettled = 480;
+  constexpr int kSettled = 2400;
   for (int s = 0; s < kSettled; ++s) world.step(1.0 / 240.0);
   for (auto _ : state) world.step(1.0 / 240.0);
   state.counters["contacts"] = static_cast<double>(world.softContacts().size());

@@ -23,7 +23,6 @@
 #include <tetskin/core/types.h>
 #ifdef TETSKIN_HAS_BULLET
 #include <tetskin/bullet/bullet_parallel_for.h>
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/render_nodes.h>

@@ -198,12 +198,6 @@ TEST(SoftContacts, SaysWhatItCannotServe) {
   SoftContactOptions options;
   options.friction = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
-  options = {};
-  options.correction = 2.0;
-  EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
-  options = {};
-  options.hold = -1.0;
-  EXPECT_EQ(SoftContacts::add(world->deformable(), options).status().code, StatusCode::InvalidOption);
   EmptyWorld bullets;
   const Status status = SoftContacts::add(bullets.deformable()).status();
   EXPECT_EQ(status.code, StatusCode::InvalidOption);

@@ -62,11 +62,6 @@ TETSKIN_CONTACT_API Result<std::shared_ptr<const ContactShape>> makeContactShape
 struct SoftContactOptions {
   /// Coulomb's; below 0: the geometric mean of the bodies' m_cfg.kDF.
   double friction = -1.0;
-  /// How firmly touching points are held to what contact has decided while elasticity is solved for, over their own
-  /// masses. More costs iterations, less lets bodies sink into each other for a while.
-  double hold = 10.0;
-  /// Of a penetration, the part that is taken back in each step, 0 to 1.
-  double correction = 0.2;
 };
 
 /// What a body of SoftContacts is to it.
@@ -87,8 +82,8 @@ struct SoftContact {
   btScalar impulse = 0;               ///< along the normal, of the step's
 };
 
-/// Contact among soft bodies of a deformable world, by their visual surfaces: one force object in the world's list,
-/// which adds impulses at contacts with true masses and Coulomb friction, and holds what touches through the solve.
+/// Contact among soft bodies of a deformable world, by their visual surfaces: the world's solver is told of points that
+/// touch, and solves for them with Coulomb friction, together with all else that its bodies touch.
 ///
 ///     auto contacts = SoftContacts::add(world).value();
 ///     contacts->include(body.body(), shape);

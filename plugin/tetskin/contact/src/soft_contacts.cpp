@@ -18,10 +18,6 @@ Status invalidContact(const char* message) {
 
 Status checkSoftOptions(const SoftContactOptions& options) {
   if (!std::isfinite(options.friction)) return invalidContact("the friction of soft contacts must be a number");
-  if (!(options.hold >= 0.0 && options.hold <= 1e6)) return invalidContact("`hold` must be from 0 to 1e6");
-  if (!(options.correction >= 0.0 && options.correction <= 1.0)) {
-    return invalidContact("`correction` must be from 0 to 1");
-  }
   return {};
 }
 

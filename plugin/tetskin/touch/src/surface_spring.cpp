@@ -16,9 +16,9 @@ namespace tetskin {
 namespace {
 
 using touch_detail::Joint;
+using touch_detail::JointAnchor;
 using touch_detail::JointOwner;
 using touch_detail::JointSettings;
-using touch_detail::Partner;
 
 constexpr double kToPoint = 10.0, kToBody = 1000.0;
 
@@ -58,15 +58,15 @@ double defaultForce(const btDiscreteDynamicsWorld& world, const btSoftBody& body
   return force > 0.0 ? force : std::numeric_limits<double>::infinity();
 }
 
-JointSettings settingsOf(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Partner& partner,
+JointSettings settingsOf(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const JointAnchor& anchor,
                          const SurfaceSpringOptions& options) {
   JointSettings settings;
-  const double stiffness = partner.object() ? kToBody : kToPoint;
+  const double stiffness = anchor.object ? kToBody : kToPoint;
   settings.stiffness = options.stiffness > 0.0 ? options.stiffness : stiffness;
   settings.damping = options.damping;
   if (options.maxForce > 0.0) {
     settings.maxForce = options.maxForce;
-  } else if (!partner.object()) {
+  } else if (!anchor.object) {
     settings.maxForce = defaultForce(world, *point.body());
   }
   settings.collide = options.collide;
@@ -80,13 +80,13 @@ btTransform at(const btVector3& pivot) {
 }  // namespace
 
 struct SurfaceSpring::Parts {
-  Parts(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings)
-      : owner(std::make_shared<Joint>(point, std::move(partner), settings)) {}
+  Parts(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
+      : owner(std::make_shared<Joint>(point, anchor, settings)) {}
 
   static Result<std::unique_ptr<SurfaceSpring>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
-                                                     std::unique_ptr<Partner> partner, const Options& options) {
-    const JointSettings settings = settingsOf(world, point, *partner, options);
-    auto parts = std::make_unique<Parts>(point, std::move(partner), settings);
+                                                     const JointAnchor& anchor, const Options& options) {
+    const JointSettings settings = settingsOf(world, point, anchor, options);
+    auto parts = std::make_unique<Parts>(point, anchor, settings);
     return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(parts)));
   }
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Options& options) {
@@ -103,7 +103,7 @@ SurfaceSpring::~SurfaceSpring() = default;
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                           const Options& options) {
   if (Status status = Parts::check(world, point, options); !status.ok()) return status;
-  return Parts::make(world, point, touch_detail::pointInSpace(*point.position()), options);
+  return Parts::make(world, point, {nullptr, at(*point.position())}, options);
 }
 
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
@@ -111,7 +111,7 @@ Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorl
                                                           const Options& options) {
   if (Status status = Parts::check(world, point, options); !status.ok()) return status;
   if (!touch_detail::isFiniteVector(pivot)) return badPivot();
-  return Parts::make(world, point, touch_detail::rigidPartner(rigid, at(pivot)), options);
+  return Parts::make(world, point, {&rigid, at(pivot)}, options);
 }
 
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
@@ -119,16 +119,16 @@ Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorl
                                                           const Options& options) {
   if (Status status = Parts::check(world, point, options); !status.ok()) return status;
   if (!touch_detail::isFiniteVector(pivot)) return badPivot();
-  return Parts::make(world, point, touch_detail::linkPartner(link, at(pivot)), options);
+  return Parts::make(world, point, {&link, at(pivot)}, options);
 }
 
 TouchStatus SurfaceSpring::setTarget(const btVector3& target) {
   if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
   if (!touch_detail::isFiniteVector(target)) return TouchStatus::NonFinite;
   Joint& joint = parts_->owner.joint();
-  const btVector3 before = joint.partnerOf().anchor().getOrigin();
-  joint.partnerOf().moveAnchor(target);
-  if (joint.partnerOf().anchor().getOrigin() != before) joint.body()->activate();
+  btVector3& pivot = joint.anchor().frame.getOrigin();
+  if (target != pivot) joint.body()->activate();
+  pivot = target;
   return TouchStatus::Ok;
 }
 

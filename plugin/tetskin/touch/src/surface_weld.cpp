@@ -12,27 +12,26 @@ namespace tetskin {
 namespace {
 
 using touch_detail::Joint;
+using touch_detail::JointAnchor;
 using touch_detail::JointOwner;
 using touch_detail::JointSettings;
-using touch_detail::Partner;
 
-/// Where the point is, in the object's own space.
-btTransform anchorIn(const btTransform& object, const SurfacePoint& point) {
-  return btTransform(btMatrix3x3::getIdentity(), object.invXform(*point.position()));
+/// Where the point is now.
+JointAnchor anchorIn(btCollisionObject& object, const SurfacePoint& point) {
+  return {&object, btTransform(btMatrix3x3::getIdentity(), object.getWorldTransform().invXform(*point.position()))};
 }
 
 }  // namespace
 
 struct SurfaceWeld::Parts {
-  Parts(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings)
-      : owner(std::make_shared<Joint>(point, std::move(partner), settings)) {}
+  Parts(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
+      : owner(std::make_shared<Joint>(point, anchor, settings)) {}
 
-  static Result<std::unique_ptr<SurfaceWeld>> make(const SurfacePoint& point, std::unique_ptr<Partner> partner,
-                                                   bool collide) {
+  static Result<std::unique_ptr<SurfaceWeld>> make(const SurfacePoint& point, const JointAnchor& anchor, bool collide) {
     JointSettings settings;
     settings.turns = true;
     settings.collide = collide;
-    return std::unique_ptr<SurfaceWeld>(new SurfaceWeld(std::make_unique<Parts>(point, std::move(partner), settings)));
+    return std::unique_ptr<SurfaceWeld>(new SurfaceWeld(std::make_unique<Parts>(point, anchor, settings)));
   }
 
   JointOwner owner;
@@ -44,13 +43,13 @@ SurfaceWeld::~SurfaceWeld() = default;
 Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                       btRigidBody& rigid, bool collide) {
   if (Status status = JointOwner::check(world, point); !status.ok()) return status;
-  return Parts::make(point, touch_detail::rigidPartner(rigid, anchorIn(rigid.getWorldTransform(), point)), collide);
+  return Parts::make(point, anchorIn(rigid, point), collide);
 }
 
 Result<std::unique_ptr<SurfaceWeld>> SurfaceWeld::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                       btMultiBodyLinkCollider& link, bool collide) {
   if (Status status = JointOwner::check(world, point); !status.ok()) return status;
-  return Parts::make(point, touch_detail::linkPartner(link, anchorIn(link.getWorldTransform(), point)), collide);
+  return Parts::make(point, anchorIn(link, point), collide);
 }
 
 TouchStatus SurfaceWeld::status() const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 
@@ -125,19 +124,6 @@ void SolverBodies::lendKept() {
   }
 }
 
-std::vector<std::vector<std::size_t>> SolverBodies::coupledBy(const btDeformableLagrangianForce& force) const {
-  std::vector<std::vector<std::size_t>> groups;
-  const auto* coupling = dynamic_cast<const CouplingForce*>(&force);
-  if (!coupling) return {actedOnBy(force)};
-  for (const auto& pair : coupling->pairs()) {
-    groups.emplace_back();
-    for (const btSoftBody* body : pair) {
-      if (const std::size_t k = placeOf(body); k < bodies_.size()) groups.back().push_back(k);
-    }
-  }
-  return groups;
-}
-
 std::vector<std::size_t> SolverBodies::actedOnBy(const btDeformableLagrangianForce& force) const {
   std::vector<std::size_t> places;
   if (isGravity(force) || isSilent(force)) return places;
@@ -157,13 +143,12 @@ void SolverBodies::makeSystems(const ForceList& forces) {
   DisjointSets sets(bodies_.size());
   std::vector<std::pair<std::size_t, btDeformableLagrangianForce*>> acting;  // on the set of this body
   for (int i = 0; i < forces.size(); ++i) {
-    for (const std::vector<std::size_t>& places : coupledBy(*forces[i])) {
-      for (const std::size_t k : places) {
-        sets.unite(static_cast<int>(places.front()), static_cast<int>(k));
-        bodies_[k].needsDeformation |= needsDeformation(*forces[i]);
-      }
-      if (!places.empty()) acting.emplace_back(places.front(), forces[i]);
+    const std::vector<std::size_t> places = actedOnBy(*forces[i]);
+    for (const std::size_t k : places) {
+      sets.unite(static_cast<int>(places.front()), static_cast<int>(k));
+      bodies_[k].needsDeformation |= needsDeformation(*forces[i]);
     }
+    if (!places.empty()) acting.emplace_back(places.front(), forces[i]);
   }
   systems_.clear();
   std::vector<std::size_t> systemOf(bodies_.size(), bodies_.size());  // by the set
@@ -176,11 +161,7 @@ void SolverBodies::makeSystems(const ForceList& forces) {
     return systems_[system];
   };
   for (std::size_t k = 0; k < bodies_.size(); ++k) systemAt(k).bodies.push_back(k);
-  for (const auto& [k, force] : acting) {
-    auto& list = systemAt(k).forces;
-    // Of all that act on the system, this one's groups come one after the other.
-    if (list.empty() || list.back() != force) list.push_back(force);
-  }
+  for (const auto& [k, force] : acting) systemAt(k).forces.push_back(force);
 }
 
 SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {

@@ -92,10 +92,7 @@ class SolverBodies {
   void takeElastic(const ForceList& forces);
   void lendKept();
   void makeSystems(const ForceList& forces);
-  /// The places of the awake bodies that a force couples: in one group those that it may act on at all, unless it
-  /// tells.
-  std::vector<std::vector<std::size_t>> coupledBy(const btDeformableLagrangianForce& force) const;
-  /// The places of the awake bodies that a force acts on itself, and may couple.
+  /// The places of the awake bodies that a force may act on, and couples.
   std::vector<std::size_t> actedOnBy(const btDeformableLagrangianForce& force) const;
 
   struct Kept {

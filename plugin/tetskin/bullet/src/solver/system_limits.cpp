@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How closely a system is solved for.
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <algorithm>
@@ -27,12 +26,8 @@ double SystemSolve::massOfAll() const {
 }
 
 double SystemSolve::toleranceWithForces(double tolerance, bool anyElastic) const {
-  for (const btDeformableLagrangianForce* force : system_.forces) {
-    const auto* coupling = dynamic_cast<const CouplingForce*>(force);
-    const double foreign = anyElastic ? kWithForeignForces : 1.0;
-    tolerance = std::min(tolerance, coupling ? coupling->tolerance() : foreign);
-  }
-  return tolerance;
+  const bool anyForeign = anyElastic && !system_.forces.empty();
+  return anyForeign ? std::min(tolerance, kWithForeignForces) : tolerance;
 }
 
 /// The strictest of all.

@@ -40,6 +40,16 @@ void ContactBody::read() {
   // Comparisons pass over what is not a number; sums do not.
   readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(kLargestCoordinate);
   measureTravel(sum / static_cast<btScalar>(positions.size()));
+  measureSpeed();
+}
+
+void ContactBody::measureSpeed() {
+  const btSoftBody::tNodeArray& nodes = body->m_nodes;
+  drift.setZero();
+  for (int n = 0; n < nodes.size(); ++n) drift += nodes[n].m_v / static_cast<btScalar>(nodes.size());
+  btScalar squared = 0;
+  for (int n = 0; n < nodes.size(); ++n) squared = std::max(squared, (nodes[n].m_v - drift).length2());
+  fastest = btSqrt(squared);
 }
 
 void ContactBody::measureTravel(const btVector3& newMiddle) {
@@ -129,7 +139,21 @@ const DeformedTet& ContactBody::deformed(int tet) {
   of.rows[0] = normal / volume;
   of.rows[1] = edge[2].cross(edge[0]) / volume;
   of.rows[2] = edge[0].cross(edge[1]) / volume;
+  measure(of, n);
   return of;
+}
+
+void ContactBody::measure(DeformedTet& of, const Tet& n) const {
+  const btVector3 fourth = -(of.rows[0] + of.rows[1] + of.rows[2]);
+  of.steepest = btSqrt(std::max({of.rows[0].length2(), of.rows[1].length2(), of.rows[2].length2(), fourth.length2()}));
+  // Of the map from the world to rest, all singular values together.
+  btVector3 map[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  const auto rest = [&](std::size_t k) -> const btVector3& { return data().nodes[static_cast<std::size_t>(n[k])]; };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const btVector3 edge = rest(k) - rest(3);
+    for (int axis = 0; axis < 3; ++axis) map[axis] += edge[axis] * of.rows[k];
+  }
+  of.restPerWorld = btSqrt(map[0].length2() + map[1].length2() + map[2].length2());
 }
 
 btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
@@ -139,13 +163,13 @@ btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
   return v;
 }
 
-bool isOutside(const ContactBox& box, const DeformedTet& tet) {
+btScalar gapTo(const ContactBox& box, const DeformedTet& tet) {
   const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
   const btVector3 middle = (low + high) / 2 - tet.origin, half = (high - low) / 2;
   const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
   const auto most = [&](const btVector3& row) { return row.dot(middle) + row.absolute().dot(half); };
-  return most(tet.rows[0]) < kLeastWeight || most(tet.rows[1]) < kLeastWeight || most(tet.rows[2]) < kLeastWeight ||
-         1 + most(fourth) < kLeastWeight;
+  const btScalar least = std::min({most(tet.rows[0]), most(tet.rows[1]), most(tet.rows[2]), 1 + most(fourth)});
+  return (kLeastWeight - least) / tet.steepest;
 }
 
 }  // namespace tetskin::contact_detail

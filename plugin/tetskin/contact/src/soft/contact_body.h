@@ -15,6 +15,8 @@ namespace tetskin::contact_detail {
 struct DeformedTet {
   btVector3 origin{0, 0, 0};
   btVector3 rows[3];
+  btScalar steepest = 0;      ///< of the weights: by how much one changes, at most, over a unit of length
+  btScalar restPerWorld = 0;  ///< no less than lengths at rest are over those in the world
   bool flat = true;
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
@@ -23,8 +25,9 @@ struct DeformedTet {
 /// A weight from which a point counts as in a tet: between two, rounding must lose none, and just outside of the cage
 /// the surface is near.
 constexpr btScalar kLeastWeight = btScalar(-0.02);
-/// By one of the tet's sides. The tet is not flat.
-bool isOutside(const ContactBox& box, const DeformedTet& tet);
+/// How far a box is from where points count as in the tet, no more than that; below 0 if they may meet. The tet is not
+/// flat.
+btScalar gapTo(const ContactBox& box, const DeformedTet& tet);
 
 class ContactBody {
  public:
@@ -65,13 +68,17 @@ class ContactBody {
   bool readable = false;  ///< all positions are finite
   ContactBox box;
   btVector3 middle{0, 0, 0};  ///< of the nodes
-  double travelled = 0;       ///< in all steps so far, of the nodes against their middle: no less than the furthest has
+  btVector3 drift{0, 0, 0};   ///< mean velocity of the nodes, and how much faster than that the fastest is
+  btScalar fastest = 0;
+  double travelled = 0;  ///< in all steps so far, of the nodes against their middle: no less than the furthest has
   std::vector<btVector3> positions;                    ///< by node
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, after `fit`
   std::vector<btScalar> samples[3];                    ///< coordinates, one after the other
 
  private:
   void measureTravel(const btVector3& newMiddle);
+  void measureSpeed();
+  void measure(DeformedTet& of, const Tet& n) const;
   void carryRun(const SampleRun& run, ContactBox& around);
   ContactBox filledBox(int tet) const;
 

@@ -138,8 +138,11 @@ void ContactForce::findInPair(ContactBody& first, ContactBody& second, btScalar 
 /// in common, the integral of either's normal over what of its surface is within the other.
 btVector3 ContactForce::search(ContactBody& first, ContactBody& second, btScalar seconds, Meeting& meeting) {
   const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
+  // No farther than the step may take them.
+  const btScalar approach = seconds * (first.fastest + second.fastest + (first.drift - second.drift).length());
   const auto in = [&](ContactBody& a, ContactBody& b, int k) {
-    const btScalar reach = kReachCubes * b.data().grid.spacing();
+    const btScalar cube = b.data().grid.spacing();
+    const btScalar reach = std::min(kReachCubes * cube, kNearCubes * cube + approach);
     touches_[k].clear();
     return search_.find(a, b, reach, seconds, k == 0 ? meeting.apart : -meeting.apart, deep, meeting.memories[k],
                         touches_[k]);

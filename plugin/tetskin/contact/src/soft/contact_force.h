@@ -5,7 +5,6 @@
 // DeformableSolver finds it, and is no force itself.
 #pragma once
 
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/shared/solver/row_source.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 
@@ -15,7 +14,7 @@
 
 namespace tetskin::contact_detail {
 
-class ContactForce : public CouplingForce, public RowSource {
+class ContactForce : public RowSource {
  public:
   explicit ContactForce(const SoftContactOptions& options) : options_(options) {}
 
@@ -27,12 +26,7 @@ class ContactForce : public CouplingForce, public RowSource {
   const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
 
   std::vector<SoftPointContact>* contacts(btScalar seconds) override;
-  const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
-  void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
-  void addScaledExplicitForce(btScalar, TVStack&) override {}
-  void addScaledDampingForce(btScalar, TVStack&) override {}
-  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
 
  private:
   /// What two bodies, or one with itself, keep from step to step.
@@ -55,7 +49,6 @@ class ContactForce : public CouplingForce, public RowSource {
   std::map<std::pair<int, int>, Meeting> meetings_;  ///< by the bodies' ids
   std::vector<Touch> touches_[2];                    ///< of the first in the second, and the other way round
   std::vector<SoftPointContact> contacts_;
-  std::vector<std::array<btSoftBody*, 2>> pairs_;  ///< none
 };
 
 }  // namespace tetskin::contact_detail

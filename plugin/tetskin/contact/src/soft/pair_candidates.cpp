@@ -19,21 +19,22 @@ bool nearAtRest(const ShapeData& data, int run, int tet) {
 
 }  // namespace
 
-bool PairCandidates::hold(const ContactBody& first, const ContactBody& second) const {
-  const btVector3 moved = second.middle - first.middle - apart_;
-  return first.travelled + second.travelled - travelled_ + static_cast<double>(moved.length()) <= slack_;
+void PairCandidates::advance(const ContactBody& first, const ContactBody& second) {
+  const btVector3 apart = second.middle - first.middle;
+  const double travelled = first.travelled + second.travelled;
+  path_ += travelled - travelled_ + static_cast<double>((apart - apart_).length());
+  apart_ = apart;
+  travelled_ = travelled;
 }
 
 void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slack) {
   first.fit();
   second.fit();
-  apart_ = second.middle - first.middle;
-  travelled_ = first.travelled + second.travelled;
+  advance(first, second);
+  path_ = 0;
   slack_ = static_cast<double>(slack);
-  for (const int run : runs_) heads_[static_cast<std::size_t>(run)] = -1;
   runs_.clear();
   links_.clear();
-  heads_.resize(first.data().runs.size(), -1);
   const Bvh &runs = first.data().runTree, &tets = second.data().tetTree;
   if (runs.empty() || tets.empty()) return;
   const std::vector<ContactBox>&runBoxes = first.runTreeBoxes, &tetBoxes = second.tetTreeBoxes;
@@ -45,7 +46,7 @@ void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slac
   };
   const Pair pair{&first, &second, overlap, slack};
   visitPairs(runs, tets, meet, [&](const Bvh::Node& a, const Bvh::Node& b) { meetLeaves(pair, a, b); });
-  std::sort(runs_.begin(), runs_.end());
+  gatherRuns();
 }
 
 void PairCandidates::meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets) {
@@ -60,17 +61,18 @@ void PairCandidates::meetLeaves(const Pair& pair, const Bvh::Node& runs, const B
       if (!around.meets(pair.second->tetBox(tet))) continue;
       // Whatever nodes move by until candidates are found anew is in the box's slack.
       const DeformedTet& deformed = pair.second->deformed(tet);
-      if (!deformed.flat && isOutside(around, deformed)) continue;
-      if (!same || !nearAtRest(first, run, tet)) add(run, tet);
+      if (!deformed.flat && gapTo(around, deformed) > 0) continue;
+      if (!same || !nearAtRest(first, run, tet)) links_.push_back({run, tet});
     }
   }
 }
 
-void PairCandidates::add(int run, int tet) {
-  int& head = heads_[static_cast<std::size_t>(run)];
-  if (head < 0) runs_.push_back(run);
-  links_.push_back({tet, head});
-  head = static_cast<int>(links_.size()) - 1;
+void PairCandidates::gatherRuns() {
+  std::stable_sort(links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.run < b.run; });
+  for (std::size_t c = 0; c < links_.size(); ++c) {
+    if (c == 0 || links_[c].run != links_[c - 1].run) runs_.push_back({links_[c].run, c, c, 0});
+    runs_.back().last = c + 1;
+  }
 }
 
 }  // namespace tetskin::contact_detail

@@ -6,33 +6,54 @@
 
 #include <tetskin/contact/src/soft/contact_body.h>
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace tetskin::contact_detail {
 
-/// By run of samples of the first body: tets of the second whose box meets the run's.
+/// Runs of samples of the first body, each with the tets of the second that it may be in.
 class PairCandidates {
  public:
+  /// Both read: a step has moved them.
+  void advance(const ContactBody& first, const ContactBody& second);
   /// Whether those found before are still all there are.
-  bool hold(const ContactBody& first, const ContactBody& second) const;
+  bool hold() const { return path_ <= slack_; }
 
   /// Both read. `first` and `second` may be one body: then tets near to each other at rest are no candidates.
   /// slack  how far nodes may move against each other before it is to be done again, world space
   /// Cost   about O(number of runs and tets, and of candidates)
   void find(ContactBody& first, ContactBody& second, btScalar slack);
 
-  /// Runs that have any, ascending.
-  const std::vector<int>& runs() const { return runs_; }
-  template <class Take>
-  void forEachTet(int run, Take&& take) const {
-    for (int c = heads_[static_cast<std::size_t>(run)]; c >= 0; c = links_[static_cast<std::size_t>(c)].next) {
-      take(links_[static_cast<std::size_t>(c)].tet);
+  /// Calls begin(run), then test(tet) for its tets, and end(run), for runs that have any, in ascending order. `test`
+  /// returns how far the run's samples are from the surface in the tet, no more than that, in world space: it is not
+  /// called again while bodies have moved too little for one of them to come within `reach`.
+  template <class Begin, class Test, class End>
+  void visit(btScalar reach, Begin&& begin, Test&& test, End&& end) {
+    const double seen = path_ + static_cast<double>(reach);
+    for (Run& of : runs_) {
+      if (seen < of.clearUntil) continue;
+      begin(of.run);
+      of.clearUntil = std::numeric_limits<double>::infinity();
+      for (std::size_t c = of.first; c < of.last; ++c) {
+        Link& link = links_[c];
+        if (!(seen < link.clearUntil)) link.clearUntil = path_ + static_cast<double>(test(link.tet));
+        of.clearUntil = std::min(of.clearUntil, link.clearUntil);
+      }
+      end(of.run);
     }
   }
+  bool empty() const { return runs_.empty(); }
 
  private:
   struct Link {
-    int tet = 0, next = -1;
+    int run = 0, tet = 0;
+    double clearUntil = 0;  ///< of the path: nothing of the run is at the surface in the tet before
+  };
+  struct Run {
+    int run = 0;
+    std::size_t first = 0, last = 0;  ///< in `links_`
+    double clearUntil = 0;            ///< the least of its links'
   };
   struct Pair {
     const ContactBody* first;
@@ -40,14 +61,15 @@ class PairCandidates {
     ContactBox overlap;
     btScalar slack;
   };
+  void gatherRuns();
   void meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets);
-  void add(int run, int tet);
 
-  btVector3 apart_{0, 0, 0};  ///< the bodies' middles, when it was done; and what nodes had travelled by then
+  btVector3 apart_{0, 0, 0};  ///< the bodies' centroids, when last looked at; and what nodes had travelled by then
   double travelled_ = 0;
+  double path_ = 0;  ///< since candidates were found: no less than any two nodes of the bodies have moved to each other
   double slack_ = -1;
-  std::vector<int> runs_, heads_;
-  std::vector<Link> links_;
+  std::vector<Run> runs_;
+  std::vector<Link> links_;  ///< by run
 };
 
 }  // namespace tetskin::contact_detail

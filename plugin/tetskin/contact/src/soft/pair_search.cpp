@@ -44,6 +44,15 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
   return p;
 }
 
+/// Of boxes; 0 or below if they meet.
+btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
+  btScalar gap = -BT_LARGE_FLOAT;
+  for (int axis = 0; axis < 3; ++axis) {
+    gap = std::max({gap, a.low[axis] - b.high[axis], b.low[axis] - a.high[axis]});
+  }
+  return gap;
+}
+
 }  // namespace
 
 Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
@@ -53,41 +62,46 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
   memory.sides.beginStep();
-  candidates_ = &memory.candidates;
   before_ = &memory.samples;
   const btScalar slack = kSlackCubes * second.data().grid.spacing();
-  if (!memory.candidates.hold(first, second)) memory.candidates.find(first, second, slack);
-  for (const int run : candidates_->runs()) placeRun(run);
+  memory.candidates.advance(first, second);
+  if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
+  memory.candidates.visit(
+      reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
   memory.samples.clear();
   for (const Touch& touch : touches) memory.samples.push_back(touch.sample);
   std::sort(memory.samples.begin(), memory.samples.end());
   return overlap_;
 }
 
-void PairSearch::placeRun(int run) {
-  const SampleRun& of = now_.first->data().runs[static_cast<std::size_t>(run)];
-  const int count = of.last - of.first;
-  inside_.resize(static_cast<std::size_t>(count));
-  heads_.assign(static_cast<std::size_t>(count), -1);
+void PairSearch::beginRun(int run) {
+  run_ = now_.first->data().runs[static_cast<std::size_t>(run)];
+  around_ = now_.first->carry(run);
+  const auto count = static_cast<std::size_t>(run_.last - run_.first);
+  inside_.resize(count);
+  heads_.assign(count, -1);
   places_.clear();
-  const ContactBox& around = now_.first->carry(run);
-  candidates_->forEachTet(run, [&](int tet) { testTet(tet, of, around); });
-  for (int k = 0; k < count; ++k) {
-    for (int p = heads_[static_cast<std::size_t>(k)]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-      touch(of.first + k, run, places_[static_cast<std::size_t>(p)]);
+}
+
+void PairSearch::touchRun(int run) {
+  for (std::size_t k = 0; k < heads_.size(); ++k) {
+    for (int p = heads_[k]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
+      touch(run_.first + static_cast<int>(k), run, places_[static_cast<std::size_t>(p)]);
     }
   }
 }
 
-void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around) {
-  if (!around.meets(now_.second->around(tet))) return;
+/// Returns how far the run's samples are from the surface in the tet; no more than that.
+btScalar PairSearch::testTet(int tet) {
+  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return gap;
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat || isOutside(around, of)) return;
+  if (of.flat) return 0;
+  if (const btScalar gap = gapTo(around_, of); gap > 0) return gap;
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
-  const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run.first)],
-                 *ys = &now_.first->samples[1][static_cast<std::size_t>(run.first)],
-                 *zs = &now_.first->samples[2][static_cast<std::size_t>(run.first)];
-  const int count = run.last - run.first;
+  const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run_.first)],
+                 *ys = &now_.first->samples[1][static_cast<std::size_t>(run_.first)],
+                 *zs = &now_.first->samples[2][static_cast<std::size_t>(run_.first)];
+  const int count = run_.last - run_.first;
   for (int k = 0; k < count; ++k) {
     const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
     const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
@@ -95,32 +109,44 @@ void PairSearch::testTet(int tet, const SampleRun& run, const ContactBox& around
     const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
     inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
   }
+  btScalar clear = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
   for (int k = 0; k < count; ++k) {
-    if (inside_[static_cast<std::size_t>(k)] >= kLeastWeight) offer(tet, run.first + k, k);
+    const btScalar weight = inside_[static_cast<std::size_t>(k)];
+    if (weight >= kLeastWeight) {
+      clear = std::min(clear, offer(tet, run_.first + k, k));
+    } else {
+      most = std::max(most, weight);
+    }
   }
+  return std::min(clear, (kLeastWeight - most) / of.steepest);
 }
 
-/// But for places that are known from a tet beside this one.
-void PairSearch::offer(int tet, int sample, int k) {
+/// But for places that are known from a tet beside this one. Returns how far it is from the surface, no more than that.
+btScalar PairSearch::offer(int tet, int sample, int k) {
   const ShapeData& data = now_.second->data();
+  const DeformedTet& deformed = now_.second->deformed(tet);
   Place place;
-  now_.second->deformed(tet).weightsAt(now_.first->sampleAt(sample), place.weights);
-  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return;
+  deformed.weightsAt(now_.first->sampleAt(sample), place.weights);
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return 0;
   place.rest = restPoint(data, tet, place.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
-    if ((place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length2() < own * own) return;
+    const btScalar moved = (place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
+    if (moved < own) return (own - moved) / deformed.restPerWorld;
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
   for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return;
+    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return 0;
   }
-  if (!data.grid.at(place.rest, place.nearest) || place.nearest.distance > now_.reach) return;
+  if (!data.grid.at(place.rest, place.nearest)) return 0;
+  const btScalar distance = place.nearest.distance / deformed.restPerWorld;
+  if (distance > now_.reach) return distance;
   place.tet = tet;
   place.next = head;
   head = static_cast<int>(places_.size());
   places_.push_back(place);
+  return 0;
 }
 
 /// By which the sample has moved in the body's rest space.

@@ -64,9 +64,10 @@ class PairSearch {
     ContactSides* sides;
   };
 
-  void placeRun(int run);
-  void testTet(int tet, const SampleRun& run, const ContactBox& around);
-  void offer(int tet, int sample, int k);
+  void beginRun(int run);
+  btScalar testTet(int tet);
+  btScalar offer(int tet, int sample, int k);
+  void touchRun(int run);
   void touch(int sample, int run, const Place& place);
   btVector3 restMotion(int sample, const Place& place) const;
   btVector3 ownNormal(int sample, int run) const;
@@ -75,7 +76,8 @@ class PairSearch {
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
-  const PairCandidates* candidates_ = nullptr;
+  SampleRun run_;                             ///< in this one's turn
+  ContactBox around_;                         ///< its samples
   const std::vector<int>* before_ = nullptr;  ///< samples of the step before
   std::vector<btScalar> inside_;              ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;

@@ -5,7 +5,6 @@
 // DeformableSolver finds it and asks for rows.
 #pragma once
 
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/shared/solver/row_source.h>
 
 #include <memory>
@@ -34,7 +33,7 @@ class Acting {
   virtual void finish(btScalar /*seconds*/, const PointJoint* /*joints*/) {}
 };
 
-class TouchForce : public CouplingForce, public RowSource, public std::enable_shared_from_this<TouchForce> {
+class TouchForce : public RowSource, public std::enable_shared_from_this<TouchForce> {
  public:
   explicit TouchForce(DeformableSolver& solver) : solver_(solver) {}
   ~TouchForce() override;
@@ -52,12 +51,7 @@ class TouchForce : public CouplingForce, public RowSource, public std::enable_sh
 
   std::vector<PointJoint>* joints(btScalar seconds) override;
   void finish(btScalar seconds) override;
-  const std::vector<std::array<btSoftBody*, 2>>& pairs() const override { return pairs_; }
-  void addSoftBody(btSoftBody*) override {}
   void removeSoftBody(btSoftBody* body) override;
-  void addScaledExplicitForce(btScalar, TVStack&) override {}
-  void addScaledDampingForce(btScalar, TVStack&) override {}
-  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
 
  private:
   void eraseSpent();
@@ -66,8 +60,7 @@ class TouchForce : public CouplingForce, public RowSource, public std::enable_sh
   DeformableSolver& solver_;
   std::vector<std::shared_ptr<Acting>> parts_;
   std::vector<PointJoint> joints_;
-  std::vector<std::size_t> firsts_;                ///< in `joints_`, by part
-  std::vector<std::array<btSoftBody*, 2>> pairs_;  ///< none
+  std::vector<std::size_t> firsts_;  ///< in `joints_`, by part
   bool listed_ = false;
 };
 

@@ -36,15 +36,15 @@ btMatrix3x3 square(const btVector3& a) {
 
 }  // namespace
 
-Joint::Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings)
+Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
     : point_(point),
-      partner_(std::move(partner)),
+      anchor_(anchor),
       settings_(settings),
       nodeMass_(meanNodeMass(*point.body())),
       carried_(carriedPoint()),
-      anchorBefore_(partner_->anchor()) {
+      anchorBefore_(anchor_.inWorld()) {
   if (settings.turns) weld();
-  btCollisionObject* other = partner_->object();
+  btCollisionObject* other = anchor_.object;
   if (settings.collide || !other) return;
   // An entry for each joint: another one may go before this one does.
   point_.body()->m_collisionDisabledObjects.push_back(other);
@@ -57,7 +57,7 @@ Joint::~Joint() {
 
 void Joint::drop() {
   btSoftBody* of = body();
-  if (of && hidden_) of->m_collisionDisabledObjects.remove(partner_->object());
+  if (of && hidden_) of->m_collisionDisabledObjects.remove(anchor_.object);
   hidden_ = false;
   dropped_ = true;
 }
@@ -99,7 +99,7 @@ Joint::Carried Joint::pointBeside(const btVector3& at) const {
 
 /// The points beside are as far from the point as the tet is wide; of a flat tet there are none.
 void Joint::weld() {
-  const btTransform anchor = partner_->anchor();
+  const btTransform anchor = anchor_.inWorld();
   btScalar farthest = 0;
   for (std::uint32_t k = 0; k < carried_.nodeCount; ++k) {
     farthest = std::max(farthest, (point_.body()->m_nodes[carried_.nodes[k]].m_x - anchor.getOrigin()).length());
@@ -123,7 +123,7 @@ btVector3 Joint::positionOf(const Carried& point) const {
 }
 
 btVector3 Joint::offset() const {
-  return positionOf(carried_) - partner_->anchor().getOrigin();
+  return positionOf(carried_) - anchor_.inWorld().getOrigin();
 }
 
 btScalar Joint::turn() const {
@@ -133,7 +133,7 @@ btScalar Joint::turn() const {
   const btVector3 z = x.cross(positionOf(beside_[1]) - point).normalized(), y = z.cross(x);
   const btMatrix3x3 now(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
   btQuaternion turned;
-  (now * partner_->anchor().getBasis().transpose()).getRotation(turned);
+  (now * anchor_.inWorld().getBasis().transpose()).getRotation(turned);
   return turned.getAngleShortestPath();
 }
 
@@ -145,13 +145,13 @@ btVector3 Joint::velocityOfPoint() const {
   return sum;
 }
 
-/// What has come to rest stays so. What hangs on the body would fall if that slept first; it waits until the other would
-/// sleep, too.
+/// What has come to rest stays so. What hangs on the body would fall if that slept first; it waits until the other
+/// would sleep, too.
 void Joint::wake() {
-  const btTransform anchor = partner_->anchor();
+  const btTransform anchor = anchor_.inWorld();
   const bool moved = !(anchor == anchorBefore_);
   anchorBefore_ = anchor;
-  btCollisionObject* other = partner_->object();
+  btCollisionObject* other = anchor_.object;
   if (!other) return;
   btSoftBody& own = *point_.body();
   if (other->isStaticOrKinematicObject()) {
@@ -172,7 +172,7 @@ PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
   row.nodeCount = point.nodeCount;
   row.nodes = point.nodes;
   row.weights = point.weights;
-  row.object = partner_->object();
+  row.object = anchor_.object;
   row.anchor = anchor;
   row.offset = positionOf(point) - anchor;
   return row;
@@ -192,7 +192,7 @@ void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
   added_ = 0;
   if (spent() || point_.status() != TouchStatus::Ok) return;
   wake();
-  const btTransform anchor = partner_->anchor();
+  const btTransform anchor = anchor_.inWorld();
   joints.push_back(rowOf(carried_, anchor.getOrigin()));
   if (!settings_.turns) makeSpring(seconds, joints.back());
   added_ = 1;

@@ -12,7 +12,7 @@
 #pragma once
 
 #include <tetskin/touch/src/forces/touch_force.h>
-#include <tetskin/touch/src/joints/partner.h>
+#include <tetskin/touch/src/joints/joint_anchor.h>
 #include <tetskin/touch/src/points/lever.h>
 
 #include <limits>
@@ -30,13 +30,14 @@ struct JointSettings {
 class Joint : public Acting {
  public:
   /// The point is Ok.
-  Joint(const SurfacePoint& point, std::unique_ptr<Partner> partner, const JointSettings& settings);
+  Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings);
   ~Joint() override;
   Joint(const Joint&) = delete;
   Joint& operator=(const Joint&) = delete;
 
   const SurfacePoint& point() const { return point_; }
-  Partner& partnerOf() { return *partner_; }
+  JointAnchor& anchor() { return anchor_; }
+  const JointAnchor& anchor() const { return anchor_; }
   JointSettings& settings() { return settings_; }
   bool dropped() const { return dropped_; }
   /// Of the last step, on the point.
@@ -70,15 +71,15 @@ class Joint : public Acting {
   void makeSpring(btScalar seconds, PointJoint& row) const;
 
   SurfacePoint point_;
-  std::unique_ptr<Partner> partner_;
+  JointAnchor anchor_;
   JointSettings settings_;
   double nodeMass_;  ///< the mean
   bool dropped_ = false;
-  bool hidden_ = false;  ///< body and partner do not collide, by us
+  bool hidden_ = false;  ///< body and object do not collide, by us
   Carried carried_;
   btScalar arm_ = 0;          ///< of a weld: how far beside the other two are; 0: it holds the point alone
   Carried beside_[2];         ///< of a weld
-  btTransform anchorBefore_;  ///< the partner's, when last looked at
+  btTransform anchorBefore_;  ///< in world space, when last looked at
   int added_ = 0;             ///< rows in this step
   btVector3 force_{0, 0, 0}, torque_{0, 0, 0};
 };

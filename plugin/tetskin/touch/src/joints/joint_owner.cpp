@@ -28,7 +28,7 @@ JointOwner::JointOwner(std::shared_ptr<Joint> joint)
     : joint_(std::move(joint)), force_(TouchForce::of(*deformableSolverOf(*joint_->point().body()))) {
   force_->add(joint_);
   joint_->point().body()->activate();
-  if (btCollisionObject* other = joint_->partnerOf().object()) other->activate();
+  if (btCollisionObject* other = joint_->anchor().object) other->activate();
 }
 
 TouchStatus JointOwner::status() const {

@@ -2,9 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/touch/src/points/lever.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
 namespace tetskin::touch_detail {
@@ -17,18 +15,24 @@ Vector3d placeOf(const btSoftBody& body, int node) {
   return toEigen(body.m_nodes[node].m_x);
 }
 
-/// By node: from its velocity to how fast all turn, for nodes about their middle; nothing where they stand in a line.
+Matrix3d crossMatrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// By node: from its velocity to how fast all turn, for nodes about their centroid; nothing where they stand in a line.
 struct Turning {
   std::vector<Vector3d> arms;
   Matrix3d inverse = Matrix3d::Zero();  ///< of their inertia, each of mass 1
   bool possible = false;
 
   explicit Turning(std::vector<Vector3d> places) : arms(std::move(places)) {
-    Vector3d middle = Vector3d::Zero();
-    for (const Vector3d& p : arms) middle += p / static_cast<double>(arms.size());
+    Vector3d centroid = Vector3d::Zero();
+    for (const Vector3d& p : arms) centroid += p / static_cast<double>(arms.size());
     Matrix3d inertia = Matrix3d::Zero();
     for (Vector3d& p : arms) {
-      p -= middle;
+      p -= centroid;
       inertia += p.squaredNorm() * Matrix3d::Identity() - p * p.transpose();
     }
     constexpr double kLine = 1e-9;
@@ -71,11 +75,6 @@ void addCorner(const EmbeddedPoint<btScalar>& corner, double share, const btSoft
   }
 }
 
-Vector3d currentVelocity(const btSoftBody& body, int node, bool split) {
-  const btSoftBody::Node& of = body.m_nodes[node];
-  return toEigen(split ? of.m_v + of.m_splitv : of.m_v);
-}
-
 }  // namespace
 
 Lever leverOf(const PointData& point, const btSoftBody& body) {
@@ -83,34 +82,7 @@ Lever leverOf(const PointData& point, const btSoftBody& body) {
   for (std::size_t c = 0; c < 3; ++c) {
     if (point.shares[c] != 0) addCorner(point.corners[c], static_cast<double>(point.shares[c]), body, lever);
   }
-  const Turning turning(placesOf(lever, body));
-  for (std::size_t k = 0; k < lever.size(); ++k) lever[k].angular = turning.of(k);
   return lever;
-}
-
-btVector3 linearPosition(const PointData& point, const btSoftBody& body) {
-  const btVector3 first = point.corners[0].position(positionsIn(body));
-  btVector3 sum(0, 0, 0);
-  for (std::size_t c = 1; c < 3; ++c) sum += point.shares[c] * (point.corners[c].position(positionsIn(body)) - first);
-  return first + sum;
-}
-
-std::vector<Vector3d> placesOf(const Lever& lever, const btSoftBody& body) {
-  std::vector<Vector3d> places;
-  for (const LeverNode& of : lever) places.push_back(placeOf(body, of.node));
-  return places;
-}
-
-Vector3d velocityOf(const Lever& lever, const btSoftBody& body, bool split) {
-  Vector3d sum = Vector3d::Zero();
-  for (const LeverNode& of : lever) sum += of.linear * currentVelocity(body, of.node, split);
-  return sum;
-}
-
-Vector3d spinOf(const Lever& lever, const btSoftBody& body, bool split) {
-  Vector3d sum = Vector3d::Zero();
-  for (const LeverNode& of : lever) sum += of.angular * currentVelocity(body, of.node, split);
-  return sum;
 }
 
 Matrix3d linearResponse(const Lever& lever, const btSoftBody& body) {
@@ -119,22 +91,6 @@ Matrix3d linearResponse(const Lever& lever, const btSoftBody& body) {
     sum += static_cast<double>(body.m_nodes[of.node].m_im) * of.linear * of.linear.transpose();
   }
   return sum;
-}
-
-Matrix3d turnSince(const std::vector<Vector3d>& before, const Lever& lever, const btSoftBody& body) {
-  assert(before.size() == lever.size());
-  const std::vector<Vector3d> now = placesOf(lever, body);
-  Vector3d middle = Vector3d::Zero(), middleBefore = Vector3d::Zero();
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    middle += now[k] / static_cast<double>(now.size());
-    middleBefore += before[k] / static_cast<double>(now.size());
-  }
-  Matrix3d moment = Matrix3d::Zero();
-  for (std::size_t k = 0; k < now.size(); ++k) moment += (now[k] - middle) * (before[k] - middleBefore).transpose();
-  const Eigen::JacobiSVD<Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d upright = Matrix3d::Identity();
-  upright(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * upright * svd.matrixV().transpose();
 }
 
 double massOf(const Matrix3d& response) {

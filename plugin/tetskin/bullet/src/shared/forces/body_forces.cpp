@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/coupling_force.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
 
@@ -17,7 +16,7 @@ btDeformableLagrangianForce* noForce() {
 }  // namespace
 
 bool needsDeformation(btDeformableLagrangianForce& force) {
-  if (isSilent(force) || dynamic_cast<CouplingForce*>(&force)) return false;
+  if (isSilent(force)) return false;
   if (dynamic_cast<btDeformableGravityForce*>(&force)) return false;
   const btDeformableLagrangianForceType type = force.getForceType();
   return type != BT_GRAVITY_FORCE && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;

@@ -27,7 +27,7 @@ constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 TETSKIN_BULLET_API void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
 /// One that gives Bullet nothing, and joins nobody's body.
-class SilentForce : public btDeformableLagrangianForce {
+class TETSKIN_BULLET_API SilentForce : public btDeformableLagrangianForce {
  public:
   void addScaledForces(btScalar, TVStack&) override {}
   void addScaledExplicitForce(btScalar, TVStack&) override {}

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: what a DeformableSolver solves for in a step, beside what bodies meet of rigid ones. What is
-// in the world's list of forces, and is one of these, is asked.
+// Between the libraries: what a DeformableSolver solves for in a step, beside what bodies meet of rigid ones.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
 #include <tetskin/bullet/src/shared/bodies/point_contacts.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
 
 class btSoftBody;
 
@@ -36,16 +36,18 @@ struct PointJoint {
   bool constant = false;  ///< a load: nothing is held, the impulse is given
 };
 
-class RowSource {
+/// In the world's list of forces, where a DeformableSolver finds it and asks it in each step. It is no force itself.
+class TETSKIN_BULLET_API RowSource : public SilentForce {
  public:
-  virtual ~RowSource() = default;
-
   /// Positions are those that the step begins with, velocities those that bodies would end it with alone. What is
   /// returned lives until the next call; the solver writes the impulses.
   virtual std::vector<SoftPointContact>* contacts(btScalar /*seconds*/) { return nullptr; }
   virtual std::vector<PointJoint>* joints(btScalar /*seconds*/) { return nullptr; }
   /// Impulses are written.
   virtual void finish(btScalar /*seconds*/) {}
+
+  /// Bodies are in it by its owner's will alone.
+  void addSoftBody(btSoftBody*) override {}
 };
 
 }  // namespace tetskin
