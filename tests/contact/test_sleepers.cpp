@@ -87,7 +87,7 @@ TEST_P(Sleepers, AreLiftedAndLoweredAtAnySpeed) {
     for (int f = 1; f <= 180; ++f) {
       moveTo(rigid(), from + btVector3(0, speed * f / 60, 0));
       step(world, 1);
-      ASSERT_NEAR(gap(), before, 0.012) << "frame " << f << " at " << speed << " m/s";
+      ASSERT_NEAR(gap(), before, 0.008) << "frame " << f << " at " << speed << " m/s";
     }
     letSleep(world, {&soft()});
   }
@@ -95,9 +95,9 @@ TEST_P(Sleepers, AreLiftedAndLoweredAtAnySpeed) {
 
 TEST_P(Sleepers, AreCarriedByWhatTheyLieOn) {
   soft().m_cfg.kDF = 1;
-  for (int k = 1; k <= 240; ++k) {
-    moveTo(rigid(), btVector3(btScalar(k) / 480, 4, 0));
-    world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+  for (int f = 1; f <= 60; ++f) {
+    moveTo(rigid(), btVector3(btScalar(f) / 120, 4, 0));
+    step(world, 1);
   }
   EXPECT_NEAR(centreOf(soft()).x(), 0.5, 0.05);
 }
