@@ -6,7 +6,7 @@
 #include <tetskin/bullet/src/solver/sleepers.h>
 
 #include <algorithm>
-#include <functional>
+#include <iterator>
 
 namespace tetskin {
 namespace {
@@ -32,8 +32,9 @@ bool mayTouch(const btSoftBody& body, const btCollisionObject& object) {
 Neighbour neighbourOf(const btCollisionObject& object) {
   Neighbour neighbour;
   neighbour.object = &object;
+  neighbour.isSoft = btSoftBody::upcast(&object) != nullptr;
   neighbour.isObstacle = object.isStaticOrKinematicObject();
-  neighbour.stands = neighbour.isObstacle || (!object.isActive() && !btSoftBody::upcast(&object));
+  neighbour.stands = neighbour.isObstacle || (!object.isActive() && !neighbour.isSoft);
   neighbour.transform = object.getWorldTransform();
   neighbour.shape = object.getCollisionShape();
   if (const btBroadphaseProxy* proxy = object.getBroadphaseHandle()) {
@@ -66,24 +67,48 @@ bool isStillThere(const btSoftBody& body, const Neighbour& before) {
   return finder.found && mayTouch(body, *finder.found) && !wasChanged(before, neighbourOf(*finder.found));
 }
 
-bool comesBefore(const Neighbour& a, const Neighbour& b) {
-  return std::less<>()(a.object, b.object);
+Neighbour* findNeighbour(const btCollisionObject& object, RestingBody& of) {
+  const std::size_t count = of.neighbours.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t at = (of.next + k) % count;
+    if (of.neighbours[at].object != &object) continue;
+    of.next = at + 1;
+    return &of.neighbours[at];
+  }
+  return nullptr;
 }
 
-void sortOnce(std::vector<Neighbour>& neighbours) {
-  const auto same = [](const Neighbour& a, const Neighbour& b) { return a.object == b.object; };
-  std::sort(neighbours.begin(), neighbours.end(), comesBefore);
-  neighbours.erase(std::unique(neighbours.begin(), neighbours.end(), same), neighbours.end());
+/// An obstacle that is new has come: as long as the body is asleep, its own box stays.
+void see(const btCollisionObject& object, RestingBody& of) {
+  Neighbour* known = findNeighbour(object, of);
+  if (known) known->isHere = true;
+  if (known && known->isSoft) return;
+  const Neighbour now = neighbourOf(object);
+  if (!known) {
+    of.neighbours.push_back(now);
+    of.disturbed |= of.steps > kStepsToPair && now.isObstacle;
+    return;
+  }
+  of.disturbed |= wasChanged(*known, now);
+  *known = now;
 }
 
-const Neighbour* find(const std::vector<Neighbour>& sorted, const Neighbour& wanted) {
-  const auto found = std::lower_bound(sorted.begin(), sorted.end(), wanted, comesBefore);
-  return found != sorted.end() && found->object == wanted.object ? &*found : nullptr;
+void seeAnchors(RestingBody& of) {
+  const auto& anchors = of.body->m_deformableAnchors;
+  for (int k = 0; k < anchors.size(); ++k) {
+    if (const btCollisionObject* object = anchors[k].m_cti.m_colObj) see(*object, of);
+  }
 }
 
-/// As long as it is asleep, its own box stays.
-bool hasCome(const std::vector<Neighbour>& before, const std::vector<Neighbour>& now) {
-  return std::any_of(now.begin(), now.end(), [&](const Neighbour& of) { return of.isObstacle && !find(before, of); });
+void forgetWhatIsGone(RestingBody& of) {
+  const bool asleep = !of.body->isActive();
+  const auto isGone = [&](const Neighbour& neighbour) {
+    if (neighbour.isHere) return false;
+    if (asleep && isStillThere(*of.body, neighbour)) return false;
+    of.disturbed |= asleep;
+    return true;
+  };
+  of.neighbours.erase(std::remove_if(of.neighbours.begin(), of.neighbours.end(), isGone), of.neighbours.end());
 }
 
 }  // namespace
@@ -92,60 +117,56 @@ void Sleepers::wake(const btAlignedObjectArray<btSoftBody*>& bodies) {
   listResting(bodies);
   if (resting_.empty()) return;
   std::vector<btBroadphaseInterface*> worlds;  // one, but for bodies that have been moved to another
-  for (int b = 0; b < bodies.size(); ++b) {
-    btBroadphaseInterface* world = broadphaseOf(*bodies[b]);
-    if (world && std::find(worlds.begin(), worlds.end(), world) == worlds.end()) worlds.push_back(world);
+  for (const auto& [object, of] : resting_) {
+    btBroadphaseInterface* world = broadphaseOf(*of.body);
+    if (std::find(worlds.begin(), worlds.end(), world) == worlds.end()) worlds.push_back(world);
   }
-  for (btBroadphaseInterface* world : worlds) listPairs(*world->getOverlappingPairCache());
-  for (int b = 0; b < bodies.size(); ++b) {
-    const auto found = resting_.find(bodies[b]);
-    if (found != resting_.end()) wakeIfDisturbed(*bodies[b], found->second);
+  for (btBroadphaseInterface* world : worlds) seePairs(*world->getOverlappingPairCache());
+  for (auto& [object, of] : resting_) {
+    seeAnchors(of);
+    forgetWhatIsGone(of);
+    if (of.disturbed) of.body->activate();
   }
 }
 
 void Sleepers::listResting(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  for (auto& [body, rest] : resting_) rest.isHere = false;
+  for (auto& [object, of] : resting_) of.isHere = false;
+  byIndex_.clear();
   for (int b = 0; b < bodies.size(); ++b) {
-    if (!rests(*bodies[b]) || !broadphaseOf(*bodies[b])) continue;
-    Rest& rest = resting_[bodies[b]];
-    rest.isHere = true;
-    rest.now.clear();
-    const auto& anchors = bodies[b]->m_deformableAnchors;
-    for (int k = 0; k < anchors.size(); ++k) {
-      if (const btCollisionObject* object = anchors[k].m_cti.m_colObj) rest.now.push_back(neighbourOf(*object));
-    }
+    btSoftBody* body = bodies[b];
+    const int index = body->getWorldArrayIndex();
+    if (!rests(*body) || !broadphaseOf(*body) || index < 0) continue;
+    RestingBody& of = resting_[body];
+    of.body = body;
+    of.isHere = true;
+    of.disturbed = false;
+    of.next = 0;
+    of.steps = body->isActive() ? 0 : of.steps + 1;
+    for (Neighbour& neighbour : of.neighbours) neighbour.isHere = false;
+    if (byIndex_.size() <= static_cast<std::size_t>(index)) byIndex_.resize(static_cast<std::size_t>(index) + 1);
+    byIndex_[static_cast<std::size_t>(index)] = &of;
   }
   for (auto of = resting_.begin(); of != resting_.end();) of = of->second.isHere ? std::next(of) : resting_.erase(of);
 }
 
-void Sleepers::listPairs(btOverlappingPairCache& pairs) {
-  const int count = pairs.getNumOverlappingPairs();
-  const btBroadphasePair* all = count > 0 ? pairs.getOverlappingPairArrayPtr() : nullptr;
-  const auto add = [&](const btBroadphaseProxy& own, const btBroadphaseProxy& other) {
-    const auto found = resting_.find(static_cast<const btCollisionObject*>(own.m_clientObject));
-    if (found == resting_.end()) return;
-    const auto& object = *static_cast<const btCollisionObject*>(other.m_clientObject);
-    if (mayTouch(*btSoftBody::upcast(found->first), object)) found->second.now.push_back(neighbourOf(object));
-  };
-  for (int k = 0; k < count; ++k) {
-    add(*all[k].m_pProxy0, *all[k].m_pProxy1);
-    add(*all[k].m_pProxy1, *all[k].m_pProxy0);
-  }
+RestingBody* Sleepers::find(const btCollisionObject& object) const {
+  const auto index = static_cast<std::size_t>(object.getWorldArrayIndex());
+  RestingBody* of = index < byIndex_.size() ? byIndex_[index] : nullptr;
+  return of && of->body == &object ? of : nullptr;
 }
 
-void Sleepers::wakeIfDisturbed(btSoftBody& body, Rest& rest) {
-  sortOnce(rest.now);
-  rest.steps = body.isActive() ? 0 : rest.steps + 1;
-  bool disturbed = rest.steps > kStepsToPair && hasCome(rest.before, rest.now);
-  for (const Neighbour& before : rest.before) {
-    const Neighbour* now = find(rest.now, before);
-    disturbed |= now && wasChanged(before, *now);
-    if (now || body.isActive()) continue;
-    isStillThere(body, before) ? rest.now.push_back(before) : (void)(disturbed = true);
+void Sleepers::seePairs(btOverlappingPairCache& pairs) {
+  const int count = pairs.getNumOverlappingPairs();
+  const btBroadphasePair* all = count > 0 ? pairs.getOverlappingPairArrayPtr() : nullptr;
+  for (int k = 0; k < count; ++k) {
+    const auto& first = *static_cast<const btCollisionObject*>(all[k].m_pProxy0->m_clientObject);
+    const auto& second = *static_cast<const btCollisionObject*>(all[k].m_pProxy1->m_clientObject);
+    RestingBody *ofFirst = find(first), *ofSecond = find(second);
+    if (!ofFirst && !ofSecond) continue;
+    if (!(ofFirst ? mayTouch(*ofFirst->body, second) : mayTouch(*ofSecond->body, first))) continue;
+    if (ofFirst) see(second, *ofFirst);
+    if (ofSecond) see(first, *ofSecond);
   }
-  rest.before.swap(rest.now);
-  sortOnce(rest.before);
-  if (disturbed) body.activate();
 }
 
 }  // namespace tetskin

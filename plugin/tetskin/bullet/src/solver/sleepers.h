@@ -15,11 +15,23 @@ namespace tetskin {
 /// What is beside a body that rests, or holds it: the boxes overlap, and the two may touch.
 struct Neighbour {
   const btCollisionObject* object = nullptr;
+  bool isHere = true;  ///< in this step
+  bool isSoft = false;
   bool isObstacle = false;  ///< static or kinematic
   bool stands = false;      ///< does not move by itself: obstacles, and rigid bodies that sleep
-  btTransform transform;
+  btTransform transform = btTransform::getIdentity();
   const btCollisionShape* shape = nullptr;
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< the box that the broadphase has of it
+};
+
+/// A body that is asleep, or about to be.
+struct RestingBody {
+  btSoftBody* body = nullptr;
+  std::vector<Neighbour> neighbours;
+  std::size_t next = 0;    ///< of them: they come in the same order in nearly all steps
+  int steps = 0;           ///< for which it has been asleep
+  bool isHere = true;      ///< in this step
+  bool disturbed = false;  ///< likewise
 };
 
 class Sleepers {
@@ -30,18 +42,12 @@ class Sleepers {
   void wake(const btAlignedObjectArray<btSoftBody*>& bodies);
 
  private:
-  struct Rest {
-    std::vector<Neighbour> before, now;  ///< sorted by object
-    int steps = 0;                       ///< for which it has been asleep
-    bool isHere = false;                 ///< in this step
-  };
-  using Bodies = std::unordered_map<const btCollisionObject*, Rest>;
-
   void listResting(const btAlignedObjectArray<btSoftBody*>& bodies);
-  void listPairs(btOverlappingPairCache& pairs);
-  static void wakeIfDisturbed(btSoftBody& body, Rest& rest);
+  void seePairs(btOverlappingPairCache& pairs);
+  RestingBody* find(const btCollisionObject& object) const;
 
-  Bodies resting_;
+  std::unordered_map<const btCollisionObject*, RestingBody> resting_;
+  std::vector<RestingBody*> byIndex_;  ///< in the world's list of objects; null of others
 };
 
 }  // namespace tetskin
