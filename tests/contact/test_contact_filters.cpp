@@ -138,6 +138,19 @@ TEST(ContactFiltersOfAWorld, AskTheWorldsCallback) {
   }
 }
 
+/// Of a pair that was refused when the boxes began to overlap Bullet knows nothing.
+TEST(ContactFiltersOfAWorld, AllowARefusedPairAfterARefresh) {
+  for (const By by : {By::Nodes, By::Surface}) {
+    OnAPlatform scene(by);
+    scene.proxy().m_collisionFilterMask = 0;
+    scene.world.deformable().refreshBroadphaseProxy(&scene.soft());
+    step(scene.world, 2);
+    scene.proxy().m_collisionFilterMask = -1;
+    scene.world.deformable().refreshBroadphaseProxy(&scene.soft());
+    EXPECT_TRUE(scene.isHeld(60)) << by;
+  }
+}
+
 /// One ball that lies on another, which is held.
 struct OnABall {
   OnABall()
