@@ -7,8 +7,11 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
+#include <cstddef>
 #include <unordered_map>
 #include <vector>
+
+class btOverlappingPairCache;
 
 namespace tetskin {
 
