@@ -68,6 +68,7 @@ struct SoftContactOptions {
 enum class IncludedBody {
   Active,   ///< meets others
   Gone,     ///< was taken out of the world
+  Within,   ///< the same, but lies wholly within one of them, and does not meet that one: it has no way out
   Changed,  ///< has other nodes or tets than its shape: it meets nothing
   Unknown,  ///< was never included
 };

@@ -87,7 +87,8 @@ void SoftContacts::exclude(const btSoftBody& body) {
 
 IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
   if (const contact_detail::ContactBody* of = parts_->force.find(body)) {
-    return of->fits() ? IncludedBody::Active : IncludedBody::Changed;
+    if (!of->fits()) return IncludedBody::Changed;
+    return parts_->force.isWithin(*of) ? IncludedBody::Within : IncludedBody::Active;
   }
   return parts_->force.isGone(body) ? IncludedBody::Gone : IncludedBody::Unknown;
 }

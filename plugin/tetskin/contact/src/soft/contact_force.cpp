@@ -18,7 +18,10 @@ constexpr btScalar kWakingSpeed = btScalar(0.04);
 /// Deeper than this, in sizes of the smaller one, two bodies overlap.
 constexpr btScalar kDeep = btScalar(0.03);
 /// Of the normals of what is inside, the least sum that has a direction: what is within another has none.
-constexpr btScalar kNoWay = btScalar(0.05);
+constexpr btScalar kLeastGradient = btScalar(0.05);
+/// Of a body's samples, the part that is at another's surface, or beneath, and looks as that does, where the two are
+/// in one place.
+constexpr double kInOnePlace = 0.3;
 /// Numbers of points begin here: others than those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
 
@@ -46,6 +49,23 @@ SoftPointContact turned(const SoftPointContact& from) {
   return contact;
 }
 
+bool liesWithin(const ContactBody& body, const Overlap& overlap) {
+  return overlap.inside > 0 && static_cast<std::size_t>(overlap.inside) == body.data().samples.size();
+}
+
+bool isMostlyWithin(const ContactBody& body, const Overlap& overlap) {
+  return overlap.agreeing > kInOnePlace * static_cast<double>(body.data().samples.size());
+}
+
+/// Each body's own, spread over the sphere by the golden angle.
+btVector3 directionOf(int id) {
+  constexpr double kGoldenAngle = 2.39996322972865332, kGoldenPart = 0.61803398874989485;
+  const double y = 2.0 * std::fmod(kGoldenPart * id, 1.0) - 1.0, angle = kGoldenAngle * id;
+  const double radius = std::sqrt(1.0 - y * y);
+  return {static_cast<btScalar>(radius * std::cos(angle)), static_cast<btScalar>(y),
+          static_cast<btScalar>(radius * std::sin(angle))};
+}
+
 }  // namespace
 
 ContactBody* ContactForce::find(const btSoftBody& body) const {
@@ -57,6 +77,10 @@ ContactBody* ContactForce::find(const btSoftBody& body) const {
 
 bool ContactForce::isGone(const btSoftBody& body) const {
   return std::find(gone_.begin(), gone_.end(), &body) != gone_.end();
+}
+
+bool ContactForce::isWithin(const ContactBody& body) const {
+  return std::any_of(meetings_.begin(), meetings_.end(), [&](const auto& of) { return of.second.within == &body; });
 }
 
 void ContactForce::include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
@@ -151,10 +175,15 @@ btVector3 ContactForce::search(ContactBody& first, ContactBody& second, btScalar
   touches_[1].clear();
   if (&first == &second) return {0, 0, 0};
   const Overlap other = in(second, first, 1);
-  if (std::min(own.deepest, other.deepest) > -deep) return {0, 0, 0};
+  const bool firstWithin = liesWithin(first, own), secondWithin = liesWithin(second, other);
+  meeting.within = firstWithin == secondWithin ? nullptr : firstWithin ? &first : &second;
+  if (meeting.within) return {0, 0, 0};
+  const bool inOnePlace = isMostlyWithin(first, own) && isMostlyWithin(second, other);
+  if (std::min(own.deepest, other.deepest) > -deep && !inOnePlace) return {0, 0, 0};
   const btVector3 gradient = other.normals - own.normals;
   const btScalar length = gradient.length();
-  return length > kNoWay * static_cast<btScalar>(own.inside + other.inside) ? gradient / length : btVector3(0, 0, 0);
+  if (length > kLeastGradient * static_cast<btScalar>(own.inside + other.inside)) return gradient / length;
+  return inOnePlace ? (directionOf(first.id) - directionOf(second.id)).normalized() : btVector3(0, 0, 0);
 }
 
 void ContactForce::addContact(const ContactBody& first, const ContactBody& second, const Touch& touch,

@@ -22,6 +22,8 @@ class ContactForce : public RowSource {
   void exclude(const btSoftBody& body);
   ContactBody* find(const btSoftBody& body) const;
   bool isGone(const btSoftBody& body) const;
+  /// Whether, in the last step, it lay wholly within another body.
+  bool isWithin(const ContactBody& body) const;
   /// Of the last step.
   const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
 
@@ -31,8 +33,9 @@ class ContactForce : public RowSource {
  private:
   /// What two bodies, or one with itself, keep from step to step.
   struct Meeting {
-    PairMemory memories[2];    ///< of the first in the second, and the other way round
-    btVector3 apart{0, 0, 0};  ///< which way the first is to leave the second; 0 unless they overlap
+    PairMemory memories[2];               ///< of the first in the second, and the other way round
+    btVector3 apart{0, 0, 0};             ///< which way the first is to leave the second; 0 unless they overlap
+    const ContactBody* within = nullptr;  ///< which of them lies wholly within the other
   };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
   BodyPairs pairsThatMeet();

@@ -70,7 +70,7 @@ void PairCandidates::meetLeaves(const Pair& pair, const Bvh::Node& runs, const B
 void PairCandidates::gatherRuns() {
   std::stable_sort(links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.run < b.run; });
   for (std::size_t c = 0; c < links_.size(); ++c) {
-    if (c == 0 || links_[c].run != links_[c - 1].run) runs_.push_back({links_[c].run, c, c, 0});
+    if (c == 0 || links_[c].run != links_[c - 1].run) runs_.push_back({links_[c].run, c, c});
     runs_.back().last = c + 1;
   }
 }

@@ -12,6 +12,18 @@
 
 namespace tetskin::contact_detail {
 
+/// How far samples may move before one of them is within a tet that was not, or at the surface; no more than that,
+/// world space.
+struct Clearance {
+  double outside = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();  ///< of those within, from the surface; below 0 inside
+
+  void cut(const Clearance& other) {
+    outside = std::min(outside, other.outside);
+    distance = std::min(distance, other.distance);
+  }
+};
+
 /// Runs of samples of the first body, each with the tets of the second that it may be in.
 class PairCandidates {
  public:
@@ -26,19 +38,21 @@ class PairCandidates {
   void find(ContactBody& first, ContactBody& second, btScalar slack);
 
   /// Calls begin(run), then test(tet) for its tets, and end(run), for runs that have any, in ascending order. `test`
-  /// returns how far the run's samples are from the surface in the tet, no more than that, in world space: it is not
-  /// called again while bodies have moved too little for one of them to come within `reach`.
+  /// returns a Clearance: it is not called again while bodies have moved too little to end it.
   template <class Begin, class Test, class End>
   void visit(btScalar reach, Begin&& begin, Test&& test, End&& end) {
-    const double seen = path_ + static_cast<double>(reach);
     for (Run& of : runs_) {
-      if (seen < of.clearUntil) continue;
+      if (isClear(of.until, reach)) continue;
       begin(of.run);
-      of.clearUntil = std::numeric_limits<double>::infinity();
+      of.until = {};
       for (std::size_t c = of.first; c < of.last; ++c) {
         Link& link = links_[c];
-        if (!(seen < link.clearUntil)) link.clearUntil = path_ + static_cast<double>(test(link.tet));
-        of.clearUntil = std::min(of.clearUntil, link.clearUntil);
+        if (!isClear(link.until, reach)) {
+          link.until = test(link.tet);
+          link.until.outside += path_;
+          link.until.distance += path_;
+        }
+        of.until.cut(link.until);
       }
       end(of.run);
     }
@@ -48,12 +62,12 @@ class PairCandidates {
  private:
   struct Link {
     int run = 0, tet = 0;
-    double clearUntil = 0;  ///< of the path: nothing of the run is at the surface in the tet before
+    Clearance until{0, 0};  ///< of the path
   };
   struct Run {
     int run = 0;
     std::size_t first = 0, last = 0;  ///< in `links_`
-    double clearUntil = 0;            ///< the least of its links'
+    Clearance until{0, 0};            ///< the least of its links'
   };
   struct Pair {
     const ContactBody* first;
@@ -61,6 +75,9 @@ class PairCandidates {
     ContactBox overlap;
     btScalar slack;
   };
+  bool isClear(const Clearance& until, btScalar reach) const {
+    return path_ < until.outside && path_ + static_cast<double>(reach) < until.distance;
+  }
   void gatherRuns();
   void meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets);
 

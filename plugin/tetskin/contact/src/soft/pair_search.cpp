@@ -21,6 +21,9 @@ constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where
 /// not.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
+/// Deeper than so many cubes of the grid what is no side of the own surface that slides along is held, too, unless the
+/// normals agree by this cosine.
+constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
 /// Of a gradient's length, from which on the sample is on no edge.
 constexpr btScalar kOnFace = btScalar(0.9);
 /// A side that is farther away at rest, in mean edges, is of another part.
@@ -53,6 +56,24 @@ btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
   return gap;
 }
 
+bool contains(const std::vector<int>& ascending, int sample) {
+  return std::binary_search(ascending.begin(), ascending.end(), sample);
+}
+
+Clearance outside(btScalar gap) {
+  Clearance clear;
+  clear.outside = static_cast<double>(gap);
+  return clear;
+}
+Clearance away(btScalar distance) {
+  Clearance clear;
+  clear.distance = static_cast<double>(distance);
+  return clear;
+}
+Clearance atSurface() {
+  return away(0);
+}
+
 }  // namespace
 
 Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
@@ -62,16 +83,31 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
   memory.sides.beginStep();
-  before_ = &memory.samples;
+  touched_.swap(memory.touched);
+  pierced_.swap(memory.pierced);
   const btScalar slack = kSlackCubes * second.data().grid.spacing();
   memory.candidates.advance(first, second);
   if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
   memory.candidates.visit(
       reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
-  memory.samples.clear();
-  for (const Touch& touch : touches) memory.samples.push_back(touch.sample);
-  std::sort(memory.samples.begin(), memory.samples.end());
+  remember(memory);
   return overlap_;
+}
+
+/// A node that touches nothing in this step goes on by the sample that it touched with before.
+void PairSearch::remember(PairMemory& memory) const {
+  memory.touched.clear();
+  memory.pierced.clear();
+  const std::vector<int>& nodes = now_.first->data().sampleNodes;
+  for (const int sample : touched_) {
+    const int node = nodes[static_cast<std::size_t>(sample)];
+    if (touchOfNode_[static_cast<std::size_t>(node)] < 0) memory.touched.push_back(sample);
+  }
+  for (const Touch& touch : *touches_) {
+    memory.touched.push_back(touch.sample);
+    if (touch.pierces) memory.pierced.push_back(touch.sample);
+  }
+  for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
 }
 
 void PairSearch::beginRun(int run) {
@@ -91,12 +127,12 @@ void PairSearch::touchRun(int run) {
   }
 }
 
-/// Returns how far the run's samples are from the surface in the tet; no more than that.
-btScalar PairSearch::testTet(int tet) {
-  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return gap;
+/// Of the run's samples.
+Clearance PairSearch::testTet(int tet) {
+  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return outside(gap);
   const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat) return 0;
-  if (const btScalar gap = gapTo(around_, of); gap > 0) return gap;
+  if (of.flat) return outside(0);
+  if (const btScalar gap = gapTo(around_, of); gap > 0) return outside(gap);
   const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run_.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run_.first)],
@@ -109,44 +145,46 @@ btScalar PairSearch::testTet(int tet) {
     const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
     inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
   }
-  btScalar clear = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
+  Clearance clear;
+  btScalar most = -BT_LARGE_FLOAT;
   for (int k = 0; k < count; ++k) {
     const btScalar weight = inside_[static_cast<std::size_t>(k)];
     if (weight >= kLeastWeight) {
-      clear = std::min(clear, offer(tet, run_.first + k, k));
+      clear.cut(offer(tet, run_.first + k, k));
     } else {
       most = std::max(most, weight);
     }
   }
-  return std::min(clear, (kLeastWeight - most) / of.steepest);
+  clear.cut(outside((kLeastWeight - most) / of.steepest));
+  return clear;
 }
 
-/// But for places that are known from a tet beside this one. Returns how far it is from the surface, no more than that.
-btScalar PairSearch::offer(int tet, int sample, int k) {
+/// But for places that are known from a tet beside this one.
+Clearance PairSearch::offer(int tet, int sample, int k) {
   const ShapeData& data = now_.second->data();
   const DeformedTet& deformed = now_.second->deformed(tet);
   Place place;
   deformed.weightsAt(now_.first->sampleAt(sample), place.weights);
-  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return 0;
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return atSurface();
   place.rest = restPoint(data, tet, place.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
     const btScalar moved = (place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
-    if (moved < own) return (own - moved) / deformed.restPerWorld;
+    if (moved < own) return outside((own - moved) / deformed.restPerWorld);
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
   for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return 0;
+    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return atSurface();
   }
-  if (!data.grid.at(place.rest, place.nearest)) return 0;
+  if (!data.grid.at(place.rest, place.nearest)) return atSurface();
   const btScalar distance = place.nearest.distance / deformed.restPerWorld;
-  if (distance > now_.reach) return distance;
+  if (distance > now_.reach) return away(distance);
   place.tet = tet;
   place.next = head;
   head = static_cast<int>(places_.size());
   places_.push_back(place);
-  return 0;
+  return atSurface();
 }
 
 /// By which the sample has moved in the body's rest space.
@@ -181,10 +219,25 @@ btVector3 PairSearch::ownNormal(int sample, int run) const {
 /// nearest ones would tear it; what is less deep beside it does not hold it back.
 bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   const bool overlaps = !now_.apart.isZero();
+  // Where bodies are in one place, their surfaces are, too.
+  if (overlaps && own.dot(touch.normal) > kAgreeing) touch.distance = std::min(touch.distance, -2 * now_.deep);
   const bool deep = overlaps && touch.distance < -now_.deep;
   if (deep) touch.normal = now_.apart;
   if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
-  return own.isZero() || own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
+  if (own.isZero()) return true;
+  const bool pierced = contains(pierced_, touch.sample);
+  touch.pierces = !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
+  if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
+  return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
+}
+
+void PairSearch::count(const btVector3& own, const Touch& touch) {
+  ++overlap_.reached;
+  overlap_.agreeing += own.dot(touch.normal) > kAgreeing ? 1 : 0;
+  if (!(touch.distance < 0)) return;
+  overlap_.deepest = std::min(overlap_.deepest, touch.distance);
+  overlap_.normals += own;
+  ++overlap_.inside;
 }
 
 void PairSearch::touch(int sample, int run, const Place& place) {
@@ -207,11 +260,7 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   std::copy(place.weights, place.weights + 4, made.weights);
   made.normal = normal / length;
   const btVector3 own = ownNormal(sample, run);
-  if (made.distance < 0) {
-    overlap_.deepest = std::min(overlap_.deepest, made.distance);
-    overlap_.normals += own;
-    ++overlap_.inside;
-  }
+  count(own, made);
   const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
   if (!direct(own, onFace, made)) return;
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
@@ -219,8 +268,8 @@ void PairSearch::touch(int sample, int run, const Place& place) {
 
 /// Those that touched in the step before count as deeper: what rests would be held by others in each step, and shake.
 btScalar PairSearch::rankOf(const Touch& touch) const {
-  const bool touched = std::binary_search(before_->begin(), before_->end(), touch.sample);
-  return touched ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
+  return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
+                                          : touch.distance;
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {

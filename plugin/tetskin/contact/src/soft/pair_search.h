@@ -18,6 +18,7 @@ struct Touch {
   btScalar weights[4] = {};  ///< in it
   btVector3 normal{0, 1, 0};
   btScalar distance = 0;  ///< world space; below 0: how deep
+  bool pierces = false;   ///< deeper than what slides along another surface can be, or was
   int next = -1;          ///< another of the same node
 };
 
@@ -25,14 +26,17 @@ struct Touch {
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
-  std::vector<int> samples;  ///< that touched, ascending
+  std::vector<int> touched;  ///< samples by which nodes did last, ascending
+  std::vector<int> pierced;  ///< those that did so from beneath, in the last step
 };
 
-/// By how much one body is in another.
+/// By how much one body is in another, by its samples.
 struct Overlap {
   btScalar deepest = 0;        ///< distance, below 0
-  btVector3 normals{0, 0, 0};  ///< sum over the samples that are inside: of their own surface, each of length 1
+  btVector3 normals{0, 0, 0};  ///< sum over those that are inside: of their own surface, each of length 1
   int inside = 0;              ///< as many
+  int reached = 0;             ///< inside, or within reach
+  int agreeing = 0;            ///< of these, those whose surface looks as the other one does there
 };
 
 /// Finds the touches of pairs, one after the other; keeps its memory.
@@ -64,11 +68,13 @@ class PairSearch {
     ContactSides* sides;
   };
 
+  void remember(PairMemory& memory) const;
   void beginRun(int run);
-  btScalar testTet(int tet);
-  btScalar offer(int tet, int sample, int k);
+  Clearance testTet(int tet);
+  Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
   void touch(int sample, int run, const Place& place);
+  void count(const btVector3& own, const Touch& touch);
   btVector3 restMotion(int sample, const Place& place) const;
   btVector3 ownNormal(int sample, int run) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
@@ -76,10 +82,10 @@ class PairSearch {
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
-  SampleRun run_;                             ///< in this one's turn
-  ContactBox around_;                         ///< its samples
-  const std::vector<int>* before_ = nullptr;  ///< samples of the step before
-  std::vector<btScalar> inside_;              ///< by sample of the run: its least weight in a tet
+  SampleRun run_;                       ///< in this one's turn
+  ContactBox around_;                   ///< its samples
+  std::vector<int> touched_, pierced_;  ///< samples of the step before
+  std::vector<btScalar> inside_;        ///< by sample of the run: its least weight in a tet
   std::vector<Place> places_;
   std::vector<int> heads_;  ///< in `places_`, by sample of the run
   std::vector<Touch>* touches_ = nullptr;
