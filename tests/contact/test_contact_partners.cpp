@@ -66,7 +66,8 @@ TEST(ContactPartners, AKinematicBodyCarriesWhatLiesOnIt) {
 enum class Told { World, MotionState, Both };
 
 /// A plate goes 0.5 m sideways in a second and then 0.5 m up; how far the body on it has come.
-btVector3 carried(EmptyWorld& world, Told told, bool bySurface) {
+/// steps  in which the plate moves at once, and the world makes at once
+btVector3 carried(EmptyWorld& world, Told told, bool bySurface, int steps = 1) {
   const btVector3 start(0, 4, 0);
   btDefaultMotionState motion(placeAt(start));
   Obstacle plate(world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)), placeAt(start));
@@ -86,12 +87,12 @@ btVector3 carried(EmptyWorld& world, Told told, bool bySurface) {
   step(world, 15);
   const btVector3 before = centre();
   btVector3 at = start;
-  for (int k = 0; k < 480; ++k) {
-    at += btScalar(0.5) / 240 * (k < 240 ? btVector3(1, 0, 0) : btVector3(0, 1, 0));
+  for (int k = 0; k < 480; k += steps) {
+    at += steps * btScalar(0.5) / 240 * (k < 240 ? btVector3(1, 0, 0) : btVector3(0, 1, 0));
     motion.setWorldTransform(placeAt(at));
     if (told != Told::MotionState) plate.body().setWorldTransform(placeAt(at));
     if (told == Told::Both) plate.body().setInterpolationWorldTransform(placeAt(at));
-    world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+    world.deformable().stepSimulation(steps * btScalar(1) / 240, steps, btScalar(1) / 240);
   }
   plate.body().setMotionState(nullptr);
   return centre() - before;
@@ -106,6 +107,20 @@ TEST(ContactPartners, AKinematicBodyCarriesHoweverItIsMoved) {
       const btVector3 way = carried(world, told, bySurface);
       EXPECT_NEAR(way.x(), 0.5, 0.03) << bySurface;
       EXPECT_NEAR(way.y(), 0.5, 0.03) << bySurface;
+    }
+  }
+}
+
+/// Bullet puts it there in the frame's first step.
+TEST(ContactPartners, AKinematicBodyThatIsMovedOnceAFrameCarriesInAllOfItsSteps) {
+  for (const int steps : {2, 4, 8}) {
+    for (const Told told : {Told::World, Told::MotionState}) {
+      for (const bool bySurface : {false, true}) {
+        TetskinWorld world;
+        const btVector3 way = carried(world, told, bySurface, steps);
+        EXPECT_NEAR(way.x(), 0.5, 0.03) << bySurface << steps;
+        EXPECT_NEAR(way.y(), 0.5, 0.03) << bySurface << steps;
+      }
     }
   }
 }

@@ -243,6 +243,23 @@ TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
   EXPECT_TRUE(of.body().isActive());
 }
 
+TEST(SurfaceSpring, KeepsABodyAwakeThatHangsOnWhatMovesSlowly) {
+  auto world = deformableWorld();
+  TouchedBody of(*world);
+  of.body().forceActivationState(ACTIVE_TAG);
+  RigidBox hook(*world, 0, btVector3(0, 3, 0));
+  hook->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  hook->setActivationState(DISABLE_DEACTIVATION);
+  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *hook, btVector3(0, 0, 0)).value();
+  for (int k = 0; k < 720; ++k) {
+    btTransform place = hook->getWorldTransform();
+    place.getOrigin() += btVector3(0, btScalar(0.01) / 240, 0);
+    hook->setWorldTransform(place);
+    substep(*world);
+    ASSERT_TRUE(of.body().isActive()) << "step " << k;
+  }
+}
+
 TEST(SurfaceSpring, RefusesPivotsThatAreNoPlaces) {
   auto world = deformableWorld();
   TouchedBody of(*world);

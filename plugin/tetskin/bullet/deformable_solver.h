@@ -21,11 +21,15 @@ class SystemSolve;
 /// multibodies that are touched are unknowns of it, and so are those that these touch or hang on, as long as there are
 /// fewer than 24; their own contacts and joints begin as Bullet has left them. Bullet's constraints of such contacts
 /// and anchors are taken out before Bullet solves for them. All other bodies are solved for as Bullet does in an
-/// explicit world with projection of contacts, with its forces. Bodies asleep cost nothing here.
+/// explicit world with projection of contacts, with its forces. A body asleep costs a look at what is beside it.
 /// `ForceModel::Corotated`, tetskin::contact and tetskin::touch need this solver, and a world with any of them is
 /// solved here whatever its settings of Bullet's solve are. A world of Bullet's forces alone that is implicit, has line
 /// search, or no projection (Bullet's default; `setUseProjection(true)` switches it on, and so does
 /// `DeformableBody::add`) is solved by Bullet's own code.
+///
+/// Contact by nodes asks for groups, masks, the world's overlap filter callback and the responses of both bodies in
+/// each step. Bodies that sleep wake where what they lie on, or hang on, is moved, changed or taken away, and where an
+/// obstacle comes near; see the guide.
 ///
 /// A body whose collision flags let it meet no soft body (as `makeSoftBody` makes them) is marked as sleeping between
 /// the solve and its integration, so that Bullet does not look for such meetings; that is seen in a world's solver
@@ -63,6 +67,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
+  void processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) override;
+  using btDeformableBodySolver::processCollision;
   void setupDeformableSolve(bool implicit) override;
   void setConstraints(const btContactSolverInfo& info) override;
   void setLagrangeMultiplier() override;

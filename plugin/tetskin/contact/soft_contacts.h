@@ -90,6 +90,9 @@ struct SoftContact {
 ///     contacts->include(body.body(), shape);
 ///
 /// Bodies may be taken out of the world, and this may go, in any order, as long as it goes before the world does.
+/// Two bodies meet as groups, masks, the world's overlap filter callback, setIgnoreCollisionCheck and
+/// CF_NO_CONTACT_RESPONSE of either allow, in each step, and not where the `m_cfg.collisions` of one is 0; one meets
+/// itself whatever its group and mask.
 /// Bullet's own contact of soft bodies (VF_DD and the like) should be off for them, as it is for bodies of
 /// `DeformableBody`.
 class TETSKIN_CONTACT_API SoftContacts {

@@ -38,8 +38,10 @@ struct SurfaceContactPoint {
 /// the rigid bodies, so that force and counterforce act at one point.
 ///
 /// In a deformable world with a `DeformableSolver`. Nothing else need be done: static, kinematic and dynamic bodies and
-/// the links of multibodies are met in whatever order they were added, as their groups, their masks, their flags
-/// (CF_NO_CONTACT_RESPONSE) and the body's `m_cfg.collisions` (any of RVSmask) allow. A world's contactTest finds
+/// the links of multibodies are met in whatever order they were added, as groups, masks, the world's overlap filter
+/// callback, setIgnoreCollisionCheck, CF_NO_CONTACT_RESPONSE of either and the body's `m_cfg.collisions` (any of
+/// RVSmask) allow: they are asked for in each step. What they forbid when boxes begin to overlap is unknown to Bullet
+/// until the world's refreshBroadphaseProxy. A world's contactTest finds
 /// nothing of the body, and leaves its contacts as they are. Planes, boxes, spheres, capsules and cylinders are met
 /// exactly; convex hulls by their faces, as they are drawn, that is without their margin; other convex shapes by
 /// Bullet's GJK; meshes and other concave shapes by their triangles, on the side from which these look

@@ -104,11 +104,12 @@ btVector3 relativeVelocity(const SolverBodies& bodies, const ContactRow& row, Ri
   return carriedVelocity(bodies, row.ends[0]) - rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
 }
 
-/// A kinematic body is already where the step takes it when contacts are looked for: by how much it has moved to there,
-/// over seconds, the gap is less than when the step begins.
+/// A kinematic body is already where the step, or the frame, takes it when contacts are looked for: by how much it has
+/// moved to there, the gap is less than when the step begins.
 btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
-  const btVector3 moved = rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
-  return row.object->isKinematicObject() ? row.normal.dot(moved) : btScalar(0);
+  const btScalar time = rigids.timeToGo(*row.object, seconds);
+  if (!(time > 0)) return 0;
+  return time * row.normal.dot(rigids.velocityAt(row.ends[1].rigid, *row.object, seconds));
 }
 
 ContactRow rowOf(std::size_t index, PointContact& contact) {
@@ -146,8 +147,8 @@ btVector3 seenPart(const btVector3& offset, const btVector3& position) {
 }
 
 /// Where the point sticks, and what it was pushed with.
-void recall(const SolvedBody& body, btScalar seconds, ContactRow& row) {
-  const btTransform& frame = row.object->getWorldTransform();
+/// frame  the object's
+void recall(const SolvedBody& body, const btTransform& frame, btScalar seconds, ContactRow& row) {
   row.stickingPlace = frame.invXform(row.position);
   const auto less = [](const Sticking& a, const Sticking& b) { return a.point < b.point; };
   Sticking key;
@@ -256,7 +257,7 @@ void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btSca
   if (!anyFree || isNoNumber(row.relative)) return;
   const btScalar pushingOut = kPushingOut * std::min(sizeOf(*contact.body), sizeOf(*object));
   row.gapVelocity = std::max(seenGap(contact.distance, row) / seconds, -pushingOut);
-  recall(bodies.bodies()[index], seconds, row);
+  recall(bodies.bodies()[index], object->getWorldTransform(), seconds, row);
   rows_.push_back(row);
   for (const RowEnd& end : row.ends) {
     if (end.isSoft()) ++bodies.bodies()[end.body].rowCount;
@@ -310,9 +311,9 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.relative = relativeVelocity(bodies, row, rigids, seconds);
     if (isNoNumber(row.relative)) return;
-    const btScalar gap = contact.distance + seconds * leadOf(row, rigids, seconds);
+    const btScalar gap = contact.distance + leadOf(row, rigids, seconds);
     row.gapVelocity = std::max(seenGap(gap, row) / seconds, -pushingOut);
-    recall(body, seconds, row);
+    recall(body, rigids.frameOf(*row.object, seconds), seconds, row);
     rows_.push_back(row);
   };
   for (PointContact& contact : *body.bulletsContacts) add(contact);

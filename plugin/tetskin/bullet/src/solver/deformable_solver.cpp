@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What Bullet calls. What it comes to is in step.cpp.
-#include <tetskin/bullet/src/solver/step.h>
-
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
+#include <tetskin/bullet/src/shared/bodies/contact_filter.h>
+#include <tetskin/bullet/src/solver/step.h>
 
 namespace tetskin {
 namespace {
@@ -64,6 +65,15 @@ void DeformableSolver::predictMotion(btScalar dt) {
     parts.assign();
   }
   parts.solving ? parts.predict() : btDeformableBodySolver::predictMotion(dt);
+}
+
+/// Of a body and a rigid object whose boxes overlap.
+void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
+  if (parts_->solving) {
+    if (!body->isActive() || !meetsRigid(*body, *object->getCollisionObject())) return;
+    parts_->obstacleChanges.notice(*body, *object);
+  }
+  btDeformableBodySolver::processCollision(body, object);
 }
 
 void DeformableSolver::setupDeformableSolve(bool implicit) {

@@ -89,8 +89,7 @@ void RigidUnknowns::clear() {
   unknowns_.clear();
   places_.clear();
   jacobians_.clear();
-  placesBefore_.swap(placesNow_);
-  placesNow_.clear();
+  paths_.beginStep();
 }
 
 int RigidUnknowns::find(const btCollisionObject& object) const {
@@ -162,23 +161,32 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   if (!rigid) return {0, 0, 0};
   const btVector3 velocity =
       rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
-  return rigid->isKinematicObject() ? carriedBy(object, at.arm, velocity, seconds) : velocity;
+  return rigid->isKinematicObject() ? carriedBy(*rigid, at.arm, velocity, seconds) : velocity;
 }
 
 /// Bullet makes the angular velocity of a kinematic body of the arc cosine of its turn in a step, of which few digits
 /// are left. Its places in this step and the one before have all of them.
-btVector3 RigidUnknowns::carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity,
+btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
                                    btScalar seconds) {
-  const btTransform& now = object.getWorldTransform();
-  placesNow_[&object] = now;
-  const auto known = placesBefore_.find(&object);
-  if (known == placesBefore_.end()) return velocity;
-  const btTransform& before = known->second;
-  const btVector3 turned = now.getBasis() * (before.getBasis().transpose() * arm);
-  const btVector3 carried = (now.getOrigin() - before.getOrigin() + turned - arm) / seconds;
+  const KinematicPath& path = paths_.of(body, seconds);
+  if (!path.isKnown) return velocity;
+  const btTransform now = path.now();
+  const btVector3 turned = now.getBasis() * (path.before.getBasis().transpose() * arm);
+  const btVector3 carried = (now.getOrigin() - path.before.getOrigin() + turned - arm) / seconds;
   // Else it was put there, or is another one.
   const btScalar most = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
   return (carried - velocity).length() <= most ? carried : velocity;
+}
+
+btTransform RigidUnknowns::frameOf(const btCollisionObject& object, btScalar seconds) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  return body && body->isKinematicObject() ? paths_.of(*body, seconds).now() : object.getWorldTransform();
+}
+
+btScalar RigidUnknowns::timeToGo(const btCollisionObject& object, btScalar seconds) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (!body || !body->isKinematicObject()) return 0;
+  return seconds * static_cast<btScalar>(paths_.of(*body, seconds).stepsLeft());
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {

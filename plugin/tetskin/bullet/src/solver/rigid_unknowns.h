@@ -12,6 +12,7 @@
 #pragma once
 
 #include <LinearMath/btTransform.h>
+#include <tetskin/bullet/src/solver/kinematic_paths.h>
 
 #include <Eigen/Core>
 #include <unordered_map>
@@ -53,6 +54,11 @@ class RigidUnknowns {
   /// Of the object there, as Bullet has left it: that of the straight way which a point of it goes in the step.
   btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
+  /// Where the object is when this step ends, as far as it moves as it is prescribed.
+  btTransform frameOf(const btCollisionObject& object, btScalar seconds);
+  /// Seconds for which a kinematic body has still to go, with this step, to where Bullet has it already; 0 for others.
+  btScalar timeToGo(const btCollisionObject& object, btScalar seconds);
+
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
 
@@ -73,14 +79,13 @@ class RigidUnknowns {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   Jacobian jacobianOf(const RigidPoint& at) const;
   int add(const btCollisionObject& object);
-  btVector3 carriedBy(const btCollisionObject& object, const btVector3& arm, const btVector3& velocity,
-                      btScalar seconds);
+  btVector3 carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity, btScalar seconds);
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;
   std::unordered_map<const void*, int> places_;  ///< by rigid body or multibody
   std::vector<Jacobian> jacobians_;
-  std::unordered_map<const btCollisionObject*, btTransform> placesNow_, placesBefore_;  ///< of kinematic bodies
+  KinematicPaths paths_;
 };
 
 }  // namespace tetskin

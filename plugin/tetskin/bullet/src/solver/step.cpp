@@ -106,6 +106,7 @@ void DeformableSolver::Parts::gather(const btAlignedObjectArray<btSoftBody*>& wo
   solving = solver.solves();
   hidden.show(world);
   all.copyFromArray(world);
+  if (seconds > 0 && solving) sleepers.wake(all);
   const bool changed = collect(world);
   if (changed) driven.keepOnly(world);
   if (seconds > 0) driven.begin(solver.m_softBodies, seconds);

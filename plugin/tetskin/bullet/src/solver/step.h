@@ -15,6 +15,8 @@
 #include <tetskin/bullet/deformable_solver.h>
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
+#include <tetskin/bullet/src/solver/obstacle_changes.h>
+#include <tetskin/bullet/src/solver/sleepers.h>
 
 #include <memory>
 #include <vector>
@@ -82,6 +84,8 @@ struct DeformableSolver::Parts {
   DeformableSolver& solver;
   SolverBodies bodies;
   DrivenNodes driven;
+  Sleepers sleepers;
+  ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
   HiddenBodies hidden;

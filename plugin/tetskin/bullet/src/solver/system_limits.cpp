@@ -67,13 +67,11 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   elastic_detail::SolveLimits limits;
   limits.iterations = 0;
   limits.floor = 0.0;
-  const auto seconds = static_cast<double>(step_.dt());
   double byMatrix = 0.0, byMasses = 0.0, tolerance = 1.0;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const SolvedBody& of = bodyAt(k);
     tolerance = std::min(tolerance, of.limits->tolerance);
     limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    limits.floor = std::max(limits.floor, pass > 0 ? of.dynamics->roundingSpeed(seconds) : 0.0);
     byMatrix += of.dynamics->squaredByMatrix();
     byMasses += of.dynamics->squaredChange();
   }

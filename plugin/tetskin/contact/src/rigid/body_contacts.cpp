@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btAabbUtil2.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/bodies/contact_filter.h>
 #include <tetskin/contact/src/rigid/body_contacts.h>
 
 #include <algorithm>
@@ -63,19 +64,12 @@ BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, 
 
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
-  if (!body_.isActive() || !responds(object)) return;
+  if (!body_.isActive() || !meetsRigid(body_, object)) return;
   nodesRead_ = false;
   KnownObject& known = known_[&object];
   ++known.step;
   collideShape(*rigid.getCollisionShape(), 0, pathOf(rigid), object);
   if (known.step % kForgottenAfter == 0) forgetUnused(known);
-}
-
-bool BodyContacts::responds(const btCollisionObject& object) const {
-  const auto& disabled = body_.m_collisionDisabledObjects;
-  const bool meetsRigids = (body_.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0;
-  return meetsRigids && object.hasContactResponse() && body_.hasContactResponse() &&
-         disabled.findLinearSearch(const_cast<btCollisionObject*>(&object)) == disabled.size();
 }
 
 void BodyContacts::readNodes() {

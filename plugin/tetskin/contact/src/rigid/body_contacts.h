@@ -56,7 +56,6 @@ class BodyContacts {
   const TouchSearch& search() const { return search_; }
 
  private:
-  bool responds(const btCollisionObject& object) const;
   void readNodes();
   void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                     const btCollisionObject& object);

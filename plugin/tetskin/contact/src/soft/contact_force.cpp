@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/shared/bodies/contact_filter.h>
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/contact_force.h>
 
@@ -115,7 +116,8 @@ std::vector<SoftPointContact>* ContactForce::contacts(btScalar seconds) {
     if (of->fits()) of->read();
   }
   for (const auto& [first, second] : pairsThatMeet()) {
-    if (first->awake || second->awake) findInPair(*first, *second, seconds);
+    const bool meets = (first->awake || second->awake) && meetsSoft(*first->body, *second->body);
+    if (meets) findInPair(*first, *second, seconds);
   }
   return &contacts_;
 }

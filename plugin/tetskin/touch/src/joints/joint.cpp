@@ -155,7 +155,7 @@ void Joint::wake() {
   if (!other) return;
   btSoftBody& own = *point_.body();
   if (other->isStaticOrKinematicObject()) {
-    if (moved && !own.isActive()) own.activate();
+    if (moved) own.activate();
     return;
   }
   if (other->isActive()) {

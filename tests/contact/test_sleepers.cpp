@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What wakes a sleeping body, and what does not: by nodes, by the surface, and on other soft bodies.
+#include "contact_test.h"
+#include "soft_fixtures.h"
+
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tetskin::test {
+namespace {
+
+enum class By { Nodes, Surface };
+
+/// Frames until all sleep; fails where one does not.
+void letSleep(EmptyWorld& world, const std::vector<btSoftBody*>& bodies, int frames = 900) {
+  const auto anyAwake = [&] {
+    return std::any_of(bodies.begin(), bodies.end(), [](const btSoftBody* body) { return body->isActive(); });
+  };
+  std::vector<btScalar> thresholds;
+  for (const btSoftBody* body : bodies) thresholds.push_back(body->m_sleepingThreshold);
+  for (int f = 0; f < frames && anyAwake(); ++f) {
+    for (btSoftBody* body : bodies) {
+      if (f == 90) body->m_sleepingThreshold = 1;  // nobody waits for the last of their rocking
+    }
+    step(world, 1);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    bodies[b]->m_sleepingThreshold = thresholds[b];
+    ASSERT_FALSE(bodies[b]->isActive()) << "body " << b;
+  }
+}
+
+void makeKinematic(btRigidBody& body) {
+  body.setCollisionFlags((body.getCollisionFlags() & ~btCollisionObject::CF_STATIC_OBJECT) |
+                         btCollisionObject::CF_KINEMATIC_OBJECT);
+  body.setActivationState(DISABLE_DEACTIVATION);
+}
+
+void moveTo(btRigidBody& body, const btVector3& at) {
+  btTransform place = body.getWorldTransform();
+  place.setOrigin(at);
+  body.setWorldTransform(place);
+}
+
+/// A body asleep on a platform high above the floor.
+class Sleepers : public testing::TestWithParam<By> {
+ protected:
+  void SetUp() override { rest(btVector3(0, 0, 0)); }
+
+  void rest(const btVector3& at) {
+    platform.emplace(world, std::make_unique<btBoxShape>(btVector3(2, 1, 2)), placeAt(at + btVector3(0, 4, 0)));
+    makeKinematic(platform->body());
+    const bool nodes = GetParam() == By::Nodes;
+    body = std::make_unique<TouchingBody>(world, ballMesh(12, 0.35),
+                                          at + btVector3(0, nodes ? btScalar(5.52) : btScalar(5.37), 0));
+    if (nodes) body->contact.reset();
+    letSleep(world, {&soft()});
+  }
+  btSoftBody& soft() { return body->body->body(); }
+  btRigidBody& rigid() { return platform->body(); }
+  /// Of the surface over the platform.
+  double gap() { return body->height() - static_cast<double>(rigid().getWorldTransform().getOrigin().y()) - 1; }
+
+  TetskinWorld world;
+  std::optional<Obstacle> platform;
+  std::unique_ptr<TouchingBody> body;
+};
+
+TEST_P(Sleepers, SleepOnAKinematicBodyThatStands) {
+  const std::vector<Eigen::Vector3d> before = body->surface();
+  step(world, 240);
+  EXPECT_FALSE(soft().isActive());
+  EXPECT_EQ(body->surface(), before);
+}
+
+TEST_P(Sleepers, AreLiftedAndLoweredAtAnySpeed) {
+  const double before = gap();
+  for (const btScalar speed : {btScalar(0.5), btScalar(-0.5), btScalar(0.01), btScalar(-0.01)}) {
+    const btVector3 from = rigid().getWorldTransform().getOrigin();
+    for (int f = 1; f <= 180; ++f) {
+      moveTo(rigid(), from + btVector3(0, speed * f / 60, 0));
+      step(world, 1);
+      ASSERT_NEAR(gap(), before, 0.008) << "frame " << f << " at " << speed << " m/s";
+    }
+    letSleep(world, {&soft()});
+  }
+}
+
+TEST_P(Sleepers, AreCarriedByWhatTheyLieOn) {
+  soft().m_cfg.kDF = 1;
+  for (int f = 1; f <= 60; ++f) {
+    moveTo(rigid(), btVector3(btScalar(f) / 120, 4, 0));
+    step(world, 1);
+  }
+  EXPECT_NEAR(centreOf(soft()).x(), 0.5, 0.05);
+}
+
+TEST_P(Sleepers, ArePushedByAKinematicBody) {
+  Obstacle pusher(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.5), 1)),
+                  placeAt(btVector3(-3, btScalar(5.6), 0)));
+  makeKinematic(pusher.body());
+  step(world, 60);
+  ASSERT_FALSE(soft().isActive()) << "it was far away";
+  for (int f = 1; f <= 180; ++f) {
+    moveTo(pusher.body(), btVector3(-3 + btScalar(f) / 60, btScalar(5.6), 0));
+    step(world, 1);
+  }
+  EXPECT_GT(centreOf(soft()).x(), 0.45);
+}
+
+TEST_P(Sleepers, FallWhereWhatHoldsThemIsTakenAway) {
+  platform.reset();
+  step(world, 30);
+  EXPECT_LT(body->height(), 4.5);
+}
+
+TEST_P(Sleepers, FallWhereWhatHoldsThemIsTeleported) {
+  for (const bool isStatic : {false, true}) {
+    if (isStatic) {
+      body.reset();
+      platform.reset();
+      rest(btVector3(0, 0, 0));
+      rigid().setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+      rigid().forceActivationState(ISLAND_SLEEPING);
+    }
+    step(world, 10);
+    ASSERT_FALSE(soft().isActive());
+    moveTo(rigid(), btVector3(10, 4, 0));
+    step(world, 30);
+    EXPECT_LT(body->height(), 4.5) << isStatic;
+  }
+}
+
+TEST_P(Sleepers, FollowWhatIsRescaledOrGivenAnotherShape) {
+  double before = body->height();
+  rigid().getCollisionShape()->setLocalScaling(btVector3(1, btScalar(0.8), 1));
+  step(world, 60);
+  EXPECT_LT(body->height(), before - 0.1);
+  letSleep(world, {&soft()});
+  before = body->height();
+  btBoxShape lower(btVector3(2, btScalar(0.7), 2));
+  btCollisionShape* const old = rigid().getCollisionShape();
+  rigid().setCollisionShape(&lower);
+  step(world, 60);
+  EXPECT_LT(body->height(), before - 0.05);
+  rigid().setCollisionShape(old);
+}
+
+TEST_P(Sleepers, WakeWhereAStaticBodyIsPutIntoThem) {
+  Obstacle wall(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.5), 1)),
+                placeAt(btVector3(-3, btScalar(5.6), 0)));
+  step(world, 60);
+  ASSERT_FALSE(soft().isActive()) << "it was far away";
+  moveTo(wall.body(), btVector3(GetParam() == By::Nodes ? btScalar(-0.95) : btScalar(-0.75), btScalar(5.6), 0));
+  step(world, 60);
+  EXPECT_GT(centreOf(soft()).x(), 0.02);
+}
+
+TEST_P(Sleepers, AreNotWokenByTriggersNorByWhatTheyDoNotMeet) {
+  Obstacle trigger(world, std::make_unique<btBoxShape>(btVector3(1, 1, 1)), placeAt(btVector3(-3, 5, 0)));
+  makeKinematic(trigger.body());
+  trigger.body().setCollisionFlags(trigger.body().getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  Obstacle stranger(world, std::make_unique<btBoxShape>(btVector3(1, 1, 1)), placeAt(btVector3(-3, 5, 0)));
+  makeKinematic(stranger.body());
+  soft().setIgnoreCollisionCheck(&stranger.body(), true);
+  Obstacle neighbour(world, std::make_unique<btBoxShape>(btVector3(1, 1, 1)), placeAt(btVector3(-3, 8, 0)));
+  makeKinematic(neighbour.body());
+  btBoxShape zone(btVector3(1, 1, 1));
+  btPairCachingGhostObject ghost;
+  ghost.setCollisionShape(&zone);
+  ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  ghost.setWorldTransform(placeAt(btVector3(-3, 5, 0)));
+  world.deformable().addCollisionObject(&ghost);
+  for (int f = 1; f <= 120; ++f) {
+    const btScalar x = -3 + btScalar(f) / 20;
+    for (btRigidBody* moving : {&trigger.body(), &stranger.body()}) moveTo(*moving, btVector3(x, 5, 0));
+    moveTo(neighbour.body(), btVector3(x, 8, 0));
+    ghost.setWorldTransform(placeAt(btVector3(x, 5, 0)));
+    step(world, 1);
+    ASSERT_FALSE(soft().isActive()) << "frame " << f;
+  }
+  world.deformable().removeCollisionObject(&ghost);
+  soft().setIgnoreCollisionCheck(&stranger.body(), false);
+}
+
+TEST_P(Sleepers, FollowTheHookThatTheyAreAnchoredTo) {
+  Obstacle hook(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1))),
+                placeAt(btVector3(0, 8, 0)));
+  makeKinematic(hook.body());
+  int top = 0;
+  for (int n = 0; n < soft().m_nodes.size(); ++n) {
+    if (soft().m_nodes[n].m_x.y() > soft().m_nodes[top].m_x.y()) top = n;
+  }
+  soft().appendDeformableAnchor(top, &hook.body());
+  letSleep(world, {&soft()});
+  const btScalar before = centreOf(soft()).y();
+  for (int f = 1; f <= 60; ++f) {
+    moveTo(hook.body(), btVector3(0, 8 + btScalar(f) / 60, 0));
+    step(world, 1);
+  }
+  EXPECT_GT(centreOf(soft()).y(), before + btScalar(0.4));
+}
+
+/// Bodies that are put to sleep as they are added: a saved state, or a scene.
+TEST_P(Sleepers, SleepOnWhereTheyWereAddedAsleep) {
+  const std::vector<Eigen::Vector3d> before = body->surface();
+  TouchingBody added(world, ballMesh(12, 0.35), btVector3(10, btScalar(0.36), 0));
+  if (GetParam() == By::Nodes) added.contact.reset();
+  added.body->body().forceActivationState(ISLAND_SLEEPING);
+  step(world, 20);
+  EXPECT_FALSE(added.body->body().isActive());
+  EXPECT_FALSE(soft().isActive());
+  EXPECT_EQ(body->surface(), before);
+}
+
+TEST_P(Sleepers, FallAsleepFarFromTheOrigin) {
+  for (const btScalar far : {btScalar(1000), btScalar(10000)}) {
+    body.reset();
+    platform.reset();
+    platform.emplace(world, std::make_unique<btBoxShape>(btVector3(5, 1, 5)), placeAt(btVector3(far, 4, far)));
+    body = std::make_unique<TouchingBody>(world, ballMesh(12, 0.35), btVector3(far, btScalar(5.6), far));
+    if (GetParam() == By::Nodes) body->contact.reset();
+    step(world, 480);
+    EXPECT_FALSE(soft().isActive()) << far;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(By, Sleepers, testing::Values(By::Nodes, By::Surface),
+                         [](const auto& by) { return by.param == By::Nodes ? "Nodes" : "Surface"; });
+
+/// Two plates, one on the other, and the lower one on a platform.
+struct SoftPile {
+  explicit SoftPile(const Eigen::Vector3d& at = {0, 0, 0})
+      : platform(*world, std::make_unique<btBoxShape>(btVector3(2, 1, 2)), placeAt(toBullet(at) + btVector3(0, 4, 0))) {
+    makeKinematic(platform.body());
+    SoftBodyOptions options;
+    options.youngsModulus = 3000.0;
+    options.margin = 0.002;
+    for (int k = 0; k < 2; ++k) {
+      TetMesh cage = plate().cage;
+      for (Eigen::Vector3d& p : cage.nodes) p += at + Eigen::Vector3d(-0.5, 5.01 + 0.125 * k, -0.5);
+      bodies.push_back(added(*world, cage, options));
+      EXPECT_TRUE(contacts->include(bodies.back()->body(), plate().shape).ok());
+    }
+  }
+  void sleep() { letSleep(*world, {&bodies[0]->body(), &bodies[1]->body()}); }
+  bool asleep() const { return !bodies[0]->body().isActive() && !bodies[1]->body().isActive(); }
+
+  std::unique_ptr<TetskinWorld> world = worldWith(btVector3(0, -10, 0));
+  Obstacle platform;
+  std::unique_ptr<SoftContacts> contacts = contactsIn(*world);
+  std::vector<std::unique_ptr<DeformableBody>> bodies;
+};
+
+TEST(SleepersOnSoftBodies, StayAsleep) {
+  SoftPile pile;
+  pile.sleep();
+  for (int f = 0; f < 240; ++f) {
+    step(*pile.world, 1);
+    ASSERT_TRUE(pile.asleep()) << "frame " << f;
+  }
+}
+
+TEST(SleepersOnSoftBodies, FallWhereTheLowerOneIsTakenAway) {
+  SoftPile pile;
+  pile.sleep();
+  const btScalar before = centreOf(pile.bodies[1]->body()).y();
+  pile.bodies[0].reset();
+  step(*pile.world, 30);
+  EXPECT_LT(centreOf(pile.bodies[1]->body()).y(), before - btScalar(0.05));
+}
+
+TEST(SleepersOnSoftBodies, AreLiftedTogether) {
+  for (const btScalar speed : {btScalar(0.5), btScalar(0.01)}) {
+    SoftPile pile;
+    pile.sleep();
+    const btScalar before = centreOf(pile.bodies[1]->body()).y();
+    for (int f = 1; f <= 120; ++f) {
+      moveTo(pile.platform.body(), btVector3(0, 4 + speed * f / 60, 0));
+      step(*pile.world, 1);
+    }
+    EXPECT_NEAR(centreOf(pile.bodies[1]->body()).y() - before, 2 * speed, 0.02);
+  }
+}
+
+TEST(SleepersOnSoftBodies, FallAsleepFarFromTheOrigin) {
+  for (const Eigen::Vector3d& at :
+       {Eigen::Vector3d(3000, 0, 3000), Eigen::Vector3d(10000, 0, 10000), Eigen::Vector3d(0, 10000, 0)}) {
+    SoftPile pile(at);
+    step(*pile.world, 200);
+    EXPECT_TRUE(pile.asleep()) << at.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test
