@@ -5,7 +5,7 @@
 #pragma once
 
 #define TETSKIN_VERSION_MAJOR 0           ///< rises when what was there changes
-#define TETSKIN_VERSION_MINOR 10          ///< rises when something is added, or while major is zero, changed
+#define TETSKIN_VERSION_MINOR 11          ///< rises when something is added, or while major is zero, changed
 #define TETSKIN_VERSION_PATCH 0           ///< rises when something is mended
 #define TETSKIN_TEXT_(x) #x               ///< for the next one
 #define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)  ///< what x stands for, in quotes
