@@ -22,7 +22,8 @@ bool nearAtRest(const ShapeData& data, int run, int tet) {
 void PairCandidates::advance(const ContactBody& first, const ContactBody& second) {
   const btVector3 apart = second.middle - first.middle;
   const double travelled = first.travelled + second.travelled;
-  path_ += travelled - travelled_ + static_cast<double>((apart - apart_).length());
+  moved_ = travelled - travelled_ + static_cast<double>((apart - apart_).length());
+  path_ += moved_;
   apart_ = apart;
   travelled_ = travelled;
 }
@@ -30,7 +31,8 @@ void PairCandidates::advance(const ContactBody& first, const ContactBody& second
 void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slack) {
   first.fit();
   second.fit();
-  advance(first, second);
+  apart_ = second.middle - first.middle;
+  travelled_ = first.travelled + second.travelled;
   path_ = 0;
   slack_ = static_cast<double>(slack);
   runs_.clear();

@@ -29,6 +29,8 @@ class PairCandidates {
  public:
   /// Both read: a step has moved them.
   void advance(const ContactBody& first, const ContactBody& second);
+  /// In the last step, as `advance` has it.
+  btScalar moved() const { return static_cast<btScalar>(moved_); }
   /// Whether those found before are still all there are.
   bool hold() const { return path_ <= slack_; }
 
@@ -84,6 +86,7 @@ class PairCandidates {
   btVector3 apart_{0, 0, 0};  ///< the bodies' centroids, when last looked at; and what nodes had travelled by then
   double travelled_ = 0;
   double path_ = 0;  ///< since candidates were found: no less than any two nodes of the bodies have moved to each other
+  double moved_ = 0;  ///< of that, in the last step
   double slack_ = -1;
   std::vector<Run> runs_;
   std::vector<Link> links_;  ///< by run

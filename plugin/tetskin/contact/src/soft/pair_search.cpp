@@ -12,8 +12,9 @@ constexpr btScalar kOnePlace = btScalar(0.3);
 /// In cubes of the grid: what of a body has moved no farther in its rest space than this is where it was, in the tets
 /// of another part that are at one place with its own.
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
-/// So far, in cubes of the grid, bodies may move against each other before candidates are looked for anew.
-constexpr btScalar kSlackCubes = btScalar(0.5);
+/// So far bodies may move against each other before candidates are looked for anew: as far as they do in some steps,
+/// and in cubes of the grid.
+constexpr btScalar kSlackSteps = 8, kSlackCubes = 1, kMostSlackCubes = 4;
 /// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
 constexpr btScalar kKeptCubes = btScalar(0.1);
 /// Cosine between normals from which two contacts of a node are one.
@@ -85,8 +86,10 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   memory.sides.beginStep();
   touched_.swap(memory.touched);
   pierced_.swap(memory.pierced);
-  const btScalar slack = kSlackCubes * second.data().grid.spacing();
+  const btScalar cube = second.data().grid.spacing();
   memory.candidates.advance(first, second);
+  const btScalar slack =
+      std::min(std::max(kSlackCubes * cube, kSlackSteps * memory.candidates.moved()), kMostSlackCubes * cube);
   if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
   memory.candidates.visit(
       reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
