@@ -12,9 +12,9 @@ namespace {
 /// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
 /// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
 constexpr double kWithForeignForces = 1e-6;
-/// With rows: the tolerance over that of a body by itself; and of what hangs, at most, as it goes on at the speed that
-/// it has, as far as its tolerance lets it.
-constexpr double kCloserWithRows = 0.1, kWhereJoined = 1e-5;
+/// With rows: the tolerance over that of a body by itself; and of what hangs by joints without a largest force, at
+/// most, as it goes on at the speed that it has, as far as its tolerance lets it.
+constexpr double kCloserWithRows = 0.1, kWhereJoined = 1e-4;
 /// Closer than that to a solution no arithmetic comes that has so few digits.
 constexpr double kClosest = 8.0 * SIMD_EPSILON;
 /// By how much the first pass lessens the residual, at most, and the others: rows are others after it.
@@ -80,8 +80,9 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   for (const PartUnknown& part : parts_) {
     byMasses += few_.segment<6>(part.first).dot(partsBefore_.segment<6>(part.first));
   }
-  const bool joined =
-      std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) { return row->joined; });
+  const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
+    return row->joined && !(row->highest < BT_LARGE_FLOAT);
+  });
   tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0), true);
   tolerance = std::max(tolerance, kClosest);
   limits.enough = tolerance * tolerance * std::max(byMatrix, byMasses);
