@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tetskin::test {
 
@@ -94,6 +95,25 @@ inline btVector3 centreOf(const btSoftBody& body) {
   btVector3 sum(0, 0, 0);
   for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x;
   return sum / static_cast<btScalar>(body.m_nodes.size());
+}
+
+inline std::unique_ptr<DeformableBody> addBall(EmptyWorld& world, const Eigen::Vector3d& at, double mass = 1.0) {
+  SoftBodyOptions options;
+  options.mass = mass;
+  options.youngsModulus = 2000.0;
+  options.margin = 0.002;
+  return added(world, ball().at(at), options);
+}
+
+/// Of all their nodes, units per second.
+inline double fastestNode(const std::vector<std::unique_ptr<DeformableBody>>& bodies) {
+  btScalar fastest = 0;
+  for (const auto& body : bodies) {
+    for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+      fastest = std::max(fastest, body->body().m_nodes[n].m_v.length());
+    }
+  }
+  return static_cast<double>(fastest);
 }
 
 /// By how much the deepest vertex of one body is inside another, by all vertices, all tets and all triangles. At rest

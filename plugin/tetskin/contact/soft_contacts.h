@@ -68,9 +68,9 @@ struct SoftContactOptions {
 enum class IncludedBody {
   Active,   ///< meets others
   Gone,     ///< was taken out of the world
-  Within,   ///< the same, but lies wholly within one of them, and does not meet that one: it has no way out
   Changed,  ///< has other nodes or tets than its shape: it meets nothing
   Unknown,  ///< was never included
+  Within,   ///< lies wholly within another one, and has no way out: it meets all others, but not that one
 };
 
 /// A point where two bodies touch, or one itself, as of the last step.

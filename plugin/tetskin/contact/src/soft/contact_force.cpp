@@ -116,12 +116,12 @@ std::vector<SoftPointContact>* ContactForce::contacts(btScalar seconds) {
     if (of->fits()) of->read();
   }
   for (const auto& [first, second] : pairsThatMeet()) {
-    const bool meets = (first->awake || second->awake) && meetsSoft(*first->body, *second->body);
-    if (meets) findInPair(*first, *second, seconds);
+    if (first->awake || second->awake) findInPair(*first, *second, seconds);
   }
   return &contacts_;
 }
 
+/// Others forget each other: where they are when they are let meet again is not where they were.
 ContactForce::BodyPairs ContactForce::pairsThatMeet() {
   std::vector<ContactBody*> readable;
   std::vector<ContactBox> boxes;
@@ -132,7 +132,8 @@ ContactForce::BodyPairs ContactForce::pairsThatMeet() {
   }
   BodyPairs near;
   for (const auto& [a, b] : pairsOfBoxesThatMeet(boxes)) {
-    if (a != b || readable[a]->self) near.emplace_back(readable[a], readable[b]);
+    const bool asked = a != b || readable[a]->self;
+    if (asked && meetsSoft(*readable[a]->body, *readable[b]->body)) near.emplace_back(readable[a], readable[b]);
   }
   forgetAllBut(near);
   return near;

@@ -235,7 +235,6 @@ bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
 }
 
 void PairSearch::count(const btVector3& own, const Touch& touch) {
-  ++overlap_.reached;
   overlap_.agreeing += own.dot(touch.normal) > kAgreeing ? 1 : 0;
   if (!(touch.distance < 0)) return;
   overlap_.deepest = std::min(overlap_.deepest, touch.distance);

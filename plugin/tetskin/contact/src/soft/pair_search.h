@@ -35,8 +35,7 @@ struct Overlap {
   btScalar deepest = 0;        ///< distance, below 0
   btVector3 normals{0, 0, 0};  ///< sum over those that are inside: of their own surface, each of length 1
   int inside = 0;              ///< as many
-  int reached = 0;             ///< inside, or within reach
-  int agreeing = 0;            ///< of these, those whose surface looks as the other one does there
+  int agreeing = 0;            ///< inside or within reach, and their surface looks as the other one does there
 };
 
 /// Finds the touches of pairs, one after the other; keeps its memory.
