@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Google Benchmark cases, each beside Bullet's own where it has one. Results are read from --benchmark_out, never from
-// standard output: Bullet prints there.
+// Google Benchmark cases, each with Bullet's own counterpart where there is one. Results are read from --benchmark_out,
+// never from standard output, as Bullet prints there.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/src/shared/skin_binding.h>
 #include <tetskin/core/src/skinning/skinning.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstring>
@@ -35,7 +34,7 @@ using benchmark::State;
 /// A body made of the model's cage, with Bullet's own render nodes at the model's vertices.
 struct Bench {
   explicit Bench(Model made, bool renderNodes = true) : model(std::move(made)) {
-    auto result = makeSoftBody(model.cage, worldInfo);
+    auto result = createSoftBody(model.cage, worldInfo);
     require(result.status());
     body = std::unique_ptr<btSoftBody>(std::move(result).value());
     if (!renderNodes) return;
@@ -56,7 +55,7 @@ struct Bench {
 void attachTetskin(State& state, const Bench& bench) {
   EmbedReport report;
   for (auto _ : state) {
-    const Result<Embedding> embedding = embed(bench.model.cage, viewOf(bench.model.mesh.positions), {}, &report);
+    const Result<Embedding> embedding = embed(bench.model.cage.mesh, viewOf(bench.model.mesh.positions), {}, &report);
     benchmark::DoNotOptimize(&embedding);
   }
   state.counters["outside"] = static_cast<double>(report.outside);
@@ -67,15 +66,15 @@ void attachBullet(State& state, const Bench& bench) {
   for (auto _ : state) btSoftBodyHelpers::interpolateBarycentricWeights(bench.body.get());
 }
 
-/// Ours in Bullet's place: the render nodes of a body, ready for Bullet's own updates.
+/// tetskin in Bullet's place: the render nodes of a body, ready for Bullet's own updates.
 void attachRenderNodes(State& state, const Bench& bench) {
   for (auto _ : state) require(bindRenderNodes(*bench.body).status());
 }
 
 /// One whole update as an application calls it, into its own buffer of floats.
-void update(State& state, const Bench& bench, const SkinOptions& wished) {
+void update(State& state, const Bench& bench, const SkinOptions& desired) {
   std::vector<Eigen::Vector3f> out(bench.model.mesh.vertexCount());
-  SkinOptions options = wished;
+  SkinOptions options = desired;
   options.target = viewOf(out);
   options.bounds = false;
   SoftBodySkin skin;
@@ -107,9 +106,10 @@ void updateQuadratic(State& state, const Bench& bench) {
 void normalsTransformed(State& state, const Bench& bench) {
   const Cage& cage = bench.model.cage;
   const Embedding embedding = embed(cage, bench.model.mesh).value();
-  const auto factors = DirectionFactors::ofNormals(cage, embedding, restNormals(bench.model.mesh));
-  PackedNodes<btScalar> nodes(cage.nodeCount());
-  if (nodes.pack(nodePositions(*bench.body)) < nodes.size()) throw InputError("the body is not finite");
+  const auto factors = DirectionFactors::ofNormals(cage.mesh, embedding, restNormals(bench.model.mesh));
+  PackedNodes<btScalar> nodes(cage.mesh.nodeCount());
+  if (nodes.pack(nodePositions(*bench.body)) < nodes.size())
+    throw InputError("the body has a node position that is not finite");
   std::vector<Eigen::Vector3f> normals(embedding.vertexCount());
   for (auto _ : state) {
     transformDirections<btScalar>(embedding, factors, nullptr, nullptr, nodes, viewOf(normals), VertexOrder::Sorted);
@@ -123,7 +123,7 @@ void normalsRecomputed(State& state, const Bench& bench) {
   options.order = VertexOrder::Sorted;
   SoftBodySkin skin;
   require(skin.bind(*bench.body, bench.model.cage, bench.model.mesh, options).status());
-  const NormalTopology& topology = *skin.binding()->parts().recomputed;
+  const NormalTopology& topology = *dataOf(*skin.binding()).recomputed;
   std::vector<btScalar> padded(4 * bench.model.mesh.vertexCount());
   std::vector<Eigen::Vector3f> normals(bench.model.mesh.vertexCount());
   for (auto _ : state) {
@@ -159,9 +159,9 @@ void triad(std::size_t count, const float* __restrict b, const float* __restrict
   }
 }
 
-/// What a perfect Update/linear could not beat: b[i] + s * c[i], with the bytes of an update in sorted order. 12 bytes
-/// a vertex are read, half from either array, and 12 written. Plain C++ for SSE2: with millions of vertices memory is
-/// the limit, not arithmetic, and an update is predicted to take as long.
+/// A lower bound on the time of Update/linear: b[i] + s * c[i], with the same number of bytes as an update in sorted
+/// order. 12 bytes per vertex are read, half from either array, and 12 are written. Plain C++ for SSE2: with millions
+/// of vertices memory is the limit, not arithmetic, and an update is predicted to take as long.
 void updateTriad(State& state, const Bench& bench) {
   const std::size_t half = 3 * bench.model.mesh.vertexCount() / 2;
   const std::vector<float> b(half, 1.0f), c(half, 2.0f);
@@ -173,12 +173,12 @@ void updateTriad(State& state, const Bench& bench) {
 }
 
 void buildBodyTetskin(State& state, Bench& bench) {
-  for (auto _ : state) std::unique_ptr<btSoftBody>(makeSoftBody(bench.model.cage, bench.worldInfo).value());
+  for (auto _ : state) std::unique_ptr<btSoftBody>(createSoftBody(bench.model.cage, bench.worldInfo).value());
 }
 
 void buildBodyBullet(State& state, Bench& bench) {
   const auto path = std::filesystem::temp_directory_path() / "tetskin_bench_cage.vtk";
-  require(saveTetMesh(bench.model.cage, path.string()));
+  require(saveTetMesh(bench.model.cage.mesh, path.string()));
   for (auto _ : state) delete btSoftBodyHelpers::CreateFromVtkFile(bench.worldInfo, path.c_str());
   std::filesystem::remove(path);
 }
@@ -197,13 +197,13 @@ void buildCageOf(State& state, const TriangleMesh& mesh, std::size_t tets) {
   options.targetTets = tets;
   CageReport report;
   Status status;
-  for (auto _ : state) status = buildCage(mesh, options, &report).status();
+  for (auto _ : state) status = createCage(mesh, options, &report).status();
   require(status);
   state.counters["triangles"] = static_cast<double>(mesh.triangleCount());
   state.counters["tets"] = static_cast<double>(report.tets);
 }
 
-/// Cost against size, on serpents of growing resolution; only without a mesh of the user's.
+/// Cost against size, on serpents of increasing resolution; only without a mesh of the user's.
 void registerBuildCageSizes() {
   for (const std::size_t triangles : {10000, 30000, 60000, 100000, 300000, 1000000}) {
     const std::string name = "BuildCage/triangles:" + std::to_string(triangles) + "/tets:30000";
@@ -213,13 +213,13 @@ void registerBuildCageSizes() {
   }
 }
 
-/// `count` points on a serpent: its vertices, then points within its triangles, in their order.
+/// `count` points on a serpent: its vertices, then points inside its triangles, in their order.
 std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t count) {
   std::vector<Eigen::Vector3d> points = mesh.positions;
   points.reserve(std::max(count, points.size()));
   for (std::size_t k = 0; points.size() < count; ++k) {
     const auto& t = mesh.triangles[k % mesh.triangleCount()];
-    const double a = 0.05 + 0.1 * static_cast<double>(k / mesh.triangleCount());  // another line in every round
+    const double a = 0.05 + 0.1 * static_cast<double>(k / mesh.triangleCount());  // a different line in every round
     points.push_back(a * mesh.positions[t[0]] + 0.6 * (1.0 - a) * mesh.positions[t[1]] +
                      0.4 * (1.0 - a) * mesh.positions[t[2]]);
   }
@@ -229,22 +229,22 @@ std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t coun
 Cage cageOf(const TriangleMesh& mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  return buildCage(mesh, options).value();
+  return createCage(mesh, options).value();
 }
 
-/// Attaching to a cage of a tenth as many tets. Time per vertex should not depend on the size.
+/// Binds to a cage with a tenth as many tets. The time per vertex should not depend on the size.
 void attachSize(State& state, std::size_t vertices) {
   TriangleMesh mesh = makeSerpent({2 * vertices});
   const Cage cage = cageOf(mesh, vertices / 10);
   const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
   mesh = {};
   for (auto _ : state) {
-    const Result<Embedding> embedding = embed(cage, viewOf(points));
+    const Result<Embedding> embedding = embed(cage.mesh, viewOf(points));
     require(embedding.status());
     benchmark::DoNotOptimize(&embedding);
   }
   const double count = static_cast<double>(points.size());
-  state.counters["tets"] = static_cast<double>(cage.tetCount());
+  state.counters["tets"] = static_cast<double>(cage.mesh.tetCount());
   state.counters["vertices"] = count;
   state.counters["s_per_vertex"] =
       benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -259,7 +259,7 @@ void registerAttachSizes() {
   }
 }
 
-/// A bench of so many points, made when a case first asks for it.
+/// A bench with this many points, made when a case first asks for it.
 std::function<const Bench&()> benchOfPoints(std::size_t vertices, std::size_t tets) {
   return [vertices, tets, made = std::make_shared<std::unique_ptr<Bench>>()]() -> const Bench& {
     if (!*made) {
@@ -275,8 +275,8 @@ std::function<const Bench&()> benchOfPoints(std::size_t vertices, std::size_t te
   };
 }
 
-/// Updates of more vertices than the caches hold. Each should grow in proportion, and Update/linear come near the
-/// triad.
+/// Updates of more vertices than the caches hold. The time of each should grow in proportion, and Update/linear should
+/// come close to the triad.
 void registerUpdateSizes(std::size_t tets) {
   for (const std::size_t vertices : {300000, 3000000}) {
     const auto bench = benchOfPoints(vertices, tets);
@@ -294,8 +294,8 @@ void registerUpdateSizes(std::size_t tets) {
   }
 }
 
-/// Ours sorts the edges, so 300,000 tets are predicted to take 15 times as long as 24,000; Bullet's goes through all
-/// links for every new one, and is left out where it would take minutes.
+/// tetskin sorts the edges, so 300,000 tets are predicted to take 15 times as long as 24,000; Bullet searches all links
+/// for every new one, and is left out where it would take minutes.
 void registerBuildBodySizes() {
   const auto add = [](const char* name, std::size_t tets, auto function) {
     const std::string full = std::string(name) + "/tets:" + std::to_string(tets);
@@ -304,7 +304,7 @@ void registerBuildBodySizes() {
       model.cage = cageOf(makeSerpent(), tets);
       Bench bench(std::move(model), false);
       function(state, bench);
-      state.counters["tets"] = static_cast<double>(bench.model.cage.tetCount());
+      state.counters["tets"] = static_cast<double>(bench.model.cage.mesh.tetCount());
     })->Unit(benchmark::kMillisecond);
   };
   add("BuildBody/tetskin", 24000, buildBodyTetskin);
@@ -337,17 +337,18 @@ void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Takes its own flags out. Asked for help, it would print only these and exit.
+  // Removes its own flags. If help were asked for, it would print only these and exit.
   const bool help = std::any_of(argv, argv + argc, [](const char* text) { return std::string(text) == "--help"; });
   if (!help) benchmark::Initialize(&argc, argv);
   ModelOptions options;
   CommandLine line(
-      "Benchmarks of attaching, updating, building and writing, each beside Bullet's own. Takes Google "
-      "Benchmark's flags, too: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
+      "Benchmarks embedding, updating, building and writing, each beside Bullet's own. Also takes the options of "
+      "Google "
+      "Benchmark: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
       {{{"tetskin_bench --benchmark_filter=^Update/linear$ --benchmark_out=update.json",
-         "one case, and a file of its times"},
+         "one benchmark, and a JSON file of its times"},
         {"tetskin_bench --mesh yours.obj --tets 1000 --benchmark_filter=^Attach/",
-         "attaching a mesh of yours, three ways"}},
+         "embedding your mesh, in three ways"}},
        ""});
   line.addModelOptions(options);
   return line.run(argc, argv, [&] {

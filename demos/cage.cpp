@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Any mesh -> a cage of tets that holds it, as a file for Bullet, tetskin or a meshing program.
-#include <tetskin/cage/cage_builder.h>
-#include <tetskin/io/tet_files.h>
+// Builds a cage of tets around any mesh, as a file for Bullet, tetskin or a meshing program.
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/io/files.h>
 
 #include <nlohmann/json.hpp>
 
@@ -35,13 +35,13 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
   json["tets"] = report.tets;
   json["nodes"] = report.nodes;
   json["vertices_outside"] = fit.outside;
-  json["min_dihedral_deg"] = report.minDihedralDeg;
-  json["max_dihedral_deg"] = report.maxDihedralDeg;
-  json["components"] = report.parts;
+  json["min_dihedral_deg"] = report.minDihedralDegrees;
+  json["max_dihedral_deg"] = report.maxDihedralDegrees;
+  json["components"] = report.components;
   json["mesh_components"] = report.meshComponents;
-  json["copies"] = report.copies;
-  json["fused_parts"] = report.fusedParts;
-  json["stiffness_factor"] = calibration.factor;
+  json["copies"] = report.duplicateTets;
+  json["fused_parts"] = report.fusedComponents;
+  json["stiffness_factor"] = calibration.stiffnessFactor;
   json["spacing"] = report.spacing;
   json["volume_ratio"] = report.volumeRatio;
   json["volume_ratio_unfitted"] = report.volumeRatioUnfitted;
@@ -60,7 +60,7 @@ int run(CageCommand command) {
   if (command.model.calibrate) calibration = calibrated(cage, surface.name);
   require(saveCage(cage, command.output));
 
-  // Counted as an application would see it, not as the builder believes it to be.
+  // Counted as an application would see it, not as the builder reports it.
   EmbedReport fit;
   const auto embedded = embed(cage, surface.mesh, {}, &fit);
   if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
@@ -70,8 +70,9 @@ int run(CageCommand command) {
                 command.output.c_str());
   }
   if (fit.outside == 0) return kDone;
-  std::fprintf(stderr, "tetskin_cage: %zu vertices lie outside the cage, vertex %zu by %g\n", fit.outside,
-               fit.worstVertex, fit.worstDistance);
+  std::fprintf(stderr,
+               "tetskin_cage: %zu vertices lie outside the cage, the farthest is vertex %zu at a distance of %g\n",
+               fit.outside, fit.maxDistanceVertex, fit.maxDistance);
   return kRunFailed;
 }
 
@@ -79,17 +80,17 @@ int run(CageCommand command) {
 
 int main(int argc, char** argv) {
   CageCommand command;
-  CommandLine line("Builds a cage of tetrahedra for any triangle mesh, watertight or not.",
-                   {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "some 3,000 tets around a mesh of yours"},
+  CommandLine line("Builds a cage of tetrahedra around any triangle mesh, watertight or not.",
+                   {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "a cage of about 3,000 tets around your mesh"},
                      {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
-                      "some 300, as soft as the mesh, and how well they fit"}},
+                      "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"}},
                     "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
   line.addOutput("-o,--output", command.output,
-                 "Cage to write: .vtk, with all that is known of it; tets alone: .msh, .ele with .node",
+                 ".vtk for the cage with all its data; .msh, or .ele with .node, for the tets alone",
                  CommandLine::Need::Required, {".vtk", ".node", ".ele", ".msh"});
-  line.addSummaryOption(command.json, "File of the summary");
-  line.addFlag("--loose", command.loose, "Do not pull the cage's boundary towards the surface: all tets alike");
+  line.addSummaryOption(command.json);
+  line.addFlag("--no-fit", command.loose);
   line.addQuietOption(command.quiet);
   return line.run(argc, argv, [&] {
     command.model.quiet = command.quiet;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Contact, and what joins bodies, beside what comes out by hand: momentum, friction, rolling, energy, rest.
+// Contact and joints compared with analytic results: momentum, friction, rolling, energy, rest.
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,14 +21,23 @@ using namespace tetskin::scenes;
 
 namespace {
 
-const std::map<std::string, Kind> kKinds = {
-    {"tetskin-surface", Kind::Surface}, {"tetskin-nodes", Kind::Nodes}, {"bullet", Kind::Bullet}};
-
 struct ContactOptions {
   std::string only, json, markdown, before, bullet;
-  std::string force = "tetskin-surface";
+  Force force = Force::Elastic;
+  Contact contact = Contact::Surface;
   bool quiet = false;
+
+  Kind kind() const {
+    if (force != Force::Elastic) return Kind::Bullet;
+    return contact == Contact::Surface ? Kind::Surface : Kind::Nodes;
+  }
 };
+
+/// The heading of this run's column.
+const char* titleOf(Kind kind) {
+  if (kind == Kind::Bullet) return "bullet";
+  return kind == Kind::Surface ? "tetskin-surface" : "tetskin-nodes";
+}
 
 SceneResult runScene(const ContactScene& scene, Kind kind) {
   const WallTimer timer;
@@ -40,14 +48,15 @@ SceneResult runScene(const ContactScene& scene, Kind kind) {
 }
 
 SceneResults runScenes(const ContactOptions& options) {
-  const Kind kind = kKinds.at(options.force);
+  const Kind kind = options.kind();
   SceneResults results;
   for (const ContactScene& scene : contactScenes()) {
     if (scene.name.find(options.only) == std::string::npos || !scene.isFor(kind)) continue;
     results.push_back(runScene(scene, kind));
     if (!options.quiet) print(results.back());
   }
-  if (results.empty()) throw InputError("no scene that can be run so has '" + options.only + "' in its name");
+  if (results.empty())
+    throw InputError("--only " + options.only + ": no scene that can be run with these options has this in its name");
   return results;
 }
 
@@ -63,35 +72,43 @@ int run(const ContactOptions& options) {
   std::vector<ResultColumn> columns;
   if (!options.before.empty()) columns.push_back({"before", readResults(options.before)});
   if (!options.bullet.empty()) columns.push_back({"Bullet", readResults(options.bullet)});
-  columns.insert(columns.begin(), {options.force, runScenes(options)});
+  columns.insert(columns.begin(), {titleOf(options.kind()), runScenes(options)});
   const SceneResults& results = columns.front().results;
   if (!options.json.empty()) writeJson(toJson(results), options.json);
   if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(columns));
   const std::size_t broken = brokenIn(results);
   if (!options.quiet)
-    std::printf("\n%zu scenes; %zu figures are not what is promised by the surface\n", results.size(), broken);
-  return broken == 0 || kKinds.at(options.force) != Kind::Surface ? kDone : kRunFailed;
+    std::printf("\n%zu scenes; %zu figures outside the limits promised for contact at the surface\n", results.size(),
+                broken);
+  return broken == 0 || options.kind() != Kind::Surface ? kDone : kRunFailed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   ContactOptions options;
-  CommandLine line("Contact and joints, beside what comes out by hand. S is a body's size.",
-                   {{{"tetskin_contact --json contact.json", "all scenes: two minutes"},
-                     {"tetskin_contact --only copies", "those with this in their names"},
-                     {"tetskin_contact --only stop --force bullet", "by Bullet's own solver"}},
-                    "by the surface, a figure is not what is promised"});
-  line.addText("--only", options.only, "Part of the scenes' names");
-  std::vector<std::string> forces;
-  forces.reserve(kKinds.size());
-  for (const auto& kind : kKinds) forces.push_back(kind.first);
-  line.addWord("--force", options.force, forces, "Whose solver, and what of a body meets rigid ones");
-  line.addSummaryOption(options.json, "File of the results, a list of scenes");
-  line.addOutput("--markdown", options.markdown,
-                 "File of the results, as a table: a line a promise, of its worst figure");
-  line.addInput("--before", options.before, "Earlier results, by --json: a column of that table");
-  line.addInput("--bullet", options.bullet, "The same by Bullet's own solver");
+  CommandLine line(
+      "Compares contact and joints with analytic results. S is the body's size, the largest side of its bounding box.",
+      {{{"tetskin_contact --json contact.json", "all scenes, in two minutes"},
+        {"tetskin_contact --only copies", "the scenes with this in their names"},
+        {"tetskin_contact --only stop --elasticity bullet", "the same with Bullet's own solver"}},
+       "with contact at the surface, a figure is outside its promised limits"});
+  line.addElasticityOption(options.force, "bullet: linear elasticity, explicit, with contact at the cage's nodes");
+  line.addContactOption(options.contact);
+  line.addText("--only", options.only);
+  line.addInput("--before", options.before,
+                "Results of an earlier version (its --json file), for a column of the Markdown table");
+  line.addInput("--bullet", options.bullet,
+                "Results of --elasticity bullet (its --json file), for a column of the Markdown table");
+  line.addSummaryOption(options.json);
+  line.addOutput("--markdown", options.markdown, "one row per promise, with its worst figure");
   line.addQuietOption(options.quiet);
-  return line.run(argc, argv, [&] { return run(options); });
+  return line.run(argc, argv, [&] {
+    if (options.force != Force::Elastic && line.given("--contact") && options.contact == Contact::Surface) {
+      throw InputError(
+          "--contact surface: with --elasticity bullet a body has contact at its cage's nodes only; use "
+          "--contact cage, or --elasticity tetskin");
+    }
+    return run(options);
+  });
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Hundreds of bodies share one binding, most of them asleep or hidden: what every part of a skin's work costs, and what
-// leaving it out saves. Skins are timed apart from Bullet's step, each pass with cold caches, the variants in turn.
+// Hundreds of bodies share one binding, most of them asleep or hidden: the cost of each part of a skin's work, and the
+// saving if it is left out. Skins are timed separately from Bullet's step, each pass with cold caches, and the variants
+// take turns.
 #include <tetskin/bullet/soft_body_skin.h>
 
 #include <algorithm>
@@ -27,9 +28,9 @@ namespace {
 using namespace tetskin;
 using namespace tetskin::scenes;
 
-/// Simulated before anything is measured: sleeping bodies must stay asleep, and where they are.
+/// Simulated before anything is measured: sleeping bodies must stay asleep, and must not move.
 constexpr int kSimulatedFrames = 2;
-constexpr int kSubsteps = 4;  ///< of a frame
+constexpr int kSubsteps = 4;  ///< per frame
 
 struct CrowdOptions {
   ModelOptions model;
@@ -39,30 +40,30 @@ struct CrowdOptions {
   bool quiet = false;
 };
 
-/// A check that did not hold: exit status 1.
+/// A check failed: exit status 1.
 struct CheckFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A skin for each of some bodies.
+/// A skin for each of several bodies.
 struct Skins {
   std::vector<SoftBodySkin> all;
-  std::vector<SoftBodySkin*> pointers;  ///< to all of them
+  std::vector<SoftBodySkin*> pointers;  ///< to all of these skins
   double bindMs = 0.0;
   std::size_t bytes = 0;  ///< of the skins and their bindings
 
   std::size_t update() { return SoftBodySkin::updateAll(pointers.data(), pointers.size()); }
 };
 
-/// All that a scene may leave out is left out.
-SkinOptions leastOptions() {
+/// Leaves out everything that a scene may leave out.
+SkinOptions minOptions() {
   SkinOptions options;
   options.order = VertexOrder::Sorted;
   options.bounds = false;
   return options;
 }
 
-/// bindingEach  for every body a binding of its own; otherwise they share the first one's
+/// bindingEach  a separate binding for every body; otherwise they share the first one's
 Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const SkinOptions& options,
               bool bindingEach) {
   const InstanceOptions& instance = options;
@@ -83,20 +84,20 @@ Skins bindAll(const std::vector<btSoftBody*>& bodies, const Model& model, const 
   return skins;
 }
 
-/// What is timed, and what came out.
+/// What is timed, and the results.
 struct Variant {
   std::string name;
   Skins* skins;
-  bool asleep = false;  ///< nine of ten bodies
-  bool hidden = false;  ///< the skins of as many
+  bool asleep = false;  ///< nine of ten bodies are asleep
+  bool hidden = false;  ///< the skins of nine of ten bodies are hidden
   bool everySubstep = false;
   bool stepped = true;  ///< false: the frame had no substep
   std::vector<double> microseconds = {};
   std::size_t updates = 0;  ///< in one frame
 };
 
-/// Brings bodies and skins into the variant's state, and does all that is to be done once: the last update of a body
-/// that fell asleep, the update of a skin that is shown again.
+/// Brings bodies and skins into the variant's state, and does everything that happens only once: the last update of a
+/// body that fell asleep, the update of a skin that is shown again.
 void prepare(Variant& variant, Scene& crowd) {
   setAsleep(crowd, variant.asleep);
   for (std::size_t i = 0; i < variant.skins->all.size(); ++i) {
@@ -119,14 +120,14 @@ void timeOnce(Variant& variant, Scene& crowd, CacheEviction& caches) {
   variant.microseconds.push_back(total);
 }
 
-/// How many updates a frame of the variant should take.
+/// The expected number of updates per frame of the variant.
 std::size_t expectedUpdates(const Variant& variant) {
   const std::size_t bodies = variant.skins->all.size();
   if (!variant.stepped) return 0;
   return (variant.asleep || variant.hidden ? awakeAmong(bodies) : bodies) * (variant.everySubstep ? kSubsteps : 1);
 }
 
-/// A line of the table: a measured variant under the name of what it leaves out, and the one that does not.
+/// A row of the table: a measured variant, named after what it leaves out, and the variant that does not leave it out.
 struct Row {
   const char* name;
   const char* measured;
@@ -135,13 +136,13 @@ struct Row {
 
 constexpr Row kRows[] = {
     {"all awake, every substep", "every substep", nullptr},
-    {"all awake, once a step", "once a step", "all awake, every substep"},
-    {"sleeping bodies skipped", "asleep", "all awake, once a step"},
-    {"hidden skins skipped", "hidden", "all awake, once a step"},
-    {"no substep, no update", "no substep", "all awake, once a step"},
-    {"a binding each", "binding each", nullptr},
-    {"one binding for all", "once a step", "a binding each"},
-    {"awake bodies alone", "alone", nullptr},
+    {"all awake, once per frame", "once per frame", "all awake, every substep"},
+    {"sleeping bodies skipped", "asleep", "all awake, once per frame"},
+    {"hidden skins skipped", "hidden", "all awake, once per frame"},
+    {"no substep, no update", "no substep", "all awake, once per frame"},
+    {"one binding per body", "binding each", nullptr},
+    {"one shared binding", "once per frame", "one binding per body"},
+    {"only awake bodies", "alone", nullptr},
     {"normals recomputed", "recomputed", nullptr},
     {"normals transformed", "transformed", "normals recomputed"},
     {"normals none", "alone", "normals transformed"},
@@ -161,9 +162,9 @@ class Measurement {
     EmbedReport fit;
     const Status embedded = embed(model_.cage, model_.mesh, {}, &fit).status();
     requireFit(embedded, fit, options.model);
-    const Placement place = placementOf(boundingBox(model_.cage.nodes));
-    place.toWorld(model_.cage.nodes);
-    place.toWorld(model_.mesh.positions);
+    const Placement position = placementOf(boundingBox(model_.cage.mesh.nodes));
+    position.toWorld(model_.cage.mesh.nodes);
+    position.toWorld(model_.mesh.positions);
     SceneOptions scene;
     scene.bodies = options.bodies;
     scene.substeps = kSubsteps;
@@ -182,7 +183,7 @@ class Measurement {
       for (Variant& variant : variants_) {
         timeOnce(variant, *crowd_, caches_);
         if (variant.updates != expectedUpdates(variant)) {
-          throw CheckFailed(variant.name + ": " + std::to_string(variant.updates) + " updates in a frame instead of " +
+          throw CheckFailed(variant.name + ": " + std::to_string(variant.updates) + " updates in one frame, expected " +
                             std::to_string(expectedUpdates(variant)));
         }
       }
@@ -198,12 +199,12 @@ class Measurement {
   }
 
   void addVariants() {
-    const SkinOptions least = leastOptions();
+    const SkinOptions least = minOptions();
     Skins* everybody = add(everybody_, least);
     variants_.push_back({"alone", add(awake_, least)});
     variants_.push_back({"asleep", everybody, true});
     variants_.push_back({"every substep", everybody, false, false, true});
-    variants_.push_back({"once a step", everybody});
+    variants_.push_back({"once per frame", everybody});
     variants_.push_back({"hidden", everybody, false, true});
     variants_.push_back({"no substep", everybody, false, false, false, false});
     variants_.push_back({"binding each", add(everybody_, least, true)});
@@ -220,7 +221,8 @@ class Measurement {
     aloneWith("previous", [](SkinOptions& skin) { skin.previousPositions = true; });
   }
 
-  /// Bullet's own cost, and the proof that sleep is Bullet's: its steps leave sleeping bodies asleep and in place.
+  /// Measures Bullet's own cost, and checks that sleep is Bullet's: its steps leave sleeping bodies asleep and in
+  /// place.
   void simulate() {
     Skins& everybody = *variants_.front().skins;
     setAsleep(*crowd_, true);
@@ -228,20 +230,20 @@ class Measurement {
     const std::size_t awake = awakeAmong(crowd_->bodyCount());
     const WallTimer timer;
     for (int frame = 1; frame <= kSimulatedFrames; ++frame) {
-      if (crowd_->step(frame) == 0) throw CheckFailed("Bullet made no substep in a frame");
+      if (crowd_->step(frame) == 0) throw CheckFailed("Bullet made no substep in one frame");
     }
     simulationMs_ = timer.milliseconds() / kSimulatedFrames;
     if (asleepCount(*crowd_) != crowd_->bodyCount() - awake || everybody.update() != awake) {
-      throw CheckFailed("bodies that were put to sleep did not stay so");
+      throw CheckFailed("bodies that were put to sleep woke up");
     }
-    if (crowd_->world().step(0.0) != 0) throw CheckFailed("Bullet made a substep though no time passed");
+    if (crowd_->world().step(0.0) != 0) throw CheckFailed("Bullet made a substep although no time passed");
   }
 
   const Variant& measured(const std::string& name) const {
     return *std::find_if(variants_.begin(), variants_.end(), [&](const Variant& v) { return v.name == name; });
   }
 
-  /// Of frames next to each other, so that a slow moment of the machine counts for both.
+  /// Compares frames next to each other, so that a slow moment of the machine affects both.
   double asleepOverheadPercent() const {
     std::vector<double> ratios;
     for (std::size_t k = 0; k < static_cast<std::size_t>(options_.frames); ++k) {
@@ -288,18 +290,20 @@ class Measurement {
   Model model_;
   std::unique_ptr<Scene> crowd_;
   std::vector<btSoftBody*> everybody_, awake_;  ///< the always awake ones
-  std::deque<Skins> skins_;                     // gone before the bodies
+  std::deque<Skins> skins_;                     // destroyed before the bodies
   std::vector<Variant> variants_;
   CacheEviction caches_;
   double simulationMs_ = 0.0;
 };
 
 void printTable(const nlohmann::ordered_json& json) {
-  const auto count = [](const nlohmann::ordered_json& of, const char* key) { return of.at(key).get<std::size_t>(); };
-  std::printf("\n%s: %zu vertices, %zu tets; %zu bodies, %zu of them asleep or hidden where skipped\n",
+  const auto count = [](const nlohmann::ordered_json& item, const char* key) {
+    return item.at(key).get<std::size_t>();
+  };
+  std::printf("\n%s: %zu vertices, %zu tets; %zu bodies, of which %zu are asleep or hidden where skipped\n",
               json.at("model").get<std::string>().c_str(), count(json, "vertices"), count(json, "tets"),
               count(json, "bodies"), count(json, "asleep"));
-  std::printf("  %-26s%8s%13s%9s%11s%11s  %s\n", "", "updates", "us a frame", "saved", "memory MB", "bind ms",
+  std::printf("  %-26s%8s%13s%9s%11s%11s  %s\n", "", "updates", "us/frame", "saved", "memory MB", "bind ms",
               "compared with");
   for (const auto& row : json.at("rows")) {
     std::printf("  %-26s%8zu%13.1f", row.at("variant").get<std::string>().c_str(), count(row, "updates"),
@@ -313,9 +317,9 @@ void printTable(const nlohmann::ordered_json& json) {
     if (!row.at("compared_with").is_null()) std::printf("  %s", row.at("compared_with").get<std::string>().c_str());
     std::printf("\n");
   }
-  std::printf("  %-26s%+21.1f %%  over the %zu awake bodies alone\n", "sleeping bodies cost",
+  std::printf("  %-26s%+21.1f %%  relative to the %zu awake bodies only\n", "cost of sleeping bodies",
               json.at("asleep_overhead_percent").get<double>(), count(json, "bodies") - count(json, "asleep"));
-  std::printf("  %-26s%21.1f ms a frame, most bodies asleep\n", "Bullet's step",
+  std::printf("  %-26s%21.1f ms per frame, with most bodies asleep\n", "Bullet's step",
               json.at("simulation_ms_per_frame").get<double>());
 }
 
@@ -337,16 +341,16 @@ int main(int argc, char** argv) {
   CrowdOptions options;
   options.model.tets = 200;
   CommandLine line(
-      "Many bodies in Bullet's deformable world share one binding, nine of ten of them asleep or hidden. Prints what "
-      "their skins cost a frame, with cold caches and apart from Bullet, and what each part that is left out saves.",
+      "Many bodies in Bullet's deformable world share one binding; nine of ten are asleep or hidden. Prints what their "
+      "skins cost per frame, with cold caches and without Bullet's step, and what each part that is left out saves.",
       {{{"tetskin_crowd", "500 bodies: a table"},
         {"tetskin_crowd --bodies 100 --triangles 20000 --json crowd.json",
-         "fewer and smaller ones, and a file of the rows"}},
-       "a check of the measurement did not hold"});
+         "fewer and smaller bodies, and a JSON file of the rows"}},
+       "a check of the measurement failed"});
   line.addModelOptions(options.model);
-  line.addCount("--bodies", options.bodies, "Bodies", 100000);
-  line.addCount("--frames", options.frames, "Timed frames of every variant; the median counts", 1000000);
-  line.addSummaryOption(options.json, "File of the results");
+  line.addCount("--bodies", options.bodies, "", 100000);
+  line.addCount("--repetitions", options.frames, "How often each variant is timed; the median is printed", 1000000);
+  line.addSummaryOption(options.json);
   line.addQuietOption(options.quiet);
   return line.run(argc, argv, [&] {
     options.model.quiet = options.quiet;

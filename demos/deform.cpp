@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -30,7 +30,8 @@ struct DeformCommand {
   bool quiet = false;
 };
 
-/// The nodes of every tet, ascending, and so are the tets: what does not depend on their order and orientation.
+/// The nodes of every tet in ascending order, with the tets in ascending order as well: independent of their order and
+/// orientation.
 std::vector<Tet> sortedTets(const TetMesh& mesh) {
   std::vector<Tet> tets = mesh.tets;
   for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
@@ -38,8 +39,8 @@ std::vector<Tet> sortedTets(const TetMesh& mesh) {
   return tets;
 }
 
-/// Equal counts do not make it the same cage: of one with copies of tets, nodes in another order would carry vertices
-/// with the wrong copy, and nothing would show it.
+/// Equal counts do not make it the same cage: in a cage with duplicate tets, a different order of nodes would carry
+/// vertices with the wrong duplicate, and nothing would show it.
 void requireSameTets(const DeformCommand& command, const TetMesh& deformed, const TetMesh& rest) {
   const std::vector<Tet> now = sortedTets(deformed), then = sortedTets(rest);
   const auto [other, wanted] = std::mismatch(now.begin(), now.end(), then.begin(), then.end());
@@ -52,7 +53,7 @@ void requireSameTets(const DeformCommand& command, const TetMesh& deformed, cons
                    "; export both from one simulation, with its nodes in the same order");
 }
 
-/// The nodes of the deformed cage. Its tets only tell whether it is the same cage: their order and orientation may
+/// The nodes of the deformed cage. Its tets only show whether it is the same cage: their order and orientation may
 /// differ, as simulators change them.
 TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
   Result<TetMesh> deformed = loadTetMesh(command.deformed);
@@ -69,8 +70,8 @@ TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
   return std::move(deformed).value();
 }
 
-/// vertex,tet,b0,b1,b2,b3,inside: numbers from 0 and weights of the nodes in the order of the cage's file, as the
-/// shortest texts that read back as the same floats.
+/// Columns vertex,tet,b0,b1,b2,b3,inside: indices from 0, and weights of the nodes in the order of the cage's file, as
+/// the shortest texts that read back as the same floats.
 std::string embeddingText(const Embedding& embedding) {
   std::string text = "vertex,tet,b0,b1,b2,b3,inside\n";
   std::size_t vertex = 0;
@@ -101,8 +102,8 @@ nlohmann::ordered_json summarise(const Model& model, const DeformCommand& comman
                                  const QuadraticReport& quadratic, double updateUs) {
   nlohmann::ordered_json json = summaryOf(model, fit);
   if (command.skin.interpolation == Interpolation::Quadratic) {
-    json["thin_nodes"] = quadratic.thinNodes;
-    json["plain_nodes"] = quadratic.plainNodes;
+    json["thin_nodes"] = quadratic.underdeterminedNodes;
+    json["plain_nodes"] = quadratic.averagedNodes;
   }
   json["update_us"] = updateUs;
   json["out"] = command.output;
@@ -115,10 +116,10 @@ int run(const DeformCommand& command) {
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
   require(layout.status());
   model.cage = loadCage(command.model.cage, model);
-  const TetMesh deformed = loadDeformed(command, model.cage);
+  const TetMesh deformed = loadDeformed(command, model.cage.mesh);
 
   EmbedReport fit;
-  auto made = SkinBinding<double>::make(model.cage, model.mesh, command.skin, &fit);
+  auto made = SkinBinding<double>::create(model.cage, model.mesh, command.skin, &fit);
   requireFit(made.status(), fit, command.model);
   const SkinBinding<double>::Pointer binding = std::move(made).value();
   MeshSkin<double> skin;
@@ -146,21 +147,20 @@ int main(int argc, char** argv) {
   DeformCommand command;
   constexpr auto kRequired = CommandLine::Need::Required;
   CommandLine line(
-      "Carries a mesh along with a deformed cage of tetrahedra, whatever has deformed it.",
+      "Deforms a mesh with its cage of tetrahedra, whatever program has deformed the cage.",
       {{{"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj",
-         "the mesh as the cage has it now"},
+         "the mesh, deformed as the cage is"},
         {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj --normals transformed",
-         "the same with its normals"}},
+         "the deformed mesh with its normals"}},
        ""});
-  line.addInput("--mesh", command.model.mesh, "Render mesh at rest, any format assimp reads", kRequired);
-  line.addInput("--cage", command.model.cage, "Tet mesh at rest: .vtk, .ele/.node or .msh", kRequired);
-  line.addInput("--deformed", command.deformed, "The same tet mesh, deformed: its nodes count, in the same order",
-                kRequired);
-  line.addOutput("-o,--output", command.output, "Deformed mesh to write: .obj", kRequired, {".obj"});
+  line.addInput("--mesh", command.model.mesh, "at rest", kRequired);
+  line.addInput("--cage", command.model.cage, "at rest", kRequired);
+  line.addInput("--deformed", command.deformed, "", kRequired);
+  line.addOutput("-o,--output", command.output, "the deformed mesh, .obj", kRequired, {".obj"});
   line.addInterpolationOption(command.skin);
   line.addSkinOptions(command.skin);
-  line.addOutput("--dump-embedding", command.embedding, "CSV of tet and weights of every vertex");
-  line.addSummaryOption(command.json, "File of the summary");
+  line.addOutput("--dump-embedding", command.embedding);
+  line.addSummaryOption(command.json);
   line.addQuietOption(command.quiet);
   return line.run(argc, argv, [&] { return run(command); });
 }

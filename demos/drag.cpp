@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scripted pointer picks the serpent, or another mesh, by a horn or what is highest, swings it, and hangs it on a
-// ring; an explosion pushes it, and a hat rides on its head.
+// A scripted pointer picks the serpent by a horn, or another mesh by its highest point, swings it, and hangs it on a
+// ring; an explosion pushes it, and a hat rides on its head. Prints a table of these phases.
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +21,7 @@
 #include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
 #include "scenes/playback.h"
+#include "scenes/printed_table.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -40,10 +41,15 @@ struct DragOptions {
 
 constexpr double kFrame = 1.0 / 60.0;
 constexpr int kSubsteps = 4;
-constexpr double kFarthest = 100.0 * kSize;
-/// The script, in seconds: lies, is lifted, swung one turn a second, carried to the ring, let go there, pushed.
+constexpr double kMax = 100.0 * kSize;
+/// Times of the script, in seconds: the body lies, is lifted, is swung one turn per second, is carried to the ring, is
+/// let go there, is pushed.
 constexpr double kPicked = 0.25, kLifted = 1.5, kSwung = 4.5, kThere = 5.5, kPushed = 7.0;
-/// World lengths.
+/// The phases, and the time at which each begins.
+constexpr std::pair<const char*, double> kPhases[] = {{"lies on the floor", 0.0},    {"is lifted", kPicked},
+                                                      {"is swung", kLifted},         {"is carried to the ring", kSwung},
+                                                      {"hangs on the ring", kThere}, {"is pushed", kPushed}};
+/// Lengths in the world.
 constexpr double kLift = 1.7 * kSize, kSwing = 0.25 * kSize, kRing = 0.12 * kSize, kHat = 0.045 * kSize;
 
 double eased(double from, double to, double t) {
@@ -51,7 +57,7 @@ double eased(double from, double to, double t) {
   return x * x * (3 - 2 * x);
 }
 
-/// Where the pointer is, from where it has picked.
+/// The displacement of the pointer from the point where it picked.
 Vector3d pointerAt(double t) {
   const double angle = 2 * EIGEN_PI * std::clamp(t - kLifted, 0.0, kSwung - kLifted);
   return kLift * eased(kPicked, kLifted, t) * Vector3d::UnitY() +
@@ -91,14 +97,14 @@ class Ring {
   std::unique_ptr<btPoint2PointConstraint> pin_;
 };
 
-/// Just above the floor.
+/// A height just above the floor.
 Model placedModel(const ModelOptions& options) {
   Model model = loadModel(options);
-  Placement place = placementOf(boundingBox(model.cage.nodes));
-  model.cage = place.toWorld(model.cage);
-  place.toWorld(model.mesh.positions);
+  Placement position = placementOf(boundingBox(model.cage.mesh.nodes));
+  model.cage = position.toWorld(model.cage);
+  position.toWorld(model.mesh.positions);
   const double lift = 0.01 * kSize - boundingBox(model.mesh.positions).min().y();
-  for (auto* points : {&model.cage.nodes, &model.mesh.positions}) {
+  for (auto* points : {&model.cage.mesh.nodes, &model.mesh.positions}) {
     for (Vector3d& p : *points) p.y() += lift;
   }
   return model;
@@ -113,14 +119,18 @@ int highest(const TriangleMesh& mesh) {
 class Drag {
  public:
   explicit Drag(const DragOptions& options);
-  /// False if the body has exploded.
+  /// Returns false if the body has exploded.
   bool step(int frame);
   const World& world() const { return world_; }
   const TriangleMesh& drawn() const { return drawn_; }
   std::vector<Vector3d> surface() const;
   const TriangleMesh& floor() const { return world_.obstacles(); }
   void tell(nlohmann::ordered_json& json) const;
-  /// Of the run to come.
+  /// The stretch of the spring, over the body's size; nothing if there is no spring.
+  std::optional<double> stretch() const;
+  /// Root mean square of the nodes' speeds, in body lengths per second.
+  double nodeSpeed() const;
+  /// A page for the run that follows.
   ViewPage page() const;
   ViewMoment moment() const;
 
@@ -129,8 +139,8 @@ class Drag {
   void hang();
   void push();
   void measure(double t);
-  /// Where the hat, the ring and the pointer are.
-  std::array<btTransform, 3> propPlaces() const;
+  /// The present transforms of the hat, the ring and the pointer.
+  std::array<btTransform, 3> propPositions() const;
 
   DragOptions options_;
   Model model_;
@@ -144,17 +154,17 @@ class Drag {
   std::unique_ptr<SurfaceSpring> spring_;
   std::unique_ptr<Ring> ring_;
   std::array<TriangleMesh, 3> props_ = {makeHat(kHat), makeRing(kRing, 0.02 * kSize), makePointer(0.02 * kSize)};
-  TriangleMesh drawn_;                    ///< the body and these
-  std::array<std::size_t, 3> propFirst_;  ///< their first vertices there
+  TriangleMesh drawn_;                    ///< the body and the props
+  std::array<std::size_t, 3> propFirst_;  ///< index of each prop's first vertex there
   btVector3 picked_{0, 0, 0};
   double lag_ = 0, hangs_ = 0;
-  SurfacePush pushed_;
+  ImpulseResult pushed_;
   double rayMicroseconds_ = 0;
   Vector3d pointerNow_ = Vector3d::Zero();
 };
 
 SoftBodyBinding::Pointer bound(const Model& model) {
-  auto made = SoftBodyBinding::make(model.cage, model.mesh);
+  auto made = SoftBodyBinding::create(model.cage, model.mesh);
   require(made.status());
   return made.value();
 }
@@ -166,18 +176,17 @@ Drag::Drag(const DragOptions& options)
       body_(world_.add(model_.cage, oneKilogram())),
       binding_(bound(model_)),
       selfContact_(selfContactOf(model_.name, model_.cage, model_.mesh, options.selfContact, options.output.quiet)),
-      tree_(binding_, model_.mesh) {
-  require(tree_.check());
+      tree_(SurfaceTree::create(binding_, model_.mesh).value()) {
   body_.setActivationState(DISABLE_DEACTIVATION);
   world_.addBox({0, -0.25 * kSize, 0}, {3 * kSize, 0.25 * kSize, 3 * kSize});
   world_.touchBySurface(body_, *binding_, model_.mesh);
   if (selfContact_.shape) world_.touchEachOther(body_, selfContact_.shape, true);
   require(skin_.bind(body_, binding_));
   const Vector3d tip = model_.mesh.positions[static_cast<std::size_t>(highest(model_.mesh))];
-  // In front of the horns, from above.
+  // In front of the horns, seen from above.
   const btVector3 over = toBullet(tip + kSize * Vector3d(0.035, 0.1, 0.035)), under = over - btVector3(0, kSize, 0);
   const SurfaceHit top = tree_.raycast(skin_, over, under);
-  auto crown = top ? tree_.pointAt(body_, top) : tree_.pointOfVertex(body_, highest(model_.mesh));
+  auto crown = top ? tree_.pointAt(body_, top) : tree_.pointAtVertex(body_, highest(model_.mesh));
   require(crown.status());
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);
@@ -187,7 +196,7 @@ Drag::Drag(const DragOptions& options)
   pointerNow_ = tip;
 }
 
-/// The middle of the horn's tip.
+/// The centroid of the horn's tip.
 btVector3 tipOf(const SoftBodySkin& skin, const btVector3& tip) {
   btVector3 sum(0, 0, 0);
   int count = 0;
@@ -201,15 +210,15 @@ btVector3 tipOf(const SoftBodySkin& skin, const btVector3& tip) {
   return sum / static_cast<btScalar>(count);
 }
 
-/// As the mouse would: by a ray through the horn.
+/// Picks as a mouse would: by a ray through the horn.
 void Drag::pick() {
-  const btVector3 tip = *tree_.pointOfVertex(body_, highest(model_.mesh)).value().position();
+  const btVector3 tip = *tree_.pointAtVertex(body_, highest(model_.mesh)).value().position();
   const btVector3 aim = tipOf(skin_, tip), eye = aim + btVector3(1, 1, 6);
   const WallTimer timer;
   const SurfaceHit hit = tree_.raycast(skin_, eye, aim + (aim - eye));
   rayMicroseconds_ = 1e3 * timer.milliseconds();
-  // Of few triangles, a horn ends in one vertex, which a ray may just miss.
-  auto point = hit ? tree_.pointAt(body_, hit) : tree_.pointOfVertex(body_, highest(model_.mesh));
+  // With few triangles, a horn ends in one vertex, which a ray may just miss.
+  auto point = hit ? tree_.pointAt(body_, hit) : tree_.pointAtVertex(body_, highest(model_.mesh));
   require(point.status());
   horn_ = point.value();
   picked_ = *horn_.position();
@@ -246,17 +255,27 @@ bool Drag::step(int frame) {
   }
   for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
   measure(t);
-  return skin_.update() == UpdateStatus::Updated && largestCoordinate(skin_.bounds()) < kFarthest;
+  return skin_.update() == StatusCode::Ok && maxCoordinate(skin_.bounds()) < kMax;
+}
+
+std::optional<double> Drag::stretch() const {
+  if (!spring_) return {};
+  return static_cast<double>(spring_->stretch()) / kSize;
+}
+
+double Drag::nodeSpeed() const {
+  double squared = 0.0;
+  for (int n = 0; n < body_.m_nodes.size(); ++n) squared += static_cast<double>(body_.m_nodes[n].m_v.length2());
+  return std::sqrt(squared / body_.m_nodes.size()) / kSize;
 }
 
 void Drag::measure(double t) {
   if (!spring_) return;
-  const auto stretch = static_cast<double>(spring_->stretch()) / kSize;
-  if (t > kLifted + 0.5 && t < kSwung) lag_ = std::max(lag_, stretch);
-  if (t > kThere + 0.5) hangs_ = std::max(hangs_, stretch);
+  if (t > kLifted + 0.5 && t < kSwung) lag_ = std::max(lag_, *stretch());
+  if (t > kThere + 0.5) hangs_ = std::max(hangs_, *stretch());
 }
 
-std::array<btTransform, 3> Drag::propPlaces() const {
+std::array<btTransform, 3> Drag::propPositions() const {
   const auto hat = crown_.frame(skin_);
   return {hat ? hat->transform() : btTransform::getIdentity(), ring_->body().getWorldTransform(),
           btTransform(btMatrix3x3::getIdentity(), toBullet(pointerNow_))};
@@ -268,10 +287,10 @@ std::vector<Vector3d> Drag::surface() const {
     const btScalar* p = skin_.positions()[v];
     points[v] = Vector3d(p[0], p[1], p[2]);
   }
-  const std::array<btTransform, 3> places = propPlaces();
+  const std::array<btTransform, 3> positions = propPositions();
   for (std::size_t k = 0; k < props_.size(); ++k) {
     for (std::size_t v = 0; v < props_[k].vertexCount(); ++v) {
-      points[propFirst_[k] + v] = toEigen(places[k] * toBullet(props_[k].positions[v]));
+      points[propFirst_[k] + v] = toEigen(positions[k] * toBullet(props_[k].positions[v]));
     }
   }
   return points;
@@ -297,13 +316,15 @@ ViewPage Drag::page() const {
 ViewMoment Drag::moment() const {
   ViewMoment moment;
   moment.bodies = {nodesOf(body_)};
-  for (const btTransform& place : propPlaces()) moment.props.push_back(affine(place));
+  for (const btTransform& position : propPositions()) moment.props.push_back(affine(position));
   return moment;
 }
 
 void Drag::tell(nlohmann::ordered_json& json) const {
-  json["tets"] = model_.cage.tetCount();
+  json["model"] = model_.name;
+  json["vertices"] = model_.mesh.vertexCount();
   json["triangles"] = model_.mesh.triangleCount();
+  json["tets"] = model_.cage.mesh.tetCount();
   json["stiffness"] = options_.stiffness;
   selfContact_.tell(json);
   json["first_ray_us"] = rayMicroseconds_;
@@ -313,20 +334,101 @@ void Drag::tell(nlohmann::ordered_json& json) const {
   json["push"] = {pushed_.linear.x(), pushed_.linear.y(), pushed_.linear.z()};
 }
 
+/// The table, with a row for each phase.
+class Phases {
+ public:
+  void measure(int frame, const Drag& drag, double simulationMs) {
+    const double t = frame * kFrame;
+    std::size_t phase = 0;
+    while (phase + 1 < std::size(kPhases) && t >= kPhases[phase + 1].second) ++phase;
+    if (phase != phase_) {
+      addRow();
+      phase_ = phase;
+      frames_ = 0;
+      speed_ = 0.0;
+      stretch_.reset();
+      msBefore_ = msNow_;
+      totalsBefore_ = totalsNow_;
+    }
+    if (frame > 0) ++frames_;
+    if (const std::optional<double> stretch = drag.stretch()) stretch_ = std::max(stretch_.value_or(0.0), *stretch);
+    speed_ = std::max(speed_, drag.nodeSpeed());
+    msNow_ = simulationMs;
+    totalsNow_ = drag.world().solveTotals();
+    end_ = t;
+  }
+  /// Called after the last frame.
+  std::string table() {
+    addRow();
+    return table_.text();
+  }
+
+ private:
+  void addRow() {
+    const int steps = totalsNow_.steps - totalsBefore_.steps;
+    const double iterations = static_cast<double>(totalsNow_.iterations - totalsBefore_.iterations);
+    const bool whole = phase_ + 1 < std::size(kPhases);
+    const double end = whole ? std::min(end_ + kFrame, kPhases[phase_ + 1].second) : end_;
+    table_.add({kPhases[phase_].first, formatted("%.2f", kPhases[phase_].second), formatted("%.2f", end),
+                stretch_ ? formatted("%.3f", 100.0 * *stretch_) : "-", formatted("%.3f", speed_),
+                steps == 0 ? "-" : formatted("%.1f", iterations / steps),
+                frames_ == 0 ? "-" : formatted("%.2f", (msNow_ - msBefore_) / frames_)});
+  }
+
+  PrintedTable table_{{{"phase", ""},
+                       {"from", "s"},
+                       {"to", "s"},
+                       {"largest stretch", "% of size"},
+                       {"largest RMS node speed", "body lengths/s"},
+                       {"iterations", "per step"},
+                       {"simulation", "ms/frame"}}};
+  std::size_t phase_ = 0;
+  int frames_ = 0;
+  double speed_ = 0.0, end_ = 0.0, msBefore_ = 0.0, msNow_ = 0.0;
+  std::optional<double> stretch_;
+  SolveTotals totalsBefore_, totalsNow_;
+};
+
+void printSummary(const nlohmann::ordered_json& json, const std::string& summary) {
+  const auto percent = [&](const char* key) {
+    return formatted("%.3f %% of the body's size", 100.0 * json.at(key).get<double>());
+  };
+  const auto ifSo = [](bool reached, const std::string& value) { return reached ? value : "not reached"; };
+  printValue("model", json.at("model").get<std::string>());
+  printValue("vertices", formatted("%.0f", json, "vertices"));
+  printValue("triangles", formatted("%.0f", json, "triangles"));
+  printValue("tets", formatted("%.0f", json, "tets"));
+  printValue("spring stiffness", formatted("%g (240 Hz)^2 times the mass of the picked point", json, "stiffness"));
+  printValue("self-contact", json.at("self_contact").get<std::string>());
+  printValue("simulation", formatted("%.2f ms per frame", json, "simulation_ms_per_frame"));
+  printSolve(json);
+  printValue("first ray", formatted("%.1f us, with the update of the tree", json, "first_ray_us"));
+  printValue("lag while swung", ifSo(json.at("lag_swinging") > 0.0, percent("lag_swinging")));
+  printValue("stretch while hanging", ifSo(json.at("stretch_hanging") > 0.0, percent("stretch_hanging")));
+  const std::string pushed = formatted("%.0f vertices", json, "pushed_vertices");
+  printValue("push", ifSo(json.at("pushed_vertices") > 0, pushed));
+  printValue("frames", formatted("%.0f", json, "frames"));
+  printValue("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summary);
+}
+
 int run(const DragOptions& options) {
   const OutputOptions& output = options.output;
   const std::string summary = summaryPath(output), view = viewPath(output);
   Drag drag(options);
-  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::fromMesh(drag.drawn()));
+  FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::create(drag.drawn()));
   std::optional<ViewPage> page;
   if (!view.empty()) page = drag.page();
+  Phases phases;
+  double simulationMs = 0.0;
   const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
     const bool finite = frame == 0 || drag.step(frame);
     run.simulationMs += timer.milliseconds();
+    simulationMs = run.simulationMs;
     return finite;
   };
-  const auto keep = [&](int) {
+  const auto keep = [&](int frame) {
+    phases.measure(frame, drag, simulationMs);
     if (page) page->keep(drag.moment());
   };
   const auto write = [&](int frame) {
@@ -338,12 +440,18 @@ int run(const DragOptions& options) {
   drag.tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   tellSolve(drag.world().solveTotals(), json);
+  json["frames"] = run.frames;
+  json["frames_written"] = run.written;
   json["finite"] = run.finite;
+  json["out"] = output.out;
   writeJson(json, summary);
-  if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (!output.quiet) {
+    std::printf("\n%s\n", phases.table().c_str());
+    printSummary(json, summary);
+  }
   if (page) page->write(view, output.quiet);
   if (run.finite) return kDone;
-  std::fprintf(stderr, "tetskin_drag: the simulation exploded\n");
+  std::fprintf(stderr, "tetskin_drag: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;
 }
 
@@ -353,14 +461,16 @@ int main(int argc, char** argv) {
   DragOptions options;
   options.model.tets = 1000;
   CommandLine line(
-      "A pointer picks the serpent, or your mesh, at its highest point, swings it and hangs it on a ring; lengths are "
-      "over its size.",
-      {{{"tetskin_drag", "out/drag/frame_0000.obj, ..., and summary.json with the lag"},
-        {"tetskin_drag --mesh yours.obj", "a mesh of yours, picked at its highest point"},
-        {"tetskin_drag --stiffness 1 --out soft", "a soft spring: the serpent lags behind the pointer"}},
+      "A scripted pointer picks up the serpent, or your mesh, at its highest point, swings it and hangs it on a ring. "
+      "Prints the lag behind the pointer and other figures for each phase.",
+      {{{"tetskin_drag", "the built-in serpent: out/drag/frame_0000.obj, ..., and summary.json"},
+        {"tetskin_drag --mesh yours.obj", "your mesh, picked at its highest point"},
+        {"tetskin_drag --spring-stiffness 1 --out soft", "a soft spring: the serpent lags behind the pointer"}},
        "the simulation exploded"});
   line.addMeshOptions(options.model);
-  line.addPositive("--stiffness", options.stiffness, "Of the pointer's spring, over the mass of the point");
+  line.addPositive(
+      "--spring-stiffness", options.stiffness,
+      "Stiffness of the pointer's spring, divided by the mass of the picked point, in units of (240 Hz)^2");
   line.addSelfContactOption(options.selfContact);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] {

@@ -13,6 +13,7 @@
 #include "scenes/input_error.h"
 #include "scenes/materials.h"
 #include "scenes/player.h"
+#include "scenes/printed_table.h"
 #include "scenes/summary.h"
 #include "scenes/view_page.h"
 
@@ -33,45 +34,46 @@ struct DropOptions {
   bool writeCage = false;
 
   bool reduced() const { return body == "reduced"; }
-  /// What Bullet solves for is touched at its nodes alone.
+  /// Bodies in Bullet's solvers have contact only at their nodes.
   bool touchesBySurface() const { return !reduced() && force == Force::Elastic; }
   Contact contactPossible() const { return touchesBySurface() ? contact : Contact::Cage; }
 };
 
-/// What is asked for is done or refused: only the default gives way to what a body of Bullet's can do.
+/// An explicit request is fulfilled or refused: only the default is replaced by what a body in Bullet's solver can do.
 void requireContact(const DropOptions& options, bool given) {
   if (options.touchesBySurface()) return;
-  const std::string fault = options.reduced() ? ": a reduced body is touched at its cage's nodes alone; "
-                                              : ": a body of --force bullet is touched at its cage's nodes alone; ";
-  const std::string cure = options.reduced() ? ", or --body elastic" : ", or --force tetskin";
+  const std::string fault = options.reduced()
+                                ? ": a reduced body has contact at its cage's nodes only; "
+                                : ": with --elasticity bullet a body has contact at its cage's nodes only; ";
+  const std::string cure = options.reduced() ? ", or --body elastic" : ", or --elasticity tetskin";
   if (given && options.contact == Contact::Surface) {
-    throw InputError("--contact surface" + fault + "take --contact cage" + cure);
+    throw InputError("--contact surface" + fault + "use --contact cage" + cure);
   }
   if (options.selfContact == SelfContactWish::On) {
-    throw InputError("--self-contact on" + fault + "take --self-contact off" + cure);
+    throw InputError("--self-contact on" + fault + "use --self-contact off" + cure);
   }
 }
 
-/// Seconds. Bullet's neo-Hookean force damps rocking, too, which only the material itself damps with the library's.
+/// Seconds. Bullet's neo-Hookean force damps rocking, too; with the library's force, only the material itself damps it.
 constexpr double kDamping = 0.04;
 
 SceneOptions howOf(const DropOptions& options) {
   SceneOptions how;
   how.force = options.force;
-  if (options.force == Force::Elastic) how.body.damping = kDamping;
+  if (options.force == Force::Elastic) how.body.stiffnessDamping = kDamping;
   if (options.reduced()) how.force = Force::Reduced;
   how.modes = static_cast<int>(options.modes);
   return how;
 }
 
-/// Slower than this many sizes a second over the last half second is at rest.
+/// A body slower than this over the last half second is at rest, in body lengths per second.
 constexpr double kRestSpeed = 0.05;
 
-/// What is measured on the way.
+/// What is measured during the run.
 struct Totals {
   double extentMax = 1.0;
   double lowest = HUGE_VAL;
-  std::vector<double> speeds;  ///< a frame, in sizes a second
+  std::vector<double> speeds;  ///< per frame, in body lengths per second
 
   double restSpeed() const {
     const std::size_t half = std::min(speeds.size(), static_cast<std::size_t>(kFrameRate / 2));
@@ -81,7 +83,7 @@ struct Totals {
   }
 };
 
-/// The mesh in the scene, and its numbers in the mesh's own space.
+/// The mesh in the scene, with its figures in the mesh's own space.
 class Drop {
  public:
   explicit Drop(const DropOptions& options)
@@ -103,7 +105,7 @@ class Drop {
   double floorY() { return player_.place().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
   const Totals& totals() const { return totals_; }
 
-  /// Of the run to come.
+  /// Adds a page for the run that follows.
   ViewPage& addPage();
   Playback simulate(FrameWriter& writer) {
     return player_.play(
@@ -125,7 +127,7 @@ class Drop {
   void write(int frame, FrameWriter& writer) {
     TetMesh cage;
     if (options_.writeCage) {
-      cage = tetMeshOf(player_.scene().body());
+      cage = readTetMesh(player_.scene().body());
       player_.place().toModel(cage.nodes);
     }
     writer.write(frame, surface_.surface, bounds(), surface_.skin.normals(), options_.writeCage ? &cage : nullptr);
@@ -155,9 +157,9 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   json["body"] = options_.body;
   if (const ReductionReport* reduction = player_.scene().world().reduction()) {
     json["modes"] = reduction->projectionErrors.size();
-    json["modes_left_out"] = reduction->leftOut;
+    json["modes_left_out"] = reduction->skippedModes;
   }
-  json["force"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
+  json["elasticity"] = options_.force == Force::Elastic ? "tetskin" : "bullet";
   json["contact"] = options_.contactPossible() == Contact::Surface ? "surface" : "cage";
   player_.selfContact().tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
@@ -179,41 +181,35 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   return json;
 }
 
-void printTable(const nlohmann::ordered_json& json, const std::string& summaryPath) {
-  const auto row = [](const char* name, const std::string& value) { std::printf("  %-22s %s\n", name, value.c_str()); };
-  const auto number = [&](const char* key, const char* format) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, json.at(key).get<double>());
-    return std::string(text);
-  };
-  std::printf("\n%s\n", json.at("model").get<std::string>().c_str());
-  row("vertices", number("vertices", "%.0f"));
-  row("triangles", number("triangles", "%.0f"));
-  row("nodes", number("nodes", "%.0f"));
-  row("tets", number("tets", "%.0f"));
-  row("inside / outside", number("inside", "%.0f") + " / " + number("outside", "%.0f"));
+void printSummary(const nlohmann::ordered_json& json, const std::string& summaryPath) {
+  const auto number = [&](const char* key, const char* format) { return formatted(format, json, key); };
+  std::printf("\n");
+  printValue("model", json.at("model").get<std::string>());
+  printValue("vertices", number("vertices", "%.0f"));
+  printValue("triangles", number("triangles", "%.0f"));
+  printValue("nodes", number("nodes", "%.0f"));
+  printValue("tets", number("tets", "%.0f"));
+  printValue("inside / outside", number("inside", "%.0f") + " / " + number("outside", "%.0f") + " vertices");
   if (json.at("outside") > 0) {
-    row("farthest outside", "vertex " + number("worst_vertex", "%.0f") + ", by " + number("worst_distance", "%.3g"));
+    printValue("farthest outside",
+               "vertex " + number("worst_vertex", "%.0f") + ", at a distance of " + number("worst_distance", "%.3g"));
   }
-  row("attach", number("attach_ms", "%.2f ms"));
-  row("rest error", number("rest_error_max", "%.1e box diagonals"));
-  row("body",
-      json.at("body").get<std::string>() + (json.contains("modes") ? ", " + number("modes", "%.0f modes") : ""));
-  row("force", json.at("force").get<std::string>());
-  row("contact", json.at("contact").get<std::string>());
-  row("contact with itself", json.at("self_contact").get<std::string>());
-  row("simulation", number("simulation_ms_per_frame", "%.2f ms a frame"));
-  if (!json.at("iterations_per_step").is_null()) {
-    row("solver", number("iterations_per_step", "%.1f iterations in ") + number("passes_per_step", "%.2f") +
-                      " passes a step; steps not converged: " + number("steps_unconverged", "%.0f"));
-  }
-  row("skin", number("skin_us_per_frame", "%.1f us a frame"));
-  row("write", number("write_ms_per_frame", "%.2f ms a frame"));
-  row("speed at the end", number("rest_speed", "%.3f sizes a second"));
-  row("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor: y = " + number("floor_y", "%.4g") +
-                          ", less a tolerance of " + number("floor_tolerance", "%.2g"));
-  row("frames", number("frames", "%.0f"));
-  row("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summaryPath);
+  printValue("embedding", number("attach_ms", "%.2f ms"));
+  printValue("rest error", number("rest_error_max", "%.1e of the bounding box's diagonal"));
+  printValue("body", json.at("body").get<std::string>() +
+                         (json.contains("modes") ? ", " + number("modes", "%.0f modes") : std::string()));
+  printValue("elasticity", json.at("elasticity").get<std::string>());
+  printValue("contact", json.at("contact").get<std::string>());
+  printValue("self-contact", json.at("self_contact").get<std::string>());
+  printValue("simulation", number("simulation_ms_per_frame", "%.2f ms per frame"));
+  printSolve(json);
+  printValue("skin", number("skin_us_per_frame", "%.1f us per frame"));
+  printValue("writing", number("write_ms_per_frame", "%.2f ms per frame"));
+  printValue("speed at the end", number("rest_speed", "%.3f body lengths per second"));
+  printValue("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor at y = " + number("floor_y", "%.4g") +
+                                 ", tolerance " + number("floor_tolerance", "%.2g"));
+  printValue("frames", number("frames", "%.0f"));
+  printValue("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summaryPath);
 }
 
 int run(const DropOptions& options) {
@@ -230,7 +226,7 @@ int run(const DropOptions& options) {
   const Playback run = drop.simulate(writer);
   const nlohmann::ordered_json json = drop.summarise(run);
   writeJson(json, path);
-  if (!output.quiet) printTable(json, path);
+  if (!output.quiet) printSummary(json, path);
   if (page) page->write(view, output.quiet);
   if (!run.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", run.frames - 1);
@@ -248,30 +244,28 @@ int run(const DropOptions& options) {
 
 int main(int argc, char** argv) {
   DropOptions options;
-  CommandLine line("A mesh falls on obstacles in Bullet's deformable world, carried by a coarse cage of tetrahedra.",
-                   {{{"tetskin_drop", "the built-in serpent: out/drop/frame_0000.obj, ..., and summary.json"},
-                     {"tetskin_drop --mesh yours.obj --tets 1000 --calibrate", "a mesh of yours in a softer cage"},
-                     {"tetskin_drop --interpolation quadratic --normals transformed --write-cage",
-                      "a smoother surface, its normals, and the cage beside it"}},
-                    "the simulation exploded, or the surface passed the floor"});
+  CommandLine line(
+      "Drops a mesh onto obstacles in Bullet's deformable world, embedded in a coarse cage of tetrahedra.",
+      {{{"tetskin_drop", "the built-in serpent: out/drop/frame_0000.obj, ..., and summary.json"},
+        {"tetskin_drop --mesh yours.obj --tets 1000 --calibrate", "your mesh, in a coarser and calibrated cage"},
+        {"tetskin_drop --interpolation quadratic --normals transformed --write-cage",
+         "a smoother surface with normals, and the cage of each frame"}},
+       "the simulation exploded, or the surface passed through the floor"});
   line.addModelOptions(options.model);
-  line.addForceOption(options.force);
-  line.addWord(
-      "--body", options.body, {"elastic", "reduced"},
-      "What moves it: the cage's tets, or vibrations of fine tets, in Bullet's reduced solver (--contact cage)");
-  line.addCount("--modes", options.modes, "Vibrations of a reduced body");
-  line.addCount("--fine-tets", options.model.fineTets, "Tets that a reduced body has its vibrations of",
-                static_cast<int>(kLargestTargetTets));
+  line.addElasticityOption(options.force, "bullet: neo-Hookean force, with contact at the cage's nodes");
+  line.addWord("--body", options.body, {"elastic", "reduced"});
+  line.addCount("--modes", options.modes);
+  line.addCount("--fine-tets", options.model.fineTets, "", static_cast<int>(Limits::kMaxTargetTets));
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
   line.addInterpolationOption(options.skin);
   line.addSkinOptions(options.skin);
   line.addOutputOptions(options.output);
-  line.addFlag("--write-cage", options.writeCage, "Write the cage beside each frame, as cage_0000.vtk, ...");
+  line.addFlag("--write-cage", options.writeCage);
   return line.run(argc, argv, [&] {
     requireContact(options, line.given("--contact"));
     for (const char* name : {"--modes", "--fine-tets"}) {
-      if (line.given(name) && !options.reduced()) throw InputError(std::string(name) + " is for --body reduced");
+      if (line.given(name) && !options.reduced()) throw InputError(std::string(name) + " needs --body reduced");
     }
     options.model.quiet = options.output.quiet;
     options.model.loaded = [&](const TriangleMesh& mesh, const ObjLayout& layout) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How wrong is a coarse cage with an embedded surface, and how fast? Cages of several sizes against a fine one, in
-// Bullet, with the coarse simulation's error and the embedding's told apart.
+// How accurate is a coarse cage with an embedded surface, and how fast is it? Compares cages of several sizes with a
+// fine one, in Bullet, and separates the coarse simulation's error from the embedding's.
 #include <cstdio>
 
 #include "report/plot_program.h"
@@ -12,13 +12,13 @@ using namespace tetskin;
 
 int main(int argc, char** argv) {
   scenes::CommandLine line(
-      "Cages of several sizes, each with the mesh's surface embedded, against a fine cage, in Bullet's deformable "
-      "world: how wrong each is, how much of that is the coarse simulation's and how much the embedding's, and what "
-      "it costs. An interrupted run goes on where it stopped.",
+      "Compares cages of several sizes, each with the mesh's surface embedded, with a fine reference in Bullet's "
+      "deformable world: the error of each, how much of it comes from the coarse simulation and how much from the "
+      "embedding, and the run time. An interrupted run resumes where it stopped.",
       {{{"tetskin_error_vs_time --quick",
          "a small report: out/error_vs_time/error_vs_time.csv, .json, tables and plots"},
         {"tetskin_error_vs_time --mesh yours.obj --target-error 0.01",
-         "which cage a mesh of yours needs for an error of 1 %"}},
+         "the cage that your mesh needs for an error of 1 %"}},
        "a simulation exploded"});
   report::ReportCommandLine commandLine(line);
   return line.run(argc, argv, [&] {
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     }
     report::makeTablesAndPlots(options);
     if (report::allFinite(result)) return scenes::kDone;
-    std::fprintf(stderr, "tetskin_error_vs_time: a simulation exploded; see the column finite\n");
+    std::fprintf(stderr, "tetskin_error_vs_time: a simulation exploded; see the column 'finite'\n");
     return scenes::kRunFailed;
   });
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How far from an obstacle a body is drawn that lies on it, and how deep in it one that has just hit it: with contact
-// by the visual surface, and by the cage's nodes.
+// Measures how far from an obstacle a body is drawn that lies on it, and how deep a body is drawn in an obstacle that
+// it has just hit: with contact by the visual surface, and by the cage's nodes.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ struct GapOptions {
   std::vector<std::size_t> tets = {300, 1000, 3000};
   std::size_t triangles = 20000;
   double seconds = 6.0;
-  double speed = 15.0;  ///< sizes a second
+  double speed = 15.0;  ///< body lengths per second
   bool quiet = false;
   std::string json;
   std::string markdown;
@@ -41,14 +41,20 @@ GapRow measured(const GapOptions& options, const GapObstacle& obstacle, const Ga
 
 void print(const GapRow& row) {
   const auto word = [](const Rest& rest) { return !rest.touches() ? "off" : rest.still() ? "still" : "moves"; };
-  std::printf("%-7s %-8s %5zu   rest %+.4f %-5s  cage %+.4f %-5s   impact %+.4f  cage %+.4f  %s\n",
-              row.obstacle.c_str(), row.body.c_str(), row.tets, row.surface.gap, word(row.surface), row.cage.gap,
-              word(row.cage), row.deepest, row.deepestByCage, holds(row) ? "" : "NOT HELD");
+  std::printf("%-8s  %-8s %6zu  %+8.4f %-6s  %+8.4f %-6s  %+9.4f  %+9.4f  %s\n", row.obstacle.c_str(), row.body.c_str(),
+              row.tets, row.surface.gap, word(row.surface), row.cage.gap, word(row.cage), row.deepest,
+              row.deepestByCage, holds(row) ? "" : "FAILED");
   std::fflush(stdout);
+}
+
+void printHeader() {
+  std::printf("%-8s  %-8s %6s  %-32s  %s\n", "obstacle", "shape", "tets", "gap at rest", "least gap of an impact");
+  std::printf("%-8s  %-8s %6s  %-15s  %-15s  %9s  %9s\n", "", "", "", " surface", " cage", "surface", "cage");
 }
 
 std::vector<GapRow> measureAll(const GapOptions& options, const std::vector<const GapObstacle*>& obstacles) {
   std::vector<GapRow> rows;
+  if (!options.quiet) printHeader();
   for (const std::string& name : options.bodies) {
     for (const std::size_t tets : options.tets) {
       const GapBody body = makeGapBody(name, tets, options.triangles);
@@ -77,8 +83,8 @@ int run(const GapOptions& options) {
   if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(rows));
   const auto broken = std::count_if(rows.begin(), rows.end(), [](const GapRow& row) { return !holds(row); });
   if (!options.quiet) {
-    std::printf("\n%zu rows; in %td the surface rests farther than %g sizes from what it lies on\n", rows.size(),
-                broken, kPromised);
+    std::printf("\n%zu rows; in %td the gap at rest, by the surface, is larger than %g %% of the body's size\n",
+                rows.size(), broken, 100.0 * kPromised);
   }
   return broken == 0 ? kDone : kRunFailed;
 }
@@ -88,18 +94,20 @@ int run(const GapOptions& options) {
 int main(int argc, char** argv) {
   GapOptions options;
   CommandLine line(
-      "Gaps between bodies and what they rest on or hit, by the surface and by the cage's nodes, in sizes.",
-      {{{"tetskin_gaps --markdown gaps.md", "all bodies on all obstacles: minutes"},
-        {"tetskin_gaps --bodies serpent --obstacles floor --tets 300", "one body on the floor"}},
-       "a surface rests farther from what it lies on than it may"});
-  line.addWords("--bodies", options.bodies, "serpent, round, legs (default: all)");
-  line.addWords("--obstacles", options.obstacles, "floor, edge, sphere, pole, hull, mesh, ball (default: all)");
-  line.addCounts("--tets", options.tets, "Tets of the cages");
-  line.addCount("--triangles", options.triangles, "Triangles of the bodies", 500000);
-  line.addPositive("--seconds", options.seconds, "Until a body is taken to be at rest");
-  line.addPositive("--speed", options.speed, "Of the impacts, in sizes a second");
-  line.addSummaryOption(options.json, "File of the results, a list of rows");
-  line.addOutput("--markdown", options.markdown, "File of the results, as tables");
+      "Measures the gaps between bodies and the obstacles that they rest on or hit, with contact at the rendered "
+      "surface "
+      "and at the cage's nodes, in body lengths.",
+      {{{"tetskin_gaps --markdown gaps.md", "all shapes on all obstacles, in minutes"},
+        {"tetskin_gaps --shapes serpent --obstacles floor --tets 300", "one body on the floor"}},
+       "a gap at rest is larger than promised"});
+  line.addWords("--shapes", options.bodies, "Shapes of the bodies");
+  line.addWords("--obstacles", options.obstacles, "Obstacles: floor, edge, sphere, pole, hull, mesh, ball", "all");
+  line.addPositive("--seconds", options.seconds, "after it a body counts as at rest");
+  line.addPositive("--speed", options.speed, "Speed of the impacts, in body lengths per second");
+  line.addCount("--triangles", options.triangles, "", 500000);
+  line.addCounts("--tets", options.tets, "a list");
+  line.addSummaryOption(options.json);
+  line.addOutput("--markdown", options.markdown);
   line.addQuietOption(options.quiet);
   return line.run(argc, argv, [&] { return run(options); });
 }

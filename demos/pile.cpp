@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies of three models fall into a bowl, some of them across thin poles, and lie on each other as drawn.
+// Soft bodies of three models fall into a bowl, some of them across thin poles, and lie on each other as drawn. Prints
+// their penetration depth once per second.
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,11 +14,13 @@
 #include <optional>
 
 #include "scenes/command_line.h"
+#include "scenes/deepest_vertex.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/joined_mesh.h"
 #include "scenes/placement.h"
 #include "scenes/playback.h"
+#include "scenes/printed_table.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -29,9 +31,12 @@ using namespace tetskin;
 using namespace tetskin::scenes;
 using Eigen::Vector3d;
 
+constexpr int kFramesPerSecond = 60;
+
 struct PileOptions {
   int bodies = 10;
-  ModelOptions model;  ///< without a mesh: what all of kModels have in common
+  int depthEvery = kFramesPerSecond;  ///< frames between two measurements of the deepest vertex
+  ModelOptions model;                 ///< if it has no mesh: the options common to all of kModels
   Contact contact = Contact::Surface;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
   OutputOptions output{"out/pile", "", 600, 1, false};
@@ -39,23 +44,23 @@ struct PileOptions {
   bool touchThemselves() const { return wishBeside(contact, selfContact) != SelfContactWish::Off; }
 };
 
-constexpr double kFrame = 1.0 / 60.0;
+constexpr double kFrame = 1.0 / kFramesPerSecond;
 constexpr std::array<BuiltIn, 3> kModels = {BuiltIn::Serpent, BuiltIn::Hand, BuiltIn::Bar};
-/// World lengths; the largest side of each body is kSize.
+/// Lengths in the world; the largest side of each body is kSize.
 constexpr double kApart = 1.1 * kSize, kFloorY = 0.0, kSide = 1.1 * kSize, kPole = 0.02 * kSize;
-/// Farther from the bowl than any body can be thrown: it has exploded.
-constexpr double kFarthest = 100.0 * kSize;
+/// A body farther from the bowl than any can be thrown has exploded.
+constexpr double kMax = 100.0 * kSize;
 
-/// A model in the world's size about the origin, and what all bodies of it share.
+/// A model scaled to the world about the origin, and what all bodies of it share.
 struct PileModel {
   explicit PileModel(const ModelOptions& options) : model(loadModel(options)) {
-    const Placement place = placementOf(boundingBox(model.cage.nodes));
-    model.cage = place.toWorld(model.cage);
-    place.toWorld(model.mesh.positions);
-    auto made = makeContactShape(model.cage, model.mesh);
+    const Placement position = placementOf(boundingBox(model.cage.mesh.nodes));
+    model.cage = position.toWorld(model.cage);
+    position.toWorld(model.mesh.positions);
+    auto made = ContactShape::create(model.cage, model.mesh);
     if (!made.ok()) throw InputError(model.name + ": " + made.status().message);
     shape = made.value();
-    auto bound = SoftBodyBinding::make(model.cage, model.mesh);
+    auto bound = SoftBodyBinding::create(model.cage, model.mesh);
     require(bound.status());
     binding = bound.value();
   }
@@ -65,7 +70,7 @@ struct PileModel {
   std::shared_ptr<const SoftBodyBinding> binding;
 };
 
-/// A floor within four walls, two of which lean outwards, and two poles across it.
+/// A floor inside four walls, two of which lean outwards, and two poles across it.
 void addBowl(World& world) {
   const double height = kSize, thick = 0.25 * kSize;
   world.addBox({0, kFloorY - thick, 0}, {4 * kSide, thick, 4 * kSide});
@@ -82,7 +87,7 @@ void addBowl(World& world) {
 Cage placedAt(Cage cage, int k) {
   const Eigen::AngleAxisd turn(1.1 * k, Vector3d(0.3, 1.0, 0.2).normalized());
   const Vector3d at(0.12 * kSize * (k % 2 ? 1 : -1), kFloorY + 2.4 * kSize + kApart * k, 0.1 * kSize * (k / 2 % 2));
-  for (Vector3d& p : cage.nodes) p = turn * p + at;
+  for (Vector3d& p : cage.mesh.nodes) p = turn * p + at;
   return cage;
 }
 
@@ -102,22 +107,25 @@ class Pile {
   const World& world() const { return world_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleMesh& obstacles() const { return world_.obstacles(); }
-  /// False if a body has exploded.
+  /// Returns false if a body has exploded.
   bool step();
-  /// Of all bodies, one after the other.
+  /// The surfaces of all bodies, one after the other.
   std::vector<Vector3d> surface() const;
-  /// Of the deepest contact between bodies, in sizes; 0 or below.
+  /// Tests every vertex against the surfaces of all other bodies; the depth is in units of the body's size.
+  DeepestVertex deepestVertex() const;
+  /// Distance at the deepest contact between bodies, over the body's size; 0 or negative.
   double deepest() const;
+  std::size_t tetCount() const { return bodyTets_; }
   std::size_t contactCount() const { return world_.softContacts().size(); }
-  /// Root of the mean square over all nodes, in sizes a second.
+  /// Root mean square of the nodes' speeds, in body lengths per second.
   double nodeSpeed() const;
 
-  /// Of the run to come: bodies of one model share it.
+  /// A page for the run that follows. Bodies of one model share it there.
   ViewPage page(const PileOptions& options) const;
   ViewMoment moment() const;
 
  private:
-  void add(const PileModel& of, int k, const PileOptions& options);
+  void add(const PileModel& model, int k, const PileOptions& options);
 
   World world_;
   std::deque<PileModel> models_;
@@ -127,23 +135,23 @@ class Pile {
   TriangleMesh mesh_;
 };
 
-void Pile::add(const PileModel& of, int k, const PileOptions& options) {
-  btSoftBody& body = world_.add(placedAt(of.model.cage, k), oneKilogram());
-  if (options.contact == Contact::Surface) world_.touchBySurface(body, *of.binding, of.model.mesh);
-  world_.touchEachOther(body, of.shape, options.touchThemselves());
+void Pile::add(const PileModel& model, int k, const PileOptions& options) {
+  btSoftBody& body = world_.add(placedAt(model.model.cage, k), oneKilogram());
+  if (options.contact == Contact::Surface) world_.touchBySurface(body, *model.binding, model.model.mesh);
+  world_.touchEachOther(body, model.shape, options.touchThemselves());
   bodies_.push_back(&body);
-  require(skins_.emplace_back().bind(body, of.binding));
-  bodyTets_ += of.model.cage.tetCount();
-  (void)append(of.model.mesh, mesh_, of.model.name);
+  require(skins_.emplace_back().bind(body, model.binding));
+  bodyTets_ += model.model.cage.mesh.tetCount();
+  (void)append(model.model.mesh, mesh_, model.model.name);
 }
 
 bool Pile::step() {
   constexpr int kSubsteps = 4;
   for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
   return std::all_of(skins_.begin(), skins_.end(), [](SoftBodySkin& skin) {
-    const UpdateStatus status = skin.update();
-    const bool followed = status == UpdateStatus::Updated || status == UpdateStatus::Asleep;
-    return followed && largestCoordinate(skin.bounds()) < kFarthest;
+    const StatusCode status = skin.update();
+    const bool followed = status == StatusCode::Ok || status == StatusCode::Asleep;
+    return followed && maxCoordinate(skin.bounds()) < kMax;
   });
 }
 
@@ -156,6 +164,21 @@ std::vector<Vector3d> Pile::surface() const {
     }
   }
   return points;
+}
+
+DeepestVertex Pile::deepestVertex() const {
+  std::vector<TriangleMesh> surfaces;
+  for (std::size_t k = 0; k < skins_.size(); ++k) {
+    TriangleMesh& surface = surfaces.emplace_back();
+    surface.triangles = models_[k % models_.size()].model.mesh.triangles;
+    for (std::size_t v = 0; v < skins_[k].positions().size(); ++v) {
+      const btScalar* p = skins_[k].positions()[v];
+      surface.positions.emplace_back(p[0], p[1], p[2]);
+    }
+  }
+  DeepestVertex deepest = scenes::deepestVertex(surfaces);
+  deepest.depth /= kSize;
+  return deepest;
 }
 
 double Pile::deepest() const {
@@ -181,7 +204,7 @@ ViewPage Pile::page(const PileOptions& options) const {
                  contact == Contact::Surface ? factOf(contact, options.touchThemselves())
                                              : "contact with the bowl at the cages' nodes"},
                 Interpolation::Linear);
-  for (const PileModel& of : models_) page.addModel(of.model.cage, of.model.mesh, of.binding->embedding());
+  for (const PileModel& model : models_) page.addModel(model.model.cage, model.model.mesh, model.binding->embedding());
   for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
   page.setObstacles(obstacles());
   page.setFocus({Vector3d(-1.5 * kSide, kFloorY, -kSide), Vector3d(1.5 * kSide, kFloorY + 2.0 * kSize, kSide)});
@@ -194,22 +217,124 @@ ViewMoment Pile::moment() const {
   return moment;
 }
 
+/// What is measured during the run, and the table of it.
+class Depths {
+ public:
+  Depths(const Pile& pile, const PileOptions& options) : pile_(pile), options_(options) {}
+
+  void measure(int frame, double simulationMs) {
+    deepestContact = std::min(deepestContact, pile_.deepest());
+    const bool asked = frame % options_.depthEvery == 0, second = frame % kFramesPerSecond == 0;
+    const bool last = frame + 1 == options_.output.frames;
+    if (!asked && !second && !last) return;
+    latest = pile_.deepestVertex();
+    if (latest.depth > deepest.depth) {
+      deepest = latest;
+      deepestFrame = frame;
+    }
+    if (second || last) addRow(frame, simulationMs);
+  }
+  std::string table() const { return table_.text(); }
+
+  double deepestContact = 0.0;  ///< over all frames, in units of the body's size; 0 or negative
+  DeepestVertex deepest, latest;
+  int deepestFrame = 0;
+
+ private:
+  /// Times are those of the frames since the previous row.
+  void addRow(int frame, double simulationMs) {
+    const SolveTotals totals = pile_.world().solveTotals();
+    const int steps = totals.steps - before_.steps;
+    table_.add(
+        {formatted("%.2f", frame * kFrame), std::to_string(pile_.contactCount()),
+         formatted("%.2f", 100.0 * latest.depth), std::to_string(latest.count),
+         formatted("%.2f", 100.0 * std::abs(pile_.deepest())), formatted("%.3f", pile_.nodeSpeed()),
+         steps == 0 ? "-" : formatted("%.1f", static_cast<double>(totals.iterations - before_.iterations) / steps),
+         frame == beforeFrame_ ? "-" : formatted("%.2f", (simulationMs - beforeMs_) / (frame - beforeFrame_))});
+    before_ = totals;
+    beforeMs_ = simulationMs;
+    beforeFrame_ = frame;
+  }
+
+  const Pile& pile_;
+  const PileOptions& options_;
+  PrintedTable table_{{{"time", "s"},
+                       {"contacts", ""},
+                       {"deepest vertex", "% of size"},
+                       {"vertices inside", ""},
+                       {"deepest contact", "% of size"},
+                       {"RMS node speed", "body lengths/s"},
+                       {"iterations", "per step"},
+                       {"simulation", "ms/frame"}}};
+  SolveTotals before_;
+  double beforeMs_ = 0.0;
+  int beforeFrame_ = 0;
+};
+
+nlohmann::ordered_json summarise(const PileOptions& options, const Pile& pile, const Depths& depths,
+                                 const Playback& run) {
+  nlohmann::ordered_json json;
+  json["bodies"] = options.bodies;
+  json["vertices"] = pile.mesh().vertexCount();
+  json["tets"] = pile.tetCount();
+  json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
+  json["self_contact"] = options.touchThemselves() ? "on" : "off";
+  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+  tellSolve(pile.world().solveTotals(), json);
+  json["deepest_vertex"] = -depths.deepest.depth;
+  json["deepest_vertex_frame"] = depths.deepestFrame;
+  json["deepest_vertex_at_end"] = -depths.latest.depth;
+  json["vertices_inside_at_end"] = depths.latest.count;
+  json["deepest_contact"] = depths.deepestContact;
+  json["deepest_contact_at_end"] = pile.deepest();
+  json["contacts_at_end"] = pile.contactCount();
+  json["node_speed_at_end"] = pile.nodeSpeed();
+  json["frames"] = run.frames;
+  json["frames_written"] = run.written;
+  json["finite"] = run.finite;
+  json["out"] = options.output.out;
+  return json;
+}
+
+void printSummary(const nlohmann::ordered_json& json, const PileOptions& options, const std::string& summary) {
+  const auto percent = [&](const char* key) {
+    return formatted("%.2f %% of the body's size", 100.0 * std::abs(json.at(key).get<double>()));
+  };
+  const std::string measured =
+      options.depthEvery == 1 ? "in every frame" : "every " + std::to_string(options.depthEvery) + " frames";
+  printValue("bodies", formatted("%.0f", json, "bodies") + formatted(", %.0f vertices", json, "vertices") +
+                           formatted(", %.0f tets", json, "tets"));
+  printValue("contact", json.at("contact").get<std::string>());
+  printValue("self-contact", json.at("self_contact").get<std::string>());
+  printValue("simulation", formatted("%.2f ms per frame", json, "simulation_ms_per_frame"));
+  printSolve(json);
+  printValue("deepest vertex", percent("deepest_vertex") + formatted(", in frame %.0f", json, "deepest_vertex_frame") +
+                                   " (measured " + measured + "); " + percent("deepest_vertex_at_end") + " at the end");
+  printValue("deepest contact", percent("deepest_contact") + ", as the solver measures it; " +
+                                    percent("deepest_contact_at_end") + " at the end");
+  printValue("speed at the end", formatted("%.3f body lengths per second", json, "node_speed_at_end"));
+  printValue("frames", formatted("%.0f", json, "frames"));
+  printValue("files", options.output.out + "/frame_0000.obj ... " + summary);
+}
+
 int run(const PileOptions& options) {
   const OutputOptions& output = options.output;
   const std::string summary = summaryPath(output), view = viewPath(output);
   Pile pile(options);
-  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::fromMesh(pile.mesh()));
+  FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::create(pile.mesh()));
   std::optional<ViewPage> page;
   if (!view.empty()) page = pile.page(options);
-  double deepest = 0.0;
+  Depths depths(pile, options);
+  double simulationMs = 0.0;
   const auto step = [&](int frame, Playback& run) {
     const WallTimer timer;
     const bool finite = frame == 0 || pile.step();
     run.simulationMs += timer.milliseconds();
+    simulationMs = run.simulationMs;
     return finite;
   };
-  const auto measure = [&](int) {
-    deepest = std::min(deepest, pile.deepest());
+  const auto measure = [&](int frame) {
+    depths.measure(frame, simulationMs);
     if (page) page->keep(pile.moment());
   };
   const auto write = [&](int frame) {
@@ -217,22 +342,15 @@ int run(const PileOptions& options) {
     writer.write(frame, surface, boundingBox(surface), {});
   };
   const Playback run = playFrames("simulating", output, pile.world(), step, measure, write);
-  nlohmann::ordered_json json;
-  json["bodies"] = options.bodies;
-  json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
-  json["self_contact"] = options.touchThemselves() ? "on" : "off";
-  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
-  tellSolve(pile.world().solveTotals(), json);
-  json["deepest_contact"] = deepest;
-  json["deepest_contact_at_end"] = pile.deepest();
-  json["contacts_at_end"] = pile.contactCount();
-  json["node_speed_at_end"] = pile.nodeSpeed();
-  json["finite"] = run.finite;
+  const nlohmann::ordered_json json = summarise(options, pile, depths, run);
   writeJson(json, summary);
-  if (!output.quiet) std::printf("%s\n", json.dump(2).c_str());
+  if (!output.quiet) {
+    std::printf("\n%s\n", depths.table().c_str());
+    printSummary(json, options, summary);
+  }
   if (page) page->write(view, output.quiet);
   if (run.finite) return kDone;
-  std::fprintf(stderr, "tetskin_pile: the simulation exploded\n");
+  std::fprintf(stderr, "tetskin_pile: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;
 }
 
@@ -243,18 +361,23 @@ int main(int argc, char** argv) {
   options.model.tets = 500;
   options.model.triangles = 20000;
   CommandLine line(
-      "Soft bodies of three models, or of your mesh, fall into a bowl, some across thin poles, and lie on each other.",
+      "Drops soft bodies of three models, or of your mesh, into a bowl, some across thin poles and onto each other. "
+      "Prints contacts and depths once per second.",
       {{{"tetskin_pile", "ten bodies: out/pile/frame_0000.obj, ..., and summary.json"},
-        {"tetskin_pile --mesh yours.obj", "ten of a mesh of yours, which must be closed"},
-        {"tetskin_pile --bodies 3 --contact cage", "three that meet by their cages' nodes: they float"}},
+        {"tetskin_pile --mesh yours.obj", "ten copies of your mesh, which must be closed"},
+        {"tetskin_pile --frames 100 --depth-every 1", "the impacts, with the deepest vertex of every frame"},
+        {"tetskin_pile --bodies 3 --contact cage", "three bodies that touch the bowl by the nodes of their cages"}},
        "the simulation exploded"});
-  line.addCount("--bodies", options.bodies, "How many bodies", 100);
-  line.addInput("--mesh", options.model.mesh,
-                "Closed mesh of all bodies, any format assimp reads (default: three models)");
-  line.addCount("--tets", options.model.tets, "Tets of each model's cage", 20000);
-  line.addCount("--triangles", options.model.triangles, "Triangles of each built-in model", 500000);
+  line.addInput("--mesh", options.model.mesh, "closed", CommandLine::Need::Optional, "three built-in models");
+  line.addCount("--triangles", options.model.triangles, "each", 500000);
+  line.addCount("--tets", options.model.tets, "each", 20000);
+  line.addCount("--bodies", options.bodies, "", 100);
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
+  line.addCount("--depth-every", options.depthEvery,
+                "Measure the deepest vertex every Nth frame, as well as once per second: each vertex against the "
+                "surfaces of all other bodies",
+                1000000);
   line.addOutputOptions(options.output);
   return line.run(argc, argv, [&] {
     options.model.quiet = options.output.quiet;

@@ -1,14 +1,16 @@
 # For demos/run and tests/run: the packages and the configuration of the build in build/. Sourced, not run.
 
-# What the library needs; what tetskin_drop needs beyond that, and what all demos do; what the unit tests need beyond the
-# library, and what all tests need beyond all of these. Debian 12, Ubuntu 24.04 and later.
+# The packages that the library needs; what tetskin_drop needs in addition, and what all demos need; what the unit tests
+# need in addition to the library, and what all tests need in addition to all of these. For Debian 12, Ubuntu 24.04 and
+# later.
 library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev)
 drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
 check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium)
 
-# Installs the packages that are missing, and says so first. Without root or sudo, or without apt, says what to do.
+# Installs the packages that are missing, and prints their names first. Without root or sudo, or without apt, prints
+# what to do.
 require_packages() {
   local missing=() package
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -41,20 +43,19 @@ require_packages() {
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive $install
 }
 
-# The package of what clang needs for the fuzzers: libclang-rt-14-dev on Debian 12. Clang itself is there, or will be.
+# The package with the runtime that clang needs for the fuzzers: libclang-rt-14-dev on Debian 12. Clang itself is
+# installed already, or will be.
 fuzzer_runtime() {
   local version
   version=$(apt-cache depends clang 2>/dev/null | sed -n 's/.*Depends: clang-\([0-9]*\).*/\1/p' | head -n 1)
   echo "libclang-rt-${version:-14}-dev"
 }
 
-# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed. Source files are joined
-# for the compiler (a unity build), which reads the same headers over and over otherwise.
+# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed.
 configure() {
   local repository=$1
   shift
   local generator=()
   if [ ! -f "$repository/build/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_UNITY_BUILD=ON "$@"
+  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A bar held at both ends in Bullet's deformable world, twisted a full turn and released; a linear and a quadratic
+// A bar pinned at both ends in Bullet's deformable world, twisted a full turn and released; a linear and a quadratic
 // surface on the same coarse cage, side by side, and the errors of both.
 #include <algorithm>
 #include <cmath>
@@ -31,23 +31,23 @@ struct TwistOptions {
   OutputOptions output{"out/twist", "", 240, 1, false};
 };
 
-/// How far a surface is from the exact image of the mesh under a map that its cage's nodes follow exactly.
+/// The error of a surface against the exact image of the mesh under a map that its cage's nodes follow exactly.
 struct Accuracy {
   double rms = 0.0, max = 0.0;  ///< in diagonals of the mesh's box
-  double normalDegrees = 0.0;   ///< mean angle of the transformed normals to the exact ones
+  double normalDegrees = 0.0;   ///< mean angle between transformed and exact normals
 };
 
-/// Without Bullet, whose body finds its own shape: the nodes are set to a full turn from end to end.
+/// Without Bullet, whose body takes a shape of its own: the nodes are set to a full turn from end to end.
 Accuracy accuracyOf(const Model& model, SkinOptions options, Interpolation interpolation) {
-  const Twist twist = twistOf(boundingBox(model.cage.nodes), kFullTurn);
+  const Twist twist = twistOf(boundingBox(model.cage.mesh.nodes), kFullTurn);
   options.interpolation = interpolation;
   options.normals = Normals::Transformed;
   MeshSkin<double> skin;
   require(skin.bind(model.cage, model.mesh, options).status());
   std::vector<Eigen::Vector3d> nodes;
-  for (const Eigen::Vector3d& p : model.cage.nodes) nodes.push_back(twist.point(p));
-  if (skin.update(viewOf(std::as_const(nodes))) != UpdateStatus::Updated)
-    throw InputError("the cage's nodes are not finite");
+  for (const Eigen::Vector3d& p : model.cage.mesh.nodes) nodes.push_back(twist.point(p));
+  if (skin.update(viewOf(std::as_const(nodes))) != StatusCode::Ok)
+    throw InputError("the cage has a node position that is not finite");
 
   const std::vector<Eigen::Vector3d> normals = restNormals(model.mesh);
   const double diagonal = boundingBox(model.mesh.positions).diagonal().norm();
@@ -67,7 +67,7 @@ Accuracy accuracyOf(const Model& model, SkinOptions options, Interpolation inter
   return result;
 }
 
-/// Two copies of a mesh in one, as the groups `linear` and `quadratic`, the second beside the first.
+/// Two copies of a mesh in one, as the groups `linear` and `quadratic`, side by side.
 class SideBySide {
  public:
   explicit SideBySide(const TriangleMesh& mesh) {
@@ -80,8 +80,8 @@ class SideBySide {
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
-  ObjLayout layout() const { return ObjLayout::fromMesh(mesh_); }
-  /// Points of the second one, beside the first.
+  ObjLayout layout() const { return ObjLayout::create(mesh_); }
+  /// Moves points to the position of the second mesh, beside the first.
   std::vector<Eigen::Vector3d> beside(std::vector<Eigen::Vector3d> points) const {
     for (Eigen::Vector3d& p : points) p += offset_;
     return points;
@@ -99,7 +99,7 @@ class SideBySide {
   }
 
  private:
-  static constexpr double kGap = 1.1;  ///< of the centres, over the widest that a turned section can be
+  static constexpr double kGap = 1.1;  ///< distance of the centres, over the greatest width of a rotated cross-section
 
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
   TriangleMesh mesh_;
@@ -107,16 +107,16 @@ class SideBySide {
   std::vector<Eigen::Vector3f> normals_;
 };
 
-/// What is measured on the way, lengths in diagonals of the mesh's box.
+/// What is measured during the run; lengths are in diagonals of the mesh's box.
 struct Totals {
   double extentMax = 1.0;
   double nodesOffTwist = 0.0;                     ///< at the last frame before the release
-  double differenceRms = 0.0, differenceMax = 0;  ///< of the two surfaces, likewise
+  double differenceRms = 0.0, differenceMax = 0;  ///< between the two surfaces, at the last frame before the release
 };
 
-/// Root mean square distance of the nodes to an even twist between the held ends.
+/// Root mean square distance of the nodes from an even twist between the pinned ends.
 double nodesOffTwist(Player& player, int frame) {
-  const std::vector<Eigen::Vector3d>& rest = player.model().cage.nodes;
+  const std::vector<Eigen::Vector3d>& rest = player.model().cage.mesh.nodes;
   const Twist twist = wringAt(boundingBox(rest), frame);
   double squared = 0.0;
   for (std::size_t n = 0; n < rest.size(); ++n) {
@@ -186,21 +186,21 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   std::printf("\n%s: %.0f vertices, %.0f tets\n", json.at("model").get<std::string>().c_str(), number("vertices"),
               number("tets"));
   if (json.at("outside") > 0) {
-    std::printf("  %.0f vertices outside the cage, the farthest, vertex %.0f, by %.3g\n", number("outside"),
-                number("worst_vertex"), number("worst_distance"));
+    std::printf("  %.0f vertices outside the cage, the farthest is vertex %.0f at a distance of %.3g\n",
+                number("outside"), number("worst_vertex"), number("worst_distance"));
   }
   std::printf("  %-26s%11s%11s\n", "", "linear", "quadratic");
-  both("error, RMS", "%11.2e", "error_", "_rms", "box diagonals, with the nodes set to a full turn");
-  both("error, largest", "%11.2e", "error_", "_max", "box diagonals");
+  both("error, RMS", "%11.2e", "error_", "_rms", "of the box's diagonal, with the nodes set to a full turn");
+  both("error, largest", "%11.2e", "error_", "_max", "of the box's diagonal");
   both("error of normals, mean", "%11.2f", "normal_error_", "_deg", "degrees");
-  both("update", "%11.1f", "skin_", "_us_per_frame", "us a frame");
-  one("apart, RMS", "%22.2e", "difference_rms", "box diagonals, when Bullet has turned the end");
-  one("nodes off an even twist", "%22.2e", "nodes_off_twist_rms", "box diagonals, likewise");
-  one("simulation", "%22.2f", "simulation_ms_per_frame", "ms a frame");
+  both("update", "%11.1f", "skin_", "_us_per_frame", "us per frame");
+  one("distance of both, RMS", "%22.2e", "difference_rms", "of the box's diagonal, when Bullet has turned the end");
+  one("nodes off an even twist", "%22.2e", "nodes_off_twist_rms", "of the box's diagonal, RMS, at the same time");
+  one("simulation", "%22.2f", "simulation_ms_per_frame", "ms per frame");
   std::printf("  %s/frame_0000.obj ... %s\n", json.at("out").get<std::string>().c_str(), summaryPath.c_str());
 }
 
-/// Both surfaces on one cage, as the frames have them.
+/// Both surfaces on one cage, as they are in the frames.
 ViewPage pageOf(const Model& model, const Embedding& embedding) {
   ViewPage page(titleOf(model.name) + ", a full turn", factsOf(model), Interpolation::Quadratic);
   const std::size_t shared = page.addModel(model.cage, model.mesh, embedding);
@@ -249,9 +249,9 @@ int main(int argc, char** argv) {
   options.model.tets = 600;
   options.skin.normals = Normals::Transformed;
   CommandLine line(
-      "A body held at both ends of its longest side is twisted a full turn and released, in Bullet's deformable "
-      "world. One cage carries a linear and a quadratic surface; the errors of both are printed.",
-      {{{"tetskin_twist", "a bar in 600 tets: out/twist/frame_0000.obj, ..., and summary.json"},
+      "Twists a body, pinned at both ends of its longest side, by a full turn and releases it, in Bullet's deformable "
+      "world. One cage carries a linear and a quadratic surface; prints the errors of both.",
+      {{{"tetskin_twist", "a bar in a cage of about 600 tets: out/twist/frame_0000.obj, ..., and summary.json"},
         {"tetskin_twist --model serpent --tets 300", "the serpent in a coarser cage"}},
        "the simulation exploded"});
   line.addModelOptions(options.model);

@@ -1,12 +1,12 @@
-# What tests need besides a compiler. Where it is missing they are left out, and it is said; with
-# TETSKIN_TEST_EVERYTHING, as tests/run --all has it, nothing is left out: that stops.
+# Tools that tests need besides a compiler. Tests whose tools are missing are left out, with a message. With
+# TETSKIN_TEST_EVERYTHING, which tests/run --all sets, a missing tool is an error.
 set(missing_tools)
 function(tetskin_lacks tool tests)
   message(STATUS "${tool} not found: no ${tests}")
   set(missing_tools ${missing_tools} ${tool} PARENT_SCOPE)
 endfunction()
 
-# With the one version that the files are formatted with.
+# In exactly the version with which the files are formatted.
 find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)
 find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
 foreach(tool CLANG_FORMAT CLANG_TIDY)
@@ -30,7 +30,7 @@ if(NOT TARGET docs)
   tetskin_lacks("doxygen" "test of the public headers' pages")
 endif()
 
-# clang with the runtime of its fuzzer; otherwise fuzzers are driven at random.
+# clang with the runtime of its fuzzer; without it, a random driver runs the fuzzers.
 find_program(CLANG_CXX NAMES clang++-14 clang++)
 set(has_fuzzer_runtime FALSE)
 if(CLANG_CXX)
@@ -55,7 +55,7 @@ find_program(NM NAMES nm)
 if(NOT NM)
   tetskin_lacks("nm (binutils)" "test of what shared libraries show")
 endif()
-# The first Python with matplotlib: the one in the path may be another than the system's, which has the package.
+# The first Python with matplotlib: the one in the path may differ from the system's, which has the package.
 find_program(PYTHON_IN_PATH python3)
 find_program(PYTHON_OF_SYSTEM python3 PATHS /usr/bin NO_DEFAULT_PATH)
 foreach(python IN ITEMS ${PYTHON_IN_PATH} ${PYTHON_OF_SYSTEM})

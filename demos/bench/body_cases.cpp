@@ -6,7 +6,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ namespace {
 using benchmark::State;
 using scenes::makeSerpent;
 
-/// Trees of a body whose faces are a serpent's triangles.
+/// Face trees of a body whose faces are a serpent's triangles.
 void buildFaceTree(State& state, std::size_t triangles) {
   const TriangleMesh mesh = makeSerpent({triangles});
   std::vector<btVector3> nodes;
@@ -35,10 +35,10 @@ void buildFaceTree(State& state, std::size_t triangles) {
 TetMesh serpentCage(std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  return buildCage(makeSerpent(), options).value();
+  return createCage(makeSerpent(), options).value().mesh;
 }
 
-/// A cage of two parts that share no node.
+/// A cage with two components that share no node.
 TetMesh twoSerpents(std::size_t tets) {
   TetMesh cage = serpentCage(tets);
   const TetMesh other = cage;
@@ -48,7 +48,7 @@ TetMesh twoSerpents(std::size_t tets) {
   return cage;
 }
 
-/// The first ray after a step through a body of two parts, for which Bullet's own builder would never come back.
+/// The first ray after a step, through a body with two components, for which Bullet's own builder would never return.
 void castRay(State& state) {
   const auto scene = scenes::sceneNamed("float").make(twoSerpents(3000));
   const btVector3 node = scene->body().m_nodes[0].m_x, aside(btScalar(0.01), 50, btScalar(0.02));
@@ -64,7 +64,7 @@ void castRay(State& state) {
   state.counters["faces"] = static_cast<double>(scene->body().m_faces.size());
 }
 
-/// A frame of four substeps of bodies that float beside each other.
+/// A frame with four substeps, of bodies that float beside each other.
 void step(State& state, int bodies, bool faceTree) {
   scenes::SceneOptions options;
   options.bodies = static_cast<std::size_t>(bodies);

@@ -4,7 +4,7 @@
 
 namespace tetskin::bench {
 
-/// What trees of faces cost a body, and what they give: FaceTree, Ray, Step.
+/// Registers FaceTree, Ray and Step: what face trees cost a body, and what they gain.
 void registerBodyCases();
 
 }  // namespace tetskin::bench

@@ -5,7 +5,7 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <benchmark/benchmark.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,20 +27,20 @@ using benchmark::State;
 
 constexpr std::size_t kContactTets = 1000;
 constexpr int kSubsteps = 4;
-/// A landing, and rest.
+/// Enough for a landing, and for rest.
 constexpr int kContactFrames = 180;
-/// Between bodies in a row, of kSize.
+/// Distance between bodies in a row, in units of kSize.
 constexpr double kRowSpacing = 2.5;
-/// Over the obstacle's top: bodies that fall, and those that begin in touch.
+/// Height above the obstacle's top: of bodies that fall, and of those that begin in contact.
 constexpr double kFall = 0.2, kTouching = 0.001 * scenes::kSize;
 
-/// Who looks for contacts: `Bullet` is its own solver, by nodes. `Free`: nothing is there to be met, for what the step
-/// costs without.
+/// What searches for contacts. `Bullet`: its own solver, by nodes. `Free`: there is nothing to meet, which gives the
+/// cost of a step without contact.
 enum class Finder { Surface, Cage, Bullet, Free };
 constexpr std::pair<Finder, const char*> kFinders[] = {
     {Finder::Surface, "/surface"}, {Finder::Cage, "/cage"}, {Finder::Bullet, "/bullet"}, {Finder::Free, "/free"}};
 
-/// Processor time spent with pairs of bodies.
+/// Processor time spent on pairs of bodies.
 std::clock_t inPairs = 0;
 
 void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
@@ -49,18 +49,18 @@ void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher
   inPairs += std::clock() - begin;
 }
 
-/// What a body falls on, its top at the origin, or what it hangs around.
+/// What a body falls on, with its top at the origin, or what it hangs around.
 struct ContactObstacle {
   std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btCollisionShape> shape;
   btVector3 centre{0, 0, 0};
-  std::vector<std::unique_ptr<btCollisionShape>> children{};  ///< of a compound
+  std::vector<std::unique_ptr<btCollisionShape>> children{};  ///< children of a compound
 };
 
 ContactObstacle ground() {
   return {nullptr, std::make_unique<btBoxShape>(btVector3(10, 1, 10)), btVector3(0, -1, 0)};
 }
-/// Longer than anything slides on it.
+/// A runway longer than any distance that a body slides.
 ContactObstacle runway() {
   return {nullptr, std::make_unique<btBoxShape>(btVector3(40, 1, 10)), btVector3(0, -1, 0)};
 }
@@ -84,7 +84,7 @@ std::unique_ptr<btConvexHullShape> hullOf(const Eigen::Vector3d& radii, int ring
 ContactObstacle hull() {
   return {nullptr, hullOf({1.5, 0.8, 1.5}, 12), btVector3(0, btScalar(-0.8), 0)};
 }
-/// A square of shapes, side by side in a compound, their tops at the height of its origin.
+/// A square of shapes, side by side in a compound, with their tops at the height of its origin.
 template <class MakeShape>
 ContactObstacle paving(int side, double spacing, double height, MakeShape&& makeShape) {
   ContactObstacle paved;
@@ -99,7 +99,7 @@ ContactObstacle paving(int side, double spacing, double height, MakeShape&& make
   paved.shape = std::move(compound);
   return paved;
 }
-/// Each of 106 points; all of them under the body.
+/// Convex hulls of 106 points each; all of them lie under the body.
 template <int kSide>
 ContactObstacle hulls() {
   const double spacing = scenes::kSize / kSide;
@@ -126,7 +126,7 @@ ContactObstacle hills() {
   auto shape = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true);
   return {std::move(triangles), std::move(shape), btVector3(0, 0, 0)};
 }
-/// In the body's box, but not near its surface.
+/// An obstacle in the body's box, but not near its surface.
 ContactObstacle apart() {
   return {nullptr, std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(btScalar(0.6), 1, 0)};
 }
@@ -153,20 +153,20 @@ struct ContactCase {
   int bodies = 1;
   double height = kFall;
   double speed = 0.0;     ///< along x
-  bool rolls = false;     ///< with that speed
-  double slope = 0.0;     ///< radians, down along x
-  double friction = 0.5;  ///< the obstacle's, by which the body's 0.5 is multiplied
+  bool rolls = false;     ///< begins to roll with that speed
+  double slope = 0.0;     ///< radians, downwards along x
+  double friction = 0.5;  ///< the obstacle's, which is multiplied by the body's 0.5
 };
 
-/// A body's mesh and cage in the world's size, where it begins.
+/// A body's mesh and cage, scaled to the world, at their initial position.
 struct ContactModel {
   explicit ContactModel(const ContactCase& made) : mesh(made.mesh()) {
     CageOptions options;
     options.targetTets = kContactTets;
-    cage = buildCage(mesh, options).value();
-    const double scale = scenes::kSize / boundingBox(cage.nodes).sizes().maxCoeff();
+    cage = createCage(mesh, options).value();
+    const double scale = scenes::kSize / boundingBox(cage.mesh.nodes).sizes().maxCoeff();
     const double lift = made.height - scale * boundingBox(mesh.positions).min().y();
-    for (auto* points : {&cage.nodes, &mesh.positions}) {
+    for (auto* points : {&cage.mesh.nodes, &mesh.positions}) {
       for (Eigen::Vector3d& p : *points) p = scale * p + lift * Eigen::Vector3d::UnitY();
     }
   }
@@ -180,17 +180,17 @@ btVector3 gravityOf(const ContactCase& made, Finder finder) {
   return toBullet(made.gravity * Eigen::Vector3d(std::sin(made.slope), -std::cos(made.slope), 0));
 }
 
-/// Bodies on an obstacle, and what a step costs.
+/// Bodies on an obstacle, and the cost of a step.
 class ContactRun {
  public:
   ContactRun(const ContactModel& model, const ContactCase& made, Finder finder)
       : obstacle_(made.obstacle()),
         world_(finder == Finder::Bullet ? scenes::Force::NeoHookean : scenes::Force::Elastic, gravityOf(made, finder)) {
     if (finder != Finder::Free) addObstacle(static_cast<btScalar>(made.friction));
-    const auto binding = SoftBodyBinding::make(model.cage, model.mesh).value();
+    const auto binding = SoftBodyBinding::create(model.cage, model.mesh).value();
     for (int b = 0; b < made.bodies; ++b) {
       Cage cage = model.cage;
-      for (Eigen::Vector3d& p : cage.nodes) p.x() += kRowSpacing * (b - 0.5 * (made.bodies - 1));
+      for (Eigen::Vector3d& p : cage.mesh.nodes) p.x() += kRowSpacing * (b - 0.5 * (made.bodies - 1));
       btSoftBody& body = world_.add(cage, scenes::oneKilogram());
       body.setActivationState(DISABLE_DEACTIVATION);
       if (finder == Finder::Surface) world_.touchBySurface(body, *binding, model.mesh);
@@ -204,7 +204,7 @@ class ContactRun {
   ContactRun(const ContactRun&) = delete;
   ContactRun& operator=(const ContactRun&) = delete;
 
-  /// Makes a frame. Seconds a substep, of pairs alone and of all of it.
+  /// Simulates one frame. Returns seconds per substep, for pairs alone and in total.
   std::pair<double, double> step() {
     inPairs = 0;
     const std::clock_t begin = std::clock();
@@ -222,7 +222,7 @@ class ContactRun {
     rigid_->setFriction(friction);
     world_.bullet().addRigidBody(rigid_.get());
   }
-  /// A body that rolls turns about the middle of its height.
+  /// A body that rolls turns about the centre of its height.
   static void setMotion(btSoftBody& body, const ContactCase& made) {
     btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
     for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -259,7 +259,7 @@ void findContacts(State& state, const ContactCase& made, Finder finder) {
     ++frame;
   }
   state.counters["step_us"] = 1e6 * steps / static_cast<double>(state.iterations());
-  state.counters["tets"] = static_cast<double>(model.cage.tetCount());
+  state.counters["tets"] = static_cast<double>(model.cage.mesh.tetCount());
   state.counters["triangles"] = static_cast<double>(model.mesh.triangleCount());
 }
 
@@ -275,7 +275,7 @@ std::vector<ContactCase> contactCases() {
   rolling.height = kTouching;
   rolling.speed = 2.0;
   rolling.rolls = true;
-  // Stops as the run ends.
+  // This body comes to a stop as the run ends.
   ContactCase sliding{"sliding", runway};
   sliding.mesh = slab;
   sliding.height = kTouching;

@@ -4,8 +4,9 @@
 
 namespace tetskin::bench {
 
-/// What it costs in a substep to find what bodies touch: by their surfaces, by their cages, in Bullet's own solver, and
-/// in free flight. The counter `step_us` is of the whole substep: less that in free flight it is what contact costs.
+/// Registers what contact search costs per substep: by the bodies' surfaces, by their cages, in Bullet's own solver,
+/// and in free flight. The counter `step_us` is the time of the whole substep; contact costs that time minus the time
+/// in free flight.
 void registerContactCases();
 
 }  // namespace tetskin::bench

@@ -3,8 +3,8 @@
 #include "bench/step_cases.h"
 
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/deformable_solver.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 
 #include <algorithm>
@@ -25,15 +25,15 @@ using scenes::Force;
 
 /// A third of a second of falling, and two of landing and rocking.
 constexpr int kFrames = 140;
-/// Of XPBD, a frame.
+/// Substeps of XPBD per frame.
 constexpr int kXpbdSubsteps = 10;
 
-/// In the world's size.
+/// A cage scaled to the world.
 TetMesh worldCage(std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  TetMesh cage = buildCage(scenes::makeSerpent(), options).value();
-  return scenes::placementOf(boundingBox(cage.nodes)).toWorld(std::move(cage));
+  TetMesh cage = createCage(scenes::makeSerpent(), options).value().mesh;
+  return scenes::placementOf(boundingBox(cage.nodes)).toWorld(std::move(cage)).mesh;
 }
 
 /// Times frames of a run of kFrames that are spread evenly over it, however few the library asks for: a landing costs
@@ -62,8 +62,8 @@ void timeFrames(State& state, Restart&& restart, Step&& step) {
   }
 }
 
-/// The drop scene, each frame of four steps; the same Young's modulus for all forces: the default of bodies in Bullet's
-/// solver, which their steps can bear.
+/// The drop scene with four steps per frame. All forces have the same Young's modulus: the default of bodies in
+/// Bullet's solver, at which their steps are stable.
 void drop(State& state, Force force, std::size_t tets) {
   const TetMesh cage = worldCage(tets);
   scenes::SceneOptions options;
@@ -110,25 +110,25 @@ void crowd(State& state, Force force) {
   state.counters["asleep"] = static_cast<double>(asleep);
 }
 
-/// The serpent in the world's size, and its shape of 4,000 samples.
+/// The serpent scaled to the world, and its contact shape with 4,000 samples.
 struct TouchingModel {
   explicit TouchingModel(std::size_t tets) {
     scenes::ModelOptions options;
     options.tets = tets;
     scenes::Model model = scenes::loadModel(options);
-    const scenes::Placement place = scenes::placementOf(boundingBox(model.cage.nodes));
-    cage = place.toWorld(model.cage);
-    place.toWorld(model.mesh.positions);
+    const scenes::Placement position = scenes::placementOf(boundingBox(model.cage.mesh.nodes));
+    cage = position.toWorld(model.cage);
+    position.toWorld(model.mesh.positions);
     ContactShapeOptions shapeOptions;
-    shapeOptions.samples = 4000;
-    shape = makeContactShape(cage, model.mesh, shapeOptions).value();
+    shapeOptions.sampleCount = 4000;
+    shape = ContactShape::create(cage, model.mesh, shapeOptions).value();
   }
 
   Cage cage;
   std::shared_ptr<const ContactShape> shape;
 };
 
-/// Of all soft bodies, units per second.
+/// The speed of the fastest node of all soft bodies, units per second.
 double fastestNode(scenes::World& world) {
   const btCollisionObjectArray& objects = world.bullet().getCollisionObjectArray();
   btScalar fastest = 0;
@@ -139,7 +139,7 @@ double fastestNode(scenes::World& world) {
   return static_cast<double>(fastest);
 }
 
-/// Steps of a world in which everything has come to lie.
+/// Steps of a world in which everything has come to rest.
 void timeSettled(State& state, scenes::World& world, const Cage& cage) {
   constexpr int kSettled = 2400;
   for (int s = 0; s < kSettled; ++s) world.step(1.0 / 240.0);
@@ -151,10 +151,10 @@ void timeSettled(State& state, scenes::World& world, const Cage& cage) {
   state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
   state.counters["fastest"] = fastestNode(world);
   state.counters["contacts"] = static_cast<double>(world.softContacts().size());
-  state.counters["tets"] = static_cast<double>(cage.tetCount());
+  state.counters["tets"] = static_cast<double>(cage.mesh.tetCount());
 }
 
-/// Two bodies that lie on each other, or far apart: a step, with their contact or without.
+/// A step of two bodies that lie on each other, or far apart, with their contact or without.
 void softPair(State& state, std::size_t tets, double apart, bool touch) {
   const TouchingModel model(tets);
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
@@ -162,7 +162,8 @@ void softPair(State& state, std::size_t tets, double apart, bool touch) {
   for (int k = 0; k < 2; ++k) {
     Cage placed = model.cage;
     const Eigen::AngleAxisd turn(1.1 * k, Eigen::Vector3d(0.3, 1.0, 0.2).normalized());
-    for (Eigen::Vector3d& p : placed.nodes) p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
+    for (Eigen::Vector3d& p : placed.mesh.nodes)
+      p = turn * p + Eigen::Vector3d(apart * k, apart > 0.0 ? 0.0 : 1.25 * k, 0);
     btSoftBody& body = world.add(placed, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
     if (touch) world.touchEachOther(body, model.shape);
@@ -170,7 +171,7 @@ void softPair(State& state, std::size_t tets, double apart, bool touch) {
   timeSettled(state, world, model.cage);
 }
 
-/// A serpent on the floor that meets itself, or not: so soft that its coils sink onto each other, or firm.
+/// A serpent on the floor that meets itself, or not: so soft that its coils sink onto each other, or stiff.
 void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
   const TouchingModel model(tets);
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));

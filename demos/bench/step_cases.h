@@ -4,8 +4,8 @@
 
 namespace tetskin::bench {
 
-/// Registers what a frame of the body costs: each force and solver, beside Bullet's and a plain solver by hand; and a
-/// crowd of which most sleep.
+/// Registers what a frame of the body costs: each force and solver, compared with Bullet's and with a plain
+/// hand-written solver; and a crowd most of which sleeps.
 void registerStepCases();
 
 }  // namespace tetskin::bench

@@ -6,10 +6,9 @@
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 #include <benchmark/benchmark.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/cage/cage_builder.h>
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
-#include <tetskin/touch/surface_weld.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <cmath>
 #include <memory>
@@ -28,9 +27,9 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kTouchTets = 1000;
 constexpr double kFrameTime = 1.0 / 60.0;
-/// Two seconds of one turn each.
+/// Two seconds, in each of which it turns once.
 constexpr int kSwingFrames = 120;
-/// Farther than any body is sent, in sizes: it has exploded.
+/// Farther than any body is sent, in units of its size: a body beyond it has exploded.
 constexpr double kLost = 50.0;
 
 struct TouchModel {
@@ -39,21 +38,21 @@ struct TouchModel {
   std::shared_ptr<const SoftBodyBinding> binding;
 };
 
-/// The serpent, kSize long, its cage's middle two sizes up.
+/// The serpent, kSize long, with its cage's centre two of its sizes above the origin.
 const TouchModel& serpent() {
   static const TouchModel model = [] {
     TouchModel made;
     made.mesh = scenes::makeSerpent();
     CageOptions options;
     options.targetTets = kTouchTets;
-    made.cage = buildCage(made.mesh, options).value();
-    const scenes::Placement place = scenes::placementOf(boundingBox(made.cage.nodes));
-    made.cage = place.toWorld(made.cage);
-    place.toWorld(made.mesh.positions);
-    for (auto* points : {&made.cage.nodes, &made.mesh.positions}) {
+    made.cage = createCage(made.mesh, options).value();
+    const scenes::Placement position = scenes::placementOf(boundingBox(made.cage.mesh.nodes));
+    made.cage = position.toWorld(made.cage);
+    position.toWorld(made.mesh.positions);
+    for (auto* points : {&made.cage.mesh.nodes, &made.mesh.positions}) {
       for (Vector3d& p : *points) p.y() += 2 * scenes::kSize;
     }
-    made.binding = SoftBodyBinding::make(made.cage, made.mesh).value();
+    made.binding = SoftBodyBinding::create(made.cage, made.mesh).value();
     return made;
   }();
   return model;
@@ -85,14 +84,14 @@ std::vector<std::array<btVector3, 2>> raysThrough(const SoftBodySkin& skin, std:
   return rays;
 }
 
-/// fits  the body moves before every ray
+/// fits  the face tree is refitted, as the body moves before every ray
 void castRays(State& state, bool fits) {
   const TouchModel& model = serpent();
   scenes::World world(scenes::Force::Elastic, btVector3(0, 0, 0));
   btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
   SoftBodySkin skin;
   (void)skin.bind(body, model.binding);
-  const SurfaceTree tree(model.binding, model.mesh);
+  const SurfaceTree tree = SurfaceTree::create(model.binding, model.mesh).value();
   bend(body, 1);
   (void)skin.update();
   const auto rays = raysThrough(skin, 10'000);
@@ -109,7 +108,7 @@ void castRays(State& state, bool fits) {
   state.counters["triangles"] = static_cast<double>(model.mesh.triangleCount());
 }
 
-/// Half a size around in a second.
+/// Moves around a circle, half the body's size across, once per second.
 btVector3 swung(const btVector3& start, double seconds) {
   const double angle = 2 * EIGEN_PI * seconds, radius = 0.25 * scenes::kSize;
   return start + toBullet({radius * std::sin(angle), 0, radius * (1 - std::cos(angle))});
@@ -117,22 +116,22 @@ btVector3 swung(const btVector3& start, double seconds) {
 
 enum class Puller { Spring, Bullets };
 
-/// Bullet's own force on the face nearest to the point, as stiff.
+/// Bullet's own force on the face nearest to the point, with the same stiffness.
 std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, const SurfacePoint& point,
                                                             double stiffness) {
   const btVector3 at = *point.position();
   int nearest = 0;
-  btScalar least = BT_LARGE_FLOAT;
+  btScalar minimum = BT_LARGE_FLOAT;
   for (int f = 0; f < body.m_faces.size(); ++f) {
     const auto& n = body.m_faces[f].m_n;
     const btScalar distance = ((n[0]->m_x + n[1]->m_x + n[2]->m_x) / 3 - at).length();
-    if (distance >= least) continue;
-    least = distance;
+    if (distance >= minimum) continue;
+    minimum = distance;
     nearest = f;
   }
   double mass = 0;
   for (int n = 0; n < body.m_nodes.size(); ++n) mass += 1 / static_cast<double>(body.m_nodes[n].m_im);
-  const double k = stiffness * 4 * mass / body.m_nodes.size() * 240 * 240 / 3;  // at each of three nodes
+  const double k = stiffness * 4 * mass / body.m_nodes.size() * 240 * 240 / 3;  // shared by three nodes
   auto force = std::make_unique<btDeformableMousePickingForce>(static_cast<btScalar>(k), btScalar(0),
                                                                body.m_faces[nearest], at, btScalar(1e30));
   auto* solver = static_cast<btDeformableBodySolver*>(body.getSoftBodySolver());
@@ -143,7 +142,7 @@ std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, co
 }
 
 /// The serpent hangs by its top, and is swung. The lag is the largest distance between point and target after a frame,
-/// from half a second on.
+/// from half a second onwards.
 void swing(State& state, Puller puller, double stiffness, int rate) {
   const TouchModel& model = serpent();
   double lag = 0;
@@ -152,8 +151,8 @@ void swing(State& state, Puller puller, double stiffness, int rate) {
     scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
     btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
-    const SurfaceTree tree(model.binding, model.mesh);
-    const SurfacePoint point = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
+    const SurfaceTree tree = SurfaceTree::create(model.binding, model.mesh).value();
+    const SurfacePoint point = tree.pointAtVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
     const btVector3 start = *point.position();
     std::unique_ptr<SurfaceSpring> spring;
     std::unique_ptr<btDeformableMousePickingForce> bullets;
@@ -179,10 +178,10 @@ void swing(State& state, Puller puller, double stiffness, int rate) {
     }
   }
   state.counters["lag_S"] = lost ? HUGE_VAL : lag / scenes::kSize;
-  state.counters["tets"] = static_cast<double>(model.cage.tetCount());
+  state.counters["tets"] = static_cast<double>(model.cage.mesh.tetCount());
 }
 
-/// A rigid body of so much mass, the soft one's being 1, hangs at the serpent's lowest point, while its top is swung.
+/// A rigid body of the given mass (the soft body's is 1) hangs from the serpent's lowest point, while its top is swung.
 void hang(State& state, bool welded, double mass, int rate) {
   const TouchModel& model = serpent();
   double worst = 0;
@@ -190,9 +189,9 @@ void hang(State& state, bool welded, double mass, int rate) {
     scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
     btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
     body.setActivationState(DISABLE_DEACTIVATION);
-    const SurfaceTree tree(model.binding, model.mesh);
-    const SurfacePoint top = tree.pointOfVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
-    const SurfacePoint low = tree.pointOfVertex(body, furthest(model.mesh, -Vector3d::UnitY())).value();
+    const SurfaceTree tree = SurfaceTree::create(model.binding, model.mesh).value();
+    const SurfacePoint top = tree.pointAtVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
+    const SurfacePoint low = tree.pointAtVertex(body, furthest(model.mesh, -Vector3d::UnitY())).value();
     const btVector3 start = *top.position(), pivot(0, btScalar(0.1), 0);
     btBoxShape shape(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
     btVector3 inertia;
@@ -203,9 +202,9 @@ void hang(State& state, bool welded, double mass, int rate) {
     box.setActivationState(DISABLE_DEACTIVATION);
     world.bullet().addRigidBody(&box);
     {
-      SurfaceSpringOptions firm;
-      firm.stiffness = 100;
-      const auto holder = SurfaceSpring::add(world.bullet(), top, firm).value();
+      SurfaceSpringOptions stiff;
+      stiff.stiffness = 100;
+      const auto holder = SurfaceSpring::add(world.bullet(), top, stiff).value();
       std::unique_ptr<SurfaceWeld> weld;
       std::unique_ptr<SurfaceSpring> joint;
       if (welded) {

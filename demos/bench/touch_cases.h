@@ -4,7 +4,7 @@
 
 namespace tetskin::bench {
 
-/// Rays against the visual surface, and what springs and welds at its points cost and miss.
+/// Registers rays against the visual surface, and the cost and error of springs and welds at its points.
 void registerTouchCases();
 
 }  // namespace tetskin::bench

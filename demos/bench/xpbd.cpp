@@ -9,7 +9,7 @@ namespace tetskin::bench {
 namespace {
 
 constexpr float kEdgeCompliance = 2e-4f,
-                kVolumeCompliance = 0.0f;  ///< metres a newton; a body that wobbles, and keeps its volume
+                kVolumeCompliance = 0.0f;  ///< metres per newton; gives a body that wobbles but keeps its volume
 constexpr float kGravity = 9.81f;
 
 struct Vector {

@@ -2,26 +2,26 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
 #include <vector>
 
 namespace tetskin::bench {
 
-/// What the tutorial writes by hand, to be measured beside Bullet's worlds: distances along edges and volumes of tets
-/// as constraints, a floor at y = 0, and nothing else. Plain C++, one thread, float.
+/// What the tutorial writes by hand, measured beside Bullet's worlds: constraints on edge lengths and tet volumes, a
+/// floor at y = 0, and nothing else. Plain C++, one thread, float.
 ///
 /// This work is based on:
 ///   Miles Macklin et al., "Small Steps in Physics Simulation", SCA 2019, doi 10.1145/3309486.3340247
 ///   Matthias Müller, "Simple and unbreakable simulation of soft bodies", Ten Minute Physics 10, 2022
 class Xpbd {
  public:
-  /// cage  its tets positive; of 1 kg
+  /// cage  all tets positive; the body has a mass of 1 kg
   explicit Xpbd(const TetMesh& cage);
 
   void step(float seconds, int substeps);
-  /// Lowest and highest node, world space.
+  /// Heights of the lowest and the highest node, world space.
   std::array<float, 2> heights() const;
 
  private:

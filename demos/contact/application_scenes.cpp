@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes of an application, as found: each a body of a few cubes.
+// Scenes found in an application; each has bodies made of a few cubes.
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -28,7 +28,7 @@ BodyOptions applicationBody(double youngsModulus, bool byNodes) {
   return options;
 }
 
-/// A world as that application makes it.
+/// A world set up as in that application.
 class ApplicationWorld : public ContactWorld {
  public:
   explicit ApplicationWorld(Run& run) : ContactWorld(run) { bullet().getSolverInfo().m_numIterations = 50; }
@@ -45,14 +45,14 @@ double speedOf(const btRigidBody& body) {
   return toEigen(body.getLinearVelocity()).norm();
 }
 
-/// A bar of 1 kg, pinned at its top, holds a box of 1 kg by Bullet's anchors at its lowest nodes.
+/// A bar of 1 kg, pinned at its top, carries a box of 1 kg by Bullet's anchors at its lowest nodes.
 void anchor(Run& run) {
   ApplicationWorld world(run);
   BodyOptions options = applicationBody(2e4, true);
   options.pinned = [](const Vector3d& p) { return p.y() > 0.49; };
   SoftObject& bar = world.addSoft(makeLattice({2, 8, 2}, 0.125), options, Vector3d(0, 2.5, 0));
   btRigidBody& box = world.addBox({0, 1.79, 0}, {0.2, 0.2, 0.2}, 1);
-  // The box is held, and does not meet the bar.
+  // The box hangs from the anchors, and must not collide with the bar.
   world.bullet().removeRigidBody(&box);
   world.bullet().addRigidBody(&box, 64, 0);
   btSoftBody& soft = bar.soft();
@@ -70,9 +70,9 @@ void anchor(Run& run) {
   });
   // (M + m / 2) g L / (E A)
   constexpr double kByHand = 1.5 * scenes::kEarth / (2e4 * 0.0625);
-  run.report("stretch over that by hand", stretch / kByHand);
+  run.report("stretch over analytic value", stretch / kByHand);
   run.report("speed, m/s", speed);
-  run.report("turn, rad/s", turn);
+  run.report("angular speed, rad/s", turn);
 }
 
 /// A soft box of 1 kg on a dynamic plate that lies on the ground.
@@ -90,11 +90,11 @@ void stackOfTwo(Run& run, double plateMass, bool byNodes) {
     raise(speed, soft.fastest());
   });
   run.report("speed, m/s", speed);
-  run.report("below its place, m", 0.5 - soft.motion().centroid.y());
+  run.report("downward displacement, m", 0.5 - soft.motion().centroid.y());
   run.report("plate sinks, m", 0.1 - lowest);
 }
 
-/// Rigid, soft, rigid, soft, rigid.
+/// A stack: rigid, soft, rigid, soft, rigid.
 void stack(Run& run, double mass, bool byNodes) {
   ApplicationWorld world(run);
   world.addGround();
@@ -117,11 +117,11 @@ void stack(Run& run, double mass, bool byNodes) {
   });
   run.report("speed, m/s", speed);
   constexpr double kTop = 3 * 0.2 + 2 * 0.6 - 0.1;
-  run.report("below its place, m", kTop - toEigen(plates.back()->getCenterOfMassPosition()).y());
+  run.report("downward displacement, m", kTop - toEigen(plates.back()->getCenterOfMassPosition()).y());
 }
 
-/// A soft box of 1 kg on a slope, of a friction of 0.5: it would slide from 26.6 degrees on. Whether it is awake after
-/// ten seconds, and how fast it moved in the last of them.
+/// A soft box of 1 kg on a slope, with a friction coefficient of 0.5: it would slide at more than 26.6 degrees.
+/// Measures whether it is awake after ten seconds, and how fast it moved in the last of them.
 struct OnSlope {
   bool awake = true;
   double speed = 0.0;
@@ -142,13 +142,13 @@ OnSlope lieOnSlope(Run& run, double degrees, bool byNodes, bool sleeps) {
   return {body.soft().isActive(), (body.motion().centroid - before).norm()};
 }
 
-/// Kept awake, a body shows what sleep would hide.
+/// A body that is kept awake shows what sleep would hide.
 void slope(Run& run, double degrees, bool byNodes) {
   run.report("speed, m/s", lieOnSlope(run, degrees, byNodes, false).speed);
   run.report("asleep", lieOnSlope(run, degrees, byNodes, true).awake ? 0.0 : 1.0);
 }
 
-/// Bullet's mouse force holds a face of a body at rest.
+/// Bullet's mouse force drags a face of a body at rest.
 void mouse(Run& run) {
   ContactWorld world(run, Vector3d::Zero());
   world.bullet().getSolverInfo().m_numIterations = 50;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact/body_model.h"
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -27,7 +27,7 @@ double volumeOf(const TriangleMesh& mesh) {
   return volume;
 }
 
-/// Vertices of no triangle are samples of contact like all others.
+/// Vertices that no triangle uses are contact samples like all others.
 void appendCopies(TriangleMesh& mesh, Copies copies) {
   constexpr double kApart = 1e-6;
   const std::vector<Vector3d> once = mesh.positions;
@@ -43,7 +43,7 @@ ModelPtr finished(TriangleMesh mesh, Cage cage) {
   auto model = std::make_shared<BodyModel>();
   model->size = boundingBox(mesh.positions).sizes().maxCoeff();
   model->volume = volumeOf(mesh);
-  auto binding = SoftBodyBinding::make(cage, mesh);
+  auto binding = SoftBodyBinding::create(cage, mesh);
   scenes::require(binding.status());
   model->binding = binding.value();
   model->mesh = std::move(mesh);
@@ -51,17 +51,17 @@ ModelPtr finished(TriangleMesh mesh, Cage cage) {
   return model;
 }
 
-/// The cage is that of the bare mesh, whatever its copies.
+/// The cage is that of the mesh without copies.
 ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies) {
   CageOptions options;
   options.targetTets = tets;
-  auto cage = buildCage(mesh, options);
+  auto cage = createCage(mesh, options);
   scenes::require(cage.status());
   if (copies.count == 1) return finished(std::move(mesh), std::move(cage).value());
   appendCopies(mesh, copies);
-  // What is known of single vertices does not hold for the copies; a convex body has no tet twice.
+  // What is known of single vertices does not hold for the copies; a convex body has no duplicate tets.
   cage.value().vertexTets.clear();
-  cage.value().meshHash = 0;
+  cage.value().meshHash.reset();
   return finished(std::move(mesh), std::move(cage).value());
 }
 
@@ -94,7 +94,7 @@ TriangleMesh refined(const TriangleMesh& coarse) {
   return fine;
 }
 
-/// The surface of a box of unit cubes, from the origin on, with a grid of these as its vertices.
+/// The surface of a box of unit cubes with a corner at the origin, and a grid of these as its vertices.
 TriangleMesh gridBox(const Vector3i& cubes) {
   TriangleMesh mesh;
   std::map<std::array<int, 3>, int> vertices;

@@ -6,7 +6,7 @@
 
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -14,31 +14,32 @@
 
 namespace tetskin::contact_demo {
 
-/// About the origin, in metres.
+/// A body about the origin, in metres.
 struct BodyModel {
   TriangleMesh mesh;
   Cage cage;
   std::shared_ptr<const SoftBodyBinding> binding;
   double size = 1.0;    ///< largest side of the mesh's box
-  double volume = 1.0;  ///< of the mesh
+  double volume = 1.0;  ///< volume of the mesh
 };
 
 using ModelPtr = std::shared_ptr<const BodyModel>;
 
-/// How often each vertex of a mesh stands in it. Copies lie 1e-6 sizes beside it, as contact takes no place twice.
+/// How often each vertex of a mesh is repeated. Copies lie 1e-6 of the size beside it, as contact samples no position
+/// twice.
 struct Copies {
   int count = 1;
 };
 
-/// A ball of radius 0.5: an icosphere of 10 x 4^level + 2 vertices, turned so that none is at its lowest point, in a
-/// built cage.
+/// A ball of radius 0.5 in a built cage: an icosphere of 10 x 4^level + 2 vertices, turned so that no vertex is at its
+/// lowest point.
 ModelPtr makeBall(std::size_t tets = 1000, int level = 4, Copies copies = {});
 
-/// A box in a built cage of some 1,000 tets, its surface a grid.
+/// A box in a built cage of some 1,000 tets; its surface is a grid.
 /// divisions  of its longest edge
 ModelPtr makeBox(const Eigen::Vector3d& halfExtents, int divisions = 16, Copies copies = {});
 
-/// A box of so many cubes, of six tets each, with its surface four times as fine as the cubes.
+/// A box of this many cubes of six tets each, with a surface grid four times as fine as the cubes.
 ModelPtr makeLattice(const Eigen::Vector3i& cubes, double edge);
 
 }  // namespace tetskin::contact_demo

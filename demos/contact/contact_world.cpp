@@ -27,7 +27,7 @@ btTransform at(const Vector3d& centre) {
 }
 
 Cage moved(Cage cage, const Isometry3d& to) {
-  for (Vector3d& node : cage.nodes) node = to * node;
+  for (Vector3d& node : cage.mesh.nodes) node = to * node;
   return cage;
 }
 
@@ -35,10 +35,10 @@ SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, 
   SoftBodyOptions soft;
   soft.mass = options.mass;
   soft.friction = options.friction;
-  soft.damping = options.damping;
+  soft.stiffnessDamping = options.damping;
   soft.poissonRatio = kPoisson;
   soft.solverTolerance = options.tolerance;
-  soft.maxIterations = 1000;  // no figure is to be that of a solve which was broken off
+  soft.maxIterations = 1000;  // no figure may come from a solve that was stopped early
   const double density = options.mass / model.volume;
   soft.youngsModulus =
       options.youngsModulus > 0.0 ? options.youngsModulus : options.stiffness * density * scenes::kEarth * model.size;
@@ -84,7 +84,7 @@ std::optional<Vector3d> SoftObject::contactImpulse() const {
 const std::vector<Vector3d>& SoftObject::surface() {
   skin_.markMoved();
   surface_.assign(skin_.positions().size(), Vector3d::Constant(std::nan("")));
-  if (skin_.update() != UpdateStatus::Updated) return surface_;
+  if (skin_.update() != StatusCode::Ok) return surface_;
   for (std::size_t v = 0; v < surface_.size(); ++v) {
     surface_[v] = Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(skin_.positions()[v]).cast<double>();
   }
@@ -92,9 +92,9 @@ const std::vector<Vector3d>& SoftObject::surface() {
 }
 
 double SoftObject::gap(const Distance& distance) {
-  double least = HUGE_VAL;
-  for (const Vector3d& p : surface()) lower(least, distance(p));
-  return least;
+  double minimum = HUGE_VAL;
+  for (const Vector3d& p : surface()) lower(minimum, distance(p));
+  return minimum;
 }
 
 double SoftObject::floorGap() {
@@ -132,9 +132,9 @@ SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, co
     scenes::require(touching.status());
     contacts_.push_back(std::move(touching).value());
   }
-  const std::vector<double> scale = withCage(model->cage, soft).stiffnessScale;
+  const std::vector<double> scale = withCageDefaults(model->cage, soft).stiffnessScale;
   soft_.push_back(std::make_unique<SoftObject>(*deformables_.back(), bySurface ? contacts_.back().get() : nullptr,
-                                               std::move(model), soft.youngsModulus, scale));
+                                               std::move(model), soft.youngsModulus.value(), scale));
   return *soft_.back();
 }
 
@@ -146,10 +146,10 @@ SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, co
 
 SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x,
                                     double z) {
-  // What `SoftBodyOptions::margin` is by default.
+  // The default of `SoftBodyOptions::margin`.
   constexpr double kNodeMargin = 0.02;
   const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
-  const Box3 box = boundingBox(bySurface ? model->mesh.positions : model->cage.nodes);
+  const Box3 box = boundingBox(bySurface ? model->mesh.positions : model->cage.mesh.nodes);
   const double margin = bySurface ? kMargin * model->size : kNodeMargin * box.sizes().maxCoeff();
   return addSoft(model, options, Vector3d(x, height + margin - box.min().y(), z));
 }
@@ -157,7 +157,7 @@ SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const 
 void ContactWorld::touchOthers(SoftObject& body, const ContactShapeOptions& options) {
   std::shared_ptr<const ContactShape>& shape = shapesOfModels_[&body.model()];
   if (!shape) {
-    auto made = makeContactShape(body.model().cage, body.model().mesh, options);
+    auto made = ContactShape::create(body.model().cage, body.model().mesh, options);
     scenes::require(made.status());
     shape = std::move(made).value();
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world in which contact is measured, with all that moves in it.
+// A world in which contact is measured, with everything that moves in it.
 #pragma once
 
 #include <tetskin/bullet/deformable_body.h>
@@ -28,28 +28,28 @@ class btTypedConstraint;
 namespace tetskin::contact_demo {
 
 constexpr double kStep = 1.0 / 240;
-/// Kept between a surface and what it touches, over the body's size: the exact gap at rest.
+/// The distance kept between a surface and what it touches, over the body's size: the exact gap at rest.
 constexpr double kMargin = 0.002;
 
-/// Of a point of world space from an obstacle.
+/// The distance of a point in world space from an obstacle.
 using Distance = std::function<double(const Eigen::Vector3d&)>;
 
 struct BodyOptions {
   double stiffness = 50.0;     ///< Young's modulus over density x gravity x size
-  double youngsModulus = 0.0;  ///< Pa; above 0: instead
+  double youngsModulus = 0.0;  ///< Pa; above 0: used instead of `stiffness`
   double mass = 1.0;           ///< kg
-  double friction = 0.5;       ///< combined with any obstacle of the scene
+  double friction = 0.5;       ///< combined with that of any obstacle of the scene
   double damping = 0.02;       ///< seconds
-  double tolerance = 5e-3;     ///< of the library's solver
-  bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever the run's kind is
+  double tolerance = 5e-3;     ///< tolerance of the library's solver
+  bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever kind the run has
   bool sleeps = false;         ///< it may fall asleep
-  std::function<bool(const Eigen::Vector3d&)> pinned;  ///< of nodes at rest, in the model's space
+  std::function<bool(const Eigen::Vector3d&)> pinned;  ///< chooses pinned nodes by rest position, in the model's space
 };
 
 /// A soft body in a ContactWorld, which owns it.
 class SoftObject {
  public:
-  /// contact  null where its nodes meet rigid bodies
+  /// contact  null if the body's nodes meet rigid bodies
   SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
              std::vector<double> stiffnessScale);
 
@@ -63,14 +63,15 @@ class SoftObject {
 
   RigidMotion motion() const { return rigidMotionOf(soft()); }
   double fastest() const { return fastestNode(soft()); }
-  double energy() const;  ///< kinetic and elastic
-  /// Of all contacts in the last step; nothing where its nodes meet rigid bodies, of which nobody tells.
+  double energy() const;  ///< kinetic plus elastic energy
+  /// The sum of the impulses of all contacts in the last step; nothing where nodes meet rigid bodies, as Bullet does
+  /// not report these.
   std::optional<Eigen::Vector3d> contactImpulse() const;
-  /// The mesh's vertices as they are now, world space.
+  /// The mesh's vertices at present, world space.
   const std::vector<Eigen::Vector3d>& surface();
-  /// Least distance of the mesh's vertices, metres.
+  /// The least distance of the mesh's vertices from an obstacle, metres.
   double gap(const Distance& distance);
-  /// To the floor's plane, y = 0.
+  /// The least distance of the mesh's vertices from the floor's plane, y = 0.
   double floorGap();
 
  private:
@@ -92,42 +93,43 @@ class ContactWorld {
 
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Isometry3d& at);
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Vector3d& centre);
-  /// The same, its lowest point just in touch with a horizontal plane.
+  /// Adds a soft body whose lowest point just touches a horizontal plane.
   SoftObject& addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x = 0.0,
                         double z = 0.0);
 
-  /// A soft body meets all others of which this was said, at their visual surfaces.
-  /// shape  counts for the first body of a model, of whose shape there is one
+  /// A soft body meets all others for which this was called, at their visual surfaces.
+  /// shape  counts for the first body of a model, as a model has one shape
   void touchOthers(SoftObject& body, const ContactShapeOptions& shape = {});
-  /// Of these, in the last step.
+  /// Contacts between these bodies in the last step.
   std::vector<SoftContact> softContacts() const { return world_.softContacts(); }
-  /// The least of their distances, metres, at most 0: below 0 they are so deep in each other.
+  /// The least of these contacts' distances, metres, at most 0: below 0 it is the penetration depth.
   double deepest() const;
 
-  // Rigid bodies never fall asleep; their friction is 1, so that the soft body's counts. mass  0: fixed
+  // Rigid bodies never fall asleep; their friction is 1, so that the soft body's friction is what counts. mass  0:
+  // fixed
   btRigidBody& addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double mass = 0.0);
   btRigidBody& addSphere(const Eigen::Vector3d& centre, double radius, double mass = 0.0);
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass = 0.0);
   /// A large box with its upper side at y = 0.
   btRigidBody& addFloor();
-  /// A box about the origin that hears of contacts, and answers none: by its flags, or as a ghost.
+  /// A box about the origin that takes part in contact detection and exerts no force: by its flags, or as a ghost.
   void addTrigger(double halfExtent);
   void addGhost(double halfExtent);
-  /// One that the scene moves, by its world transform before each step.
+  /// Makes a body kinematic: the scene moves it by setting its world transform before each step.
   static btRigidBody& makeKinematic(btRigidBody& body);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
-  /// Finished. link  that collides: -1: the base
+  /// Adds a multibody that is complete. link  the link that collides; -1: the base
   btMultiBody& addMultiBody(std::unique_ptr<btMultiBody> body, int link, std::unique_ptr<btCollisionShape> shape);
 
   btDeformableMultiBodyDynamicsWorld& bullet();
   void setGravity(const Eigen::Vector3d& gravity);
   void step(double seconds = kStep);
-  /// Steps of one length. after  each
+  /// Makes steps of equal length. after  called after each step
   void simulate(double seconds, const std::function<void()>& after = {}, double step = kStep);
 
-  /// Of all that can move.
+  /// The momentum of everything that can move.
   Momentum momentum() const;
-  /// Kinetic, elastic, and potential above y = 0; of multibodies, the kinetic one of their bases.
+  /// Kinetic, elastic, and potential energy above y = 0; of multibodies, only the kinetic energy of their bases.
   double energy() const;
 
  private:

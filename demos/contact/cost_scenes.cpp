@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What steps cost: of many springs, and of many bodies that meet nothing. Figures without promises, as they are a
-// machine's.
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
+// The cost of steps: with many springs, and with many bodies that meet nothing. Nothing is promised of these figures,
+// as they depend on the machine.
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <Eigen/Geometry>
 #include <memory>
@@ -29,11 +29,11 @@ double stepMilliseconds(ContactWorld& world) {
   return timer.milliseconds();
 }
 
-/// Of the surface, in random directions from a body's centroid at the origin.
+/// Points on the surface, in random directions from a body's centroid at the origin.
 std::vector<SurfacePoint> randomPoints(SoftObject& body, int count) {
   SoftBodySkin skin;
   scenes::require(skin.bind(body.soft(), body.model().binding));
-  const SurfaceTree tree(body.model().binding, body.model().mesh);
+  const SurfaceTree tree = SurfaceTree::create(body.model().binding, body.model().mesh).value();
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<SurfacePoint> points;
@@ -49,7 +49,7 @@ std::vector<SurfacePoint> randomPoints(SoftObject& body, int count) {
   return points;
 }
 
-/// A ball hangs from so many springs to points in space: the median of some steps.
+/// A ball hangs from this many springs to points in space: the median time of several steps.
 double millisecondsOfSprings(Run& run, int count) {
   constexpr int kWarm = 3, kSteps = 9;
   ContactWorld world(run);
@@ -68,21 +68,21 @@ double millisecondsOfSprings(Run& run, int count) {
 }
 
 void manySprings(Run& run) {
-  double ofThousand = 0.0, ofMost = 0.0;
+  double ofThousand = 0.0, ofMax = 0.0;
   for (const int count : {100, 1000, 10000, 64000}) {
     const double milliseconds = millisecondsOfSprings(run, count);
-    run.report("ms a step of " + std::to_string(count), milliseconds);
-    (count == 1000 ? ofThousand : ofMost) = milliseconds;
+    run.report("ms per step, springs: " + std::to_string(count), milliseconds);
+    (count == 1000 ? ofThousand : ofMax) = milliseconds;
   }
-  run.report("growth from 1,000 to 64,000 over 64", ofMost / ofThousand / 64.0);
+  run.report("growth from 1,000 to 64,000 over 64", ofMax / ofThousand / 64.0);
 }
 
-/// A thousand cubes, two of their sizes from each other, that turn.
+/// A thousand rotating cubes, two of their sizes apart.
 void addCubes(ContactWorld& world, const ModelPtr& model, bool touching) {
   constexpr int kAlong = 10;
   const double apart = 3.0 * model->size;
   BodyOptions options;
-  options.byNodes = true;  // so that it is only contact among soft bodies that they look for
+  options.byNodes = true;  // so that the search is only for contact among soft bodies
   for (int k = 0; k < kAlong * kAlong * kAlong; ++k) {
     const Eigen::Vector3i index(k % kAlong, k / kAlong % kAlong, k / (kAlong * kAlong));
     SoftObject& cube = world.addSoft(model, options, Vector3d(apart * index.cast<double>()));
@@ -91,7 +91,7 @@ void addCubes(ContactWorld& world, const ModelPtr& model, bool touching) {
   }
 }
 
-/// The two worlds step in turn, so that what else the machine does is in both.
+/// The two worlds step in turn, so that other load of the machine affects both.
 void apart(Run& run) {
   constexpr int kWarm = 5, kSteps = 61;
   const ModelPtr model = makeLattice({2, 2, 2}, 0.25);
@@ -106,8 +106,8 @@ void apart(Run& run) {
     withContact.push_back(other);
     ratios.push_back(other / one);
   }
-  run.report("ms a step without contact", scenes::median(withoutContact));
-  run.report("ms a step with contact", scenes::median(withContact));
+  run.report("ms per step without contact", scenes::median(withoutContact));
+  run.report("ms per step with contact", scenes::median(withContact));
   run.report("contact adds, %", 100.0 * (scenes::median(ratios) - 1.0));
 }
 

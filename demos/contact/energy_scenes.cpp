@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Landings, blows, squeezing: no energy but what was there, and no surface deep in what it meets.
+// Landings, impacts, squeezing: no energy is gained, and no surface is deep in what it meets.
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Geometry>
@@ -23,15 +23,15 @@ BodyOptions bodyOfStiffness(double stiffness) {
   return options;
 }
 
-/// For half a second.
+/// Runs for half a second.
 void reportEnergy(Run& run, ContactWorld& world, SoftObject& body, const Distance& distance) {
   const double start = world.energy();
-  double most = 0.0, gap = HUGE_VAL;
+  double maximum = 0.0, gap = HUGE_VAL;
   world.simulate(0.5, [&] {
-    raise(most, world.energy());
+    raise(maximum, world.energy());
     lower(gap, body.gap(distance));
   });
-  run.report("energy over its start", most / start);
+  run.report("energy over its start", maximum / start);
   run.report("least gap, S", gap);
 }
 
@@ -51,7 +51,7 @@ void landBall(Run& run, double stiffness, double speed) {
   land(run, makeBall(), Eigen::Isometry3d(Eigen::Translation3d(0, 0.56, 0)), stiffness, speed);
 }
 
-/// On a corner.
+/// A box lands on a corner.
 void landBox(Run& run, double stiffness, double speed) {
   const Eigen::AngleAxisd turn(0.4, Vector3d(1, 0, 0.5).normalized());
   land(run, makeBox({0.5, 0.25, 0.5}), Eigen::Translation3d(0, 0.62, 0) * Eigen::Isometry3d(turn), stiffness, speed);
@@ -70,7 +70,7 @@ void crush(Run& run, double stiffness, double mass, double speed) {
   });
 }
 
-/// Two moved plates close on a cube until it has half its width, and let go of it.
+/// Two kinematic plates close on a cube until it has half its width, and let go of it.
 void squeeze(Run& run, double stiffness) {
   constexpr double kThickness = 0.2, kClosed = 0.25, kSpeed = 0.5, kSpeedBack = 5.0;
   ContactWorld world(run, Vector3d::Zero());
@@ -93,12 +93,12 @@ void squeeze(Run& run, double stiffness) {
   while (inner > kClosed) move(-kSpeed);
   for (int k = 0; k < 24; ++k) move(0.0);
   const double stored = world.energy();
-  double most = 0.0;
+  double maximum = 0.0;
   for (int k = 0; k < 120; ++k) {
     move(kSpeedBack);
-    raise(most, world.energy());
+    raise(maximum, world.energy());
   }
-  run.report("energy over its start", most / stored);
+  run.report("energy over its start", maximum / stored);
   run.report("least gap, S", gap);
 }
 
@@ -106,7 +106,7 @@ void squeeze(Run& run, double stiffness) {
 
 void addEnergyScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, const std::function<void(Run&)>& run) {
-    // What Bullet's material has stored would take other formulas.
+    // The energy stored in Bullet's material would need other formulas.
     scenes.push_back({"energy/" + name, run, {Kind::Surface, Kind::Nodes}});
   };
   for (const double k : {50.0, 500.0}) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The greatest and the least of many values. One that is not a number stays: no later value hides an explosion.
+// The greatest and the least of many values. NaN is kept: no later value hides an explosion.
 #pragma once
 
 #include <cmath>
 
 namespace tetskin::contact_demo {
 
-inline void raise(double& most, double value) {
-  if (!(value <= most) && !std::isnan(most)) most = value;
+inline void raise(double& maximum, double value) {
+  if (!(value <= maximum) && !std::isnan(maximum)) maximum = value;
 }
 
-inline void lower(double& least, double value) {
-  if (!(value >= least) && !std::isnan(least)) least = value;
+inline void lower(double& minimum, double value) {
+  if (!(value >= minimum) && !std::isnan(minimum)) minimum = value;
 }
 
 }  // namespace tetskin::contact_demo

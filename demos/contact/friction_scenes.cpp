@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Rolling, sliding, sticking: what a point mass or a rigid ball does by hand.
+// Rolling, sliding, sticking, compared with the analytic motion of a point mass or a rigid ball.
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Geometry>
@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of a slope that falls towards +x, the slope itself being level: so it is exact.
+/// Gravity on a slope that falls towards +x. The slope itself stays level in the world, so it is exact.
 Vector3d gravityOn(double slope) {
   return scenes::kEarth * Vector3d(std::sin(slope), -std::cos(slope), 0);
 }
@@ -42,11 +42,11 @@ struct Rolling {
 };
 
 struct Rolled {
-  double overRigid = 0.0;  ///< acceleration over that of a rigid body with the same inertia
-  double overBall = 0.0;   ///< and over that of a homogeneous ball
+  double overRigid = 0.0;  ///< acceleration, relative to that of a rigid body with the same inertia
+  double overBall = 0.0;   ///< acceleration, relative to that of a homogeneous ball
 };
 
-/// A ball that has come to rest rolls down 10 degrees, until it has 1 m/s.
+/// A ball that has come to rest rolls down a slope of 10 degrees, until it reaches 1 m/s.
 Rolled roll(Run& run, const Rolling& rolling) {
   constexpr double kSlope = 10.0 * EIGEN_PI / 180, kRadius = 0.5, kFrom = 0.1, kUntil = 2.5, kSpeed = 1.0;
   ContactWorld world(run, gravityOn(0.0));
@@ -57,7 +57,7 @@ Rolled roll(Run& run, const Rolling& rolling) {
   SoftObject& ball = world.addSoftOn(0.0, makeBall(rolling.tets), options, -2.0);
   const double inertia = ball.motion().inertia(2, 2);
   world.simulate(1);
-  scenes::require(ball.deformable().setDamping(rolling.damping));
+  scenes::require(ball.deformable().setStiffnessDamping(rolling.damping));
   world.setGravity(gravityOn(kSlope));
   double time = 0.0, firstTime = 0.0, firstSpeed = 0.0, speed = 0.0;
   while (time < kUntil && speed < kSpeed) {
@@ -93,13 +93,13 @@ void rollAsIs(Run& run, double stiffness) {
   run.report("acceleration over rigid", coarse);
   Run ofFine(run.kind);
   const double reference = roll(ofFine, fine).overRigid;
-  run.report("the same of 10,000 tets", reference);
+  run.report("the same with 10,000 tets", reference);
   run.report("ratio of the two", coarse / reference);
 }
 
 constexpr double kTableSpin = 1.8;
 
-/// A turntable, with its time.
+/// A turntable that keeps its angle.
 class Turntable {
  public:
   explicit Turntable(ContactWorld& world)
@@ -116,7 +116,7 @@ class Turntable {
       if (after) after();
     }
   }
-  /// In the table's frame.
+  /// A point in the frame of the table.
   Vector3d toTable(const Vector3d& p) const { return Eigen::AngleAxisd(-angle_, Vector3d::UnitY()) * p; }
 
  private:
@@ -135,7 +135,7 @@ SoftObject& addRider(ContactWorld& world, double stiffness, double friction, dou
   return world.addSoftOn(0.0, makeBox(Vector3d(0.25, 0.125, 0.25)), bodyOf(stiffness, friction), radius);
 }
 
-/// A box rides at 2 m from the axis; it takes a friction of 0.66.
+/// A box rides on the table at 2 m from the axis; this needs a friction coefficient of 0.66.
 void ride(Run& run, double stiffness, double friction) {
   constexpr double kRadius = 2.0;
   ContactWorld world(run);
@@ -148,7 +148,7 @@ void ride(Run& run, double stiffness, double friction) {
   run.report("drift in 3 s, S", (table.toTable(rider.motion().centroid) - before).norm() / kRiderSize);
 }
 
-/// A box that was at rest is taken along in the middle.
+/// A box at rest in the middle of the table is taken along.
 void turnAlong(Run& run, double stiffness) {
   ContactWorld world(run);
   Turntable table(world);
@@ -175,10 +175,10 @@ std::vector<std::size_t> touching(const std::vector<Vector3d>& surface) {
   return vertices;
 }
 
-/// A box on a slope that friction holds by 2.5 %.
+/// A box on a slope whose downhill force is 2.5 % below the limit of friction.
 void creep(Run& run, double stiffness) {
-  constexpr double kFriction = 0.5, kShare = 0.975;
-  ContactWorld world(run, gravityOn(std::atan(kShare * kFriction)));
+  constexpr double kFriction = 0.5, kFraction = 0.975;
+  ContactWorld world(run, gravityOn(std::atan(kFraction * kFriction)));
   world.addFloor();
   SoftObject& box = world.addSoftOn(0.0, flatBox(), bodyOf(stiffness, kFriction));
   world.simulate(1);
@@ -190,10 +190,10 @@ void creep(Run& run, double stiffness) {
   run.report("contact points move in 5 s, S", largest);
 }
 
-/// Lengths of steps, in turn.
+/// Lengths of steps, used in turn.
 using Steps = std::function<double()>;
 
-/// A box that lies is pushed to 3 m/s; how far it slides, over how far a point would by the same steps.
+/// A box at rest is pushed to 3 m/s. Measures how far it slides, relative to a point mass with the same steps.
 double slide(Run& run, const ModelPtr& model, BodyOptions options, const Steps& steps) {
   constexpr double kFriction = 0.5, kSpeed = 3.0, kSeconds = 1.5;
   options.friction = kFriction;
@@ -208,7 +208,7 @@ double slide(Run& run, const ModelPtr& model, BodyOptions options, const Steps& 
     const double step = steps();
     world.step(step);
     time += step;
-    // Implicit Euler stops short of v^2 / (2 mu g) by mu g dt / v of it.
+    // Implicit Euler stops earlier than v^2 / (2 mu g), by the fraction mu g dt / v of it.
     speed = std::max(0.0, speed - kFriction * scenes::kEarth * step);
     point += speed * step;
   }
@@ -228,8 +228,8 @@ Steps alternatingSteps() {
 
 Steps randomSteps() {
   return [random = std::mt19937(5)]() mutable {
-    constexpr double kShortest = 1.0 / 1000, kLongest = 1.0 / 50;
-    return kShortest + (kLongest - kShortest) * static_cast<double>(random()) / std::mt19937::max();
+    constexpr double kMin = 1.0 / 1000, kMax = 1.0 / 50;
+    return kMin + (kMax - kMin) * static_cast<double>(random()) / std::mt19937::max();
   };
 }
 
@@ -237,7 +237,7 @@ void stop(Run& run, double stiffness, const Steps& steps) {
   run.report("distance over a point's", slide(run, flatBox(), bodyOf(stiffness, 0.5), steps));
 }
 
-/// How far a ball rolls in a second and a half.
+/// How far a ball rolls in 1.5 seconds.
 double rollDistance(Run& run, const ModelPtr& model, const BodyOptions& options) {
   ContactWorld world(run, gravityOn(10.0 * EIGEN_PI / 180));
   world.addFloor();
@@ -247,11 +247,11 @@ double rollDistance(Run& run, const ModelPtr& model, const BodyOptions& options)
   return ball.motion().centroid.x() - from;
 }
 
-/// Of the same vertices, several times each.
+/// Compares meshes in which the same vertices are repeated several times.
 void copies(Run& run, const std::function<double(Copies)>& distance) {
   const double once = distance({1});
   for (const int count : {10, 300}) {
-    run.report(std::to_string(count) + " of each: distance off", std::abs(distance({count}) / once - 1.0));
+    run.report(std::to_string(count) + " of each: distance error", std::abs(distance({count}) / once - 1.0));
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What collides freely: momentum of all is what it was.
+// Free bodies that collide: the total momentum stays the same.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -21,16 +21,16 @@ const Vector3d kWeightless = Vector3d::Zero();
 const Vector3d kBallStart(-0.75, 0.3, 0.05), kBallVelocity(5, 0, 0);
 constexpr double kBallRadius = 0.15;
 
-/// For half a second, until all that met has parted.
+/// Runs for half a second, until everything that met has parted.
 void reportLost(Run& run, ContactWorld& world) {
   const Momentum before = world.momentum();
   const double start = world.energy();
-  double most = 0.0;
-  world.simulate(0.5, [&] { raise(most, world.energy()); });
+  double maximum = 0.0;
+  world.simulate(0.5, [&] { raise(maximum, world.energy()); });
   const Momentum after = world.momentum();
   run.report("linear momentum lost", (after.linear - before.linear).norm() / before.linearScale);
   run.report("angular momentum lost", (after.angular - before.angular).norm() / before.angularScale);
-  if (run.kind != Kind::Bullet) run.report("energy over its start", most / start);
+  if (run.kind != Kind::Bullet) run.report("energy over its start", maximum / start);
 }
 
 BodyOptions hitBody(double stiffness) {
@@ -39,7 +39,7 @@ BodyOptions hitBody(double stiffness) {
   return options;
 }
 
-/// What all of a scene lies in.
+/// A zone that surrounds the whole scene.
 enum class Zone { None, Trigger, Ghost };
 
 void addZone(ContactWorld& world, Zone zone) {
@@ -48,7 +48,7 @@ void addZone(ContactWorld& world, Zone zone) {
   if (zone == Zone::Ghost) world.addGhost(kHalf);
 }
 
-/// Nothing meets anything: what the figures are worth.
+/// Nothing meets anything: the accuracy of the figures themselves.
 void miss(Run& run, double stiffness) {
   ContactWorld world(run, kWeightless);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless).push(Vector3d(1, 2, 3), Vector3d(1, -2, 0.5));
@@ -58,7 +58,7 @@ void miss(Run& run, double stiffness) {
   reportLost(run, world);
 }
 
-/// A rigid ball hits a soft one of 1 kg aside of its centre.
+/// A rigid ball hits a soft one of 1 kg off its centre.
 void hit(Run& run, double stiffness, double mass, Zone zone) {
   ContactWorld world(run, kWeightless);
   addZone(world, zone);
@@ -67,7 +67,7 @@ void hit(Run& run, double stiffness, double mass, Zone zone) {
   reportLost(run, world);
 }
 
-/// The same by a multibody without links.
+/// A multibody without links hits the soft ball.
 void hitByMultiBody(Run& run, double stiffness) {
   ContactWorld world(run, kWeightless);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
@@ -76,7 +76,7 @@ void hitByMultiBody(Run& run, double stiffness) {
   btVector3 inertia;
   shape->calculateLocalInertia(kMass, inertia);
   auto body = std::make_unique<btMultiBody>(0, kMass, inertia, false, false);
-  body->finalizeMultiDof();  // which makes room for velocities
+  body->finalizeMultiDof();  // allocates the velocities
   body->setBasePos(toBullet(kBallStart));
   body->setBaseVel(toBullet(kBallVelocity));
   body->setLinearDamping(0);
@@ -94,7 +94,7 @@ void onBoxes(Run& run, double stiffness) {
   reportLost(run, world);
 }
 
-/// Two free boxes close on a soft one from both sides, not in line.
+/// Two free boxes close on a soft one from both sides, out of line.
 void betweenBoxes(Run& run, double stiffness, double mass, double otherMass) {
   ContactWorld world(run, kWeightless);
   world.addSoft(makeBox({0.5, 0.5, 0.5}), hitBody(stiffness), kWeightless);
@@ -120,7 +120,7 @@ void addHitScenes(ContactScenes& scenes) {
     const std::vector<Kind> all = {Kind::Surface, Kind::Nodes, Kind::Bullet};
     addHits("hit", Zone::None, all);
     addHits("hit in trigger", Zone::Trigger, all);
-    // Bullet's own search for nodes in a ghost leaves what it solves with unset: velocities are not numbers then.
+    // Bullet's own search for nodes in a ghost leaves data of its solver unset: velocities then become NaN.
     addHits("hit in ghost", Zone::Ghost, {Kind::Surface});
     scenes.push_back({"hit by multibody/1kg" + end, [=](Run& run) { hitByMultiBody(run, k); }});
     scenes.push_back({"between/box on box" + end, [=](Run& run) { onBoxes(run, k); }});

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A bar that turns about a held node; soft bodies that hang from a multibody's link.
+// A bar that turns about a pinned node; soft bodies that hang from a multibody's link.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
-#include <tetskin/touch/surface_weld.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -34,8 +33,8 @@ Vector3d angularMomentumAbout(const Vector3d& pivot, const btSoftBody& body) {
   return sum.angular - pivot.cross(sum.linear);
 }
 
-/// A bar of 1 m is thrown to turn about the middle of its end, where one node is held.
-void turnHeldBar(Run& run, double stiffness) {
+/// A bar of 1 m is thrown so that it turns about the middle of its end, where one node is pinned.
+void turnPinnedBar(Run& run, double stiffness) {
   const Vector3d pivot(-0.5, 0, 0), spin(0, 1, 5);
   ContactWorld world(run, Vector3d::Zero());
   BodyOptions options;
@@ -55,7 +54,7 @@ void turnHeldBar(Run& run, double stiffness) {
   run.report("spin over its start", bar.motion().spin.norm() / spin.norm());
 }
 
-/// A rod of 1 m on a hinge in the origin, about z; a soft cube hangs from its lower end, by the middle of a side.
+/// A rod of 1 m on a hinge in the origin, about z; a soft cube hangs from its lower end, by the centre of a side.
 class Pendulum {
  public:
   /// damping  of the rod, 1/s
@@ -82,16 +81,16 @@ class Pendulum {
   SoftObject& cube() { return *cube_; }
   double angle() const { return static_cast<double>(rod_->getJointPos(0)); }
   btMultiBodyLinkCollider& link() { return *rod_->getLink(0).m_collider; }
-  /// Of the lower end, in the link's space.
+  /// The lower end of the rod, in the link's space.
   static Vector3d tip() { return {0, -kRodHalf.y(), 0}; }
-  /// Of the cube's side.
+  /// The centre of the cube's upper side.
   SurfacePoint top() {
-    const SurfaceTree tree(model_->binding, model_->mesh);
+    const SurfaceTree tree = SurfaceTree::create(model_->binding, model_->mesh).value();
     auto point = tree.pointAtRest(cube_->soft(), Vector3d(0, kHalf, 0));
     scenes::require(point.status());
     return std::move(point).value();
   }
-  /// For small angles, with the cube as a rigid part of the rod.
+  /// The period for small angles, with the cube as a rigid part of the rod.
   double rigidPeriod() const {
     const double mass = cube_->motion().mass, arm = 2.0 * kRodHalf.y() + kHalf, rodArm = kRodHalf.y();
     const double inertia = inertia_ + kRodMass * rodArm * rodArm + mass * (arm * arm + 2.0 * kHalf * kHalf / 3.0);
@@ -129,15 +128,15 @@ double separation(const SurfaceSpring& spring) {
 }
 
 double turn(const SurfaceWeld& weld) {
-  return static_cast<double>(weld.turn());
+  return static_cast<double>(weld.angle());
 }
 
-/// A spring holds no angle.
+/// A spring does not constrain the angle.
 double turn(const SurfaceSpring&) {
   return 0.0;
 }
 
-/// Four seconds to settle, and one in which it is watched: a point holds a cube, which goes on to swing a little.
+/// Four seconds to settle, and one of measurement: a joint at a point holds a cube, which goes on swinging a little.
 template <class Join>
 void hang(Run& run, const Join& join) {
   ContactWorld world(run);
@@ -154,11 +153,11 @@ void hang(Run& run, const Join& join) {
     ++steps;
   });
   run.report("separation, S", apart / size);
-  run.report("turn, rad", turned);
+  run.report("rotation, rad", turned);
   run.report("pull over weight", pull / steps / weight);
 }
 
-/// Of the first full swing, from when it first hangs straight.
+/// The period of the first full swing, counted from when it first hangs straight.
 double periodOf(ContactWorld& world, const Pendulum& pendulum, const std::function<void()>& after) {
   std::vector<double> crossings;
   double time = 0.0, before = pendulum.angle();
@@ -185,17 +184,17 @@ void swing(Run& run) {
   });
   run.report("period over a rigid pendulum's", period / rigid);
   run.report("separation, S", apart / pendulum.cube().model().size);
-  run.report("turn, rad", turned);
+  run.report("rotation, rad", turned);
 }
 
 }  // namespace
 
 void addJointScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, const std::function<void(Run&)>& run) {
-    scenes.push_back({name, run, {Kind::Surface}});  // joints are the library's solver's
+    scenes.push_back({name, run, {Kind::Surface}});  // joints belong to the library's solver
   };
   for (const double k : {50.0, 500.0}) {
-    add("held bar/k" + text(k), [=](Run& run) { turnHeldBar(run, k); });
+    add("held bar/k" + text(k), [=](Run& run) { turnPinnedBar(run, k); });
   }
   add("links/welded", [](Run& run) { hang(run, weld); });
   add("links/spring", [](Run& run) { hang(run, spring); });

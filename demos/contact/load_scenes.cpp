@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies on rigid ones that lie on the ground, and under them.
+// Soft bodies on top of rigid ones that lie on the ground, and under them.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -27,7 +27,7 @@ double lowestCorner(const btRigidBody& box, const Vector3d& half) {
   return lowest;
 }
 
-/// A soft ball at 3 S/s on a plate of a tenth of its mass that lies on the floor.
+/// A soft ball at 3 S/s hits a plate with a tenth of its mass that lies on the floor.
 void plate(Run& run, double stiffness) {
   ContactWorld world(run);
   world.addFloor();
@@ -52,7 +52,7 @@ SoftObject& addCube(ContactWorld& world, double height) {
   return world.addSoftOn(height, makeBox({0.5, 0.5, 0.5}), options);
 }
 
-/// Two seconds to come to rest, and one in which it is watched.
+/// Two seconds to come to rest, and one of measurement.
 void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btCollisionObject& heavy,
                 const std::function<double()>& speedOfBox) {
   const btVector3 start = heavy.getWorldTransform().getOrigin();
@@ -64,14 +64,14 @@ void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btCollisi
   });
   run.report("box's speed, S/s", box);
   run.report("fastest node, S/s", soft);
-  run.report("box leaves its place, S", toEigen(heavy.getWorldTransform().getOrigin() - start).norm());
+  run.report("box displacement, S", toEigen(heavy.getWorldTransform().getOrigin() - start).norm());
 }
 
 void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btRigidBody& heavy) {
   reportRest(run, world, cube, heavy, [&] { return toEigen(heavy.getLinearVelocity()).norm(); });
 }
 
-/// Where a box lies on the cube, or its hinge is.
+/// The height at which a box lies on the cube, or at which its hinge is.
 double boxHeight() {
   return 1.0 + 2.0 * kMargin + kHeavyHalf.y();
 }
@@ -93,7 +93,8 @@ void heavyBelow(Run& run) {
   reportRest(run, world, cube, box);
 }
 
-/// The box is a lid, hinged a way off at its own height; a motor that wants it still holds a tenth of its weight.
+/// The box is a lid, on a hinge at some distance at its own height. A motor that keeps it still carries a tenth of its
+/// weight.
 constexpr double kHingeArm = 1.2;
 
 void heavyOnHinge(Run& run) {

@@ -28,8 +28,8 @@ Matrix3d inertiaOf(const btRigidBody& body) {
   return turn * toEigen(body.getLocalInertia()).asDiagonal() * turn.transpose();
 }
 
-/// From a tet's first node to the others, as columns.
-/// position  of a node
+/// The edges from a tet's first node to the others, as columns.
+/// position  gives that of a node
 template <class Position>
 Matrix3d edgesOf(const Position& position, const Tet& tet) {
   Matrix3d edges;
@@ -103,7 +103,7 @@ double fastestNode(const btSoftBody& body) {
 
 int invertedTets(const BodyModel& model, const btSoftBody& body) {
   const auto position = [&](int n) { return toEigen(body.m_nodes[n].m_x); };
-  return static_cast<int>(std::count_if(model.cage.tets.begin(), model.cage.tets.end(),
+  return static_cast<int>(std::count_if(model.cage.mesh.tets.begin(), model.cage.mesh.tets.end(),
                                         [&](const Tet& tet) { return !(edgesOf(position, tet).determinant() > 0.0); }));
 }
 
@@ -132,11 +132,11 @@ double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youn
   const double mu = youngsModulus / (2.0 * (1.0 + poissonRatio));
   const double lambda = youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
   double energy = 0.0;
-  for (std::size_t t = 0; t < model.cage.tets.size(); ++t) {
-    const Tet& tet = model.cage.tets[t];
-    const Matrix3d rest = edgesOf([&](int n) { return model.cage.nodes[static_cast<std::size_t>(n)]; }, tet);
+  for (std::size_t t = 0; t < model.cage.mesh.tets.size(); ++t) {
+    const Tet& tet = model.cage.mesh.tets[t];
+    const Matrix3d rest = edgesOf([&](int n) { return model.cage.mesh.nodes[static_cast<std::size_t>(n)]; }, tet);
     const Matrix3d gradient = edgesOf([&](int n) { return toEigen(body.m_nodes[n].m_x); }, tet) * rest.inverse();
-    // Singular values, of which an inverted tet has the least below 0.
+    // Singular values; the smallest one is negative if the tet is inverted.
     Eigen::SelfAdjointEigenSolver<Matrix3d> squares;
     squares.computeDirect(gradient.transpose() * gradient, Eigen::EigenvaluesOnly);
     Vector3d strain = squares.eigenvalues().cwiseMax(0.0).cwiseSqrt();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Momentum and energy, in double, by formulas of their own.
+// Momentum and energy in double precision, by formulas independent of the library.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -15,10 +15,10 @@ class btRigidBody;
 
 namespace tetskin::contact_demo {
 
-/// Angular momentum is about the world's origin.
+/// Linear momentum, and angular momentum about the world's origin.
 struct Momentum {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
-  /// Sums of the bodies' norms: what errors are compared with.
+  /// Sums of the bodies' norms, with which errors are compared.
   double linearScale = 0.0, angularScale = 0.0;
 
   void add(const Eigen::Vector3d& linearOfBody, const Eigen::Vector3d& angularOfBody);
@@ -26,28 +26,28 @@ struct Momentum {
 
 void addMomentum(Momentum& sum, const btSoftBody& body);
 void addMomentum(Momentum& sum, const btRigidBody& body);
-/// Of its base: links are not looked at.
+/// Adds the momentum of the base: links are ignored.
 void addMomentum(Momentum& sum, const btMultiBody& body);
 
-/// How a body moves as a whole; nodes that are held are left out.
+/// How a body moves as a whole; pinned nodes are left out.
 struct RigidMotion {
   double mass = 0.0;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
-  Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< radians a second
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< radians per second
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 RigidMotion rigidMotionOf(const btSoftBody& body);
 
-/// Of the fastest node, metres a second.
+/// Speed of the fastest node, metres per second.
 double fastestNode(const btSoftBody& body);
 
-/// Of its tets, those that are inside out.
+/// The number of inverted tets.
 int invertedTets(const BodyModel& model, const btSoftBody& body);
 
 double kineticEnergy(const btSoftBody& body);
 double kineticEnergy(const btRigidBody& body);
-double kineticEnergy(const btMultiBody& body);  ///< of its base
-/// Of corotated elasticity.
+double kineticEnergy(const btMultiBody& body);  ///< kinetic energy of its base
+/// The energy of corotated elasticity.
 /// stiffnessScale  tetCount; empty: 1
 double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,
                      const std::vector<double>& stiffnessScale);

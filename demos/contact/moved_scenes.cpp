@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Plates that the scene moves, and plates that are thin.
+// Kinematic plates that the scene moves, and thin plates.
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A plate that is moved along one axis.
+/// A plate that moves along one axis.
 class MovedPlate {
  public:
   MovedPlate(ContactWorld& world, const Vector3d& centre, const Vector3d& halfExtents, const Vector3d& direction)
@@ -24,12 +24,12 @@ class MovedPlate {
         half_(halfExtents.cwiseProduct(direction).norm()),
         direction_(direction) {}
 
-  /// Before the step in which it goes so far.
+  /// Moves the plate by the distance that it covers in the next step.
   void advance(double distance) {
     centre_ += distance * direction_;
     body_.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(centre_)));
   }
-  /// From the side that it moves towards.
+  /// Distance from the side that faces the motion.
   double distance(const Vector3d& p) const { return (p - centre_).dot(direction_) - half_; }
 
  private:
@@ -61,7 +61,7 @@ void kick(Run& run, double stiffness, double speed) {
   run.report("least gap, S", gap);
 }
 
-/// A plate lifts a box; the gap once it does so steadily.
+/// A plate lifts a box; measures the gap during the steady part.
 void carry(Run& run, double stiffness) {
   constexpr double kSpeed = 1.0;
   ContactWorld world(run);
@@ -76,7 +76,7 @@ void carry(Run& run, double stiffness) {
   run.report("gap, S", gap - kMargin);
 }
 
-/// Two plates close on a cube by a tenth of its width, and hold it by friction.
+/// Two plates squeeze a cube by a tenth of its width, and hold it by friction.
 void grip(Run& run, double stiffness) {
   constexpr double kSpeed = 0.25, kPressed = 0.05;
   ContactWorld world(run);
@@ -99,7 +99,7 @@ void grip(Run& run, double stiffness) {
   run.report("sinks in 2 s, S", before - cube.motion().centroid.y());
 }
 
-/// A ball falls on a plate of a fiftieth of its size.
+/// A ball falls on a plate whose thickness is a fiftieth of the ball's size.
 void fallOnThin(Run& run, double stiffness, double speed) {
   ContactWorld world(run);
   const double half = 0.01;

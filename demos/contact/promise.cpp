@@ -34,18 +34,18 @@ const std::vector<Promise>& promises() {
       {"between", "linear momentum lost", -kNone, 1e-2},
       {"between", "angular momentum lost", -kNone, 1e-2},
       {"between", "energy over its start", -kNone, 1.001},
-      {"application/anchor", "stretch over that by hand", 0.9, 1.1},
+      {"application/anchor", "stretch over analytic value", 0.9, 1.1},
       {"application/anchor", "speed, m/s", -kNone, 0.005},
       {"application/plate and soft", "speed, m/s", -kNone, 0.005},
-      {"application/plate and soft", "below its place, m", -kNone, 0.02},
+      {"application/plate and soft", "downward displacement, m", -kNone, 0.02},
       {"application/stack of five", "speed, m/s", -kNone, 0.005},
-      {"application/stack of five", "below its place, m", -kNone, 0.02},
+      {"application/stack of five", "downward displacement, m", -kNone, 0.02},
       {"application/slope", "speed, m/s", -kNone, 1e-4},
       {"application/slope", "asleep", 1.0, 1.0},
       {"application/mouse", "speed, m/s", -kNone, 0.01},
       {"plate", "sinks, S", -kNone, 0.001},
       {"heavy", "box's speed, S/s", -kNone, 0.01},
-      {"heavy", "box leaves its place, S", -kNone, 0.05},
+      {"heavy", "box displacement, S", -kNone, 0.05},
       {"roll/undamped", "acceleration over rigid", 0.9, 1.1},
       {"roll/by default", "ratio of the two", 0.9, 1.1},
       {"table/0.8", "drift in 3 s, S", -kNone, 0.001},
@@ -53,8 +53,8 @@ const std::vector<Promise>& promises() {
       {"table/in its middle", "spin over the table's", 0.995, 1.005},
       {"creep", "contact points move in 5 s, S", -kNone, 0.0005},
       {"stop", "distance over a point's", 0.97, 1.03},
-      {"copies", "10 of each: distance off", -kNone, 0.001},
-      {"copies", "300 of each: distance off", -kNone, 0.001},
+      {"copies", "10 of each: distance error", -kNone, 0.001},
+      {"copies", "300 of each: distance error", -kNone, 0.001},
       {"energy", "energy over its start", -kNone, 1.001},
       {"energy/ball lands", "least gap, S", -0.009, kNone},
       {"energy/box lands", "least gap, S", -0.009, kNone},
@@ -80,12 +80,12 @@ const std::vector<Promise>& promises() {
       {"soft collide", "angular momentum lost", -kNone, 1e-3},
       {"soft collide", "energy over its start", -kNone, 1.001},
       {"soft collide", "least gap, S", -0.02, kNone},
-      {"soft collide", "inverted tets, at most", -kNone, 0.0},
+      {"soft collide", "most inverted tets", -kNone, 0.0},
       {"pad/weightless", "velocity over its start", 0.99, 1.01},
       {"pad", "creeps, m/s", -kNone, 1e-4},
       {"held bar", "angular momentum lost", -kNone, 1e-5},
       {"links", "separation, S", -kNone, 1e-4},
-      {"links", "turn, rad", -kNone, 0.002},
+      {"links", "rotation, rad", -kNone, 0.002},
       {"links", "pull over weight", 0.999, 1.001},
       {"links", "period over a rigid pendulum's", 0.99, 1.01},
   };
@@ -102,10 +102,10 @@ const Promise* promiseFor(const std::string& scene, const std::string& figure) {
 }
 
 std::string text(const Promise& promise) {
-  if (promise.least == promise.most) return text(promise.least);
-  if (std::isinf(promise.least)) return "<= " + text(promise.most);
-  if (std::isinf(promise.most)) return ">= " + text(promise.least);
-  return text(promise.least) + " .. " + text(promise.most);
+  if (promise.minimum == promise.maximum) return text(promise.minimum);
+  if (std::isinf(promise.minimum)) return "<= " + text(promise.maximum);
+  if (std::isinf(promise.maximum)) return ">= " + text(promise.minimum);
+  return text(promise.minimum) + " .. " + text(promise.maximum);
 }
 
 }  // namespace tetskin::contact_demo

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is promised of contact by the surface, figure by figure.
+// What is promised of contact by the surface, for each figure.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,22 @@
 
 namespace tetskin::contact_demo {
 
-/// A figure of all scenes whose names begin so lies between these.
+/// This figure lies between two bounds in all scenes whose names begin with a given text.
 struct Promise {
   const char* scene;
   const char* figure;
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
 
-  bool holds(double value) const { return value >= least && value <= most; }
-  /// How far the value may still go; below 0: it is out by that.
-  double slack(double value) const { return std::min(value - least, most - value); }
+  bool holds(double value) const { return value >= minimum && value <= maximum; }
+  /// How far the value is from the nearest bound; below 0: it is out of bounds by that much.
+  double slack(double value) const { return std::min(value - minimum, maximum - value); }
 };
 
 const std::vector<Promise>& promises();
 
-/// Of several that fit, the one that names more of the scene; null where nothing is promised.
+/// The promise for a figure of a scene. If several fit, the one that matches more of the scene's name; null where
+/// nothing is promised.
 const Promise* promiseFor(const std::string& scene, const std::string& figure);
 
 /// "<= 0.001", "0.9 .. 1.1".

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -23,11 +24,29 @@ nlohmann::ordered_json toJson(const SceneResult& result, const Figure& figure) {
   json["name"] = figure.name;
   json["value"] = figure.value;
   if (const Promise* promise = promiseFor(result.scene, figure.name)) {
-    if (std::isfinite(promise->least)) json["least"] = promise->least;
-    if (std::isfinite(promise->most)) json["most"] = promise->most;
+    if (std::isfinite(promise->minimum)) json["least"] = promise->minimum;
+    if (std::isfinite(promise->maximum)) json["most"] = promise->maximum;
   }
   json["held"] = holds(result, figure);
   return json;
+}
+
+/// A figure's present name, for results of versions in which it had another one.
+std::string presentFigure(const std::string& name) {
+  static const std::map<std::string, std::string> renamed = {
+      {"stretch over that by hand", "stretch over analytic value"},
+      {"below its place, m", "downward displacement, m"},
+      {"box leaves its place, S", "box displacement, S"},
+      {"top box below its place, S", "downward displacement of the top box, S"},
+      {"the same of 10,000 tets", "the same with 10,000 tets"},
+      {"inverted tets, at most", "most inverted tets"},
+      {"turn, rad", "rotation, rad"},
+      {"turn, rad/s", "angular speed, rad/s"},
+      {"10 of each: distance off", "10 of each: distance error"},
+      {"300 of each: distance off", "300 of each: distance error"},
+  };
+  const auto found = renamed.find(name);
+  return found == renamed.end() ? name : found->second;
 }
 
 SceneResult resultFrom(const nlohmann::json& json) {
@@ -35,14 +54,14 @@ SceneResult resultFrom(const nlohmann::json& json) {
   result.scene = json.at("scene").get<std::string>();
   for (const auto& figure : json.at("figures")) {
     const auto& value = figure.at("value");
-    // JSON has no other way to say that it is not a number.
+    // JSON has no other way to represent NaN.
     result.figures.push_back(
-        {figure.at("name").get<std::string>(), value.is_null() ? std::nan("") : value.get<double>()});
+        {presentFigure(figure.at("name").get<std::string>()), value.is_null() ? std::nan("") : value.get<double>()});
   }
   return result;
 }
 
-/// What a scene's name ends with where there are several of it: "k50", "1e9Pa"; empty: there is one.
+/// The end of a scene's name if there are several of its kind: "k50", "1e9Pa"; otherwise empty.
 std::string stiffnessIn(const std::string& scene) {
   const std::string last = scene.substr(scene.rfind('/') + 1);
   const bool isRelative = last.size() > 1 && last[0] == 'k' && std::isdigit(static_cast<unsigned char>(last[1]));
@@ -50,7 +69,7 @@ std::string stiffnessIn(const std::string& scene) {
   return isRelative || isPressure ? last : "";
 }
 
-/// The worst of the figures of which this is promised, by stiffness, in the order in which these were run.
+/// The worst of the figures that a promise covers, by stiffness, in the order in which they were run.
 using WorstFigures = std::vector<std::pair<std::string, double>>;
 
 WorstFigures worstFor(const Promise& promise, const SceneResults& results) {
@@ -81,7 +100,7 @@ std::string cell(const Promise& promise, const WorstFigures& worst) {
   return cell;
 }
 
-/// "roll/undamped, k300, k3000".
+/// A list of scenes such as "roll/undamped, k300, k3000".
 std::string heading(const Promise& promise, const WorstFigures& worst) {
   std::string heading = promise.scene;
   for (const auto& [stiffness, value] : worst) {
@@ -99,15 +118,15 @@ bool holds(const SceneResult& result, const Figure& figure) {
 }
 
 void print(const SceneResult& result) {
-  std::printf("%-42s %6ld steps  %5.1f iterations a step  %6.2f s\n", result.scene.c_str(), result.steps,
+  std::printf("%-42s %6ld steps  %5.1f iterations per step  %6.2f s\n", result.scene.c_str(), result.steps,
               result.iterationsPerStep, result.seconds);
   for (const Figure& figure : result.figures) {
     const Promise* promise = promiseFor(result.scene, figure.name);
     std::printf("    %-32s %12.6g   %-16s %s\n", figure.name.c_str(), figure.value,
                 promise ? text(*promise).c_str() : "",
                 !promise                       ? ""
-                : promise->holds(figure.value) ? "holds"
-                                               : "NOT HELD");
+                : promise->holds(figure.value) ? "passed"
+                                               : "FAILED");
   }
   std::fflush(stdout);
 }
@@ -129,13 +148,13 @@ nlohmann::ordered_json toJson(const SceneResults& results) {
 
 SceneResults readResults(const std::string& path) {
   const std::optional<std::string> text = scenes::contentsOf(path);
-  if (!text) throw scenes::InputError(path + ": cannot be read");
+  if (!text) throw scenes::InputError(path + ": cannot be read; check the path and its permissions");
   try {
     SceneResults results;
     for (const auto& json : nlohmann::json::parse(*text)) results.push_back(resultFrom(json));
     return results;
   } catch (const nlohmann::json::exception& error) {
-    throw scenes::InputError(path + ": no results of this program: " + error.what());
+    throw scenes::InputError(path + ": not a results file of tetskin_contact (--json): " + error.what());
   }
 }
 

@@ -13,32 +13,32 @@
 
 namespace tetskin::contact_demo {
 
-/// A scene that was run.
+/// The result of one scene.
 struct SceneResult {
   std::string scene;
   long steps = 0;
-  double iterationsPerStep = 0.0;  ///< of the library's solver
+  double iterationsPerStep = 0.0;  ///< iterations of the library's solver
   double seconds = 0.0;
   std::vector<Figure> figures;
 };
 
 using SceneResults = std::vector<SceneResult>;
 
-/// It lies within what is promised, or nothing is.
+/// True if the figure lies within what is promised, or if nothing is promised.
 bool holds(const SceneResult& result, const Figure& figure);
 
 void print(const SceneResult& result);
 nlohmann::ordered_json toJson(const SceneResults& results);
-/// Of such a file. Throws InputError if it is none.
+/// Reads a file of such results. Throws InputError if it is not one.
 SceneResults readResults(const std::string& path);
 
-/// All results of one column.
+/// All results in one column.
 struct ResultColumn {
   std::string title;
   SceneResults results;
 };
-/// A table: a line a promise; in each column, and for each stiffness of the scenes, the figure that comes nearest to
-/// breaking it, or breaks it by most.
+/// A table with one line per promise. Each column shows, for each stiffness of the scenes, the figure that comes
+/// closest to breaking the promise, or breaks it by most.
 std::string toMarkdown(const std::vector<ResultColumn>& columns);
 
 }  // namespace tetskin::contact_demo

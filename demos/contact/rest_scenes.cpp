@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies at rest on a floor, and bodies that begin deep in one.
+// Bodies at rest on a floor, and bodies that begin deep inside one.
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether the floor pushes as gravity pulls, where contacts tell.
+/// Reports whether the floor pushes back as strongly as gravity pulls, where contacts report impulses.
 class Weighing {
  public:
   Weighing(const SoftObject& body) : body_(body), perStep_(body.motion().mass * scenes::kEarth * kStep) {}
@@ -55,7 +55,7 @@ void rest(Run& run, const ModelPtr& model, const BodyOptions& options) {
   run.report("gap, S", gap / model->size);
   run.report("fastest node, m/s", fastest);
   weighing.report(run);
-  run.report("iterations a step", static_cast<double>(run.iterations - iterations) / (run.steps - steps));
+  run.report("iterations per step", static_cast<double>(run.iterations - iterations) / (run.steps - steps));
 }
 
 /// A ball between two slopes of 45 degrees.
@@ -99,7 +99,7 @@ struct TriangleFloorShape : private TriangleFloor, public btBvhTriangleMeshShape
   TriangleFloorShape() : btBvhTriangleMeshShape(&mesh, true) {}
 };
 
-/// A ball that begins so far in the floor.
+/// A ball that begins this deep in the floor.
 void deep(Run& run, double stiffness, double depth, bool inMesh) {
   ContactWorld world(run);
   if (inMesh) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// One scene's run: with what it is solved, and what was measured in it.
+// One scene's run: which solver it uses, and what was measured in it.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace tetskin::contact_demo {
 
-/// What solves soft bodies, and what of them meets rigid ones.
+/// What solves soft bodies, and which points of them meet rigid bodies.
 enum class Kind {
   Surface,  ///< the library's solver, and the visual surface
   Nodes,    ///< the library's solver, and the cage's nodes
@@ -22,18 +22,18 @@ struct Figure {
   double value = 0.0;
 };
 
-/// Filled by a scene.
+/// Filled in by a scene.
 struct Run {
   explicit Run(Kind which) : kind(which) {}
 
-  /// What is not a number has no sign, however it came about.
+  /// Drops the sign of NaN, which is not reproducible.
   void report(const std::string& name, double value) {
     figures.push_back({name, std::isnan(value) ? std::nan("") : value});
   }
 
   Kind kind;
   std::vector<Figure> figures;
-  long steps = 0, iterations = 0;  ///< of all worlds; iterations of the library's solver
+  long steps = 0, iterations = 0;  ///< of all worlds; iterations are those of the library's solver
 };
 
 }  // namespace tetskin::contact_demo

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The scenes in which contact is measured: each a function that makes its own world.
+// The scenes in which contact is measured. Each is a function that makes its own world.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace tetskin::contact_demo {
 struct ContactScene {
   std::string name;
   std::function<void(Run&)> run;
-  /// Those with which it can be run.
+  /// the kinds with which it can be run
   std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
 
   bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
@@ -38,7 +38,7 @@ void addMovedScenes(ContactScenes& scenes);
 
 const ContactScenes& contactScenes();
 
-/// "50", "0.05", for names.
+/// A number as it stands in names: "50", "0.05".
 std::string text(double value);
 
 }  // namespace tetskin::contact_demo

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A soft box that slides, and one that lies, on a soft slab which is held at its bottom.
+// A soft box that slides, and one that rests, on a soft slab that is pinned at its bottom.
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 
 #include <Eigen/Geometry>
@@ -23,18 +23,18 @@ using Eigen::Vector3d;
 constexpr double kSpeed = 3.0;
 const Vector3d kSlabHalf(1.6, 0.2, 0.6);
 
-/// Slab and box of one material, of which the box has k by its own size.
+/// Slab and box of one material. The stiffness k refers to the box and its own size.
 struct SlabOptions {
   double stiffness = 50.0, friction = 0.5;
-  double gap = 0.001;                        ///< between the two at first, m
-  Isometry3d turn = Isometry3d::Identity();  ///< of all, about the origin
+  double gap = 0.001;                        ///< initial gap between the two, m
+  Isometry3d turn = Isometry3d::Identity();  ///< rotation of everything about the origin
 };
 
 struct BoxOnSlab {
   SoftObject &slab, &box;
 };
 
-/// The slab's upper side is at y = 0, where the box lies, with room for a metre and a half along x, before they turn.
+/// Before the rotation, the slab's upper side is at y = 0, where the box lies with 1.5 m of room along x.
 BoxOnSlab addBoxOnSlab(ContactWorld& world, const SlabOptions& slab) {
   constexpr double kMass = 1.0, kBehind = 0.9, kBottom = 0.01;
   const ModelPtr boxModel = makeBox({0.5, 0.25, 0.5}), slabModel = makeBox(kSlabHalf, 32);
@@ -52,7 +52,7 @@ BoxOnSlab addBoxOnSlab(ContactWorld& world, const SlabOptions& slab) {
   return {held, box};
 }
 
-/// The box is pushed once it lies; how far it slides, over how far a point would by the same steps.
+/// The resting box is pushed. Measures how far it slides, relative to a point mass with the same steps.
 void slide(Run& run, double stiffness) {
   SlabOptions slab;
   slab.stiffness = stiffness;
@@ -63,7 +63,7 @@ void slide(Run& run, double stiffness) {
   bodies.box.push(Vector3d(kSpeed, 0, 0));
   double speed = kSpeed, point = 0.0, deepest = 0.0;
   world.simulate(1.5, [&] {
-    // Implicit Euler stops short of v^2 / (2 mu g) by mu g dt / v of it.
+    // Implicit Euler stops earlier than v^2 / (2 mu g), by the fraction mu g dt / v of it.
     speed = std::max(0.0, speed - slab.friction * scenes::kEarth * kStep);
     point += speed * kStep;
     deepest = std::min(deepest, world.deepest());
@@ -75,7 +75,7 @@ void slide(Run& run, double stiffness) {
   run.report("fastest node, S/s", bodies.box.fastest());
 }
 
-/// The same without friction, of which nothing but the slab's own damping takes velocity.
+/// Slides without friction, so that only the slab's own damping reduces the velocity.
 void slideFreely(Run& run, double stiffness) {
   SlabOptions slab;
   slab.stiffness = stiffness;
@@ -89,15 +89,16 @@ void slideFreely(Run& run, double stiffness) {
   run.report("velocity kept", (bodies.box.motion().velocity.x() - before) / kSpeed);
 }
 
-/// What a world's gravity is where nobody sets it in Bullet's `btSoftBodyWorldInfo`, which is none of the bodies'.
+/// Sets the gravity in Bullet's `btSoftBodyWorldInfo` to the value that it has if nobody sets it, which is not the
+/// bodies' gravity.
 void forgetGravity(ContactWorld& world) {
   world.bullet().getWorldInfo().m_gravity = btVector3(0, -10, 0);
 }
 
-/// Nothing presses the box onto the slab.
+/// The box glides without any force that presses it onto the slab.
 void glide(Run& run, double friction) {
   constexpr double kSlow = 0.5;
-  constexpr double kTouching = 5e-5;  // less than what a gravity that is not there closes in a step
+  constexpr double kTouching = 5e-5;  // less than what the default gravity would close in a step
   SlabOptions slab;
   slab.friction = friction;
   slab.gap = kTouching;
@@ -111,10 +112,10 @@ void glide(Run& run, double friction) {
   run.report("contact points", points / static_cast<double>(run.steps));
 }
 
-/// From the slab's own space, in which it lies level.
+/// Rotates from the slab's own space, in which it lies level.
 const Isometry3d kToZ(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vector3d::UnitX()));
 
-/// How fast the box wanders along the slab.
+/// Reports how fast the box creeps along the slab.
 void reportCreep(Run& run, ContactWorld& world, const BoxOnSlab& bodies, const Isometry3d& turn) {
   constexpr double kSeconds = 2.0;
   world.simulate(2);
@@ -135,7 +136,7 @@ void lie(Run& run, const Isometry3d& turn) {
   reportCreep(run, world, addBoxOnSlab(world, slab), turn);
 }
 
-/// The bodies' own gravity is at right angles to the world's.
+/// The bodies' own gravity is perpendicular to the world's.
 void lieByOwnGravity(Run& run) {
   SlabOptions slab;
   slab.turn = kToZ;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies among themselves: stacks, collisions, and those that begin within each other.
+// Contact among soft bodies: stacks, collisions, and bodies that begin inside each other.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ BodyOptions bodyOf(double stiffness) {
   return options;
 }
 
-/// Boxes on a floor, from below: at rest.
+/// A stack of boxes at rest on a floor. stiffnesses  from below
 void stack(Run& run, const std::vector<double>& stiffnesses) {
   constexpr double kHeight = 0.5, kSize = 1.0;
   const ModelPtr model = makeBox({0.5, 0.5 * kHeight, 0.5});
@@ -48,22 +48,23 @@ void stack(Run& run, const std::vector<double>& stiffnesses) {
   });
   run.report("least gap, S", gap / kSize);
   run.report("fastest node, S/s", fastest / kSize);
-  run.report("top box below its place, S", 2.5 * kHeight + 5.0 * kMargin - boxes.back()->motion().centroid.y());
+  run.report("downward displacement of the top box, S",
+             2.5 * kHeight + 5.0 * kMargin - boxes.back()->motion().centroid.y());
 }
 
 struct Collision {
-  double speed = 2.0;  ///< of the one, S/s; the other is at rest
-  double aside = 0.0;  ///< of its path from the other's centroid, S
+  double speed = 2.0;  ///< of the first ball, S/s; the other one is at rest
+  double aside = 0.0;  ///< offset of its path from the other's centroid, S
   double stiffness = 50.0, otherStiffness = 50.0;
 };
 
-/// Two balls without weight, until they have parted.
+/// Two balls without gravity, until they have parted.
 void collide(Run& run, const Collision& collision) {
   constexpr double kApart = 1.05;
   const ModelPtr model = makeBall();
   ContactWorld world(run, Vector3d::Zero());
   const double along = std::sqrt(kApart * kApart - collision.aside * collision.aside);
-  // Beside the origin: so there is angular momentum to lose head-on, too.
+  // Off the origin, so that head-on, too, there is angular momentum to lose.
   const Vector3d at(0, 0, 0.5);
   SoftObject& moving = world.addSoft(model, bodyOf(collision.stiffness), at + Vector3d(-along, collision.aside, 0));
   SoftObject& other = world.addSoft(model, bodyOf(collision.otherStiffness), at);
@@ -71,32 +72,33 @@ void collide(Run& run, const Collision& collision) {
   moving.push(Vector3d(collision.speed, 0, 0));
   const Momentum before = world.momentum();
   const double start = world.energy();
-  double most = 0.0, deepest = 0.0;
+  double maximum = 0.0, deepest = 0.0;
   int inverted = 0;
   world.simulate(1, [&] {
-    raise(most, world.energy());
+    raise(maximum, world.energy());
     lower(deepest, world.deepest());
     inverted = std::max({inverted, invertedTets(*model, moving.soft()), invertedTets(*model, other.soft())});
   });
   const Momentum after = world.momentum();
   run.report("linear momentum lost", (after.linear - before.linear).norm() / before.linearScale);
   run.report("angular momentum lost", (after.angular - before.angular).norm() / before.angularScale);
-  run.report("energy over its start", most / start);
+  run.report("energy over its start", maximum / start);
   run.report("least gap, S", deepest);
-  run.report("inverted tets, at most", inverted);
+  run.report("most inverted tets", inverted);
 }
 
-/// Where points of space lie in a body at rest, by the tets that hold them now: a measure of depth that knows nothing
-/// of how contacts are found.
+/// Finds where points of space lie in a body at rest, by the tets that contain them at present: a measure of depth that
+/// is independent of how contacts are found.
 class RestSpace {
  public:
   explicit RestSpace(const SoftObject& body) {
-    for (const Tet& tet : body.model().cage.tets) {
-      TetMap map{Matrix3d(), Matrix3d(), body.model().cage.nodes[static_cast<std::size_t>(tet[0])], node(body, tet[0])};
+    for (const Tet& tet : body.model().cage.mesh.tets) {
+      TetMap map{Matrix3d(), Matrix3d(), body.model().cage.mesh.nodes[static_cast<std::size_t>(tet[0])],
+                 node(body, tet[0])};
       Matrix3d edges;
       for (int k = 0; k < 3; ++k) {
         const int n = tet[static_cast<std::size_t>(k) + 1];
-        map.restEdges.col(k) = body.model().cage.nodes[static_cast<std::size_t>(n)] - map.restOrigin;
+        map.restEdges.col(k) = body.model().cage.mesh.nodes[static_cast<std::size_t>(n)] - map.restOrigin;
         edges.col(k) = node(body, n) - map.origin;
       }
       map.toWeights = edges.inverse();
@@ -125,8 +127,8 @@ class RestSpace {
   Box3 box_;
 };
 
-/// Of all vertices in all others, metres; next to nothing where surfaces lie on each other.
-/// distance  from the surface at rest, below 0 inside
+/// The penetration depth of all vertices in all other bodies, metres; almost 0 where surfaces lie on each other.
+/// distance  from the surface at rest, negative inside
 double depthOf(const std::vector<SoftObject*>& bodies, const Distance& distance) {
   double deepest = 0.0;
   for (SoftObject* body : bodies) {
@@ -141,31 +143,32 @@ double depthOf(const std::vector<SoftObject*>& bodies, const Distance& distance)
   return -deepest;
 }
 
-/// Of any two bodies' centroids: what tells that they have not parted where their surfaces are the same.
-double leastDistance(const std::vector<SoftObject*>& bodies) {
-  double least = HUGE_VAL;
+/// The least distance between any two bodies' centroids: it shows bodies that have not parted because their surfaces
+/// coincide.
+double minDistance(const std::vector<SoftObject*>& bodies) {
+  double minimum = HUGE_VAL;
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      lower(least, (bodies[a]->motion().centroid - bodies[b]->motion().centroid).norm());
+      lower(minimum, (bodies[a]->motion().centroid - bodies[b]->motion().centroid).norm());
     }
   }
-  return least;
+  return minimum;
 }
 
-/// Bodies that begin within each other, for three seconds.
+/// Bodies that begin inside each other, for three seconds.
 void part(Run& run, const Vector3d& gravity, const ModelPtr& model, const std::vector<Vector3d>& centres,
           const Distance& distance) {
   ContactWorld world(run, gravity);
   if (!gravity.isZero()) world.addFloor();
   ContactShapeOptions shape;
-  shape.samples = 300;  // as each of seven meets six others
+  shape.sampleCount = 300;  // as each of seven bodies meets six others
   std::vector<SoftObject*> bodies;
   for (const Vector3d& centre : centres) {
     bodies.push_back(&world.addSoft(model, bodyOf(50.0), centre));
     world.touchOthers(*bodies.back(), shape);
   }
   double fastest = 0.0;
-  int most = 0, last = 0;
+  int maximum = 0, last = 0;
   const scenes::CpuTimer timer;
   world.simulate(3, [&] {
     last = 0;
@@ -173,13 +176,13 @@ void part(Run& run, const Vector3d& gravity, const ModelPtr& model, const std::v
       raise(fastest, body->fastest());
       last += invertedTets(*model, body->soft());
     }
-    most = std::max(most, last);
+    maximum = std::max(maximum, last);
   });
-  run.report("ms a step", timer.milliseconds() / static_cast<double>(run.steps));
+  run.report("ms per step", timer.milliseconds() / static_cast<double>(run.steps));
   run.report("fastest node, S/s", fastest / model->size);
   run.report("depth at the end, S", depthOf(bodies, distance) / model->size);
-  run.report("nearest centroids, S", leastDistance(bodies) / model->size);
-  run.report("inverted tets, at most", most);
+  run.report("nearest centroids, S", minDistance(bodies) / model->size);
+  run.report("most inverted tets", maximum);
   run.report("inverted tets at the end", last);
 }
 
@@ -191,12 +194,12 @@ double toCube(const Vector3d& p) {
   return p.cwiseAbs().maxCoeff() - 0.5;
 }
 
-void partCubes(Run& run, const Vector3d& gravity) {
+void componentCubes(Run& run, const Vector3d& gravity) {
   part(run, gravity, makeBox({0.5, 0.5, 0.5}), {{0, 0.51, 0}, {0.5, 0.51, 0}}, toCube);
 }
 
-/// apart  metres from the place in which all of them would be
-void partBalls(Run& run, const Vector3d& gravity, double apart) {
+/// apart  distance, in metres, from the common position at which all of them would coincide
+void componentBalls(Run& run, const Vector3d& gravity, double apart) {
   std::vector<Vector3d> centres = {{0, 0, 0}};
   for (int k = 0; k < 6; ++k) centres.emplace_back((k % 2 == 0 ? apart : -apart) * Vector3d::Unit(k / 2));
   for (Vector3d& centre : centres) centre.y() += 0.5 + apart + kMargin;
@@ -208,7 +211,7 @@ void partBalls(Run& run, const Vector3d& gravity, double apart) {
 
 void addSoftScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, const std::function<void(Run&)>& run) {
-    scenes.push_back({name, run, {Kind::Surface}});  // the only one by which soft bodies meet each other
+    scenes.push_back({name, run, {Kind::Surface}});  // only this kind has contact between soft bodies
   };
   add("soft stack/1 to 1 to 1", [](Run& run) { stack(run, {50, 50, 50}); });
   add("soft stack/1 to 100 to 1", [](Run& run) { stack(run, {50, 5000, 50}); });
@@ -222,9 +225,9 @@ void addSoftScenes(ContactScenes& scenes) {
   const Vector3d weightless = Vector3d::Zero(), earth(0, -scenes::kEarth, 0);
   for (const Vector3d& gravity : {weightless, earth}) {
     const std::string end = gravity.isZero() ? "/weightless" : "/on a floor";
-    add("soft overlap/cubes" + end, [=](Run& run) { partCubes(run, gravity); });
-    add("soft overlap/balls 0.1 aside" + end, [=](Run& run) { partBalls(run, gravity, 0.1); });
-    add("soft overlap/balls in one place" + end, [=](Run& run) { partBalls(run, gravity, 0.0); });
+    add("soft overlap/cubes" + end, [=](Run& run) { componentCubes(run, gravity); });
+    add("soft overlap/balls 0.1 aside" + end, [=](Run& run) { componentBalls(run, gravity, 0.1); });
+    add("soft overlap/balls in one place" + end, [=](Run& run) { componentBalls(run, gravity, 0.0); });
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kAround = 32;
 
-/// Turns a line of (radius, height) about the y axis, outside to the left of its way up.
+/// Revolves a polyline of (radius, height) about the y axis; the outside is on its left.
 TriangleMesh turned(const std::vector<std::pair<double, double>>& line) {
   TriangleMesh mesh;
   for (const auto& [radius, height] : line) {
@@ -30,7 +30,7 @@ TriangleMesh turned(const std::vector<std::pair<double, double>>& line) {
   return mesh;
 }
 
-/// As one group, which is the name of its material, too.
+/// Makes the whole mesh one group, with this name and a material of the same name.
 TriangleMesh named(const char* name, TriangleMesh mesh) {
   mesh.groups = {{name, name, 0, mesh.triangleCount()}};
   return mesh;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is drawn beside the serpent: a hat, a ring, a pointer. Meshes about the origin, y upwards.
+// What is drawn beside the serpent: a hat, a ring, a pointer. Meshes about the origin, y up.
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 namespace tetskin::scenes {
 
-/// A brim and a crown, its foot at the origin.
+/// A hat with a brim and a crown, its lower side at the origin.
 TriangleMesh makeHat(double radius);
-/// In the plane of x and y.
+/// A ring in the xy plane.
 TriangleMesh makeRing(double radius, double thickness);
-/// A double cone, for a pointer.
+/// A double cone that stands for a pointer.
 TriangleMesh makePointer(double radius);
 
 }  // namespace tetskin::scenes

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "gaps/gap_bodies.h"
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ ImplicitSolid ball() {
                  [](const Vector3d& p) { return p.norm() - 0.5; });
 }
 
-/// A line with a radius at either end.
+/// A line segment with a radius at either end.
 struct Limb {
   Vector3d from, to;
   double radius, endRadius;
@@ -40,14 +40,14 @@ struct Limb {
   }
 };
 
-/// Flows together over a joint.
+/// A smooth union that blends over a joint.
 double joined(double a, double b) {
   constexpr double kJoint = 0.05;
   const double overlap = std::max(kJoint - std::abs(a - b), 0.0);
   return std::min(a, b) - overlap * overlap / (4.0 * kJoint);
 }
 
-/// A trunk along x, four legs that stand apart, a neck and a tail.
+/// A trunk along x, four separate legs, a neck and a tail.
 ImplicitSolid animal() {
   static const std::array<Limb, 7> limbs = {{
       {{-0.28, 0.0, 0.0}, {0.28, 0.0, 0.0}, 0.16, 0.14},
@@ -65,7 +65,7 @@ ImplicitSolid animal() {
   });
 }
 
-/// Triangles are in proportion to the square of the lattice's number of cubes, more or less.
+/// The number of triangles is roughly proportional to the square of the lattice's number of cubes.
 TriangleMesh meshOf(const ImplicitSolid& solid, std::size_t triangles) {
   constexpr double kFirst = 0.05;
   const auto coarse = static_cast<double>(scenes::surfaceOf(solid, kFirst).triangleCount());
@@ -92,12 +92,12 @@ GapBody makeGapBody(const std::string& name, std::size_t tets, std::size_t trian
   body.mesh.groups.clear();
   CageOptions options;
   options.targetTets = tets;
-  auto cage = buildCage(body.mesh, options);
+  auto cage = createCage(body.mesh, options);
   scenes::require(cage.status());
-  const scenes::Placement place = scenes::placementOf(boundingBox(cage.value().nodes));
-  place.toWorld(body.mesh.positions);
-  body.cage = place.toWorld(std::move(cage).value());
-  auto binding = SoftBodyBinding::make(body.cage, body.mesh);
+  const scenes::Placement position = scenes::placementOf(boundingBox(cage.value().mesh.nodes));
+  position.toWorld(body.mesh.positions);
+  body.cage = position.toWorld(std::move(cage).value());
+  auto binding = SoftBodyBinding::create(body.cage, body.mesh);
   scenes::require(binding.status());
   body.binding = binding.value();
   return body;

@@ -20,7 +20,7 @@ using scenes::World;
 
 using Distance = std::function<double(const Vector3d&)>;
 
-/// Of a union.
+/// The distance from a union.
 Distance nearestOf(const std::vector<Vector3d>& centres, const Distance& ofOne) {
   return [=](const Vector3d& p) {
     double nearest = HUGE_VAL;
@@ -97,7 +97,8 @@ GapObstacle poles() {
           nearestOf(centres, one)};
 }
 
-/// A slab whose sides slope at 45 degrees. Its distance is that of the farthest plane: exact within and over faces.
+/// A slab whose sides slope at 45 degrees. Its distance is that of the farthest plane: exact inside and above the
+/// faces.
 GapObstacle hull() {
   const double top = 0.3 * kSize, height = 0.2 * kSize;
   const auto add = [=](World& world) {
@@ -115,7 +116,7 @@ GapObstacle hull() {
           }};
 }
 
-/// Gentle hills, a grid of triangles; as a function of the plane, by the triangle above or below a point.
+/// Gentle hills, a grid of triangles. The distance is a function of the plane, by the triangle above or below a point.
 struct Hills {
   static constexpr int kCells = 12;  ///< to either side
   static constexpr double kCell = 0.125 * kSize, kDepth = 0.04 * kSize, kLength = 1.5 * kSize;
@@ -127,7 +128,7 @@ struct Hills {
   static btVector3 corner(int i, int j) {
     return {static_cast<btScalar>(i * kCell), static_cast<btScalar>(height(i, j)), static_cast<btScalar>(j * kCell)};
   }
-  /// From the plane of the triangle at a place: two a cell, cut from (1, 0) to (0, 1).
+  /// The distance from the plane of the triangle at a position: there are two per cell, cut from (1, 0) to (0, 1).
   static double distance(const Vector3d& p) {
     const double x = p.x() / kCell, z = p.z() / kCell;
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(z));

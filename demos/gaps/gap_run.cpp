@@ -16,11 +16,11 @@ namespace {
 using namespace scenes;
 using Eigen::Vector3d;
 
-constexpr double kAbove = 0.02;    ///< where the surface begins, in sizes
-constexpr double kOff = 0.1;       ///< sizes from the obstacle: the body has fallen off
-constexpr double kStill = 0.05;    ///< sizes a second
-constexpr double kDamping = 0.04;  ///< seconds: half the rocking that the default leaves
-constexpr double kWatched = 0.25;  ///< seconds of an impact
+constexpr double kAbove = 0.02;  ///< where the surface begins, over the body's size
+constexpr double kOff = 0.1;     ///< distance from the obstacle, over the body's size, at which the body has fallen off
+constexpr double kStill = 0.05;  ///< body lengths per second
+constexpr double kDamping = 0.04;  ///< seconds: leaves half as much rocking as the default
+constexpr double kWatched = 0.25;  ///< seconds of an impact that are measured
 
 /// A body over an obstacle.
 class Watched {
@@ -38,15 +38,15 @@ class Watched {
   bool step() {
     scene_.world().step(scene_.options().substep());
     skin_.markMoved();
-    return skin_.update() == UpdateStatus::Updated;
+    return skin_.update() == StatusCode::Ok;
   }
   double gap() const {
-    double least = HUGE_VAL;
+    double minimum = HUGE_VAL;
     for (std::size_t v = 0; v < skin_.positions().size(); ++v) {
       const btScalar* p = skin_.positions()[v];
-      least = std::min(least, obstacle_.distance(Vector3d(p[0], p[1], p[2])));
+      minimum = std::min(minimum, obstacle_.distance(Vector3d(p[0], p[1], p[2])));
     }
-    return least / kSize;
+    return minimum / kSize;
   }
   double speed() const { return scene_.nodeSpeed(); }
   double substep() const { return scene_.options().substep(); }
@@ -55,7 +55,7 @@ class Watched {
   static SceneOptions sceneOptions() {
     SceneOptions options;
     options.force = Force::Elastic;
-    options.body.damping = kDamping;
+    options.body.stiffnessDamping = kDamping;
     return options;
   }
 

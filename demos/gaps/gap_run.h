@@ -7,20 +7,22 @@
 
 namespace tetskin::gaps {
 
-/// How a body lies at the end.
+/// How a body lies at the end of a run.
 struct Rest {
-  double gap = 0.0;    ///< least of the surface's vertices, in sizes, the one farthest from 0 in the last half second
-  double speed = 0.0;  ///< root mean square of the nodes' then, in sizes a second
+  double gap = 0.0;    ///< least gap of the surface's vertices, over the body's size: the value farthest from 0 in the
+                       ///< last half second
+  double speed = 0.0;  ///< root mean square of the nodes' speeds in that time, in body lengths per second
   bool finite = true;
 
-  bool touches() const;  ///< it has not fallen off
+  bool touches() const;  ///< true if it has not fallen off
   bool still() const;
 };
 
-/// From just above the obstacle, for so long.
+/// Runs a body for this many seconds, starting from just above the obstacle.
 Rest restOn(const GapObstacle& obstacle, const GapBody& body, scenes::Contact contact, double seconds);
 
-/// Least gap of all substeps, in sizes, of a body that hits the obstacle at so many sizes a second.
+/// The least gap over all substeps, over the body's size, of a body that hits the obstacle at this many body lengths
+/// per second.
 double deepestAt(double speed, const GapObstacle& obstacle, const GapBody& body, scenes::Contact contact);
 
 }  // namespace tetskin::gaps

@@ -17,7 +17,7 @@ std::string number(double value) {
   return std::isfinite(value) ? text : "explodes";
 }
 
-/// "-": it has fallen off; "~": it still moves.
+/// "-": the body has fallen off; "~": it still moves.
 std::string wordOf(const Rest& rest) {
   if (!rest.finite) return "explodes";
   if (!rest.touches()) return "-";
@@ -97,8 +97,10 @@ nlohmann::ordered_json toJson(const std::vector<GapRow>& rows) {
 }
 
 std::string toMarkdown(const std::vector<GapRow>& rows) {
-  return "Gap at rest, by the surface (by the cage's nodes):\n\n" + tableOf(rows, restCell) +
-         "\nLeast gap of an impact, by the surface (by the cage's nodes):\n\n" + tableOf(rows, impactCell);
+  return "Gap at rest with contact at the surface (at the cage's nodes), in body lengths:\n\n" +
+         tableOf(rows, restCell) +
+         "\nLeast gap of an impact with contact at the surface (at the cage's nodes), in body lengths:\n\n" +
+         tableOf(rows, impactCell);
 }
 
 }  // namespace tetskin::gaps

@@ -12,9 +12,9 @@
 namespace tetskin::report {
 namespace {
 
-/// Of the deformation: a larger error shows.
+/// Share of the deformation: a larger error is visible.
 constexpr double kVisible = 0.1;
-constexpr double kLeastOrder = 1.0, kMostOrder = 3.0;
+constexpr double kMinOrder = 1.0, kMaxOrder = 3.0;
 
 /// The rows of one kind, coarsest first.
 std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material) {
@@ -31,7 +31,7 @@ double orderOf(double coarseError, double fineError, const Row& coarse, const Ro
   return std::log(coarseError / fineError) / std::log(coarse.edge / fine.edge);
 }
 
-/// Of the straight line through the logarithms of edge and error; 0 where an error is 0.
+/// The slope of the straight line through the logarithms of edge and error; 0 where an error is 0.
 double slope(const std::vector<Row>& rows, double Row::*error) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const Row& row : rows) {
@@ -106,7 +106,7 @@ const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
 
 std::string inWords(const Row& row) {
   char text[128];
-  std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms a frame", row.errorTotalRms, row.totalMs);
+  std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms per frame", row.errorTotalRms, row.totalMs);
   const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets";
   return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
 }
@@ -127,8 +127,8 @@ std::string reductionAdvice(const std::vector<Row>& rows) {
   }
   if (!reduced) return {};
   if (!cage)
-    return "Take a reduced body where nothing else is fast enough: " + inWords(*reduced) + ", and no cage is as fast.";
-  const char* winner = gain > 1.0 ? "Take a reduced body: " : "Take embedding: ";
+    return "Use a reduced body only where no cage is fast enough: " + inWords(*reduced) + "; no cage is as fast.";
+  const char* winner = gain > 1.0 ? "Use a reduced body: " : "Use an embedding: ";
   const Row &better = gain > 1.0 ? *reduced : *cage, &worse = gain > 1.0 ? *cage : *reduced;
   return winner + inWords(better) + ", " + inWords(worse) + ".";
 }
@@ -141,10 +141,10 @@ double referenceError(const std::vector<Row>& rows) {
   const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();
   if (!(fine.edge > reference->edge)) return 0.0;
   const auto gap = [&](const Row& row, double p) { return std::pow(row.edge, p) - std::pow(reference->edge, p); };
-  double low = kLeastOrder, high = kMostOrder;
+  double low = kMinOrder, high = kMaxOrder;
   for (int k = 0; k < 60; ++k) {
     const double p = 0.5 * (low + high);
-    // The quotient of the gaps grows with the order.
+    // The ratio of the gaps increases with the order.
     (gap(coarse, p) / gap(fine, p) < coarse.errorTotalRms / fine.errorTotalRms ? low : high) = p;
   }
   return fine.errorTotalRms * std::pow(reference->edge, low) / gap(fine, low);

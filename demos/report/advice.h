@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the rows of one scene say together.
+// Conclusions from the rows of one scene together.
 #pragma once
 
 #include <string>
@@ -11,39 +11,41 @@
 
 namespace tetskin::report {
 
-/// Marks the rows that no other choice beats in both time and error. The reference and Bullet's own path take no part.
+/// Marks the rows that no other choice beats in both time and error. The reference and Bullet's own surface are left
+/// out.
 void markPareto(std::vector<Row>& rows);
 
-/// The power of the cage's edge with which an error falls, from each cage to the next finer one.
+/// The exponent of the edge length with which an error falls, from each cage to the next finer one.
 struct ObservedOrder {
   double coarseTets = 0, fineTets = 0;
   double total = 0, embedding = 0;  ///< 0 where an error is 0
 };
-/// Of the rows with this interpolation and material.
+/// The observed orders of the rows with this interpolation and material.
 std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
                                           const std::string& material);
 
-/// The power over all these cages: the slope of a straight line through the logarithms, by least squares. 0 if there
-/// are fewer than two.
+/// The order over all these cages: the slope of a straight line through the logarithms, by least squares. 0 if there
+/// are fewer than two cages.
 ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material);
 
-/// What the reference itself is wrong by, estimated from the two finest cages made as it is, split, filled and
-/// calibrated, or else from the two finest bare ones: if errors against the truth fall as C edge^p, then those against
+/// The reference's own error, estimated from the two finest cages made as it is (duplicated elements, volume fractions,
+/// calibrated), or else from the two finest bare ones. If errors against the truth fall as C edge^p, then those against
 /// the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1 and 3). 0 if
 /// there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
 
-/// A reduced body against cages, by the deformation.
+/// How a reduced body compares with cages, by the size of the deformation.
 struct ReductionLimit {
   double modes = 0;
-  double amplitude =
-      0;  ///< the largest at which the error is at most a tenth of it: RMS of the reference's surface from rest
+  double amplitude = 0;  ///< the largest amplitude at which the error is at most a tenth of it: RMS distance of the
+                         ///< reference's surface from rest
 };
-/// Of the reduced row of most modes, over its frames; amplitude 0 if there is none, or none of its frames is so good.
+/// The limit of the reduced row with most modes, over its frames. The amplitude is 0 if there is no such row, or if
+/// none of its frames is that good.
 ReductionLimit reductionLimit(const std::vector<Row>& rows);
 
-/// What to take in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
-/// these. Empty without reduced rows.
+/// What to use in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
+/// these cages. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

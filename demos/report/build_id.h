@@ -6,8 +6,8 @@
 
 namespace tetskin::report {
 
-/// Tells builds of this program apart: a hash over the bytes of the running executable, and of the libraries of
-/// tetskin and Bullet that are loaded beside it. The same for every run of one build, where these can be read.
+/// Tells builds of this program apart: a hash over the bytes of the running executable, and of the libraries of tetskin
+/// and Bullet that are loaded with it. It is the same for every run of one build, where these files can be read.
 const std::string& buildId();
 
 }  // namespace tetskin::report

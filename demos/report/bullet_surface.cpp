@@ -12,7 +12,7 @@
 namespace tetskin::report {
 
 BulletSurface::BulletSurface(const Cage& cage, const TriangleMesh& mesh) {
-  auto body = makeSoftBody(cage, worldInfo_);
+  auto body = createSoftBody(cage, worldInfo_);
   scenes::require(body.status());
   body_ = std::unique_ptr<btSoftBody>(std::move(body).value());
   const std::size_t before = scenes::heapBytes();

@@ -4,21 +4,21 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <memory>
 #include <vector>
 
 namespace tetskin::report {
 
-/// Bullet's own way to carry a render mesh: render nodes, bound by testing all pairs of vertices and tets, in a body
+/// Bullet's own embedding of a render mesh: render nodes, bound by testing all pairs of vertices and tets, in a body
 /// that is in no world.
 class BulletSurface {
  public:
   /// Throws InputError if Bullet cannot make a body of the cage.
   BulletSurface(const Cage& cage, const TriangleMesh& mesh);
 
-  /// Node positions, nodeCount x 3.
+  /// nodes  positions, nodeCount x 3
   template <class Points>
   void update(const Points& nodes) {
     for (int n = 0; n < body_->m_nodes.size(); ++n) {

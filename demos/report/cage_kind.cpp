@@ -17,7 +17,7 @@ void requireKnown(const std::string& name) {
     if (name == nameOf(kind)) return;
     known += std::string(", ") + nameOf(kind);
   }
-  if (name != kAll) throw scenes::InputError("--cages: there are no cages '" + name + "'; there are: " + known);
+  if (name != kAll) throw scenes::InputError("--cages: unknown kind '" + name + "'; choose from: " + known);
 }
 
 }  // namespace

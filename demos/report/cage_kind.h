@@ -8,14 +8,14 @@
 
 namespace tetskin::report {
 
-/// What a cage knows of the mesh in it. Bare tets are full of material; the others weigh what the mesh weighs, and are
-/// as stiff as they are filled.
+/// How much a cage knows of the mesh in it. Tets of bare cages are full of material; those of the others are as heavy
+/// as the material that they contain, and as stiff as their volume fraction says.
 enum class CageKind {
-  Same,            ///< bare, and not split: tets of the reference's material
-  SameCalibrated,  ///< the same, softened by what its tets tell
-  Split,           ///< bare, with a copy of a tet for each part of the mesh
-  Filled,          ///< not split
-  Calibrated,      ///< split, filled and calibrated: the library's own way
+  Same,            ///< bare, without duplicate elements: tets of the reference's material
+  SameCalibrated,  ///< as `Same`, and softened by calibration
+  Split,           ///< bare, with a duplicate of a tet for each component of the mesh in it
+  Filled,          ///< with volume fractions, without duplicate elements
+  Calibrated,      ///< with duplicate elements, volume fractions and calibration: the library's recommended cage
 };
 constexpr std::array<CageKind, 5> kCageKinds = {CageKind::Same, CageKind::SameCalibrated, CageKind::Split,
                                                 CageKind::Filled, CageKind::Calibrated};
@@ -26,7 +26,7 @@ bool isSplit(CageKind kind);
 bool isFilled(CageKind kind);
 bool isCalibrated(CageKind kind);
 
-/// Those of these names, in the order above and each once; "all" is all of them. Throws InputError.
+/// The kinds with these names, in the order above and without repetitions; "all" means all of them. Throws InputError.
 std::vector<CageKind> cageKindsOf(const std::vector<std::string>& names);
 
 }  // namespace tetskin::report

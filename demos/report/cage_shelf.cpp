@@ -3,7 +3,7 @@
 #include "report/cage_shelf.h"
 
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <set>
 
@@ -13,17 +13,17 @@ namespace tetskin::report {
 namespace {
 
 Cage built(const TriangleMesh& mesh, const CageOptions& options) {
-  Result<Cage> cage = buildCage(mesh, options);
+  Result<Cage> cage = createCage(mesh, options);
   scenes::require(cage.status());
   return std::move(cage).value();
 }
 
-/// With all of its tets full; which of them hold the vertices stays known.
+/// Makes all tets full; which of them contain the vertices is still known.
 void makeBare(Cage& cage) {
-  cage.fill.clear();
-  cage.fineFill.clear();
+  cage.volumeFraction.clear();
+  cage.fineVolumeFraction.clear();
   cage.masses.clear();
-  cage.factor.clear();
+  cage.stiffnessFactor.clear();
 }
 
 ShelvedCage shelved(Cage cage, bool calibrated) {
@@ -40,14 +40,14 @@ ShelvedCage shelved(Cage cage, bool calibrated) {
 }  // namespace
 
 double meanEdge(const Cage& cage) {
-  const std::vector<std::array<int, 2>> edges = uniqueEdges(cage);
+  const std::vector<std::array<int, 2>> edges = uniqueEdges(cage.mesh);
   double sum = 0.0;
-  for (const auto& [a, b] : edges) sum += (cage.nodes[a] - cage.nodes[b]).norm();
+  for (const auto& [a, b] : edges) sum += (cage.mesh.nodes[a] - cage.mesh.nodes[b]).norm();
   return sum / static_cast<double>(edges.size());
 }
 
 std::size_t copiesIn(const Cage& cage) {
-  return cage.latticeTets.size() - std::set<int>(cage.latticeTets.begin(), cage.latticeTets.end()).size();
+  return cage.sourceTet.size() - std::set<int>(cage.sourceTet.begin(), cage.sourceTet.end()).size();
 }
 
 const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {
@@ -55,7 +55,7 @@ const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {
   if (found != cages_.end()) return found->second;
   CageOptions options;
   options.targetTets = tets;
-  options.split = isSplit(kind);
+  options.duplicateElements = isSplit(kind);
   Cage cage = built(mesh_, options);
   if (!isFilled(kind)) makeBare(cage);
   return cages_[{tets, kind}] = shelved(std::move(cage), isCalibrated(kind));

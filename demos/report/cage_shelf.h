@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/elastic/calibration.h>
 
 #include <cstddef>
@@ -17,15 +17,15 @@ namespace tetskin::report {
 
 /// Mean length of a cage's edges.
 double meanEdge(const Cage& cage);
-/// Tets beyond the first at their place.
+/// The number of duplicate tets: those beyond the first at their position.
 std::size_t copiesIn(const Cage& cage);
 
 struct ShelvedCage {
   Cage cage;
-  CalibrationReport calibration;  ///< as made by default where there was none: a factor of 1
+  CalibrationReport calibration;  ///< of the cage as built, without calibration: a factor of 1
 };
 
-/// The cages of one mesh by the number of tets wished for and their kind, and that of the reference, each made when it
+/// The cages of one mesh by the requested number of tets and their kind, and the reference's cage. Each is made when it
 /// is first asked for. Throws InputError.
 class CageShelf {
  public:
@@ -33,10 +33,11 @@ class CageShelf {
   CageShelf(const TriangleMesh& mesh, std::size_t referenceTets) : mesh_(mesh), referenceTets_(referenceTets) {}
 
   const ShelvedCage& at(std::size_t tets, CageKind kind);
-  /// Split and filled, so that it approaches the mesh itself; not fitted, whose tets of many shapes are stiffer; and
-  /// calibrated where it is not too fine for that: what it is too stiff by would count as the cages' error.
+  /// The cage of a reference has duplicate elements and volume fractions, so that it approaches the mesh itself. It is
+  /// not fitted, as fitted tets of many shapes are stiffer. It is calibrated where it is not too fine for that: its
+  /// excess stiffness would otherwise count as the cages' error.
   const ShelvedCage& reference();
-  /// Takes a cage for the reference, instead of building it.
+  /// Uses a given cage as the reference's, instead of building one.
   void putReference(Cage cage, bool calibrated);
 
  private:

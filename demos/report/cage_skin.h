@@ -6,7 +6,7 @@
 
 namespace tetskin::report {
 
-/// A mesh carried by a cage in double, by the cage's map if it has one. Throws InputError.
+/// A mesh carried by a cage in double precision, by the cage's map if it has one. Throws InputError.
 MeshSkin<double> skinOf(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options);
 
 }  // namespace tetskin::report

@@ -16,12 +16,12 @@ namespace {
 
 using Colour = std::array<double, 3>;
 
-/// Evenly spaced; even to the eye, also in grey and to the colour-blind.
+/// Evenly spaced; perceptually uniform, also in grey and for the colour-blind.
 constexpr std::array<Colour, 6> kViridis = {
     {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
 
-std::array<int, 3> colourOf(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);
+std::array<int, 3> colourOf(double fraction) {
+  const double at = std::clamp(fraction, 0.0, 1.0) * (kViridis.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(at), kViridis.size() - 2);
   const double part = at - static_cast<double>(below);
   std::array<int, 3> colour{};
@@ -40,22 +40,22 @@ void append(std::string& text, const char* format, Values... values) {
 }  // namespace
 
 std::string colouredPly(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& positions,
-                        const std::vector<float>& values, double most) {
+                        const std::vector<float>& values, double maximum) {
   std::string text = "ply\nformat ascii 1.0\n";
-  append(text, "comment viridis from 0 to %.4g\nelement vertex %zu\n", most, positions.size());
+  append(text, "comment viridis from 0 to %.4g\nelement vertex %zu\n", maximum, positions.size());
   text += "property float x\nproperty float y\nproperty float z\n";
   text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   append(text, "element face %zu\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangleCount());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Eigen::Vector3d& p = positions[v];
-    const std::array<int, 3> c = colourOf(most > 0.0 ? static_cast<double>(values[v]) / most : 0.0);
+    const std::array<int, 3> c = colourOf(maximum > 0.0 ? static_cast<double>(values[v]) / maximum : 0.0);
     append(text, "%.6g %.6g %.6g %d %d %d\n", p.x(), p.y(), p.z(), c[0], c[1], c[2]);
   }
   for (const auto& t : mesh.triangles) append(text, "3 %d %d %d\n", t[0], t[1], t[2]);
   return text;
 }
 
-double mostOf(std::vector<float> values) {
+double maxOf(std::vector<float> values) {
   if (values.empty()) return 0.0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(99 * (values.size() - 1) / 100);
   std::nth_element(values.begin(), at, values.end());

@@ -21,54 +21,54 @@ Eigen::Vector4d weightsIn(const TetMesh& cage, const Tet& tet, const Eigen::Vect
 
 DrivenNodes::DrivenNodes(const TriangleMesh& mesh, const Cage& driver, const Cage& cage) : driver_(driver) {
   placeNodes(mesh, cage);
-  bindMiddles();
+  bindCentroids();
 }
 
 void DrivenNodes::placeNodes(const TriangleMesh& mesh, const Cage& cage) {
   const std::vector<int> tets = scenes::tetsOfNodes(mesh, driver_, cage);
   for (std::size_t n = 0; n < tets.size(); ++n) {
-    Place& place = places_.emplace_back();
-    place.tet = tets[n];
-    place.weights = weightsIn(driver_, driver_.tets[place.tet], cage.nodes[n]);
-    place.nearest = place.weights.cwiseMax(0.0);
-    place.nearest /= place.nearest.sum();
+    Position& position = positions_.emplace_back();
+    position.tet = tets[n];
+    position.weights = weightsIn(driver_.mesh, driver_.mesh.tets[position.tet], cage.mesh.nodes[n]);
+    position.nearest = position.weights.cwiseMax(0.0);
+    position.nearest /= position.nearest.sum();
   }
 }
 
-void DrivenNodes::bindMiddles() {
+void DrivenNodes::bindCentroids() {
   TriangleMesh points;
-  Cage mapped = static_cast<const TetMesh&>(driver_);
-  for (const Place& place : places_) {
-    const Tet& tet = driver_.tets[place.tet];
+  Cage mapped = static_cast<const TetMesh&>(driver_.mesh);
+  for (const Position& position : positions_) {
+    const Tet& tet = driver_.mesh.tets[position.tet];
     for (const auto& [i, j] : kEdges) {
-      points.positions.push_back(0.5 * (driver_.nodes[tet[i]] + driver_.nodes[tet[j]]));
-      mapped.vertexTets.push_back(place.tet);
+      points.positions.push_back(0.5 * (driver_.mesh.nodes[tet[i]] + driver_.mesh.nodes[tet[j]]));
+      mapped.vertexTets.push_back(position.tet);
     }
   }
   BindingOptions options;
   options.interpolation = Interpolation::Quadratic;
-  middles_ = skinOf(mapped, points, options);
+  centroids_ = skinOf(mapped, points, options);
 }
 
 std::vector<Eigen::Vector3f> DrivenNodes::positionsAt(const std::vector<Eigen::Vector3d>& driverNodes) {
-  if (middles_.update(viewOf(driverNodes)) != UpdateStatus::Updated) {
-    throw scenes::InputError("the reference is not finite");
+  if (centroids_.update(viewOf(driverNodes)) != StatusCode::Ok) {
+    throw scenes::InputError("the reference has node positions that are not finite");
   }
   std::vector<Eigen::Vector3f> positions;
-  positions.reserve(places_.size());
-  for (std::size_t n = 0; n < places_.size(); ++n) positions.push_back(positionOf(n, driverNodes).cast<float>());
+  positions.reserve(positions_.size());
+  for (std::size_t n = 0; n < positions_.size(); ++n) positions.push_back(positionOf(n, driverNodes).cast<float>());
   return positions;
 }
 
 Eigen::Vector3d DrivenNodes::positionOf(std::size_t node, const std::vector<Eigen::Vector3d>& driverNodes) const {
-  const auto& [tetIndex, b, q] = places_[node];
-  const Tet& tet = driver_.tets[tetIndex];
+  const auto& [tetIndex, b, q] = positions_[node];
+  const Tet& tet = driver_.mesh.tets[tetIndex];
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int k = 0; k < 4; ++k) position += b[k] * driverNodes[tet[k]];
   for (std::size_t e = 0; e < kEdges.size(); ++e) {
     const auto [i, j] = kEdges[e];
-    const Eigen::Map<const Eigen::Vector3d> middle(middles_.positions()[kEdges.size() * node + e]);
-    const Eigen::Vector3d bulge = 4.0 * middle - 2.0 * (driverNodes[tet[i]] + driverNodes[tet[j]]);
+    const Eigen::Map<const Eigen::Vector3d> centroid(centroids_.positions()[kEdges.size() * node + e]);
+    const Eigen::Vector3d bulge = 4.0 * centroid - 2.0 * (driverNodes[tet[i]] + driverNodes[tet[j]]);
     position += (q[i] * b[j] + b[i] * q[j] - q[i] * q[j]) * bulge;
   }
   return position;

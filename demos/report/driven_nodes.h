@@ -9,32 +9,33 @@
 
 namespace tetskin::report {
 
-/// The nodes of one cage as another one, of the same mesh, takes them: by the quadratic map of a tet of that, which is
-/// continued to first order where the node lies outside. Where cages are split, the place of a node does not tell which
-/// copy of a tet is meant: it is the one that is reached from the nearest vertex of the mesh in the node's own tets.
+/// Where another cage of the same mesh takes the nodes of a cage: by the quadratic map of one of its tets, continued to
+/// first order where the node lies outside. Where cages have duplicate elements, the position of a node does not
+/// determine which duplicate of a tet is meant: it is the one reached from the nearest vertex of the mesh in the node's
+/// own tets.
 class DrivenNodes {
  public:
   /// driver  with `vertexTets`; outlives this object
-  /// cage    with `vertexTets`, or else its nodes go by their place
+  /// cage    with `vertexTets`; without them, its nodes are assigned by position
   /// Throws InputError
   DrivenNodes(const TriangleMesh& mesh, const Cage& driver, const Cage& cage);
 
-  /// Where they are for these nodes of the driver, nodeCount. Throws InputError if these are not finite.
+  /// Node positions for these nodes of the driver, nodeCount. Throws InputError if these are not finite.
   std::vector<Eigen::Vector3f> positionsAt(const std::vector<Eigen::Vector3d>& driverNodes);
 
  private:
-  struct Place {
+  struct Position {
     int tet = -1;
-    Eigen::Vector4d weights, nearest;  ///< of the node, and of a point near it in the tet
+    Eigen::Vector4d weights, nearest;  ///< barycentric weights of the node, and of a point near it in the tet
   };
 
   void placeNodes(const TriangleMesh& mesh, const Cage& cage);
-  void bindMiddles();
+  void bindCentroids();
   Eigen::Vector3d positionOf(std::size_t node, const std::vector<Eigen::Vector3d>& driverNodes) const;
 
   const Cage& driver_;
-  std::vector<Place> places_;
-  MeshSkin<double> middles_;  ///< of the six edges of each node's tet, which together with its corners tell its map
+  std::vector<Position> positions_;
+  MeshSkin<double> centroids_;  ///< of the six edges of each node's tet; with its corners they determine its map
 };
 
 }  // namespace tetskin::report

@@ -7,27 +7,28 @@
 namespace tetskin::report {
 namespace {
 
-/// Of a whole body as large as the reference, kg. Nothing but contacts depends on it.
+/// Mass of a body as large as the reference, kg. Only contacts depend on it.
 constexpr double kReferenceMass = 1.0;
-constexpr double kMarginShare = 0.02;  ///< of the size
-/// Young's modulus over density x gravity x size. The standing serpent nods by a tenth of its size.
+constexpr double kMarginFraction = 0.02;  ///< over the body's size
+/// Young's modulus over density x gravity x size. The standing serpent's head dips by a tenth of its size.
 constexpr double kStiffness = 150.0, kLandingStiffness = 50.0;
-/// Damping in substeps. Half of one is the least that is stable at any stiffness.
+/// Damping in substeps. Half a substep is the least that is stable at any stiffness.
 constexpr double kDampingSubsteps = 0.6;
-constexpr int kMostSubsteps = 64;
+constexpr int kMaxSubsteps = 64;
 
-/// kg a volume of the mesh, or of the tets where it is not known.
+/// kg per volume of the mesh, or per volume of the tets where the mesh's is not known.
 double densityOf(const Cage& reference) {
   const std::vector<double>& masses = reference.masses;
   return kReferenceMass /
-         (masses.empty() ? totalVolume(reference) : std::accumulate(masses.begin(), masses.end(), 0.0));
+         (masses.empty() ? totalVolume(reference.mesh) : std::accumulate(masses.begin(), masses.end(), 0.0));
 }
 
-/// The stiffness that a landing of this cage can have with so many substeps, at most the one wished for.
+/// The stiffness, at most the requested one, with which this cage can land with substeps of this length.
 double landingStiffness(const Cage& cage, double wish, double substep) {
   SoftBodyOptions options;
   options.density = densityOf(cage);
-  options.relativeStiffness = wish / (options.density * scenes::kEarth * boundingBox(cage.nodes).sizes().maxCoeff());
+  options.relativeStiffness =
+      wish / (options.density * scenes::kEarth * boundingBox(cage.mesh.nodes).sizes().maxCoeff());
   options.timeStep = substep;
   return scenes::defaultStiffness(cage, options);
 }
@@ -43,24 +44,25 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
                                 Elasticity elasticity) {
   scenes::SceneOptions options;
   SoftBodyOptions& body = options.body;
-  body.mass = 0.0;
+  body.mass.reset();
   body.density = densityOf(reference);
-  body.margin = kMarginShare * scenes::kSize;
+  body.margin = kMarginFraction * scenes::kSize;
   body.implicit = elasticity == Elasticity::BulletImplicit;
   const double relative = relativeStiffness > 0.0 ? relativeStiffness : scene.lands ? kLandingStiffness : kStiffness;
-  body.youngsModulus = relative * body.density * scenes::kEarth * scenes::kSize;
+  const double wanted = relative * body.density * scenes::kEarth * scenes::kSize;
+  body.youngsModulus = wanted;
   if (!scene.lands) {
     options.force = scenes::Force::LinearElasticity;
-    body.damping = kDampingSubsteps * options.substep();
+    body.stiffnessDamping = kDampingSubsteps * options.substep();
     if (elasticity == Elasticity::Tetskin) options.force = scenes::Force::Elastic;
     return options;
   }
   options.force = scenes::Force::NeoHookean;
   constexpr double kReached = 0.999;
-  double stiffness = landingStiffness(reference, body.youngsModulus, options.substep());
-  while (stiffness < kReached * body.youngsModulus && options.substeps < kMostSubsteps) {
+  double stiffness = landingStiffness(reference, wanted, options.substep());
+  while (stiffness < kReached * wanted && options.substeps < kMaxSubsteps) {
     options.substeps *= 2;
-    stiffness = landingStiffness(reference, body.youngsModulus, options.substep());
+    stiffness = landingStiffness(reference, wanted, options.substep());
   }
   body.youngsModulus = stiffness;
   if (elasticity == Elasticity::Tetskin) {

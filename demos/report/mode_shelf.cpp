@@ -8,7 +8,7 @@
 namespace tetskin::report {
 namespace {
 
-/// A cage that others can be told apart in, though it may have been made without a map.
+/// A cage with a map, by which other cages' nodes find its duplicate tets, though it may have been made without a map.
 Cage withMap(Cage cage, const TriangleMesh& mesh) {
   if (!cage.vertexTets.empty()) return cage;
   const MeshSkin<double> skin = skinOf(cage, mesh, {});
@@ -18,8 +18,9 @@ Cage withMap(Cage cage, const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::shared_ptr<scenes::Reduction> ModeShelf::of(const TriangleMesh& mesh, const Cage& reference, const Cage& cage) {
-  if (!reduction_) reduction_ = std::make_shared<scenes::Reduction>(reference, most_);
+std::shared_ptr<scenes::Reduction> ModeShelf::reductionOf(const TriangleMesh& mesh, const Cage& reference,
+                                                          const Cage& cage) {
+  if (!reduction_) reduction_ = std::make_shared<scenes::Reduction>(reference, max_);
   const Cage fine = withMap(reference, mesh), driver = withMap(cage, mesh);
   reduction_->nodeTets = scenes::tetsOfNodes(mesh, driver, fine);
   return reduction_;

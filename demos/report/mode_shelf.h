@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <memory>
 
@@ -11,18 +11,18 @@
 
 namespace tetskin::report {
 
-/// The vibrations of the reference, which reduced bodies of one scene share.
+/// The vibration modes of the reference, which the reduced bodies of one scene share.
 class ModeShelf {
  public:
-  /// most  modes that any body takes
-  explicit ModeShelf(int most) : most_(most) {}
+  /// most  the largest number of modes that any body uses
+  explicit ModeShelf(int maximum) : max_(maximum) {}
 
-  /// For the bodies of a cage. Throws InputError.
+  /// The reduction for the bodies of a cage. Throws InputError.
   /// reference  the same in all calls
-  std::shared_ptr<scenes::Reduction> of(const TriangleMesh& mesh, const Cage& reference, const Cage& cage);
+  std::shared_ptr<scenes::Reduction> reductionOf(const TriangleMesh& mesh, const Cage& reference, const Cage& cage);
 
  private:
-  int most_;
+  int max_;
   std::shared_ptr<scenes::Reduction> reduction_;
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kProgram = TETSKIN_PLOTS "/error_vs_time.py";
 
-/// Runs a command found by the path, and waits for it; returns true if it ended well.
+/// Runs a command found in the path, and waits for it; returns true if it succeeded.
 bool run(const std::vector<std::string>& command, bool silent = false) {
   std::vector<char*> arguments(command.size() + 1);  // the last one null
   std::transform(command.begin(), command.end(), arguments.begin(),
@@ -40,7 +40,7 @@ bool run(const std::vector<std::string>& command, bool silent = false) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// The first Python with matplotlib: the one in the path may be another than the system's, which has the package.
+/// The first Python with matplotlib: the one in the path may differ from the system's, which has the package.
 std::string pythonWithMatplotlib() {
   for (const char* python : {"python3", "/usr/bin/python3"}) {
     if (run({python, "-c", "import matplotlib"}, true)) return python;
@@ -52,7 +52,7 @@ std::string pythonWithMatplotlib() {
 
 void makeTablesAndPlots(const ReportOptions& options) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(options.json, error)) return;  // a pipe: whoever reads it has the results
+  if (!std::filesystem::is_regular_file(options.json, error)) return;  // a pipe: its reader has the results
   std::vector<std::string> command = {pythonWithMatplotlib(),           kProgram, options.json, options.out, "--tets",
                                       std::to_string(options.shownTets)};
   if (options.targetError > 0.0) {
@@ -63,13 +63,14 @@ void makeTablesAndPlots(const ReportOptions& options) {
   if (options.quiet) command.emplace_back("--quiet");
   if (command.front().empty()) {
     if (options.quiet) return;
-    command.front() = "No tables and plots: they need Python with matplotlib (python3-matplotlib). Then: python3";
+    command.front() =
+        "Tables and plots are not made: they need Python with matplotlib (python3-matplotlib). To make them: python3";
     for (const std::string& word : command) std::printf("%s%c", word.c_str(), &word == &command.back() ? '\n' : ' ');
     return;
   }
   std::fflush(stdout);
   if (!run(command))
-    std::fprintf(stderr, "tetskin_error_vs_time: warning: %s failed: tables or plots are missing\n", kProgram);
+    std::fprintf(stderr, "tetskin_error_vs_time: warning: %s failed; tables or plots are missing\n", kProgram);
 }
 
 }  // namespace tetskin::report

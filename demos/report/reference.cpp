@@ -16,7 +16,7 @@ MeshSkin<double> quadraticSkinOf(const Cage& cage, const TriangleMesh& mesh) {
   return skinOf(cage, mesh, options);
 }
 
-/// A cage that others can be told apart in, though it was made without a map.
+/// A cage with a map, by which other cages' nodes find its duplicate tets, though it was made without a map.
 Cage mapped(Cage cage, const Embedding& embedding) {
   cage.vertexTets.clear();
   for (const VertexBinding& binding : embedding.bindings()) cage.vertexTets.push_back(binding.tet);
@@ -25,7 +25,8 @@ Cage mapped(Cage cage, const Embedding& embedding) {
 
 void update(MeshSkin<double>& skin, const std::vector<Eigen::Vector3f>& nodes) {
   const Points current = toDouble(nodes);
-  if (skin.update(viewOf(current)) != UpdateStatus::Updated) throw scenes::InputError("the reference is not finite");
+  if (skin.update(viewOf(current)) != StatusCode::Ok)
+    throw scenes::InputError("the reference has node positions that are not finite");
 }
 
 }  // namespace
@@ -85,7 +86,7 @@ const ReferenceSurface& ExactReference::surfaceAt(int frame) {
 Trajectory ExactReference::drive(const Cage& cage) const {
   Trajectory driven(2);
   for (int frame = 0; frame < 2; ++frame) {
-    for (const Eigen::Vector3d& p : cage.nodes) driven[frame].emplace_back(twistAt(frame).point(p).cast<float>());
+    for (const Eigen::Vector3d& p : cage.mesh.nodes) driven[frame].emplace_back(twistAt(frame).point(p).cast<float>());
   }
   return driven;
 }

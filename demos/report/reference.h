@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What surfaces and cages are compared with.
+// The motions and surfaces with which others are compared.
 #pragma once
 
 #include <tetskin/core/mesh_skin.h>
@@ -20,11 +20,11 @@ struct ReferenceSurface {
   Points positions, normals;
 };
 
-/// The motion that counts as right, of any point of the rest body.
+/// The motion that counts as exact, of any point of the rest body.
 class Reference {
  public:
   virtual ~Reference() = default;
-  /// Frames, the first at rest.
+  /// The number of frames; the first is at rest.
   virtual int frameCount() const = 0;
   /// Valid until the next call.
   virtual const ReferenceSurface& surfaceAt(int frame) = 0;
@@ -36,7 +36,7 @@ class Reference {
 /// motion smoothly to nodes that lie outside of it: coarse cages are larger than fine ones (see DrivenNodes).
 class SimulatedReference : public Reference {
  public:
-  /// All outlive this object. Throws InputError.
+  /// All arguments must outlive this object. Throws InputError.
   SimulatedReference(const TriangleMesh& mesh, const Cage& cage, const Trajectory& trajectory);
 
   int frameCount() const override { return static_cast<int>(trajectory_.size()); }
@@ -51,7 +51,7 @@ class SimulatedReference : public Reference {
   ReferenceSurface surface_;
 };
 
-/// A smooth map: what is wrong is the interpolation alone.
+/// A smooth map, so that the only error is that of the interpolation.
 class ExactReference : public Reference {
  public:
   ExactReference(const TriangleMesh& mesh, const scenes::Twist& map);
@@ -69,7 +69,7 @@ class ExactReference : public Reference {
   ReferenceSurface surface_;
 };
 
-/// The nodes of a frame in double, as skins of double take them.
+/// The nodes of a frame in double precision, as skins of double need them.
 Points toDouble(const std::vector<Eigen::Vector3f>& nodes);
 
 }  // namespace tetskin::report

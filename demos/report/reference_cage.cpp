@@ -14,7 +14,7 @@ void requireFit(const TriangleMesh& mesh, const Cage& cage, const ReportOptions&
   scenes::ModelOptions model = options.model;
   model.cage = options.reference;
   EmbedReport report;
-  const auto embedded = embed(cage, viewOf(mesh.positions), {}, &report);
+  const auto embedded = embed(cage.mesh, viewOf(mesh.positions), {}, &report);
   scenes::requireFit(embedded.status(), report, model);
 }
 
@@ -24,9 +24,10 @@ std::uint64_t hashOf(const std::vector<Value>& values, std::uint64_t seed) {
 }
 
 std::uint64_t hashOf(const Cage& cage) {
-  std::uint64_t hash = hashOf(cage.tets, hashOf(cage.nodes, scenes::kNoHash));
+  std::uint64_t hash = hashOf(cage.mesh.tets, hashOf(cage.mesh.nodes, scenes::kNoHash));
   hash = hashOf(cage.vertexTets, hash);
-  for (const std::vector<double>* values : {&cage.fill, &cage.factor, &cage.masses}) hash = hashOf(*values, hash);
+  for (const std::vector<double>* values : {&cage.volumeFraction, &cage.stiffnessFactor, &cage.masses})
+    hash = hashOf(*values, hash);
   return hash;
 }
 
@@ -37,7 +38,7 @@ ReferenceCage referenceCageFor(const TriangleMesh& mesh, const ReportOptions& op
   ReferenceCage reference;
   if (!options.reference.empty()) {
     Cage cage = scenes::loadCage(options.reference);
-    (void)repairTetMesh(cage);
+    (void)repairTetMesh(cage.mesh);
     requireFit(mesh, cage, options);
     reference.from = options.reference;
     reference.cage = std::move(cage);
@@ -48,7 +49,7 @@ ReferenceCage referenceCageFor(const TriangleMesh& mesh, const ReportOptions& op
   reference.tets = options.referenceTets;
   if (reference.cage) {
     reference.cage = placement.toWorld(std::move(*reference.cage));
-    reference.tets = reference.cage->tetCount();
+    reference.tets = reference.cage->mesh.tetCount();
     reference.hash = hashOf(*reference.cage);
   }
   requireFiner(options, reference.tets);
@@ -59,10 +60,10 @@ std::string describe(const ReferenceCage& reference) {
   const std::string tets = std::to_string(reference.tets) + " tets";
   std::string text = isBuilt(reference)           ? "a built cage of about " + tets
                      : reference.from == kFormula ? tets + " by formula"
-                                                  : tets + " of " + reference.from;
+                                                  : tets + " from " + reference.from;
   if (reference.factor == 1.0) return text;
   char factor[64];
-  std::snprintf(factor, sizeof factor, ", calibrated (stiffness times %.3f)", reference.factor);
+  std::snprintf(factor, sizeof factor, ", calibrated (stiffness scaled by %.3f)", reference.factor);
   return text + factor;
 }
 

@@ -33,12 +33,12 @@ ReportModel loadReportModel(const ReportOptions& options) {
   return model;
 }
 
-/// Progress over jobs of very different cost.
+/// Shows progress over jobs with very different costs.
 class JobProgress {
  public:
   JobProgress(double cost, bool quiet) : cost_(cost), bar_("measuring", kSteps, quiet, stderr) {}
 
-  void share(double jobCost, double share) { bar_.show(stepsAt(done_ + share * jobCost)); }
+  void share(double jobCost, double fraction) { bar_.show(stepsAt(done_ + fraction * jobCost)); }
   void finish(double jobCost, bool wasStored) {
     done_ += jobCost;
     wasStored ? bar_.skip(stepsAt(done_)) : bar_.show(stepsAt(done_));
@@ -58,7 +58,7 @@ SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobPro
     const double cost = runner.costOf(job);
     std::optional<std::vector<Row>> rows = runner.stored(job);
     const bool wasStored = rows.has_value();
-    if (!wasStored) rows = runner.run(job, [&](double share) { progress.share(cost, share); });
+    if (!wasStored) rows = runner.run(job, [&](double fraction) { progress.share(cost, fraction); });
     progress.finish(cost, wasStored);
     result.rows.insert(result.rows.end(), rows->begin(), rows->end());
   }
@@ -84,15 +84,15 @@ const SceneRunner* runnerOf(const std::string& scene, const Runners& runners) {
 
 }  // namespace
 
-ReportResult makeReport(const ReportOptions& wished) {
-  ReportOptions options = wished;
+ReportResult makeReport(const ReportOptions& desired) {
+  ReportOptions options = desired;
   ReportModel model = loadReportModel(options);
   options.referenceTets = model.reference.tets;
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
   if (!options.view.empty()) scenes::requireViewable();
   CageShelf cages(model.mesh, model.reference.tets);
-  // A file's tets are right as they are.
+  // A file's tets are taken as exact, without calibration.
   const bool calibrated = model.reference.from == kFormula;
   if (model.reference.cage) cages.putReference(std::move(*model.reference.cage), calibrated);
   model.reference.cage.reset();
@@ -115,7 +115,7 @@ ReportResult makeReport(const ReportOptions& wished) {
     if (first.isReference()) result.reference.factor = first.stiffnessFactor;
     writeReport(result, options, runner->colouredMesh());
     if (runner.get() == shown) writeView(*runner, model, options);
-    runner.reset();  // with its reference, which may be large
+    runner.reset();  // also frees its reference, which may be large
   }
   return result;
 }

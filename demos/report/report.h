@@ -3,18 +3,18 @@
 //
 // The report of error against run time.
 //
-//   material           what cages are made of (scenes/table.h: the scenes)
-//   cage_kind          what a cage knows of the mesh in it
+// material           what cages are made of (for the scenes themselves see scenes/table.h)
+// cage_kind          how much a cage knows of the mesh in it
 //   cage_shelf         the cages, built and calibrated
-//   simulation         a cage's motion in a scene, and what step and surfaces cost
-//   reference          what is compared with
-//   reference_cage     the tets whose motion that is
-//   driven_nodes       where it would take the nodes of other cages
-//   surface_errors     how far surfaces and nodes are from it
-//   scene_runner       all cages of a scene, or what an earlier run has left of them (result_store)
+// simulation         a cage's motion in a scene, and the time of steps and surfaces
+// reference          the motion that counts as exact
+// reference_cage     the tets that have this motion
+// driven_nodes       where it would take the nodes of other cages
+// surface_errors     errors of surfaces and nodes against it
+// scene_runner       all cages of a scene, or the results of an earlier run (result_store)
 //   advice             orders, Pareto front, the reference's own error
 //   report_files       results for programs
-//   plot_program       has demos/plots make tables and plots of them
+// plot_program       runs demos/plots, which makes tables and plots of them
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ namespace tetskin::report {
 struct SceneResult {
   std::string scene, integrator;
   std::vector<Row> rows;
-  double referenceError = 0.0;  ///< estimated; in box diagonals; 0: not known
+  double referenceError = 0.0;  ///< estimated; in diagonals of the mesh's box; 0: not known
 };
 
 struct ReportResult {

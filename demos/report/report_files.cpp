@@ -62,8 +62,8 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   json["reference"] = {
       {"from", result.reference.from}, {"tets", result.reference.tets}, {"stiffness_factor", result.reference.factor}};
   json["units"] =
-      "errors and edge: diagonals of the mesh's box; _ms, _us: processor time in one thread, medians; "
-      "simulation, skin and total: a frame";
+      "errors and edge: fractions of the diagonal of the mesh's bounding box; _ms, _us: processor time in one thread, "
+      "medians; simulation, skin and total: per frame";
   json["scenes"] = nlohmann::ordered_json::array();
   for (const SceneResult& scene : result.scenes) {
     nlohmann::ordered_json one;

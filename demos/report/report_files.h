@@ -11,10 +11,10 @@
 
 namespace tetskin::report {
 
-/// The rows as CSV. The first line names the columns, with their units where they have any.
+/// The rows as CSV. The first line names the columns, with their units if they have any.
 std::string csvOf(const ReportResult& result);
 
-/// All of it.
+/// The whole result as JSON.
 nlohmann::ordered_json jsonOf(const ReportResult& result);
 
 /// Writes error_vs_time.csv and .json, and the coloured mesh of the last scene, if there is one. Throws InputError.

@@ -18,28 +18,28 @@ struct ReportOptions {
   std::vector<std::string> scenes = {"sag", "twist", "drop", "exact"};
   std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
   std::size_t referenceTets = 30000;
-  std::string reference;  ///< file of tets that count as right, in the mesh's space; empty: made
+  std::string reference;  ///< file of tets that count as exact, in the mesh's space; empty: they are made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
-  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; none: there are none
-  bool bullet = false;                               ///< bodies by Bullet's forces instead of the library's
+  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; empty: no reduced bodies
+  bool bullet = false;                               ///< bodies with Bullet's forces instead of the library's
   bool implicit = false;                             ///< with Bullet's forces: implicit rows beside the explicit ones
   int frames = 0;                                    ///< 0: the scene's own
-  double stiffness = 0.0;                            ///< over density x gravity x size; 0: the scene's own
-  std::size_t shownTets = 3000;                      ///< of the cage whose errors colour a mesh
-  double targetError = 0.0;                          ///< in box diagonals; 0: none
+  double stiffness = 0.0;        ///< Young's modulus over density x gravity x size; 0: the scene's own
+  std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
+  double targetError = 0.0;      ///< in diagonals of the mesh's box; 0: none
   std::string out = "out/error_vs_time", json;
-  std::string view;  ///< file of a page that plays that cage beside the reference; empty: none
+  std::string view;  ///< file of a page that plays the cage of `shownTets` beside the reference; empty: none
   bool quiet = false;
 };
 
-/// Of the scenes, the one that a page plays: sag, or the first that is simulated; empty if none is.
+/// The scene that a page plays: sag, or the first one that is simulated; empty if none is.
 std::string shownScene(const ReportOptions& options);
 
-/// Throws InputError unless a reference of so many tets has more than all cages.
+/// Throws InputError unless a reference of this many tets has more than every cage.
 void requireFiner(const ReportOptions& options, std::size_t referenceTets);
 
-/// The command line's options, among them --quick and --full, which preset others. Call `finish` after parsing.
+/// The options of the command line, among them --quick and --full, which preset others. Call `finish` after parsing.
 class ReportCommandLine {
  public:
   explicit ReportCommandLine(scenes::CommandLine& line);
@@ -52,7 +52,7 @@ class ReportCommandLine {
   void chooseCages();
 
   std::vector<std::string> cages_;
-  std::string interpolation_, force_ = "tetskin";
+  std::string interpolation_ = "all", force_ = "tetskin";
   bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };
 

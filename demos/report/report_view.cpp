@@ -10,14 +10,14 @@
 namespace tetskin::report {
 namespace {
 
-/// From one body to the next, over the widest place that either takes in the whole scene.
+/// Distance from one body to the next, over the largest width of either in the whole scene.
 constexpr double kGap = 1.15;
 
 Embedding embeddingOf(const Cage& cage, const TriangleMesh& mesh) {
   return skinOf(cage, mesh, {}).binding()->embedding();
 }
 
-Box3 placesOf(const Trajectory& trajectory) {
+Box3 positionsOf(const Trajectory& trajectory) {
   Box3 box;
   for (const std::vector<Eigen::Vector3f>& nodes : trajectory) box.extend(boundingBox(viewOf(nodes)));
   return box;
@@ -41,17 +41,17 @@ void writeView(SceneRunner& runner, const ReportModel& model, const ReportOption
       {scenes::withCommas(model.mesh.vertexCount()) + " vertices", "a coarse cage beside the reference"},
       Interpolation::Quadratic);
   page.addBody({page.addModel(shown.cage, model.mesh, embeddingOf(shown.cage, model.mesh)),
-                labelOf("", shown.cage.tetCount()), ""});
+                labelOf("", shown.cage.mesh.tetCount()), ""});
   // A fine cage may have more nodes than the mesh has vertices: then its surface is the smaller one to keep.
-  const bool bySurface = shown.right.nodeCount() > model.mesh.vertexCount();
+  const bool bySurface = shown.right.mesh.nodeCount() > model.mesh.vertexCount();
   const std::size_t right = bySurface ? page.addSurface(model.mesh)
                                       : page.addModel(shown.right, model.mesh, embeddingOf(shown.right, model.mesh));
-  page.addBody({right, labelOf("reference, ", shown.right.tetCount()), "quadratic"});
+  page.addBody({right, labelOf("reference, ", shown.right.mesh.tetCount()), "quadratic"});
   page.setObstacles(shown.obstacles);
 
-  Box3 places = placesOf(shown.nodes);
-  places.extend(placesOf(shown.rightNodes));
-  const double beside = kGap * places.sizes().x();
+  Box3 positions = positionsOf(shown.nodes);
+  positions.extend(positionsOf(shown.rightNodes));
+  const double beside = kGap * positions.sizes().x();
   for (std::size_t k = 0; k < std::min(shown.nodes.size(), shown.rightNodes.size()); ++k) {
     const Points points = bySurface ? runner.rightSurface(static_cast<int>(k)) : toDouble(shown.rightNodes[k]);
     page.keep({{toDouble(shown.nodes[k]), moved(points, beside)}, {}});

@@ -17,7 +17,8 @@ using scenes::writeFile;
 ResultStore::ResultStore(std::string folder) : folder_(std::move(folder)) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (!std::filesystem::is_directory(folder_)) throw scenes::InputError(folder_ + ": cannot be made a folder");
+  if (!std::filesystem::is_directory(folder_))
+    throw scenes::InputError(folder_ + ": cannot be created; check the path and its permissions");
 }
 
 std::string ResultStore::path(const nlohmann::ordered_json& settings, const char* extension) const {
@@ -38,7 +39,7 @@ std::optional<std::vector<Row>> ResultStore::rows(const nlohmann::ordered_json& 
     for (const auto& row : json.at("rows")) rows.push_back(rowFrom(row));
     return rows;
   } catch (const nlohmann::json::exception&) {
-    return {};  // of an older version: made anew
+    return {};  // written by an older version: computed again
   }
 }
 

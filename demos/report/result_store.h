@@ -13,18 +13,18 @@
 
 namespace tetskin::report {
 
-/// Finished work, kept in a folder under a hash of all settings that its result depends on, so that an interrupted run
-/// goes on where it stopped. Files are complete or not there at all. Throws InputError if the folder cannot be written.
+/// Finished results, kept in a folder under a hash of all settings that they depend on, so that an interrupted run
+/// continues where it stopped. A file is either complete or absent. Throws InputError if the folder cannot be written.
 class ResultStore {
  public:
-  /// folder  made if it is not there
+  /// folder  made if it does not exist
   explicit ResultStore(std::string folder);
 
-  /// Empty if there are none, or if they cannot be read.
+  /// Empty if there are no results, or if they cannot be read.
   std::optional<std::vector<Row>> rows(const nlohmann::ordered_json& settings) const;
   void keep(const nlohmann::ordered_json& settings, const std::vector<Row>& rows) const;
 
-  /// A reference's rows need its motion as well: nodes by frame, all of one count.
+  /// A reference's rows need its motion as well: nodes by frame, of equal number in all frames.
   std::optional<Trajectory> trajectory(const nlohmann::ordered_json& settings) const;
   void keep(const nlohmann::ordered_json& settings, const Trajectory& trajectory) const;
 

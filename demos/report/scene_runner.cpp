@@ -15,29 +15,30 @@
 namespace tetskin::report {
 namespace {
 
-/// Of what is stored: raise it when rows of before are no longer comparable.
+/// Version of the stored results: raise it when older rows are no longer comparable.
 constexpr int kVersion = 4;
-/// The finest cage that is compared, for the estimate of the reference's own error, has the reference's tets over this.
+/// For the estimate of the reference's own error, the finest compared cage has the reference's number of tets divided
+/// by this.
 constexpr std::size_t kCoarserLevel = 3;
-/// A cage this near to that level serves for it.
+/// A cage with a number of tets this close to that serves as well.
 constexpr double kNearEnough = 0.7;
-/// Testing all pairs, Bullet takes minutes beyond this many of them.
-constexpr double kMostBulletPairs = 1e9;
+/// Bullet tests all pairs of vertices and tets, and takes minutes if there are more than this.
+constexpr double kMaxBulletPairs = 1e9;
 
 std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
   kinds.erase(std::remove(kinds.begin(), kinds.end(), SurfaceKind::Bullet), kinds.end());
   return kinds;
 }
 
-/// Of the kinds that are there to tell what makes the difference, one surface.
+/// Kinds that only serve to separate causes of error get one surface.
 std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options, bool bullet) {
   if (kind == CageKind::Same && bullet) return options.surfaces;
   if (kind == CageKind::Same || kind == CageKind::Calibrated) return ours(options.surfaces);
   return {options.surfaces.front()};
 }
 
-/// Where bodies move by vibrations, too. In the others nodes are moved by hand, which a body that has only its
-/// vibrations cannot follow.
+/// True for scenes in which bodies move by vibration modes, too. In the others nodes are moved by hand, which a body
+/// that has only its modes cannot follow.
 bool isReducible(const std::string& scene) {
   return scene == "sag" || scene == "drop";
 }
@@ -56,14 +57,14 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
   if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, false});
   if (!exact && both) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, true});
-  // What is not simulated does not depend on the material.
+  // Where nothing is simulated, the material does not matter.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
-  // As the reference is made, if such cages are compared at all.
+  // The kind of the reference, if such cages are compared at all.
   const bool likeReference = std::count(kinds.begin(), kinds.end(), CageKind::Calibrated) > 0;
   const CageKind levelKind = likeReference ? CageKind::Calibrated : CageKind::Same;
   for (const std::size_t tets : sizes) {
     const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
-    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMostBulletPairs;
+    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMaxBulletPairs;
     for (const CageKind kind : kinds) {
       const bool coloured = tets == shown && kind == kinds.front();
       if (asked || kind == levelKind) {
@@ -74,8 +75,8 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   return jobs;
 }
 
-/// One surface of each, in the coarsest cage and in the one that is shown: a reduced body's step costs its modes times
-/// the cage's nodes, and what it gets wrong depends on the cage least.
+/// One surface of each reduced body, in the coarsest cage and in the one that is shown: the cost of a reduced body's
+/// step is the number of its modes times that of the cage's nodes, and its error depends little on the cage.
 void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
   const auto shown = std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return job.coloured; });
   if (shown == jobs.end()) return;
@@ -197,22 +198,22 @@ Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
   row.scene = scene();
   row.integrator = integrator();
   row.material = job.modes > 0 ? "reduced" : nameOf(job.kind);
-  row.tets = static_cast<double>(cage.tetCount());
-  row.nodes = static_cast<double>(cage.nodeCount());
+  row.tets = static_cast<double>(cage.mesh.tetCount());
+  row.nodes = static_cast<double>(cage.mesh.nodeCount());
   row.edge = meanEdge(cage) / model_.diagonal;
   row.copies = static_cast<double>(copiesIn(cage));
-  row.stiffnessFactor = calibration.factor;
-  row.calibrationLeft = calibration.left;
+  row.stiffnessFactor = calibration.stiffnessFactor;
+  row.calibrationLeft = calibration.remainingError;
   row.calibrateMs = calibration.milliseconds;
   row.diagonal = model_.modelDiagonal;
   return row;
 }
 
-std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& share) {
+std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& progress) {
   const ShelvedCage& shelved = cages_.reference();
   int frame = 0;
   Simulation simulation = simulate(entry_, shelved.cage, material(job.bullets), model_.mesh, {},
-                                   [&] { share(static_cast<double>(++frame) / frames_); });
+                                   [&] { progress(static_cast<double>(++frame) / frames_); });
   Row row = rowOf(job, shelved);
   row.interpolation = "reference";
   if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
@@ -249,20 +250,20 @@ Reference& SceneRunner::reference(bool bullets) {
 
 void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame) {
   const Points& positions = reference().surfaceAt(frame).positions;
-  store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, mostOf(errors.rmsByVertex)));
+  store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, maxOf(errors.rmsByVertex)));
 }
 
 scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage) {
   scenes::SceneOptions options = material();
   if (job.modes == 0) return options;
   options.force = scenes::Force::Reduced;
-  options.reduction = modes_.of(model_.mesh, cages_.reference().cage, cage);
+  options.reduction = modes_.reductionOf(model_.mesh, cages_.reference().cage, cage);
   options.modes = job.modes;
   return options;
 }
 
 SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved,
-                                      const std::function<void(double)>& share) {
+                                      const std::function<void(double)>& progress) {
   const Cage& cage = shelved.cage;
   Motion motion;
   motion.row = rowOf(job, shelved);
@@ -274,7 +275,7 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved
     int frame = 0;
     const scenes::SceneOptions options = optionsOf(job, cage);
     Simulation simulation = simulate(entry_, cage, options, model_.mesh, job.surfaces,
-                                     [&] { share(0.5 * static_cast<double>(++frame) / frames_); });
+                                     [&] { progress(0.5 * static_cast<double>(++frame) / frames_); });
     motion.nodes = std::move(simulation.trajectory);
     motion.costs = simulation.surfaces;
     motion.row.simulationMs = simulation.milliseconds;
@@ -282,7 +283,7 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved
     motion.row.finite = simulation.finite;
     if (job.modes > 0) addFindings(job, simulation, *options.reduction, motion.row);
   }
-  // One of them may have exploded.
+  // One of the two may have exploded.
   const std::size_t frames = std::min(motion.nodes.size(), motion.driven.size());
   motion.nodes.resize(frames);
   motion.driven.resize(frames);
@@ -291,12 +292,12 @@ SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved
   return motion;
 }
 
-std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& share) {
-  if (isReference(job)) return referenceRows(job, share);
+std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& progress) {
+  if (isReference(job)) return referenceRows(job, progress);
   Reference& right = reference();
   const ShelvedCage& shelved = cages_.at(job.tets, job.kind);
   const Cage& cage = shelved.cage;
-  const Motion motion = move(job, shelved, share);
+  const Motion motion = move(job, shelved, progress);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
     const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, motion.nodes);
@@ -318,7 +319,7 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
     row.memoryBytes += static_cast<double>(cost.bytes);
     if (job.coloured && rows.size() == 1) colour(job, total, static_cast<int>(motion.nodes.size()) - 1);
   }
-  share(1.0);
+  progress(1.0);
   store_.keep(settings(job), rows);
   return rows;
 }

@@ -26,16 +26,16 @@ struct Job {
   CageKind kind = CageKind::Same;
   std::vector<SurfaceKind> surfaces;  ///< none: a reference
   bool coloured = false;              ///< also colour a mesh by the errors
-  bool bullets = false;               ///< a reference by Bullet's forces, beside ours
-  int modes = 0;                      ///< not 0: a reduced body of so many of the reference's vibrations
+  bool bullets = false;               ///< a reference with Bullet's forces, beside ours
+  int modes = 0;                      ///< not 0: a reduced body with this many of the reference's modes
 };
 
 /// The mesh of the report.
 struct ReportModel {
   std::string name;
   TriangleMesh mesh;           ///< of kSize, centred at the origin
-  double diagonal = 0.0;       ///< of its box
-  double modelDiagonal = 0.0;  ///< the same, in the unit of its file
+  double diagonal = 0.0;       ///< diagonal of the mesh's box
+  double modelDiagonal = 0.0;  ///< the same diagonal in the unit of the mesh's file
   std::uint64_t hash = 0;
   ReferenceCage reference;
 };
@@ -49,36 +49,37 @@ struct ShownMotion {
   TriangleMesh obstacles;
 };
 
-/// The control, in which nothing is simulated.
+/// The scene in which nothing is simulated, as a control.
 constexpr const char* kExact = "exact";
 
 /// Measures the cages of one scene with one integrator, or takes what an earlier run had measured.
 class SceneRunner {
  public:
-  /// All outlive this object.
+  /// All arguments must outlive this object.
   SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store, const ReportOptions& options,
               const std::string& scene, Elasticity elasticity);
 
   const std::string& scene() const { return entry_.name; }
   std::string integrator() const;
-  /// The reference first (there is none in the exact scene), then the cages, coarsest first.
+  /// The jobs: the reference first (there is none in the exact scene), then the cages, coarsest first.
   const std::vector<Job>& jobs() const { return jobs_; }
-  /// Some measure of the time that a job takes.
+  /// A relative measure of the time that a job takes.
   double costOf(const Job& job) const;
 
-  /// The rows of a job, if an earlier run has left them.
+  /// The rows of a job, if an earlier run has stored them.
   std::optional<std::vector<Row>> stored(const Job& job) const;
-  /// share  told how much of the job is done, from 0 to 1
-  std::vector<Row> run(const Job& job, const std::function<void(double)>& share);
-  /// The coloured mesh of the job that makes one; after its rows.
+  /// progress  called with the finished share of the job, from 0 to 1
+  std::vector<Row> run(const Job& job, const std::function<void(double)>& progress);
+  /// The coloured mesh of the job that makes one; valid after its rows are made.
   std::optional<std::string> colouredMesh() const;
-  /// Of the same job, simulated again; not of the exact scene. Valid as long as this object.
+  /// The motion of that job, simulated again; not available for the exact scene. Valid as long as this object.
   ShownMotion shownMotion();
-  /// The mesh in the reference.
+  /// The surface of the mesh in the reference.
   const Points& rightSurface(int frame) { return reference().surfaceAt(frame).positions; }
 
  private:
-  /// Of a cage, as it is and as the reference would take it, with what is known of it before surfaces are compared.
+  /// The motion of a cage, as simulated and as the reference would drive it, with what is known before surfaces are
+  /// compared.
   struct Motion {
     Row row;
     Trajectory nodes, driven;
@@ -88,7 +89,7 @@ class SceneRunner {
   bool isExact() const { return entry_.name == kExact; }
   bool isReference(const Job& job) const { return job.surfaces.empty(); }
   nlohmann::ordered_json settings(const Job& job) const;
-  /// Of a reference, and of all that it counts as right for.
+  /// A reference, and the material of everything that is compared with it.
   struct Right {
     std::optional<scenes::SceneOptions> material;
     Trajectory trajectory;
@@ -100,8 +101,8 @@ class SceneRunner {
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
   scenes::SceneOptions optionsOf(const Job& job, const Cage& cage);
-  Motion move(const Job& job, const ShelvedCage& shelved, const std::function<void(double)>& share);
-  std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& share);
+  Motion move(const Job& job, const ShelvedCage& shelved, const std::function<void(double)>& progress);
+  std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& progress);
   Row rowOf(const Job& job, const ShelvedCage& shelved) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);
 
@@ -114,7 +115,7 @@ class SceneRunner {
   ModeShelf modes_;
   Elasticity elasticity_;
   std::vector<Job> jobs_;
-  Right right_[2];  ///< by the elasticity of the cages; by Bullet's, if that is another one
+  Right right_[2];  ///< with the elasticity of the cages; with Bullet's, if that is a different one
 };
 
 }  // namespace tetskin::report

@@ -18,7 +18,7 @@
 namespace tetskin::report {
 namespace {
 
-/// Frames in which the surfaces of a body that nothing moves are timed.
+/// Number of frames in which the surfaces of a body that nothing moves are timed.
 constexpr int kTimedFrames = 15;
 
 std::size_t indexOf(SurfaceKind kind) {
@@ -49,7 +49,7 @@ class TimedSurfaces {
     }
   }
 
-  /// In another order every frame: the first to run finds the nodes in slower memory.
+  /// The order changes every frame, as the first one finds the nodes in slower memory.
   void update(int frame, int substeps) {
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
       const SurfaceKind kind = kinds_[(k + static_cast<std::size_t>(frame)) % kinds_.size()];
@@ -128,7 +128,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
 
 SurfaceCosts surfaceCosts(const Cage& cage, const TriangleMesh& mesh, const std::vector<SurfaceKind>& kinds) {
   btSoftBodyWorldInfo worldInfo;
-  auto body = makeSoftBody(cage, worldInfo);
+  auto body = createSoftBody(cage, worldInfo);
   scenes::require(body.status());
   const std::unique_ptr<btSoftBody> owned(std::move(body).value());
   TimedSurfaces surfaces(*owned, cage, mesh, kinds);

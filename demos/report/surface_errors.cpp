@@ -19,7 +19,7 @@ double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A surface on a cage, by any of the three ways.
+/// A surface carried by a cage, of any kind.
 class CarriedSurface {
  public:
   CarriedSurface(const Cage& cage, const TriangleMesh& mesh, SurfaceKind kind) {
@@ -37,7 +37,8 @@ class CarriedSurface {
   void update(const std::vector<Eigen::Vector3f>& nodes) {
     if (bullet_) return bullet_->update(nodes);
     const Points current = toDouble(nodes);
-    if (skin_.update(viewOf(current)) != UpdateStatus::Updated) throw scenes::InputError("a cage is not finite");
+    if (skin_.update(viewOf(current)) != StatusCode::Ok)
+      throw scenes::InputError("a cage has node positions that are not finite");
   }
   Eigen::Vector3d position(std::size_t v) const {
     return bullet_ ? bullet_->position(v) : Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]));

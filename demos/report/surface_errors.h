@@ -15,16 +15,17 @@ struct SurfaceErrors {
   double rms = 0.0, max = 0.0;
   double normalMeanDeg = 0.0;
   std::vector<double> rmsByFrame;
-  std::vector<double> amplitudeByFrame;  ///< of the reference itself, from rest, RMS
-  std::vector<float> rmsByVertex;        ///< over the frames
+  std::vector<double> amplitudeByFrame;  ///< RMS distance of the reference itself from rest
+  std::vector<float> rmsByVertex;        ///< RMS over the frames
 };
 
-/// Of the surface that the nodes of a cage carry.
+/// The errors of the surface that the nodes of a cage carry.
 /// nodes  by frame; no more frames than the reference has
 SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes);
 
-/// Root mean square distance of a cage's nodes to where the reference would take them, likewise.
+/// Root mean square distance of a cage's nodes to where the reference would take them, in diagonals of the mesh's box,
+/// over all nodes and all frames after the first.
 double nodeErrors(const Trajectory& nodes, const Trajectory& driven, const TriangleMesh& mesh);
 
 }  // namespace tetskin::report

@@ -14,13 +14,13 @@ namespace tetskin::scenes {
 namespace {
 
 constexpr double kHalfLength = 2.0, kHalfWidth = 0.46;
-constexpr double kCapDepth = 0.25;  ///< over which each end is rounded off
-constexpr double kCapShare = 0.13;  ///< of the rings, for each end
+constexpr double kCapDepth = 0.25;     ///< length over which each end is rounded off
+constexpr double kCapFraction = 0.13;  ///< share of the rings, for each end
 constexpr double kRidgeHeight = 0.035;
 constexpr int kRidges = 16, kColumnsPerRidge = 6;
 constexpr double kBarSlenderness = 1.35;
 
-/// Distance of the outline from the axis, over half the width: a rounded square.
+/// Distance of the outline from the axis, relative to half the width: a rounded square.
 double outline(double theta) {
   return std::pow(std::pow(std::cos(theta), 4.0) + std::pow(std::sin(theta), 4.0), -0.25);
 }
@@ -34,10 +34,10 @@ TriangleMesh makeBar(std::size_t triangles) {
   TriangleMesh mesh;
   appendTube(mesh, grid, [&](int ring, int column) -> Eigen::Vector3d {
     const double t = static_cast<double>(ring) / (grid.rings + 1);
-    const double end = std::min({t / kCapShare, (1.0 - t) / kCapShare, 1.0});  // 0 at a pole, 1 between the caps
+    const double end = std::min({t / kCapFraction, (1.0 - t) / kCapFraction, 1.0});  // 0 at a pole, 1 between the caps
     const double inwards = kCapDepth * (1.0 - std::cos(0.5 * kPi * end));
-    const double middle = std::clamp((t - kCapShare) / (1.0 - 2.0 * kCapShare), 0.0, 1.0);
-    const double between = (2.0 * middle - 1.0) * (kHalfLength - kCapDepth);
+    const double centroid = std::clamp((t - kCapFraction) / (1.0 - 2.0 * kCapFraction), 0.0, 1.0);
+    const double between = (2.0 * centroid - 1.0) * (kHalfLength - kCapDepth);
     const double x = end < 1.0 ? (t < 0.5 ? inwards - kHalfLength : kHalfLength - inwards) : between;
     const double theta = 2.0 * kPi * column / grid.columns;
     const double radius =

@@ -6,25 +6,31 @@
 #include <tetskin/tetskin.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <new>
+#include <sstream>
+#include <utility>
 
 #include "scenes/files.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
+#include "scenes/shared_options.h"
 
 namespace tetskin::scenes {
 namespace {
 
-constexpr int kMostFrames = 1000000;
-constexpr auto kMostTets = static_cast<int>(kLargestTargetTets);
+constexpr int kMaxFrames = 1000000;
+constexpr const char* kOwnOptions = "Options";
+constexpr std::size_t kHelpWidth = 110;
+constexpr auto kMaxTets = static_cast<int>(Limits::kMaxTargetTets);
 
 CLI::Validator isFileName() {
-  return {[](std::string& text) { return std::string(text.empty() ? "the name of a file is empty" : ""); }, ""};
+  return {[](std::string& text) { return std::string(text.empty() ? "the file name is empty" : ""); }, ""};
 }
 
 CLI::Validator isFinite(const char* demand, bool (*holds)(double)) {
@@ -37,33 +43,117 @@ CLI::Validator isFinite(const char* demand, bool (*holds)(double)) {
   return {check, ""};
 }
 
-/// As the option itself reads it: "010" or "0x10" are the same number to both.
-CLI::Validator isWholeNumber(long long least, long long most) {
-  const std::string range = std::to_string(least) + " to " + std::to_string(most);
+/// Reads numbers as the option itself does: "010" and "0x10" mean the same to both.
+CLI::Validator isWholeNumber(long long minimum, long long maximum) {
+  const std::string range = std::to_string(minimum) + " to " + std::to_string(maximum);
   const auto check = [=](std::string& text) {
     long long number = 0;
-    const bool good = CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+    const bool good = CLI::detail::lexical_cast(text, number) && number >= minimum && number <= maximum;
     return good ? std::string() : "'" + text + "' is not a whole number from " + range;
   };
-  return {check, "INT in [" + std::to_string(least) + " - " + std::to_string(most) + "]"};
+  return {check, ""};
 }
 
-/// An option that takes one of some words, each for a value.
-template <class Choice>
-void addChoice(CLI::App& app, const std::string& name, Choice& choice,
-               const std::vector<std::pair<std::string, Choice>>& words, const std::string& description) {
-  std::vector<std::string> known;
-  std::string preset;
-  for (const auto& [word, value] : words) {
-    known.push_back(word);
-    if (value == choice) preset = word;
-  }
-  const auto choose = [&choice, words](const std::string& wanted) {
-    for (const auto& [word, value] : words) {
-      if (word == wanted) choice = value;
+/// "N", with its range unless that is all positive numbers of the type int.
+std::string countLabel(long long minimum, long long maximum) {
+  if (minimum == 1 && maximum == std::numeric_limits<int>::max()) return "N";
+  return "N:" + std::to_string(minimum) + ".." + std::to_string(maximum);
+}
+
+/// The description of an option: the shared one with a note, or the program's own text.
+std::string optionText(const std::string& names, const std::string& text) {
+  const SharedOption* shared = sharedOption(names);
+  if (!shared) return text;
+  return text.empty() ? shared->description : shared->description + " (" + text + ")";
+}
+
+/// Breaks a text into lines with at most this many characters.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string result, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      result += line + "\n";
+      line.clear();
     }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return result + line;
+}
+
+/// Options that several programs have stand under the same headings and in the same order everywhere, after the
+/// program's own options.
+class HelpFormat : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode /*mode*/) const override {
+    std::vector<std::string> groups = {kOwnOptions};
+    for (const SharedOption& option : sharedOptions()) {
+      if (groups.back() != option.group) groups.push_back(option.group);
+    }
+    std::string text = make_description(app) + make_usage(app, std::move(name));
+    for (const std::string& group : groups) {
+      std::vector<const CLI::Option*> options = app->get_options(
+          [&](const CLI::Option* option) { return option->nonpositional() && option->get_group() == group; });
+      std::stable_sort(options.begin(), options.end(),
+                       [](const CLI::Option* a, const CLI::Option* b) { return rank(*a) < rank(*b); });
+      if (!options.empty()) text += make_group(group, false, options);
+    }
+    return text + "\n" + make_footer(app);
+  }
+
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description(), kHelpWidth) + "\n";
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(option->get_description(), kHelpWidth - get_column_width());
+  }
+
+  /// A value's description, such as "FILE [default]; excludes --cage".
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text;
+    if (option->get_type_size() != 0) text += " " + option->get_type_name();
+    if (option->get_required()) text += " (required)";
+    if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
+    std::vector<std::string> excluded;
+    for (const CLI::Option* other : option->get_excludes()) excluded.push_back(other->get_name());
+    std::sort(excluded.begin(), excluded.end());
+    for (const std::string& name : excluded) text += (name == excluded.front() ? "; excludes " : ", ") + name;
+    return text;
+  }
+
+ private:
+  static std::ptrdiff_t rank(const CLI::Option& option) {
+    const SharedOption* shared = sharedOption(option.get_name());
+    return shared ? shared - sharedOptions().data() : -1;
+  }
+};
+
+/// label  what --help shows for the value; preset  what it shows as the default
+CLI::Option* labelled(CLI::Option* option, const std::string& label, const std::string& preset = "") {
+  option->type_name(label);
+  if (!preset.empty()) option->default_str(preset);
+  return option;
+}
+
+std::string joined(const std::vector<std::string>& words, char separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : std::string(1, separator)) + word;
+  return text;
+}
+
+CLI::Validator isOneOf(const std::vector<std::string>& words) {
+  const auto check = [words](std::string& text) {
+    if (std::count(words.begin(), words.end(), text) > 0) return std::string();
+    return "'" + text + "' is not one of " + joined(words, '|');
   };
-  app.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(known))->default_str(preset);
+  return {check, ""};
+}
+
+/// Six digits, without trailing zeros.
+std::string plainNumber(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
 }
 
 std::string textOf(const HelpEnd& end) {
@@ -71,10 +161,10 @@ std::string textOf(const HelpEnd& end) {
   for (const Example& example : end.examples) text += "  " + example.line + "\n      " + example.does + "\n";
   text += "\nExit status:\n  0  done\n";
   if (!end.failure.empty()) text += "  1  " + end.failure + "\n";
-  return text + "  2  wrong arguments, unreadable input, or files that do not fit each other";
+  return text + "  2  invalid arguments, unreadable input, or files that do not match each other";
 }
 
-/// "--output" of "-o,--output".
+/// Returns "--output" for "-o,--output".
 std::string lastOf(const std::string& names) {
   return names.substr(names.rfind(',') + 1);
 }
@@ -95,163 +185,207 @@ std::string versionOf(const std::string& program) {
 struct CommandLine::Parser {
   CLI::App app;
   std::vector<std::function<void(NamedFiles&)>> files = {};
+
+  /// Adds an option that CLI11 reads into `value`; under the shared heading if the option is shared.
+  template <class Value>
+  CLI::Option* add(const std::string& name, Value& value, const std::string& text) {
+    return placed(app.add_option(name, value, optionText(name, text)), name);
+  }
+  static CLI::Option* placed(CLI::Option* option, const std::string& name) {
+    const SharedOption* shared = sharedOption(name);
+    return option->group(shared ? shared->group : kOwnOptions);
+  }
+
+  /// Adds an option whose value is one of several words, each of which stands for a value.
+  template <class Choice>
+  void addChoice(const std::string& name, Choice& choice, const std::vector<std::pair<std::string, Choice>>& words,
+                 const std::string& text = "") {
+    std::vector<std::string> known;
+    std::string preset;
+    for (const auto& [word, value] : words) {
+      known.push_back(word);
+      if (value == choice) preset = word;
+    }
+    const auto choose = [&choice, words](const std::string& wanted) {
+      for (const auto& [word, value] : words) {
+        if (word == wanted) choice = value;
+      }
+    };
+    CLI::Option* option = app.add_option_function<std::string>(name, choose, optionText(name, text));
+    labelled(placed(option, name), joined(known, '|'), preset)->check(isOneOf(known));
+  }
+
+  /// An option of an earlier version is answered with its present name.
+  void requirePresentNames(int argc, char** argv) const {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+    for (int k = 1; k < argc; ++k) {
+      const std::string argument = argv[k], name = argument.substr(0, argument.find('='));
+      const std::string now = presentName(name, known);
+      if (!now.empty()) throw InputError(name + ": this option is now called " + now);
+    }
+  }
 };
 
 CommandLine::CommandLine(const std::string& description, const HelpEnd& end)
     : parser_(new Parser{CLI::App(description)}) {
-  parser_->app.footer(textOf(end));
-  parser_->app.set_version_flag("--version", "", "Print the version, and Bullet's, and exit");
-  parser_->app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  CLI::App& app = parser_->app;
+  app.formatter(std::make_shared<HelpFormat>());
+  app.footer(textOf(end));
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_version_flag("--version", "", "Print the versions of tetskin and Bullet and exit");
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
 CommandLine::~CommandLine() = default;
 
-void CommandLine::addFlag(const std::string& name, bool& value, const std::string& description) {
-  parser_->app.add_flag(name, value, description);
+void CommandLine::addFlag(const std::string& name, bool& value, const std::string& text) {
+  Parser::placed(parser_->app.add_flag(name, value, optionText(name, text)), name);
 }
 
-void CommandLine::addText(const std::string& name, std::string& value, const std::string& description) {
-  parser_->app.add_option(name, value, description);
+void CommandLine::addText(const std::string& name, std::string& value, const std::string& text) {
+  labelled(parser_->add(name, value, text), "TEXT", value);
 }
 
-void CommandLine::addName(const std::string& name, std::string& value, const std::string& description, Need need) {
-  CLI::Option* option = parser_->app.add_option(name, value, description)->check(isFileName());
-  option->required(need == Need::Required);
-  if (!value.empty()) option->capture_default_str();
+void CommandLine::addName(const std::string& name, std::string& value, const std::string& text, Need need,
+                          const char* label, const std::string& preset) {
+  CLI::Option* option = parser_->add(name, value, text)->check(isFileName());
+  labelled(option, label, value.empty() ? preset : value)->required(need == Need::Required);
 }
 
 void CommandLine::addFiles(const std::function<void(NamedFiles& files)>& tell) {
   parser_->files.push_back(tell);
 }
 
-void CommandLine::addInput(const std::string& name, std::string& value, const std::string& description, Need need) {
-  addName(name, value, description, need);
+void CommandLine::addInput(const std::string& name, std::string& value, const std::string& text, Need need,
+                           const std::string& preset) {
+  addName(name, value, text, need, "FILE", preset);
   addFiles([name, &value](NamedFiles& files) { files.reads(lastOf(name), value); });
 }
 
-void CommandLine::addOutput(const std::string& name, std::string& value, const std::string& description, Need need,
-                            const std::vector<std::string>& extensions) {
-  addName(name, value, description, need);
+void CommandLine::addOutput(const std::string& name, std::string& value, const std::string& text, Need need,
+                            const std::vector<std::string>& extensions, const std::string& preset) {
+  addName(name, value, text, need, "FILE", preset);
   addFiles([name, &value, extensions](NamedFiles& files) {
     if (!value.empty()) requireExtension(value, extensions);
     files.writes(lastOf(name), value);
   });
 }
 
-void CommandLine::addFolder(const std::string& name, std::string& value, const std::string& description,
+void CommandLine::addFolder(const std::string& name, std::string& value, const std::string& text,
                             const NamedFiles::IsWritten& isWritten) {
-  addName(name, value, description, Need::Optional);
+  addName(name, value, text, Need::Optional, "FOLDER", "");
   addFiles([name, &value, isWritten](NamedFiles& files) { files.writesFolder(name, value, isWritten); });
 }
 
-void CommandLine::addCount(const std::string& name, int& value, const std::string& description, int most) {
-  CLI::Option* option = parser_->app.add_option(name, value, description)->check(isWholeNumber(1, most));
-  if (value > 0) option->capture_default_str();
+void CommandLine::addCount(const std::string& name, int& value, const std::string& text, int maximum,
+                           const std::string& preset) {
+  CLI::Option* option = parser_->add(name, value, text)->check(isWholeNumber(1, maximum));
+  labelled(option, countLabel(1, maximum), value > 0 ? std::to_string(value) : preset);
 }
 
-void CommandLine::addCount(const std::string& name, std::size_t& value, const std::string& description, int most) {
-  parser_->app.add_option(name, value, description)->check(isWholeNumber(1, most))->capture_default_str();
+void CommandLine::addCount(const std::string& name, std::size_t& value, const std::string& text, int maximum) {
+  CLI::Option* option = parser_->add(name, value, text)->check(isWholeNumber(1, maximum));
+  labelled(option, countLabel(1, maximum), std::to_string(value));
 }
 
-void CommandLine::addPositive(const std::string& name, double& value, const std::string& description) {
-  parser_->app.add_option(name, value, description)->check(isFinite("a finite, positive number", [](double number) {
-    return number > 0.0;
-  }));
+void CommandLine::addPositive(const std::string& name, double& value, const std::string& text,
+                              const std::string& preset) {
+  CLI::Option* option = parser_->add(name, value, text);
+  option->check(isFinite("a finite, positive number", [](double number) { return number > 0.0; }));
+  labelled(option, "X", value > 0.0 ? plainNumber(value) : preset);
 }
 
 void CommandLine::addWord(const std::string& name, std::string& value, const std::vector<std::string>& known,
-                          const std::string& description) {
-  parser_->app.add_option(name, value, description)->check(CLI::IsMember(known));
+                          const std::string& text) {
+  labelled(parser_->add(name, value, text), joined(known, '|'), value)->check(isOneOf(known));
 }
 
-void CommandLine::addWords(const std::string& name, std::vector<std::string>& values, const std::string& description) {
-  parser_->app.add_option(name, values, description)->delimiter(',');
+void CommandLine::addWords(const std::string& name, std::vector<std::string>& values, const std::string& text,
+                           const std::string& preset) {
+  labelled(parser_->add(name, values, text)->delimiter(','), "LIST", values.empty() ? preset : joined(values, ','));
 }
 
-void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& description) {
-  parser_->app.add_option(name, values, description)
-      ->delimiter(',')
-      ->check(isWholeNumber(1, kMostTets))
-      ->capture_default_str();
+void CommandLine::addCounts(const std::string& name, std::vector<std::size_t>& values, const std::string& text) {
+  std::vector<std::string> preset;
+  for (const std::size_t value : values) preset.push_back(std::to_string(value));
+  CLI::Option* option = parser_->add(name, values, text)->delimiter(',')->check(isWholeNumber(1, kMaxTets));
+  labelled(option, "LIST", joined(preset, ','));
 }
 
 void CommandLine::addSurfaceOptions(ModelOptions& options) {
-  addInput("--mesh", options.mesh, "Render mesh, any format assimp reads (default: the built-in --model)");
+  addInput("--mesh", options.mesh);
   std::vector<std::pair<std::string, BuiltIn>> words;
   for (const BuiltIn model : builtInModels()) words.emplace_back(nameOf(model), model);
-  addChoice(parser_->app, "--model", options.builtIn, words, "A built-in model");
+  parser_->addChoice("--model", options.builtIn, words);
   parser_->app.get_option("--model")->excludes("--mesh");
-  parser_->app.add_option("--triangles", options.triangles, "Triangles of the built-in model")
-      ->check(isWholeNumber(kMinSerpentTriangles, kMaxSerpentTriangles))
-      ->capture_default_str()
-      ->excludes("--mesh");
+  CLI::Option* triangles = parser_->add("--triangles", options.triangles, "");
+  triangles->check(isWholeNumber(kMinSerpentTriangles, kMaxSerpentTriangles))->excludes("--mesh");
+  labelled(triangles, countLabel(kMinSerpentTriangles, kMaxSerpentTriangles), std::to_string(options.triangles));
 }
 
 void CommandLine::addMeshOptions(ModelOptions& options) {
   addSurfaceOptions(options);
-  addCount("--tets", options.tets, "Tets of a built cage", kMostTets);
-  addFlag("--whole", options.whole, "Do not split the cage where parts of the mesh lie nearer than a tet: they fuse");
-  addFlag("--calibrate", options.calibrate, "Give the cage the softness of the mesh: coarse tets are too stiff");
+  addCount("--tets", options.tets, "", kMaxTets);
+  addFlag("--no-duplicate-elements", options.whole);
+  addFlag("--calibrate", options.calibrate);
 }
 
 void CommandLine::addModelOptions(ModelOptions& options) {
   addMeshOptions(options);
-  addInput("--cage", options.cage, "Tet mesh: .vtk, .ele/.node or .msh (default: built from the mesh)");
+  addInput("--cage", options.cage, "", Need::Optional, "built from the mesh");
   parser_->app.get_option("--cage")->excludes("--tets");
 }
 
-void CommandLine::addForceOption(Force& force) {
-  addChoice(parser_->app, "--force", force, {{"bullet", Force::NeoHookean}, {"tetskin", Force::Elastic}},
-            "Whose elastic forces and solver: the library's, or Bullet's neo-Hookean ones (--contact cage)");
+void CommandLine::addElasticityOption(Force& force, const std::string& text) {
+  parser_->addChoice("--elasticity", force, {{"tetskin", Force::Elastic}, {"bullet", Force::NeoHookean}}, text);
 }
 
 void CommandLine::addContactOption(Contact& contact) {
-  addChoice(parser_->app, "--contact", contact, {{"surface", Contact::Surface}, {"cage", Contact::Cage}},
-            "What meets the obstacles: the surface as drawn, or the cage's nodes, as Bullet has it");
+  parser_->addChoice("--contact", contact, {{"surface", Contact::Surface}, {"cage", Contact::Cage}});
 }
 
 void CommandLine::addSelfContactOption(SelfContactWish& wish) {
-  addChoice(parser_->app, "--self-contact", wish, {{"on", SelfContactWish::On}, {"off", SelfContactWish::Off}},
-            "Whether a body meets itself at its surface (default: with --contact surface, unless the mesh is open)");
+  parser_->addChoice(
+      "--self-contact", wish,
+      {{"auto", SelfContactWish::WherePossible}, {"on", SelfContactWish::On}, {"off", SelfContactWish::Off}});
 }
 
 void CommandLine::addInterpolationOption(SkinOptions& options) {
-  addChoice(parser_->app, "--interpolation", options.interpolation,
-            {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}},
-            "How the surface follows the cage");
+  parser_->addChoice("--interpolation", options.interpolation,
+                     {{"linear", Interpolation::Linear}, {"quadratic", Interpolation::Quadratic}});
 }
 
 void CommandLine::addSkinOptions(SkinOptions& options) {
-  addChoice(parser_->app, "--normals", options.normals,
-            {{"none", Normals::None}, {"transformed", Normals::Transformed}, {"recomputed", Normals::Recomputed}},
-            "Current normals of the surface");
-  addChoice(parser_->app, "--outside", options.outside,
-            {{"nearest", OutsideRule::Nearest}, {"barycentric", OutsideRule::Barycentric}},
-            "Which tet carries a vertex outside the cage");
-  parser_->app
-      .add_option("--max-distance", options.maxDistance,
-                  "Refuse a mesh with a vertex farther than this from the cage, in the mesh's unit")
-      ->check(isFinite("a finite, non-negative number", [](double number) { return number >= 0.0; }));
+  parser_->addChoice(
+      "--normals", options.normals,
+      {{"none", Normals::None}, {"transformed", Normals::Transformed}, {"recomputed", Normals::Recomputed}});
+  parser_->addChoice("--outside", options.outside,
+                     {{"nearest", OutsideRule::Nearest}, {"barycentric", OutsideRule::Barycentric}});
+  CLI::Option* distance = parser_->add("--max-distance", options.maxDistance, "");
+  distance->check(isFinite("a finite, non-negative number", [](double number) { return number >= 0.0; }));
+  labelled(distance, "X", "no limit");
 }
 
-void CommandLine::addSummaryOption(std::string& path, const std::string& description) {
-  addOutput("--json", path, description);
+void CommandLine::addSummaryOption(std::string& path, const std::string& preset) {
+  addOutput("--json", path, "", Need::Optional, {}, preset);
 }
 
 void CommandLine::addQuietOption(bool& quiet) {
-  addFlag("--quiet", quiet, "Print nothing but errors");
+  addFlag("--quiet", quiet);
 }
 
 void CommandLine::addOutputOptions(OutputOptions& options) {
-  addCount("--frames", options.frames, "Frames of 1/60 s", kMostFrames);
-  addCount("--every", options.every, "Write every so many frames", kMostFrames);
-  addFolder("--out", options.out, "Folder of the OBJ sequence", isOfFrames);
-  addOutput("--view", options.view,
-            std::string("Write a page that plays the run in a browser") +
-                (options.viewByDefault ? " (default: view.html in the folder)" : ""));
-  if (options.viewByDefault) addFlag("--no-view", options.noView, "Write no such page");
-  addFlag("--hash", options.hash, "Print a hash of the nodes in all frames, which equal runs share");
-  addSummaryOption(options.json, "File of the summary (default: summary.json in the folder)");
+  const auto inFolder = [&](const char* name) { return (std::filesystem::path(options.out) / name).string(); };
+  addCount("--frames", options.frames, "", kMaxFrames);
+  addFolder("--out", options.out, "", isOfFrames);
+  addCount("--every", options.every, "", kMaxFrames);
+  addOutput("--view", options.view, "", Need::Optional, {}, options.viewByDefault ? inFolder("view.html") : "");
+  if (options.viewByDefault) addFlag("--no-view", options.noView);
+  addSummaryOption(options.json, inFolder("summary.json"));
+  addFlag("--hash", options.hash);
   addQuietOption(options.quiet);
   addFiles([&options](NamedFiles& files) {
     if (options.json.empty()) files.writes("--out", summaryPath(options));
@@ -266,8 +400,10 @@ bool CommandLine::given(const std::string& name) const {
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
   const std::string name = std::filesystem::path(argv[0]).filename().string();
+  parser_->app.name(name);
   try {
     try {
+      parser_->requirePresentNames(argc, argv);
       parser_->app.parse(argc, argv);
       NamedFiles files;
       for (const auto& tell : parser_->files) tell(files);
@@ -284,7 +420,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
     return kDone;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: out of memory; ask for fewer tets or triangles\n", name.c_str());
-  } catch (const std::exception& error) {  // CLI::Error and InputError among them
+  } catch (const std::exception& error) {  // includes CLI::Error and InputError
     std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
   }
   return kBadInput;

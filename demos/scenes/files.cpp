@@ -27,7 +27,7 @@ bool write(const std::string& path, std::string_view bytes) {
   return file.good();
 }
 
-/// Whether a file can be written under another name and renamed: it is one, or nothing is there.
+/// True if a file can be written under another name and renamed: it is a regular file, or does not exist.
 bool isReplaceable(fs::file_type type) {
   return type == fs::file_type::not_found || type == fs::file_type::regular;
 }
@@ -64,7 +64,7 @@ std::string sizeText(double bytes) {
   return text;
 }
 
-fs::path existingPart(fs::path folder) {
+fs::path existingComponent(fs::path folder) {
   std::error_code error;
   folder = fs::absolute(folder, error);
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
@@ -82,7 +82,7 @@ std::optional<std::string> contentsOf(const std::string& path) {
 void requireWritable(const std::string& path) {
   std::error_code none;
   const fs::file_type before = fs::status(path, none).type();
-  // /dev/stdout, a pipe: not to be touched before its time.
+  // /dev/stdout or a pipe: must not be touched before the output begins.
   if (!isReplaceable(before) && before != fs::file_type::directory) return;
   if (!std::ofstream(path, std::ios::app)) throw InputError(path + kNotWritable);
   if (before == fs::file_type::not_found) fs::remove(fs::canonical(path, none), none);  // not the link to it
@@ -96,7 +96,7 @@ void requireExtension(const std::string& path, const std::vector<std::string>& e
   for (const std::string& one : extensions) {
     known += (known.empty() ? "" : &one == &extensions.back() ? " or " : ", ") + one;
   }
-  throw InputError(path + ": is of a format that is not written; use " + known);
+  throw InputError(path + ": unsupported output format; use " + known);
 }
 
 std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed) {

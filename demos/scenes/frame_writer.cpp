@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/frame_writer.h"
 
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cassert>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kListName = ".tetskin_frames";
-/// Of all frames.
+/// The material library of all frames.
 constexpr const char* kLibraryName = "tetskin_frames.mtl";
 
 std::string cageName(int frame) {
@@ -37,7 +37,7 @@ bool isNumbered(const std::string& name, const std::string& base, const std::str
          name.find_first_not_of("0123456789", first) == end;
 }
 
-/// What `saveTetMesh` makes of it as .vtk.
+/// The size of the file that `saveTetMesh` writes as .vtk.
 std::size_t vtkBytes(const TetMesh& cage) {
   constexpr std::size_t kHead = 120, kOfTet = sizeof "4 \n10\n" - 1;
   std::string numbers;
@@ -69,16 +69,16 @@ std::set<std::string> filesOfEarlierRun(const fs::path& folder) {
   std::set<std::string> names;
   std::ifstream list(folder / kListName);
   for (std::string name; std::getline(list, name);) {
-    if (isOfFrames(name) && name != kListName) names.insert(name);  // it may have been edited
+    if (isOfFrames(name) && name != kListName) names.insert(name);  // otherwise it was edited
   }
   return names;
 }
 
-/// The folder may be still to be made.
+/// The folder need not exist yet.
 void requireRoom(const FramePlan& plan, double bytes) {
   std::error_code error;
-  auto room = static_cast<double>(fs::space(existingPart(plan.folder), error).available);
-  if (error) return;  // a file system that does not tell
+  auto room = static_cast<double>(fs::space(existingComponent(plan.folder), error).available);
+  if (error) return;  // the file system does not report it
   for (const std::string& name : filesOfEarlierRun(plan.folder)) {
     const auto size = fs::file_size(fs::path(plan.folder) / name, error);
     if (!error) room += static_cast<double>(size);
@@ -86,7 +86,7 @@ void requireRoom(const FramePlan& plan, double bytes) {
   if (bytes <= room) return;
   throw InputError(plan.folder + ": " + framesText(plan.count()) + (plan.count() == 1 ? " takes" : " take") +
                    " about " + sizeText(bytes) + ", and the disk has room for " + sizeText(room) +
-                   "; write fewer by --every or --frames, or elsewhere by --out");
+                   "; write fewer with --every or --frames, or to another disk with --out");
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const Out
 }
 
 bool fitsFloat(const Box3& box) {
-  constexpr double kFarOut = 100.0;  ///< sizes from the origin
+  constexpr double kFarOut = 100.0;  ///< in units of the size, from the origin
   return box.center().norm() <= kFarOut * box.sizes().maxCoeff();
 }
 
@@ -122,7 +122,7 @@ FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, c
 }
 
 FrameWriter::FrameWriter(const FramePlan& plan, const ObjLayout& layout)
-    : plan_(plan), layout_(plan.materials.empty() ? layout : layout.withLibrary(kLibraryName)) {
+    : plan_(plan), layout_(plan.materials.empty() ? layout : layout.withMaterialLibrary(kLibraryName)) {
   assert(plan.frames > 0 && plan.every > 0);
   Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(plan.folder, layout_);
   require(writer.status());
@@ -153,7 +153,7 @@ void FrameWriter::writeFrame(int frame, PointView<const Scalar> surface, PointVi
   if (cage) require(saveTetMesh(*cage, pathOf(cageName(frame))));
 }
 
-/// All frames have about as many bytes as the first.
+/// All frames have about as many bytes as the first one.
 void FrameWriter::begin(double frameBytes) {
   const double bytes = plan_.count() * frameBytes;
   requireRoom(plan_, bytes);
@@ -161,7 +161,7 @@ void FrameWriter::begin(double frameBytes) {
   replaceEarlierRun();
   writeMaterials(kLibraryName, plan_.materials);
   if (plan_.obstacles.positions.empty()) return;
-  const ObjLayout layout = ObjLayout::fromMesh(plan_.obstacles).withLibrary("obstacles.mtl");
+  const ObjLayout layout = ObjLayout::create(plan_.obstacles).withMaterialLibrary("obstacles.mtl");
   require(layout.writeTo(pathOf("obstacles.obj"), viewOf(plan_.obstacles.positions)));
   writeMaterials("obstacles.mtl", materialLibrary(plan_.obstacles));
 }
@@ -188,15 +188,16 @@ std::vector<std::string> FrameWriter::filesOfAllFrames() const {
   return names;
 }
 
-/// Two sequences in one folder would be taken for one.
+/// Two sequences in one folder would be mistaken for one.
 void FrameWriter::refuseFramesOfOthers() const {
   const std::set<std::string> known = filesOfEarlierRun(plan_.folder);
   for (const fs::directory_entry& entry : fs::directory_iterator(plan_.folder)) {
     const std::string name = entry.path().filename().string();
     if (name.rfind("frame_", 0) != 0 || entry.path().extension() != ".obj" || known.count(name) > 0) continue;
-    throw InputError(plan_.folder + ": " + name +
-                     " is of no earlier run that is known here, and would mix with the frames of this one; move it, or "
-                     "choose another folder by --out");
+    throw InputError(
+        plan_.folder + ": " + name +
+        " was not written by an earlier tetskin run and would be mixed with the frames of this one; move it, or "
+        "choose another folder with --out");
   }
 }
 
@@ -207,7 +208,9 @@ void FrameWriter::replaceEarlierRun() const {
     if (kept.count(name) > 0) continue;
     std::error_code error;
     fs::remove(pathOf(name), error);
-    if (error) throw InputError(plan_.folder + ": " + name + " of an earlier run cannot be removed");
+    if (error)
+      throw InputError(plan_.folder + ": " + name +
+                       ", written by an earlier run, cannot be removed; check the permissions of the folder");
   }
   std::string list;
   for (const std::string& name : names) list += name + "\n";

@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/io/obj_sequence.h>
 
 #include <set>
@@ -14,48 +13,48 @@
 
 namespace tetskin::scenes {
 
-/// Whether float, which is what Bullet computes and viewers read, will do for a surface in this box: not if it lies so
-/// far out that float cannot hold it.
+/// Whether float, which Bullet computes in and viewers read, suffices for a surface in this box: it does not if the
+/// surface lies too far from the origin.
 bool fitsFloat(const Box3& box);
 
-/// Whether a run writes, or removes, files of this name in its folder.
+/// Whether a run writes or removes files with this name in its folder.
 bool isOfFrames(const std::string& name);
 
 /// Which frames a run writes, and where.
 struct FramePlan {
   std::string folder;
   int frames = 0;
-  int every = 1;           ///< every so many are written, the first among them
-  bool cages = false;      ///< beside each its cage
-  std::string materials;   ///< a material library for the frames; empty: the layout's own, or none
-  TriangleMesh obstacles;  ///< what the frames' surface falls on, in a file of its own; or empty
+  int every = 1;           ///< every n-th frame is written, beginning with the first
+  bool cages = false;      ///< writes the cage beside each frame
+  std::string materials;   ///< a material library for the frames; empty: that of the layout, or none
+  TriangleMesh obstacles;  ///< what the surface falls on, in a file of its own; may be empty
   bool quiet = false;
 
   int count() const { return (frames - 1) / every + 1; }
 };
 
-/// A plan as the command line has it: frames, every, folder, quiet.
+/// A plan from the command line's frames, every, folder and quiet.
 FramePlan framePlanOf(const OutputOptions& options);
-/// The same, with the materials of what is drawn, and what that falls on.
+/// A plan from the command line, with the materials of the drawn mesh, and the obstacles that it falls on.
 FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, const TriangleMesh& obstacles);
 
-/// Throws InputError if the disk has no room for frames of this mesh: what can be known before there is a cage for it.
-/// The first frame is looked at again.
+/// Throws InputError if the disk has no room for frames of this mesh, as far as this is known before it has a cage. It
+/// is checked again before the first frame.
 void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const OutputOptions& options);
 
-/// An OBJ sequence of surfaces in double, written as float where that will do, and perhaps the cages beside them. The
-/// folder holds the frames of one run: what an earlier one wrote there and this one will not overwrite goes when the
-/// first frame is written. What a run writes `.tetskin_frames` lists; no other file is touched, and a folder with
-/// frames that the list does not know is refused.
+/// An OBJ sequence of surfaces in double precision, written as float where that suffices, and optionally the cages
+/// beside them. The folder holds the frames of one run: files of an earlier run that this one does not overwrite are
+/// removed when the first frame is written. `.tetskin_frames` lists the files that a run writes; no other file is
+/// touched, and a folder that contains frames which the list does not name is refused.
 ///
-/// Materials are written twice: once for all frames, named by their first line, and once beside each under its own
-/// name, where f3d looks for them.
+/// Materials are written twice: once for all frames, named by their first line, and once beside each frame under its
+/// own name, where f3d looks for them.
 class FrameWriter {
  public:
-  /// The layout has normals if the frames have. Throws InputError if the folder cannot be written to.
+  /// The layout has normals if the frames have. Throws InputError if the folder cannot be written.
   FrameWriter(const FramePlan& plan, const ObjLayout& layout);
-  /// Before it writes the first frame, which is number 0, tells how much the run will write. Throws InputError, then
-  /// also where the disk has no room for that.
+  /// Before it writes the first frame, which is number 0, prints how much the run will write. Throws InputError, also
+  /// if the disk has no room for that.
   /// bounds  of the surface
   /// cage    if and only if the plan has cages
   void write(int frame, const std::vector<Eigen::Vector3d>& surface, const Box3& bounds, PointView<const float> normals,
@@ -74,7 +73,7 @@ class FrameWriter {
   std::string pathOf(const std::string& name) const;
 
   FramePlan plan_;
-  ObjLayout layout_;  ///< until the first frame is written
+  ObjLayout layout_;  ///< used until the first frame is written
   ObjSequenceWriter writer_;
   std::vector<Eigen::Vector3f> rounded_;
 };

@@ -16,19 +16,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPitch = 0.25;  ///< from finger to finger
+constexpr double kPitch = 0.25;  ///< from one finger to the next
 constexpr double kRootRadius = 0.1, kTipRadius = 0.085;
-constexpr double kRootY = 0.7;  ///< of the fingers, within the palm
+constexpr double kRootY = 0.7;  ///< where the fingers begin, inside the palm
 constexpr double kPalmTop = 0.8, kPalmRounding = 0.08;
-constexpr double kJoint = 0.06;  ///< over which a finger flows into the palm
+constexpr double kJoint = 0.06;  ///< length over which a finger blends into the palm
 constexpr double kPlaneY = kPalmTop + 0.15;
-constexpr double kHandLean = 50.0 * kDegree;  ///< from upright: weight bends the fingers
+constexpr double kHandLean = 50.0 * kDegree;  ///< from upright: gravity bends the fingers
 constexpr std::array<double, 5> kTipY = {1.4, 1.7, 1.8, 1.72, 1.5};
 
-/// Across the hand, the lattice is this much sparser along the middles of the fingers, and so much denser between them,
-/// than in the mean: in its own space gaps are half as wide as fingers, and a coarse lattice tells these apart.
+/// Across the hand, the lattice is this much sparser than on average along the middles of the fingers, and as much
+/// denser between them: in the lattice's own space the gaps are half as wide as the fingers, and a coarse lattice can
+/// separate these.
 constexpr double kCrowding = 0.6;
-/// Of the coarsest that does: a little less than a gap in its space.
+/// The spacing of the coarsest lattice that separates the fingers: a little less than a gap in its space.
 constexpr double kMaxSpacing = 0.085;
 
 double squared(double x) {
@@ -39,14 +40,14 @@ double length(double x, double y) {
   return std::sqrt(x * x + y * y);
 }
 
-/// From a box with round edges.
+/// The distance from a box with rounded edges.
 double palmDistance(const Vector3d& p) {
   const Vector3d half(0.6, 0.5 * kPalmTop, 0.11), centre(0.0, 0.5 * kPalmTop, 0.0);
   const Vector3d q = (p - centre).cwiseAbs() - half + Vector3d::Constant(kPalmRounding);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - kPalmRounding;
 }
 
-/// From two balls on a line along y and the cone between them.
+/// The distance from two balls on a line along y and the cone between them.
 double fingerDistance(const Vector3d& p, double x, double tipY) {
   const double far = tipY - kRootY, slope = (kRootRadius - kTipRadius) / far;
   const double across = length(p.x() - x, p.z()), along = p.y() - kRootY;
@@ -66,7 +67,7 @@ double uprightDistance(const Vector3d& p) {
   double nearest = palm;
   for (std::size_t finger = 0; finger < kTipY.size(); ++finger) {
     const double x = kPitch * (static_cast<double>(finger) - 2.0);
-    // Each with the palm alone: nothing joins the fingers.
+    // Each finger is blended with the palm only: nothing joins the fingers.
     nearest = std::min(nearest, smoothMinimum(palm, fingerDistance(p, x, kTipY[finger])));
   }
   return nearest;
@@ -85,7 +86,7 @@ ImplicitSolid uprightHand() {
   ImplicitSolid hand;
   hand.box = Box3(Vector3d(-0.65, 0.0, -0.12), Vector3d(0.65, 1.9, 0.12));
   hand.value = [](const Vector3d& p) { return uprightDistance(fromLattice(p)); };
-  hand.place = [](const Vector3d& p) -> Vector3d { return leaning() * fromLattice(p); };
+  hand.position = [](const Vector3d& p) -> Vector3d { return leaning() * fromLattice(p); };
   return hand;
 }
 
@@ -96,7 +97,8 @@ std::size_t countOf(const TetMesh& mesh) {
   return mesh.tetCount();
 }
 
-/// A mesh of so many triangles or tets, which are in proportion to a power of the spacing, more or less.
+/// Makes a mesh with the requested number of triangles or tets, which is roughly proportional to a power of the
+/// spacing.
 template <class Make>
 auto meshOf(std::size_t wish, double power, const Make& make) {
   constexpr double kFirst = 0.05, kNearEnough = 0.03;

@@ -12,7 +12,7 @@ namespace tetskin::scenes {
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// Throws an InputError unless the status is ok.
+/// Throws an InputError unless the status is Ok.
 inline void require(const Status& status) {
   if (!status.ok()) throw InputError(status.message);
 }

@@ -21,7 +21,7 @@ constexpr Material kMaterials[] = {
     {"wall", {0.66, 0.72, 0.78}, 0.0, 0.22}, {"pole", {0.35, 0.36, 0.40}, 0.2},
 };
 
-/// Viewers that light from the camera alone would show black what faces upwards.
+/// In viewers whose only light is at the camera, surfaces that face upwards would be black.
 constexpr double kAmbient = 0.25;
 
 std::string definitionOf(const Material& material) {

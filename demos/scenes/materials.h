@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The colours of what the demos make themselves, by the names of materials.
+// The colours of everything that the demos draw, by name of material.
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
 #include <string>
@@ -14,14 +14,14 @@ namespace tetskin::scenes {
 struct Material {
   const char* name;
   std::array<double, 3> colour;
-  double shine;          ///< of highlights, 0 to 1
-  double opacity = 1.0;  ///< walls in front of what they hold are seen through
+  double shine;          ///< strength of highlights, 0 to 1
+  double opacity = 1.0;  ///< walls in front of their contents are transparent
 };
 
 /// Null for a name that is not in the table.
 const Material* materialNamed(const std::string& name);
 
-/// As a Wavefront material library: those of the mesh's materials that are in the table. Empty if none is.
+/// The mesh's materials that are in the table, as a Wavefront material library. Empty if none is.
 std::string materialLibrary(const TriangleMesh& mesh);
 
 }  // namespace tetskin::scenes

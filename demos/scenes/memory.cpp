@@ -13,8 +13,8 @@
 namespace tetskin::scenes {
 namespace {
 
-/// Of the last-level cache where the system does not tell, and the most that is streamed through.
-constexpr std::size_t kUnknownCache = std::size_t(64) << 20, kMostStreamed = std::size_t(512) << 20;
+/// Assumed size of the last-level cache where the system does not report it, and the most that is streamed through.
+constexpr std::size_t kUnknownCache = std::size_t(64) << 20, kMaxStreamed = std::size_t(512) << 20;
 
 std::size_t lastLevelCacheBytes() {
 #ifdef _SC_LEVEL3_CACHE_SIZE
@@ -34,7 +34,7 @@ std::size_t heapBytes() {
 #endif
 }
 
-CacheEviction::CacheEviction() : buffer_(std::min(2 * lastLevelCacheBytes(), kMostStreamed) / sizeof(std::uint64_t)) {}
+CacheEviction::CacheEviction() : buffer_(std::min(2 * lastLevelCacheBytes(), kMaxStreamed) / sizeof(std::uint64_t)) {}
 
 void CacheEviction::evict() {
   constexpr std::size_t kLine = 64 / sizeof(std::uint64_t);

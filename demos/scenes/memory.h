@@ -8,10 +8,10 @@
 
 namespace tetskin::scenes {
 
-/// Bytes allocated at present; 0 where the C library does not tell.
+/// Bytes allocated at present; 0 where the C library does not report it.
 std::size_t heapBytes();
 
-/// Empties the processor's caches of everything else, by streaming through more memory than they hold.
+/// Evicts everything from the processor's caches, by streaming through more memory than they hold.
 class CacheEviction {
  public:
   CacheEviction();

@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/model.h"
 
-#include <tetskin/io/mesh_loader.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <cstdio>
 
@@ -16,15 +15,16 @@
 namespace tetskin::scenes {
 namespace {
 
-/// With more than this share of a mesh's vertices outside a cage, one of them farther out than this share of the mesh's
-/// diagonal, the cage is another model's. One that lies within its mesh has many vertices outside, but near.
+/// If more than this share of a mesh's vertices are outside a cage, and one of them is farther outside than this share
+/// of the mesh's diagonal, the cage belongs to another model. A cage inside its mesh has many vertices outside, but
+/// near.
 constexpr double kManyOutside = 0.5, kFarOutside = 0.1;
 
 struct Maker {
   const char* name;
   TriangleMesh (*surface)(std::size_t triangles);
   TetMesh (*tets)(std::size_t tets) = nullptr;
-  std::size_t leastTets = 0;
+  std::size_t minTets = 0;
 };
 
 TriangleMesh makeSerpentOf(std::size_t triangles) {
@@ -52,7 +52,7 @@ std::string nameOf(BuiltIn model) {
 
 std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets) {
   const Maker& maker = makerOf(model);
-  if (!maker.tets || tets < maker.leastTets) return {};
+  if (!maker.tets || tets < maker.minTets) return {};
   return maker.tets(tets);
 }
 
@@ -67,7 +67,7 @@ Cage loadCage(const std::string& path) {
   Result<Cage> loaded = tetskin::loadCage(path);
   require(loaded.status());
   Cage cage = std::move(loaded).value();
-  if (const Status status = usable(cage, checkTetMesh(cage)); !status.ok()) {
+  if (const Status status = validate(cage.mesh); !status.ok()) {
     throw InputError(path + ": " + status.message);
   }
   return cage;
@@ -77,17 +77,17 @@ Cage loadCage(const std::string& path, const Surface& surface) {
   Cage cage = loadCage(path);
   const Status status = cage.checkMesh(surface.mesh);
   if (status.ok()) return cage;
-  if (cage.split()) {
+  if (cage.hasDuplicates()) {
     throw InputError(path + " is not a cage of " + surface.name + ": " + status.message + " with tetskin_cage");
   }
-  // Without copies, the tets of any mesh are found by their place, as of another level of detail.
+  // Without duplicate elements, the tets of any mesh's vertices are found by position, as for another level of detail.
   cage.vertexTets.clear();
-  cage.meshHash = 0;
+  cage.meshHash.reset();
   return cage;
 }
 
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report) {
-  Result<Cage> cage = buildCage(surface.mesh, options, report);
+  Result<Cage> cage = createCage(surface.mesh, options, report);
   if (!cage.ok()) throw InputError(surface.name + ": " + cage.status().message);
   return std::move(cage).value();
 }
@@ -95,14 +95,14 @@ Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* rep
 CageOptions cageOptionsOf(const ModelOptions& options) {
   CageOptions cage;
   cage.targetTets = options.tets;
-  cage.split = !options.whole;
+  cage.duplicateElements = !options.whole;
   return cage;
 }
 
 void announceCage(std::size_t tets, const ModelOptions& options) {
   if (options.quiet) return;
-  std::printf("building a cage of %zu tets\n", tets);
-  std::fflush(stdout);  // before the seconds, not after them
+  std::printf("building a cage of about %zu tets\n", tets);
+  std::fflush(stdout);  // shown before the work, which takes seconds
 }
 
 CalibrationReport calibrated(Cage& cage, const std::string& name) {
@@ -115,7 +115,7 @@ Model loadModel(const ModelOptions& options) {
   Model model;
   static_cast<Surface&>(model) = loadSurface(options);
   if (options.mesh.empty()) {
-    model.layout = ObjLayout::fromMesh(model.mesh);
+    model.layout = ObjLayout::create(model.mesh);
   } else {
     Result<ObjLayout> layout = objLayoutFor(options.mesh, model.mesh);
     require(layout.status());
@@ -124,8 +124,8 @@ Model loadModel(const ModelOptions& options) {
   if (options.loaded) options.loaded(model.mesh, model.layout);
   if (options.cage.empty()) announceCage(options.tets, options);
   model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
-  // The small tets of one that is turned over come in another order.
-  if (repairTetMesh(model.cage).negativeVolume.count > 0) model.cage.fineFill.clear();
+  // The refined tets of a tet whose orientation is reversed come in a different order.
+  if (repairTetMesh(model.cage.mesh).negativeVolume.count > 0) model.cage.fineVolumeFraction.clear();
   if (options.calibrate) (void)calibrated(model.cage, options.cage.empty() ? model.name : options.cage);
   return model;
 }
@@ -136,15 +136,15 @@ void requireFit(const Status& status, const EmbedReport& report, const ModelOpti
   const double size = report.meshBox.diagonal().norm();
   std::string fault;
   if (report.unitsDiffer()) {
-    fault = report.unitsFault() + " Scale one of them";
+    fault = report.unitsMessage() + " Scale one of them";
   } else if (static_cast<double>(report.outside) > kManyOutside * static_cast<double>(report.vertexCount) &&
-             report.worstDistance > kFarOutside * size) {
+             report.maxDistance > kFarOutside * size) {
     char text[256];
     std::snprintf(
         text, sizeof text,
-        "%zu of %zu vertices lie outside it, vertex %zu by %.3g, and the mesh's diagonal is %.3g; take a cage "
-        "made for this mesh, such as tetskin_cage builds",
-        report.outside, report.vertexCount, report.worstVertex, report.worstDistance, size);
+        "%zu of %zu vertices lie outside it, the farthest is vertex %zu at a distance of %.3g, and the mesh's "
+        "diagonal is %.3g; use a cage made for this mesh, for example by tetskin_cage",
+        report.outside, report.vertexCount, report.maxDistanceVertex, report.maxDistance, size);
     fault = text;
   } else {
     return;

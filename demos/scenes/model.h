@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which mesh in which cage a program works on: built in, loaded, or built for the mesh.
+// The mesh and the cage that a program works on: built in, loaded, or built for the mesh.
 #pragma once
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/tet_mesh.h>
-#include <tetskin/core/triangle_mesh.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/obj_sequence.h>
 
@@ -20,27 +19,27 @@
 namespace tetskin::scenes {
 
 enum class BuiltIn { Serpent, Bar, SlottedBeam, Hand };
-/// In the order of the list above.
+/// All built-in models, in the order of the enumeration.
 const std::vector<BuiltIn>& builtInModels();
 /// "serpent", "bar", "slotted_beam", "hand".
 std::string nameOf(BuiltIn model);
 
-/// Tets that fill a built-in model, about so many, made by formula and not as cages are: parts of the model near to
-/// each other are never fused. Nothing for a model that has none, or none of so few tets.
+/// About this many tets that fill a built-in model, made by formula and not by the cage builder: parts of the model
+/// that are near each other are never fused. Nothing if the model has none, or none with so few tets.
 std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets);
 
-/// Which mesh, and which cage.
+/// Options that choose the mesh and the cage.
 struct ModelOptions {
   BuiltIn builtIn = BuiltIn::Serpent;
   std::string mesh;               ///< file; empty: the built-in model
   std::string cage;               ///< file; empty: built from the mesh
-  std::size_t tets = 3000;        ///< of a built cage
+  std::size_t tets = 3000;        ///< requested for a built cage
   std::size_t triangles = 60000;  ///< of the built-in model
-  bool whole = false;             ///< the cage is not split
+  bool whole = false;             ///< the cage has no duplicate elements
   bool calibrate = false;         ///< see tetskin::calibrate
-  std::size_t fineTets = 30000;   ///< of which a reduced body has its vibrations
-  bool quiet = true;              ///< does not tell that a cage is built, which may take seconds
-  /// Told what was loaded, before a cage is built for it.
+  std::size_t fineTets = 30000;   ///< tets from which the modes of a reduced body are computed
+  bool quiet = true;              ///< does not print that a cage is built, which may take seconds
+  /// Called with what was loaded, before a cage is built for it.
   std::function<void(const TriangleMesh& mesh, const ObjLayout& layout)> loaded = {};
 };
 
@@ -50,28 +49,28 @@ struct Surface {
 };
 struct Model : Surface {
   Cage cage;
-  ObjLayout layout;  ///< in which frames are written
+  ObjLayout layout;  ///< the layout in which frames are written
 };
 
-/// These load or make; they throw InputError, with the file and the fault.
+/// The functions that load or make throw InputError with the file and what is wrong with it.
 Surface loadSurface(const ModelOptions& options);
-/// A usable cage, its tets as the file has them; not one of another mesh, if the file tells.
+/// A valid cage, its tets in the order of the file; refused if the file says that it belongs to another mesh.
 Cage loadCage(const std::string& path);
 Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 CageOptions cageOptionsOf(const ModelOptions& options);
-/// Says that a cage of so many tets is about to be built, unless that is to be quiet.
+/// Prints that a cage of this many tets is about to be built, unless the options are quiet.
 void announceCage(std::size_t tets, const ModelOptions& options);
-/// Calibrates a cage from the place that it is named by.
+/// Calibrates a cage; errors name it by `name`.
 CalibrationReport calibrated(Cage& cage, const std::string& name);
-/// The cage's tets are positive.
+/// Loads or makes a mesh and its cage, whose tets are positive.
 Model loadModel(const ModelOptions& options);
 
-/// Throws InputError unless the status is ok, or if mesh and cage cannot belong together: they are in different units
-/// (see EmbedReport), or most of the mesh lies outside, and far.
+/// Throws InputError unless the status is Ok, or if mesh and cage cannot belong together: they are in different units
+/// (see EmbedReport), or most of the mesh lies far outside of the cage.
 void requireFit(const Status& status, const EmbedReport& report, const ModelOptions& options);
 
-/// The layout in which a skin with these normals is written.
+/// The layout for a skin with these normals.
 ObjLayout layoutWith(Normals normals, const ObjLayout& layout);
 
 }  // namespace tetskin::scenes

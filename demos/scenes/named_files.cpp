@@ -17,22 +17,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Files that are read or written by the name of another.
+/// Files that are read or written because another one is named.
 constexpr std::pair<const char*, const char*> kCompanions[] = {
     {".ele", ".node"}, {".node", ".ele"}, {".obj", ".mtl"}, {".gltf", ".bin"}};
 
-/// Where a path leads, at its end to what is not there yet.
+/// The target of a path, followed up to the first component that does not exist.
 fs::path target(fs::path path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code error;
   path = fs::absolute(path, error);
-  for (int k = 0; k < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++k) {
+  for (int k = 0; k < kMaxLinks && fs::is_symlink(fs::symlink_status(path, error)); ++k) {
     path = path.parent_path() / fs::read_symlink(path, error);
   }
   return fs::weakly_canonical(path, error);
 }
 
-/// Not a device or a pipe, which several may write to.
+/// True unless it is a device or a pipe, to which several may write.
 bool isFile(const fs::path& path) {
   std::error_code error;
   const fs::file_type type = fs::status(path, error).type();
@@ -53,7 +53,7 @@ std::vector<std::string> withCompanion(const std::string& path) {
   return all;
 }
 
-/// Whether writing one file touches the other, also under the name that it has until it is whole.
+/// True if writing one file affects the other, also under the temporary name that it has while it is written.
 bool touches(const std::string& written, const std::string& other) {
   for (const std::string& w : withCompanion(written)) {
     for (const std::string& o : withCompanion(other)) {
@@ -64,12 +64,13 @@ bool touches(const std::string& written, const std::string& other) {
 }
 
 void requireFolder(const std::string& path) {
-  const fs::path there = existingPart(path);
+  const fs::path there = existingComponent(path);
   std::error_code error;
   if (!fs::is_directory(there, error)) {
-    throw InputError(path + ": cannot be made a folder: " + there.string() + " is a file");
+    throw InputError(path + ": cannot be created: " + there.string() + " is a file, not a folder");
   }
-  if (access(there.c_str(), W_OK | X_OK) != 0) throw InputError(path + ": nothing can be written there");
+  if (access(there.c_str(), W_OK | X_OK) != 0)
+    throw InputError(path + ": the folder cannot be written to; check its permissions");
 }
 
 fs::path folderOf(const std::string& path) {
@@ -106,25 +107,25 @@ void NamedFiles::requireApart() const {
   for (auto out = outputs_.begin(); out != outputs_.end(); ++out) {
     for (const File& in : inputs_) {
       if (!touches(out->path, in.path)) continue;
-      throw InputError(out->option + " " + out->path + ": would overwrite what is read by " + in.option + " " +
-                       in.path + "; choose another name");
+      throw InputError(out->option + " " + out->path + ": would overwrite the input of " + in.option + " " + in.path +
+                       "; choose another name");
     }
     for (auto other = outputs_.begin(); other != out; ++other) {
       if (!touches(out->path, other->path) && !touches(other->path, out->path)) continue;
-      throw InputError(out->option + " " + out->path + ": would overwrite what " + other->option +
-                       " writes; choose another name");
+      throw InputError(out->option + " " + out->path + ": would overwrite the output of " + other->option +
+                       "; choose another name");
     }
   }
 }
 
-/// A pipe cannot be read twice, and waits for who writes into it.
+/// A pipe cannot be read twice, and blocks until somebody writes to it.
 void NamedFiles::requireFile(const File& file) {
   std::error_code error;
   if (!fs::is_fifo(fs::status(file.path, error))) return;
-  throw InputError(file.option + " " + file.path + ": is a pipe, where a file is needed");
+  throw InputError(file.option + " " + file.path + ": is a pipe; a file is required");
 }
 
-/// By its name there, or by a link there that leads to it.
+/// A file is in the folder by its name there, or by a link there that leads to it.
 void NamedFiles::requireOutside(const Folder& folder, const File& file) const {
   std::error_code error;
   bool within = target(folder.file.path) == folderOf(file.path) &&
@@ -133,8 +134,8 @@ void NamedFiles::requireOutside(const Folder& folder, const File& file) const {
     within = within || (folder.isWritten(entry.path().filename().string()) && isSame(entry.path(), file.path));
   }
   if (!within) return;
-  throw InputError(file.option + " " + file.path + ": would be overwritten by what " + folder.file.option + " " +
-                   folder.file.path + " is for; choose another name, or another folder");
+  throw InputError(file.option + " " + file.path + ": would be overwritten by the output of " + folder.file.option +
+                   " " + folder.file.path + "; choose another name, or another folder");
 }
 
 void NamedFiles::requireWritable(const File& file) const {

@@ -8,19 +8,20 @@
 
 namespace tetskin::scenes {
 
-/// What a command line reads and writes. Looked at before any work: no file that is read is written, and none is
-/// written twice. Files are told apart by what they are, whatever they are called: links, ./a and a are one.
+/// The files that a command line reads and writes. They are checked before any work: no file that is read may be
+/// written, and none may be written twice. Files are identified by what they are, not by their names: a link, ./a and a
+/// may be the same file.
 class NamedFiles {
  public:
   using IsWritten = std::function<bool(const std::string& name)>;
 
-  /// option  by which the user knows the file; path  empty: none
+  /// option  by which the user knows the file; path  empty: no file
   void reads(const std::string& option, const std::string& path);
   void writes(const std::string& option, const std::string& path);
-  /// A folder, made if need be, in which files of some names are written or removed.
+  /// A folder, made if it does not exist, in which files with certain names are written or removed.
   void writesFolder(const std::string& option, const std::string& path, const IsWritten& isWritten);
 
-  /// Throws InputError for the first of what cannot be, or would be lost. Changes nothing.
+  /// Throws InputError for the first file that cannot be read or written, or would be lost. Changes nothing.
   void check() const;
 
  private:

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 namespace tetskin::scenes {
 
-/// Append what a body may fall on to a mesh, as a group "box" or "sphere", with the material of a floor or a dome.
+/// Append an obstacle to a mesh, as a group "box" or "sphere", with the material of a floor or a dome.
 /// slope  radians about z
 void appendBox(TriangleMesh& mesh, const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope);
 void appendSphere(TriangleMesh& mesh, const Eigen::Vector3d& centre, double radius);

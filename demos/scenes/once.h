@@ -9,7 +9,7 @@
 
 namespace tetskin::scenes {
 
-/// Does something at the end of the next step, when Bullet runs its actions.
+/// Performs an action once, at the end of the next step, when Bullet runs its actions.
 class Once : public btActionInterface {
  public:
   explicit Once(btDiscreteDynamicsWorld& world) { world.addAction(this); }

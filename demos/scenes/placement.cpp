@@ -13,7 +13,7 @@ void Placement::toModel(std::vector<Eigen::Vector3d>& points) const {
 }
 
 Cage Placement::toWorld(Cage cage) const {
-  for (Eigen::Vector3d& node : cage.nodes) node -= centre;
+  for (Eigen::Vector3d& node : cage.mesh.nodes) node -= centre;
   cage.scaleBy(scale);
   return cage;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <vector>
 
@@ -11,11 +11,11 @@
 
 namespace tetskin::scenes {
 
-/// The way from a model's own space, where it may have any size and be anywhere, to Bullet's world, and back.
+/// The mapping from a model's own space, where it may have any size and position, to Bullet's world, and back.
 struct Placement {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< model's space; goes to `offset`
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< world space
-  double scale = 1.0;                                ///< world's over model's lengths
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< position of the model's `centre` in world space
+  double scale = 1.0;                                ///< length in the world over length in the model
 
   Eigen::Vector3d toWorld(const Eigen::Vector3d& p) const { return scale * (p - centre) + offset; }
   Eigen::Vector3d toModel(const Eigen::Vector3d& p) const { return (p - offset) / scale + centre; }
@@ -23,11 +23,11 @@ struct Placement {
   void toModel(std::vector<Eigen::Vector3d>& points) const;
   Cage toWorld(Cage cage) const;
 
-  /// A skin's surface in the model's space, vertexCount.
+  /// A skin's surface in the model's space, vertexCount positions.
   void readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3d>& surface) const;
 };
 
-/// A body's nodes as they are now, world space.
+/// A body's nodes at present, world space.
 template <class Scalar = double>
 std::vector<Eigen::Matrix<Scalar, 3, 1>> nodesOf(const btSoftBody& body) {
   const PointView<const btScalar> view = nodePositions(body);

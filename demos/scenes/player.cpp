@@ -12,15 +12,16 @@ namespace tetskin::scenes {
 
 namespace {
 
-/// With the vibrations of fine tets in the model, where its body is to have them.
-SceneOptions withReduction(const Model& model, const Placement& place, const ModelOptions& options, SceneOptions how) {
+/// Adds the modes of fine tets in the model, if its body is a reduced one.
+SceneOptions withReduction(const Model& model, const Placement& position, const ModelOptions& options,
+                           SceneOptions how) {
   if (how.force != Force::Reduced) return how;
   CageOptions fine;
   fine.targetTets = options.fineTets;
   fine.fit = false;
   announceCage(fine.targetTets, options);
   const Cage tets = cageFor(model, fine);
-  how.reduction = std::make_shared<Reduction>(place.toWorld(tets), how.modes);
+  how.reduction = std::make_shared<Reduction>(position.toWorld(tets), how.modes);
   if (!model.cage.vertexTets.empty()) how.reduction->nodeTets = tetsOfNodes(model.mesh, model.cage, tets);
   return how;
 }
@@ -30,26 +31,26 @@ SceneOptions withReduction(const Model& model, const Placement& place, const Mod
 Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
-      place_(placementOf(boundingBox(model_.cage.nodes))),
-      scene_(sceneNamed(scene).make(place_.toWorld(model_.cage), withReduction(model_, place_, options, how))) {
-  place_.offset = scene_->offset;
+      position_(placementOf(boundingBox(model_.cage.mesh.nodes))),
+      scene_(sceneNamed(scene).make(position_.toWorld(model_.cage), withReduction(model_, position_, options, how))) {
+  position_.offset = scene_->offset;
 }
 
-/// Embeds the mesh in the model's space, in whose unit the options and the report are. Quadratic skinning measures what
-/// it adds by the cage at rest, and so needs that in the size of the body.
+/// Embeds the mesh in the model's space, whose unit the options and the report use. Quadratic skinning measures its
+/// correction by the cage at rest, and therefore needs the cage in the size of the body.
 SoftBodyBinding::Pointer Player::bind(const SkinOptions& options) {
   const Result<Embedding> embedding = embed(model_.cage, model_.mesh, {options.outside, options.maxDistance}, &fit_);
   requireFit(embedding.status(), fit_, options_);
   TriangleMesh mesh = model_.mesh;
-  place_.toWorld(mesh.positions);
-  const auto binding = SoftBodyBinding::make(place_.toWorld(model_.cage), mesh, options, embedding.value());
+  position_.toWorld(mesh.positions);
+  const auto binding = SoftBodyBinding::create(position_.toWorld(model_.cage), mesh, options, embedding.value());
   require(binding.status());
   return binding.value();
 }
 
 Carried& Player::carry(const SkinOptions& options) {
   InstanceOptions instance = options;
-  instance.leaveOutQuadratic = options.interpolation == Interpolation::Linear;
+  instance.disableQuadratic = options.interpolation == Interpolation::Linear;
   Carried& added = carried_.emplace_back();
   if (carried_.size() == 1) {
     require(added.skin.bind(scene_->body(), bind(options), instance));
@@ -59,7 +60,7 @@ Carried& Player::carry(const SkinOptions& options) {
     assert(options.normals == bound.normals && options.order == bound.order);
     require(added.skin.bind(scene_->body(), carried_.front().skin.binding(), instance));
   }
-  place_.readSurface(added.skin, added.surface);
+  position_.readSurface(added.skin, added.surface);
   return added;
 }
 
@@ -69,7 +70,7 @@ void Player::touchBySurface() {
 }
 
 void Player::touchItself(SelfContactWish wish) {
-  Placement atRest = place_;  // where its cage is, which the scene has put elsewhere
+  Placement atRest = position_;  // the rest position of the cage, which the scene has moved
   atRest.offset.setZero();
   TriangleMesh mesh = model_.mesh;
   atRest.toWorld(mesh.positions);
@@ -85,17 +86,17 @@ bool Player::step(int frame, Playback& run) {
   bool followed = true;
   for (Carried& carried : carried_) {
     const WallTimer timer;
-    const UpdateStatus status = carried.skin.update();
+    const StatusCode status = carried.skin.update();
     carried.microseconds += timer.microseconds();
-    followed = followed && (status == UpdateStatus::Updated || status == UpdateStatus::Asleep);
-    place_.readSurface(carried.skin, carried.surface);
+    followed = followed && (status == StatusCode::Ok || status == StatusCode::Asleep);
+    position_.readSurface(carried.skin, carried.surface);
   }
   return followed;
 }
 
 std::vector<Eigen::Vector3d> Player::nodes() const {
   std::vector<Eigen::Vector3d> nodes = nodesOf(scene_->body());
-  place_.toModel(nodes);
+  position_.toModel(nodes);
   return nodes;
 }
 

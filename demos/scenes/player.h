@@ -16,37 +16,37 @@ namespace tetskin::scenes {
 struct Carried {
   SoftBodySkin skin;
   std::vector<Eigen::Vector3d> surface;  ///< vertexCount
-  double microseconds = 0.0;             ///< of all updates
+  double microseconds = 0.0;             ///< total of all updates
 };
 
-/// A model in a scene, with surfaces on its body. It may have any size and be anywhere: results are in its own space.
+/// A model in a scene, with surfaces on its body. It may have any size and position: results are in its own space.
 /// Frame 0 is the model at rest.
 class Player {
  public:
   /// Loads the model. Throws InputError.
   Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how = {});
 
-  /// Adds a surface; all later ones share the binding of the first, and may leave out its quadratic skinning. Throws
+  /// Adds a surface. All later ones share the binding of the first, and may leave out its quadratic skinning. Throws
   /// InputError if mesh and cage do not fit.
   Carried& carry(const SkinOptions& options);
 
-  /// Rigid bodies meet the model's mesh from now on, which must be carried already.
+  /// From now on, rigid bodies meet the model's mesh, for which `carry` must have been called before.
   void touchBySurface();
 
-  /// The body meets itself at its surface from now on, if it can: see `selfContactOf`.
+  /// From now on, the body meets itself at its surface, if it can: see `selfContactOf`.
   void touchItself(SelfContactWish wish);
   const SelfContact& selfContact() const { return selfContact_; }
 
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
-  const Placement& place() const { return place_; }
+  const Placement& place() const { return position_; }
   const EmbedReport& fit() const { return fit_; }
 
-  /// Simulates the frames that the options say, and tells how far it has come.
-  /// measure  after every frame; write  after those that are to be written
+  /// Simulates the frames that the options request, and prints the progress.
+  /// measure  called after every frame; write  called after those that are to be written
   Playback play(const char* doing, const OutputOptions& output, const OfFrame& measure, const OfFrame& write);
 
-  /// The cage's nodes as they are now, in the model's space.
+  /// The cage's nodes at present, in the model's space.
   std::vector<Eigen::Vector3d> nodes() const;
 
  private:
@@ -56,7 +56,7 @@ class Player {
 
   ModelOptions options_;
   Model model_;
-  Placement place_;
+  Placement position_;
   std::unique_ptr<Scene> scene_;
   std::deque<Carried> carried_;
   EmbedReport fit_;

@@ -16,7 +16,9 @@ void Progress::show(int done) {
   shown_ = done;
   if (quiet_) return;
   constexpr int kWidth = 40;
-  const auto share = [&](int parts) { return static_cast<int>(static_cast<long long>(parts) * done / total_); };
+  const auto share = [&](int components) {
+    return static_cast<int>(static_cast<long long>(components) * done / total_);
+  };
   if (terminal_) {
     const std::string bar(static_cast<std::size_t>(share(kWidth)), '#');
     std::fprintf(stream_, "\r%s [%-*s] %d/%d%s\033[K", what_.c_str(), kWidth, bar.c_str(), done, total_,

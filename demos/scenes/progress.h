@@ -9,14 +9,16 @@
 
 namespace tetskin::scenes {
 
-/// Tells how far long work has come, and how long it will take: a bar on a terminal, a line every tenth otherwise.
+/// Prints the progress of long work, and the time that it will take: a bar on a terminal, otherwise a line at every
+/// tenth.
 class Progress {
  public:
-  /// total  steps of the whole work, above 0; quiet: prints nothing
+  /// total  steps of the whole work, above 0; quiet  prints nothing
   Progress(std::string what, int total, bool quiet, std::FILE* stream = stdout);
-  /// After step `done` of total.
+  /// Call after step `done` of `total`.
   void show(int done);
-  /// Likewise, but the steps since the last call took no time: they had been done before, and tell nothing of the rest.
+  /// Call after step `done` of `total` if the steps since the last call took no time: they had been done before, and
+  /// say nothing about the time of the rest.
   void skip(int done);
 
  private:

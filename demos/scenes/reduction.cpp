@@ -7,19 +7,19 @@
 
 namespace tetskin::scenes {
 
-const VibrationModes& Reduction::modes(const std::function<bool(const Eigen::Vector3d&)>& held) {
+const VibrationModes& Reduction::modes(const std::function<bool(const Eigen::Vector3d&)>& pinned) {
   VibrationOptions options;
-  options.modes = most_;
+  options.modeCount = max_;
   options.stiffnessScale = fine_.stiffnessScale();
   options.nodeMasses = fine_.masses;
-  for (std::size_t n = 0; n < fine_.nodeCount(); ++n) {
-    if (held && held(fine_.nodes[n])) options.pinned.push_back(static_cast<int>(n));
+  for (std::size_t n = 0; n < fine_.mesh.nodeCount(); ++n) {
+    if (pinned && pinned(fine_.mesh.nodes[n])) options.pinned.push_back(static_cast<int>(n));
   }
   for (const VibrationModes& one : found_) {
     if (one.pinned == options.pinned) return one;
   }
   const CpuTimer timer;
-  Result<VibrationModes> modes = vibrationModes(fine_, options);
+  Result<VibrationModes> modes = computeVibrationModes(fine_.mesh, options);
   require(modes.status());
   milliseconds_ = timer.milliseconds();
   return found_.emplace_back(std::move(modes).value());

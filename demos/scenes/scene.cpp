@@ -13,7 +13,7 @@
 namespace tetskin::scenes {
 namespace {
 
-/// Of the floor's box, in sizes.
+/// Dimensions of the floor's box, in units of the body's size.
 constexpr double kFloorHalfSide = 5.0, kFloorHalfHeight = 0.5;
 
 }  // namespace
@@ -42,7 +42,7 @@ int Scene::step(int frame, const Moved& moved) {
   static const Moved kNobody = [] {};
   if (beforeFrame) beforeFrame(frame, moved ? moved : kNobody);
   int steps = 0;
-  // One substep at a time: Bullet's own division of a frame may leave one out by rounding.
+  // One substep at a time, as Bullet's own division of a frame may lose one to rounding.
   for (int k = 1; k <= options_.substeps; ++k) {
     if (beforeSubstep) beforeSubstep(frame - 1 + static_cast<double>(k) / options_.substeps, options_.substep());
     steps += world_.step(options_.substep());
@@ -53,7 +53,7 @@ int Scene::step(int frame, const Moved& moved) {
 Findings Scene::check(PointView<const btScalar> points) const {
   Findings found;
   found.box = boundingBox(points);
-  // A box ignores what is not a number.
+  // A Box3 ignores NaN.
   found.finite = firstNonFinite(points) == points.size();
   found.exploded = !found.finite || found.box.sizes().maxCoeff() >= kExploded * extent * options_.size;
   found.aboveFloor = found.box.min().y() >= floorY - margin() - kFloorTolerance * options_.size;
@@ -78,35 +78,36 @@ void Scene::restore() {
   }
 }
 
-btSoftBody& Scene::makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
-                            const Eigen::Vector3d& way) {
+btSoftBody& Scene::makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& pinned,
+                            const Eigen::Vector3d& direction) {
   SoftBodyOptions options = options_.body;
-  options.pinned = held;
+  options.pinned = pinned;
   if (options_.force != Force::Reduced) {
     btSoftBody& body = world_.add(cage, options);
-    if (way != Eigen::Vector3d::Zero()) body.translate(toBullet(way));
+    if (direction != Eigen::Vector3d::Zero()) body.translate(toBullet(direction));
     return body;
   }
-  if (!options_.reduction) throw InputError("a reduced body needs fine tets, of which it has the vibrations");
+  if (!options_.reduction)
+    throw InputError("a reduced body needs fine tets, from which its vibration modes are computed");
   ReducedBodyOptions reduced;
-  reduced.modes = options_.modes;
+  reduced.modeCount = options_.modes;
   reduced.mass = options.mass;
   reduced.density = options.density;
   reduced.youngsModulus = options.youngsModulus;
   reduced.relativeStiffness = options.relativeStiffness;
-  reduced.damping = options.damping;
+  reduced.stiffnessDamping = options.stiffnessDamping;
   reduced.timeStep = options_.substep();
-  reduced.leaveOutFastModes = true;
+  reduced.skipFastModes = true;
   reduced.margin = options.margin;
   reduced.friction = options.friction;
   reduced.nodeTets = options_.reduction->nodeTets;
-  reduced.placement.setOrigin(toBullet(way));
-  return world_.add(cage, options_.reduction->modes(held), reduced);
+  reduced.placement.setOrigin(toBullet(direction));
+  return world_.add(cage, options_.reduction->modes(pinned), reduced);
 }
 
-btSoftBody& Scene::add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
+btSoftBody& Scene::add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& pinned,
                        const Eigen::Vector3d& shift) {
-  btSoftBody& body = makeBody(cage, held, options_.offset + shift);
+  btSoftBody& body = makeBody(cage, pinned, options_.offset + shift);
   body.setActivationState(DISABLE_DEACTIVATION);
   bodies_.push_back(&body);
   std::vector<btVector3>& start = start_.emplace_back();
@@ -124,8 +125,8 @@ void Scene::addFloor(double gap) {
   world_.addBox(centre, {side, height, side});
 }
 
-void Scene::placeNodes(const std::function<btVector3(const btVector3&)>& place) {
-  for (int n = 0; n < body().m_nodes.size(); ++n) placeNode(body().m_nodes[n], place(body().m_nodes[n].m_x));
+void Scene::placeNodes(const std::function<btVector3(const btVector3&)>& toPosition) {
+  for (int n = 0; n < body().m_nodes.size(); ++n) placeNode(body().m_nodes[n], toPosition(body().m_nodes[n].m_x));
 }
 
 void placeNode(btSoftBody::Node& node, const btVector3& where) {
@@ -138,15 +139,15 @@ int eventFrame(const SceneOptions& options) {
 }
 
 Box3 layoutBox(const SceneOptions& options, const Cage& cage) {
-  return options.box.isEmpty() ? boundingBox(cage.nodes) : options.box;
+  return options.box.isEmpty() ? boundingBox(cage.mesh.nodes) : options.box;
 }
 
 std::vector<int> nodesWhere(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& chosen) {
   std::vector<int> found;
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    if (chosen(cage.nodes[n])) found.push_back(static_cast<int>(n));
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
+    if (chosen(cage.mesh.nodes[n])) found.push_back(static_cast<int>(n));
   }
-  if (found.empty()) throw InputError("the scene holds no node of the cage");
+  if (found.empty()) throw InputError("the scene pins no node of the cage");
   return found;
 }
 

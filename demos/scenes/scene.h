@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scene: soft bodies in a world of Bullet's, what is done to them while they are simulated, and what must hold.
+// A scene: soft bodies in a Bullet world, what is done to them while they are simulated, and what must hold.
 // `sceneTable` (scenes/table.h) lists them all.
 #pragma once
 
@@ -16,44 +16,45 @@
 namespace tetskin::scenes {
 
 constexpr double kFrameRate = 60.0;
-/// Beyond this many times its rest size a body has exploded: Bullet clamps such a body to finite coordinates.
+/// A body more than this many times as large as at rest has exploded: Bullet clamps such a body to finite coordinates.
 constexpr double kExploded = 20.0;
-/// Contacts are at the cage's nodes: points may pass the floor by the collision margin and this share of the size.
+/// Contacts are at the cage's nodes: points may pass the floor by the collision margin plus this share of the body's
+/// size.
 constexpr double kFloorTolerance = 0.01;
 
-/// What a scene is made of. Which nodes are held is the scene's own affair.
+/// What a scene is made of. The scene itself decides which nodes are pinned.
 struct SceneOptions {
   SoftBodyOptions body = oneKilogram();
   Force force = Force::Elastic;
-  int substeps = 4;                      ///< of a frame
-  std::shared_ptr<Reduction> reduction;  ///< with Force::Reduced: whose vibrations
-  int modes = 20;                        ///< the same: of each body
+  int substeps = 4;                      ///< per frame
+  std::shared_ptr<Reduction> reduction;  ///< for Force::Reduced: the source of the modes
+  int modes = 20;                        ///< for Force::Reduced: modes per body
   double frameSeconds = 1.0 / kFrameRate;
-  int frames = 0;          ///< of the whole run, over which the scene spreads what happens; 0: its own
-  std::size_t bodies = 1;  ///< in scenes of several
-  double harshness = 0.0;  ///< where a scene can be harder or easier, in units of its own; 0: its own
-  double size = kSize;     ///< largest side of a body; gravity is in proportion: all sizes fall alike
-  Box3 box;                ///< what the scene is laid out by, the same for many cages; empty: the cage's own
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< how far from where the cage is the body is put
+  int frames = 0;          ///< length of the run, over which the scene spreads its events; 0: the scene's own
+  std::size_t bodies = 1;  ///< used by scenes with several bodies
+  double harshness = 0.0;  ///< how hard the scene is, in units of its own; 0: the scene's own
+  double size = kSize;     ///< largest side of a body; gravity is scaled with it, so that all sizes fall alike
+  Box3 box;                ///< the box by which the scene is laid out, the same for many cages; empty: the cage's own
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< shift of the body from where its cage is
 
   double substep() const { return frameSeconds / substeps; }
 };
 
-/// Told when a scene has put nodes elsewhere by hand, before the next step: surfaces are due.
+/// Called when a scene has moved nodes by hand, before the next step: surfaces need an update.
 using Moved = std::function<void()>;
 
-/// How a scene stands, by some points of its bodies: nodes or surface, world space.
+/// The state of a scene, judged by some points of its bodies: nodes or surface, world space.
 struct Findings {
-  Box3 box;                ///< of the points, if they are finite
-  bool finite = true;      ///< all coordinates are
+  Box3 box;                ///< of the points; empty if they are not finite
+  bool finite = true;      ///< all coordinates are finite
   bool exploded = false;   ///< a box is kExploded times as large as the scene itself can make its body, or not finite
-  bool aboveFloor = true;  ///< or less than the tolerance below; true without a floor
+  bool aboveFloor = true;  ///< no point is farther below the floor than the tolerance; true without a floor
 };
 
 class Scene {
  public:
-  /// An empty one, for the makers of scenes.
-  /// gravity  downwards, for bodies of kSize
+  /// An empty scene, to which the functions that make scenes add.
+  /// gravity  downwards, for bodies of size kSize
   Scene(const SceneOptions& options, double gravity);
 
   const SceneOptions& options() const { return options_; }
@@ -62,55 +63,55 @@ class Scene {
   btSoftBody& body(std::size_t i = 0) { return *bodies_[i]; }
   const btSoftBody& body(std::size_t i = 0) const { return *bodies_[i]; }
   double margin() const;  ///< collision margin
-  /// Root mean square of the nodes' speeds, in sizes a second.
+  /// Root mean square of the nodes' speeds, in body lengths per second.
   double nodeSpeed() const;
 
-  /// One frame; returns the number of Bullet's steps.
-  /// frame  the one reached, from 1
+  /// Simulates one frame; returns the number of Bullet's steps.
+  /// frame  the number of the frame that is reached, from 1
   int step(int frame, const Moved& moved = {});
-  /// What must hold after every frame, of points that a body carries, or of all nodes.
+  /// Checks what must hold after every frame, for points that a body carries, or for all nodes.
   Findings check(PointView<const btScalar> points) const;
   Findings check() const;
-  /// Puts all nodes back to where they began, at rest.
+  /// Moves all nodes back to their initial positions, at rest.
   void restore();
 
-  // For the makers.
+  // For the functions that make scenes.
 
-  /// Adds a body, which never falls asleep: every step is to be seen.
-  /// held   nodes to pin, by their place in the cage
-  /// shift  from there, beside that of the options
-  btSoftBody& add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held = {},
+  /// Adds a body that never falls asleep, so that every step shows.
+  /// pinned  chooses the pinned nodes by their positions in the cage
+  /// shift   from the cage's position, added to the offset of the options
+  btSoftBody& add(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& pinned = {},
                   const Eigen::Vector3d& shift = Eigen::Vector3d::Zero());
-  /// A fixed box, its upper side so many sizes below what the scene is laid out by: below the body if the options do
-  /// not say, which must have been added then.
+  /// Adds a fixed box whose upper side is `gap` times the body's size below the layout box: below the body, which must
+  /// have been added before, if the options have no such box.
   void addFloor(double gap);
-  /// Puts all nodes of the first body elsewhere, at rest.
-  void placeNodes(const std::function<btVector3(const btVector3&)>& place);
+  /// Moves all nodes of the first body to new positions, at rest.
+  void placeNodes(const std::function<btVector3(const btVector3&)>& toPosition);
 
-  double extent = 1.0;     ///< largest side that the scene itself gives its body, over that at rest
-  double floorY;           ///< upper side of the floor; minus infinity: none
-  Eigen::Vector3d offset;  ///< of the body, where it begins, from its cage
+  double extent = 1.0;     ///< largest side that the scene itself gives its body, relative to that at rest
+  double floorY;           ///< upper side of the floor; minus infinity: no floor
+  Eigen::Vector3d offset;  ///< of the body's initial position from its cage
   std::function<void(int frame, const Moved&)> beforeFrame;
-  /// frame  what will be reached, a fraction between frames
+  /// frame  the time at the end of the substep, in frames, may be fractional
   std::function<void(double frame, double seconds)> beforeSubstep;
 
  private:
-  btSoftBody& makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& held,
-                       const Eigen::Vector3d& way);
+  btSoftBody& makeBody(const Cage& cage, const std::function<bool(const Eigen::Vector3d&)>& pinned,
+                       const Eigen::Vector3d& direction);
 
   SceneOptions options_;
   World world_;
   std::vector<btSoftBody*> bodies_;
-  std::vector<std::vector<btVector3>> start_;  ///< of each body's nodes
+  std::vector<std::vector<btVector3>> start_;  ///< initial node positions of each body
 };
 
-/// Puts a node elsewhere, at rest.
+/// Moves a node to a new position, at rest.
 void placeNode(btSoftBody::Node& node, const btVector3& where);
 
-/// The frame before which a scene's one event happens: the sixth, or the last of a shorter run.
+/// The frame before which a scene's single event happens: the sixth, or the last of a shorter run.
 int eventFrame(const SceneOptions& options);
 
-/// What a scene is laid out by.
+/// The box by which a scene is laid out.
 Box3 layoutBox(const SceneOptions& options, const Cage& cage);
 
 /// Indices of the cage's nodes that a rule chooses. Throws InputError if there are none.

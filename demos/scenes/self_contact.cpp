@@ -27,11 +27,11 @@ void SelfContact::tell(nlohmann::ordered_json& json) const {
 SelfContact selfContactOf(const std::string& name, const Cage& cage, const TriangleMesh& mesh, SelfContactWish wish,
                           bool quiet) {
   if (wish == SelfContactWish::Off) return {};
-  Result<std::shared_ptr<const ContactShape>> shape = makeContactShape(cage, mesh);
+  Result<std::shared_ptr<const ContactShape>> shape = ContactShape::create(cage, mesh);
   if (shape.ok()) return {std::move(shape).value(), ""};
   const std::string refusal = name + ": " + shape.status().message;
   if (wish == SelfContactWish::On) throw InputError("--self-contact on: " + refusal);
-  if (!quiet) std::printf("No contact of the body with itself: %s\n", refusal.c_str());
+  if (!quiet) std::printf("Self-contact is off: %s\n", refusal.c_str());
   return {nullptr, refusal};
 }
 

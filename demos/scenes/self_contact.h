@@ -4,7 +4,7 @@
 
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -15,26 +15,26 @@
 
 namespace tetskin::scenes {
 
-/// Whether a body meets itself, as the command line has it.
+/// Whether a body meets itself, as requested on the command line.
 enum class SelfContactWish { WherePossible, On, Off };
 
-/// Where nothing is said, a body meets itself if its surface meets others.
+/// By default, a body meets itself if its surface meets others.
 SelfContactWish wishBeside(Contact contact, SelfContactWish wish);
 
-/// Contact of a body with itself, as a run has it.
+/// Contact of a body with itself in a run.
 struct SelfContact {
-  std::shared_ptr<const ContactShape> shape;  ///< null: none
-  std::string refusal;                        ///< why there is none where there should be; or empty
+  std::shared_ptr<const ContactShape> shape;  ///< null: no contact with itself
+  std::string refusal;                        ///< why there is none although there should be; or empty
 
-  /// "on", "off" or "refused".
+  /// The state as a word: "on", "off" or "refused".
   const char* word() const;
-  /// Of a summary: `self_contact`, and with a refusal `self_contact_refusal`.
+  /// Adds `self_contact` to a summary, and `self_contact_refusal` if it was refused.
   void tell(nlohmann::ordered_json& json) const;
 };
 
-/// Makes the shape, unless it is off. What cannot be made is refused where it was asked for, by an InputError, and else
-/// done without, which is said in a line unless that is to be quiet.
-/// name  of the mesh, for what is said
+/// Makes the shape, unless self-contact is off. If it cannot be made, throws InputError where it was requested
+/// explicitly; otherwise the run does without it, and prints a line about that unless it is quiet.
+/// name  of the mesh, for messages
 SelfContact selfContactOf(const std::string& name, const Cage& cage, const TriangleMesh& mesh, SelfContactWish wish,
                           bool quiet);
 

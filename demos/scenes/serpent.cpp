@@ -16,29 +16,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kScaleColumns = 12;         ///< scales round the body
-constexpr double kScaleRows = 165.0;      ///< scales along it, about
-constexpr double kBodySlenderness = 9.5;  ///< rings over columns: four quads a scale along, four round
-constexpr double kHeadDensity = 2.2;      ///< rings a radius on the head, over those on the body
-constexpr double kThinnest = 0.05;        ///< radius below which rings do not get closer
-constexpr double kThinnestSnout = 0.008;  ///< the same on the head, whose mouth goes round the tip
-constexpr double kBackCrowding = 0.25;    ///< columns are this much denser on the back and sparser on the belly
-constexpr double kTrimShare = 0.13;       ///< of all triangles: spikes, horns, teeth and eyes
+constexpr int kScaleColumns = 12;         ///< scales around the body
+constexpr double kScaleRows = 165.0;      ///< approximate number of scales along it
+constexpr double kBodySlenderness = 9.5;  ///< rings over columns: four quads per scale along the body, four around it
+constexpr double kHeadDensity = 2.2;      ///< rings per radius on the head, relative to the body
+constexpr double kThinnest = 0.05;        ///< radius below which rings get no closer
+constexpr double kThinnestSnout = 0.008;  ///< the same limit on the head, as the mouth goes around the tip
+constexpr double kBackCrowding = 0.25;    ///< columns are this much denser on the back, and sparser on the belly
+constexpr double kTrimFraction = 0.13;    ///< share of all triangles that is spent on spikes, horns, teeth and eyes
 
-/// A curved, tapering spike. Directions are in (outwards, to the tail, across) of the surface at its root; across is
-/// up on the flanks and mirrored with the spike.
+/// A curved, tapering spike. Directions are given as (outwards, to the tail, across) of the surface at its root;
+/// "across" is up on the flanks, and is mirrored together with the spike.
 struct Thorn {
   double t = 0.0, theta = 0.0;  ///< root; theta in degrees
   double length = 0.0;
   double breadth = 0.0;   ///< half the width at the root, towards the tail
   double flatness = 1.0;  ///< thickness over breadth
   Vector3d from, to;      ///< directions at root and tip
-  double detail = 1.0;    ///< triangles over those of a spike on the back
+  double detail = 1.0;    ///< number of triangles relative to a spike on the back
   double inset = 0.0;     ///< depth of the root below the surface
 };
 
 void appendThorn(TriangleMesh& mesh, const SerpentShape& shape, const Thorn& thorn, double triangles) {
-  constexpr double kSunk = 0.3;  ///< share of the length below the surface: relief must not lift it off
+  constexpr double kSunk = 0.3;  ///< share of the length below the surface, so that relief does not lift it off
   constexpr double kSlenderness = 1.0;
   const SurfacePoint root = shape.surface(thorn.t, thorn.theta * kDegree);
   const double mirror = thorn.theta > 180.0 ? -1.0 : 1.0;
@@ -61,16 +61,16 @@ void appendThorn(TriangleMesh& mesh, const SerpentShape& shape, const Thorn& tho
   });
 }
 
-/// An ellipsoid that looks out of the head.
+/// An eye: an ellipsoid that protrudes from the head.
 struct Ball {
   double sunk = 0.0;    ///< depth of the centre below the surface
   Vector3d radii;       ///< outwards, to the tail, across
   double detail = 1.0;  ///< as in Thorn
 };
-constexpr double kEyePlace = 0.51, kEyeAngle = 113.0;  ///< share of the head's length; degrees
+constexpr double kEyePosition = 0.51, kEyeAngle = 113.0;  ///< share of the head's length; degrees
 
 void appendBall(TriangleMesh& mesh, const SerpentShape& shape, const Ball& ball, double theta, double triangles) {
-  const SurfacePoint root = shape.surface(shape.inHead(kEyePlace), theta * kDegree);
+  const SurfacePoint root = shape.surface(shape.inHead(kEyePosition), theta * kDegree);
   const Vector3d centre = root.position - ball.sunk * root.normal, across = root.normal.cross(root.backward);
   const TubeGrid grid = tubeGrid(triangles, 0.5);
   appendTube(mesh, grid, [&](int ring, int column) -> Vector3d {
@@ -88,7 +88,8 @@ double ringDensity(const SerpentShape& shape, double t) {
   return blend(1.0, kHeadDensity) / std::max(shape.radius(t), blend(kThinnest, kThinnestSnout));
 }
 
-/// Columns in whole numbers a scale and rings in whole numbers a row, so that scales have crisp edges on coarse meshes.
+/// Makes whole numbers of columns per scale and of rings per row of scales, so that scales have crisp edges on coarse
+/// meshes.
 TubeGrid bodyGrid(double triangles) {
   const double columns = std::sqrt(triangles / 2.0 / kBodySlenderness);
   const int perScale = std::max(1, static_cast<int>(std::lround(columns / kScaleColumns)));
@@ -98,23 +99,23 @@ TubeGrid bodyGrid(double triangles) {
   return grid;
 }
 
-/// The body with its head. Returns the number of triangles before the head.
+/// Adds the body with its head. Returns the number of triangles before the head.
 std::size_t appendBody(TriangleMesh& mesh, const SerpentShape& shape, const TubeGrid& grid) {
-  const std::vector<double> places =
+  const std::vector<double> positions =
       spread(static_cast<std::size_t>(grid.rings) + 2, 0.0, 1.0, [&](double t) { return ringDensity(shape, t); });
   const double ringsPerScale = std::max(1.0, std::round(grid.rings / kScaleRows));
   const int columnsPerScale = grid.columns / kScaleColumns;
   const double legible = smoothStep(1.0, 3.0, std::min(2.0 * ringsPerScale, 1.0 * columnsPerScale));
   appendTube(mesh, grid, [&](int ring, int column) -> Vector3d {
-    const double t = places[ring], turn = static_cast<double>(column) / grid.columns;
+    const double t = positions[ring], turn = static_cast<double>(column) / grid.columns;
     const double theta = 2.0 * kPi * turn + kBackCrowding * std::sin(2.0 * kPi * turn);
     const double scale = scalePattern((ring + 0.5) / ringsPerScale, turn * kScaleColumns, kScaleColumns);
     const double relief = shape.headRelief(t, theta) + legible * shape.scaleHeight(t) * scale;
     const SurfacePoint base = shape.surface(t, theta);
     return base.position + relief * base.normal;
   });
-  const auto head = std::lower_bound(places.begin(), places.end(), shape.headStart());
-  return grid.trianglesUpTo(static_cast<int>(head - places.begin()));
+  const auto head = std::lower_bound(positions.begin(), positions.end(), shape.headStart());
+  return grid.trianglesUpTo(static_cast<int>(head - positions.begin()));
 }
 
 std::vector<Thorn> spikes(const SerpentShape& shape) {
@@ -129,7 +130,7 @@ std::vector<Thorn> spikes(const SerpentShape& shape) {
   return thorns;
 }
 
-/// The thorns and the same on the other side.
+/// The thorns and their mirror images on the other side.
 std::vector<Thorn> mirrored(std::vector<Thorn> thorns) {
   const std::size_t count = thorns.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -167,14 +168,14 @@ std::vector<Thorn> teeth(const SerpentShape& shape) {
   });
 }
 
-/// A group of parts that are sunk into the body.
+/// A group of components that are sunk into the body.
 struct Trim {
   std::string name, material;
   std::vector<Thorn> thorns;
   std::vector<Ball> balls;  ///< one on each side
 };
 
-/// Ends the group that began where the last one ended.
+/// Ends the group that began where the previous one ended.
 void closeGroup(TriangleMesh& mesh, const std::string& name, const std::string& material, std::size_t end) {
   const std::size_t begin =
       mesh.groups.empty() ? 0 : mesh.groups.back().firstTriangle + mesh.groups.back().triangleCount;
@@ -191,12 +192,12 @@ TriangleMesh makeSerpent(const SerpentOptions& options) {
                                    {"teeth", "ivory", teeth(shape), {}},
                                    {"eyes", "eye", {}, {{0.015, {0.025, 0.026, 0.024}, 2.0}}},
                                    {"pupils", "pupil", {}, {{0.013, {0.0255, 0.006, 0.020}, 0.7}}}};
-  double shares = 0.0;
+  double fractions = 0.0;
   for (const Trim& trim : trims) {
-    for (const Thorn& thorn : trim.thorns) shares += thorn.detail;
-    for (const Ball& ball : trim.balls) shares += 2.0 * ball.detail;
+    for (const Thorn& thorn : trim.thorns) fractions += thorn.detail;
+    for (const Ball& ball : trim.balls) fractions += 2.0 * ball.detail;
   }
-  const double each = kTrimShare * wish / shares;
+  const double each = kTrimFraction * wish / fractions;
 
   TriangleMesh mesh;
   for (const Trim& trim : trims) {

@@ -14,25 +14,25 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kHeadLength = 0.54;
-constexpr double kTailCap = 0.02;                        ///< length over which the tail's tip is rounded off
+constexpr double kTailCap = 0.02;                        ///< length over which the tip of the tail is rounded off
 constexpr double kSnoutCap = 0.085;                      ///< length over which the snout is rounded off
 constexpr double kBackHeight = 1.0, kBellyDepth = 0.86;  ///< of the body, over half its width: the belly is flat
-constexpr double kScaleHeight = 0.17;                    ///< over the body's radius
-constexpr double kHeadScaleHeight = 0.03;                ///< the same on the head, whose scales are small
-constexpr double kNeckEnd = -0.2;     ///< share of the head's length from which on the head has relief
+constexpr double kScaleHeight = 0.17;                    ///< relative to the body's radius
+constexpr double kHeadScaleHeight = 0.03;                ///< the same for the head, whose scales are small
+constexpr double kNeckEnd = -0.2;     ///< share of the head's length at which the head's relief begins
 constexpr double kSmoothStep = 2e-4;  ///< step in t and theta for the smooth surface's normal
 
 /// A spiral whose inner end rises into an S-shaped neck; the tail flicks outwards.
 std::vector<Vector3d> spineControls() {
-  constexpr double kInnermost = 0.36, kPitch = 0.43;     ///< distance from the centre; its growth in one turn
-  constexpr double kThinFrom = 0.75, kTightening = 0.2;  ///< turns beyond which the tail, being thin, lies closer
+  constexpr double kInnermost = 0.36, kPitch = 0.43;     ///< distance from the centre; its increase in one turn
+  constexpr double kThinFrom = 0.75, kTightening = 0.2;  ///< turns beyond which the tail, which is thin, lies closer
   constexpr double kFirstAngle = -315.0, kLastAngle = 180.0, kStep = 22.5;
   std::vector<Vector3d> controls = {
       {-0.56, 0.20, 0.96}, {-0.45, 0.09, 1.06}, {-0.24, 0.06, 1.04}, {0.03, 0.07, 0.94}, {0.30, 0.10, 0.87}};
   for (double angle = kFirstAngle; angle <= kLastAngle; angle += kStep) {
     const double turns = (kLastAngle - angle) / 360.0, thin = std::max(turns - kThinFrom, 0.0);
     const double distance = kInnermost + kPitch * turns - kTightening * thin * thin;
-    // Gentle humps keep the coil from looking like a rope on the floor.
+    // Gentle humps, so that the coil does not look like a rope on the floor.
     const double height = 0.17 + 0.035 * std::sin(2.0 * angle * kDegree + 0.6);
     controls.emplace_back(distance * std::sin(angle * kDegree), height, distance * std::cos(angle * kDegree));
   }
@@ -43,14 +43,14 @@ std::vector<Vector3d> spineControls() {
   return controls;
 }
 
-/// Half the width of the body over t.
+/// Half the width of the body as a function of t.
 double bodyRadius(double t) {
   static const Profile profile = {{0.0, 0.012},  {0.08, 0.034}, {0.22, 0.08},  {0.40, 0.128}, {0.56, 0.155},
                                   {0.70, 0.150}, {0.80, 0.124}, {0.88, 0.100}, {0.93, 0.09},  {1.0, 0.09}};
   return profile(t);
 }
 
-/// The head over h, its share of the head's length: wide cheeks, a high brow, a long snout.
+/// The head as a function of h, its share of the head's length: wide cheeks, a high brow, a long snout.
 double headWidth(double h) {
   static const Profile profile = {{0.0, 0.092},  {0.22, 0.147}, {0.36, 0.152}, {0.55, 0.106},
                                   {0.78, 0.081}, {0.90, 0.085}, {1.0, 0.078}};
@@ -76,7 +76,7 @@ double bell(double x) {
   return std::exp(-0.5 * x * x);
 }
 
-/// A bump on both sides of the head.
+/// A bump, mirrored on both sides of the head.
 struct HeadBump {
   double h, theta;         ///< where: share of the head's length; degrees
   double length, breadth;  ///< standard deviations: share of the head's length; degrees
@@ -84,11 +84,11 @@ struct HeadBump {
 };
 constexpr HeadBump kHeadBumps[] = {
     {0.46, 138.0, 0.085, 11.0, 0.038},   // brow
-    {0.30, 142.0, 0.080, 14.0, 0.016},   // and its root
+    {0.30, 142.0, 0.080, 14.0, 0.016},   // root of the brow
     {0.51, 112.0, 0.045, 12.0, -0.016},  // eye socket
     {0.20, 75.0, 0.080, 22.0, 0.024},    // jaw muscle
     {0.87, 140.0, 0.040, 16.0, 0.014},   // nostril
-    {0.915, 128.0, 0.016, 9.0, -0.016},  // and its hole
+    {0.915, 128.0, 0.016, 9.0, -0.016},  // hole of the nostril
     {0.70, 118.0, 0.150, 10.0, 0.007},   // ridge from brow to nostril
     {0.62, 66.0, 0.200, 9.0, 0.008},     // lower lip
 };
@@ -97,13 +97,14 @@ constexpr double kMouthCorner = 0.30;    ///< share of the head's length where t
 constexpr double kMouthHalfGap = 0.012;  ///< standard deviation of the groove, in units of length
 constexpr double kMouthDepth = 0.040;
 
-/// The groove of the mouth, which lies where the surface crosses a level: so it goes round the snout with one width.
+/// The groove of the mouth, which lies where the surface crosses a level: so it goes around the snout with constant
+/// width.
 double mouthRelief(double h, double level) {
   static const Profile mouthLevel = {{kMouthCorner, 0.002}, {0.45, -0.018}, {0.7, -0.010}, {0.88, -0.004}, {1.0, 0.0}};
   return -kMouthDepth * smoothStep(kMouthCorner, kMouthCorner + 0.2, h) * bell((level - mouthLevel(h)) / kMouthHalfGap);
 }
 
-/// Height of a section's outline over the spine.
+/// Height of a section's outline above the spine.
 double levelOf(const Section& section, double theta) {
   const double c = std::cos(theta);
   return -c * (c < 0.0 ? section.above : section.below);
@@ -160,7 +161,7 @@ double SerpentShape::headRelief(double t, double theta) const {
   for (const HeadBump& b : kHeadBumps) {
     bumps += b.height * bell((h - b.h) / b.length) * bell((degrees - b.theta) / b.breadth);
   }
-  // At the tip all angles meet, so a bump there would be a crumple.
+  // At the tip all angles meet, so a bump there would be a crease.
   const double fade = smoothStep(kNeckEnd, 0.1, h) * (1.0 - smoothStep(0.93, 1.0, h));
   return fade * bumps + mouthRelief(h, levelOf(section(t), theta));
 }
@@ -176,9 +177,9 @@ double SerpentShape::spikeLength(double t) const {
 }
 
 double scalePattern(double row, double column, int columns) {
-  constexpr double kLength = 1.9;                 ///< of a scale, in rows: they overlap
+  constexpr double kLength = 1.9;                 ///< of a scale, in rows: scales overlap
   constexpr double kTip = 0.55;                   ///< share of the length that is rounded
-  constexpr double kDome = 0.75, kSlope = 0.75;   ///< shares of the height lost from middle to side, from tip to root
+  constexpr double kDome = 0.75, kSlope = 0.75;   ///< shares of the height lost from centre to side, from tip to root
   constexpr double kBelly = 0.10, kFlank = 0.15;  ///< where plates end and scales begin, in turns from the belly
   double height = 0.0;
   for (double tip = std::floor(row) - 1.0; tip <= row; tip += 1.0) {

@@ -19,10 +19,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSpineSamples = 4096;              ///< more than the rows of the finest mesh
-constexpr int kSamplesPerSpan = 512;             ///< of the B-spline, before it is measured
-constexpr int kSettleReach = 1100;               ///< samples on either side over which the back finds its way up
-constexpr double kEnd = 0.93, kEndWeight = 6.0;  ///< share of the length from which on the back's way up counts more
+constexpr int kSpineSamples = 4096;              ///< more than the number of rows of the finest mesh
+constexpr int kSamplesPerSpan = 512;             ///< of the B-spline, before its length is measured
+constexpr int kSettleReach = 1100;               ///< samples on either side over which the back turns upwards
+constexpr double kEnd = 0.93, kEndWeight = 6.0;  ///< share of the length beyond which orientation has more weight
 constexpr int kDensitySamples = 4096;
 
 /// Index i with keys[i] <= key <= keys[i + 1], for ascending keys.
@@ -36,7 +36,7 @@ std::size_t spanOf(const std::vector<double>& keys, double key) {
   return spanOf(keys, key, std::less<double>());
 }
 
-/// Points of the B-spline. Each end control counts three times, so that the curve reaches it.
+/// Points on the B-spline. Each end control counts three times, so that the curve reaches it.
 std::vector<Vector3d> sampleBSpline(std::vector<Vector3d> c) {
   c.insert(c.begin(), 2, c.front());
   c.insert(c.end(), 2, c.back());
@@ -75,7 +75,7 @@ Vector3d perpendicularTo(const Vector3d& tangent, const Vector3d& v) {
   return (v - v.dot(tangent) * tangent).normalized();
 }
 
-/// The double reflection of Wang et al., table I: `from.up` carried to the next point without spin.
+/// The double reflection of Wang et al., table I: `from.up` transported to the next point without spin.
 Vector3d carryUp(const Frame& from, const Vector3d& origin, const Vector3d& tangent) {
   const Vector3d v1 = origin - from.origin;
   const double c1 = v1.squaredNorm();
@@ -85,7 +85,7 @@ Vector3d carryUp(const Frame& from, const Vector3d& origin, const Vector3d& tang
   return perpendicularTo(tangent, upL - (2.0 / v2.squaredNorm()) * v2.dot(upL) * v2);
 }
 
-/// The angle about each frame's tangent from its up to the world's, without jumps.
+/// The angle about each frame's tangent from its up to the world's up, without jumps.
 std::vector<double> anglesToWorldUp(const std::vector<Frame>& frames) {
   std::vector<double> angles;
   for (const Frame& f : frames) {
@@ -96,7 +96,7 @@ std::vector<double> anglesToWorldUp(const std::vector<Frame>& frames) {
   return angles;
 }
 
-/// The weighted mean of the values within `reach` of each; near ones count most.
+/// The weighted mean of the values within `reach` of each one; near values count most.
 std::vector<double> smoothed(const std::vector<double>& values, const std::vector<double>& weights, int reach) {
   std::vector<double> nearness;
   for (int k = 0; k <= reach; ++k) {
@@ -117,8 +117,9 @@ std::vector<double> smoothed(const std::vector<double>& values, const std::vecto
   return means;
 }
 
-/// Turns the frames about their tangents until up is upwards. The turn is smooth: a sudden one would wring the body. So
-/// steep places, at which upwards means little, have little say, and the end, which is looked at most, has much.
+/// Turns the frames about their tangents until up points upwards. The turn is smooth, as a sudden one would twist the
+/// body. Steep places, where "upwards" means little, therefore have little weight, and the end, which is most visible,
+/// has much.
 void settleUpwards(std::vector<Frame>& frames) {
   std::vector<double> weights;
   for (const Frame& f : frames) {
@@ -199,7 +200,7 @@ std::vector<double> spread(std::size_t count, double first, double last, const s
     const std::size_t i = spanOf(sums, sum);
     values.push_back(first + step * (static_cast<double>(i) + (sum - sums[i]) / (sums[i + 1] - sums[i])));
   }
-  values.back() = last;  // without rounding errors: ends of the serpent are points
+  values.back() = last;  // exact, without rounding errors, as the ends of the serpent are points
   return values;
 }
 

@@ -17,21 +17,22 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 constexpr double kLength = 4.0, kWidth = 1.0, kProng = 0.48, kSlot = 0.04, kSolid = 1.6;
-constexpr double kPlanePlace = 1.85;  ///< along the beam, from its solid end
-/// From upright. Weight bends both prongs, and alike: what the scenes hold of the lower end is below the slot.
+constexpr double kPlanePosition = 1.85;  ///< along the beam, from its solid end
+/// Angle from upright. Gravity bends both prongs equally; the nodes of the lower end that the scenes pin are below the
+/// slot.
 constexpr double kBeamLean = 35.0 * kDegree;
 
-/// From along the beam, across the slot, along the slot's edge, to the model's space.
+/// Maps (along the beam, across the slot, along the slot's edge) to the model's space.
 Vector3d inSpace(const Vector3d& p) {
   const double along = p.x() - 0.5 * kLength, across = p.y() - 0.5 * kWidth;
   return {std::sin(kBeamLean) * along + std::cos(kBeamLean) * across,
           std::cos(kBeamLean) * along - std::sin(kBeamLean) * across, 0.5 * kWidth - p.z()};
 }
 
-/// The beam as a grid of cells, of which those in the slot are empty: the slot's sides are planes of the grid.
+/// The beam as a grid of cells, of which those in the slot are empty: the sides of the slot are planes of the grid.
 struct Cells {
-  int solid, free;  ///< along the solid end, and along the slot
-  int prong, slot;  ///< across a prong, and across the slot
+  int solid, free;  ///< cells along the solid end, and along the slot
+  int prong, slot;  ///< cells across a prong, and across the slot
   int wide;
 
   explicit Cells(double edge)
@@ -59,7 +60,7 @@ struct Cells {
     return 2 * static_cast<std::size_t>(alongAndAcross + (n.x() + n.y() + free) * wide);
   }
 
-  /// Where a corner of cells is, in the model's space.
+  /// The position of a cell corner, in the model's space.
   Vector3d place(const Vector3i& c) const {
     const double along = c.x() <= solid ? kSolid * c.x() / solid : kSolid + (kLength - kSolid) * (c.x() - solid) / free;
     const double across = c.y() <= prong          ? kProng * c.y() / prong
@@ -69,7 +70,7 @@ struct Cells {
   }
 };
 
-/// The coarsest grid with so many of something.
+/// The coarsest grid for which a count reaches a minimum.
 Cells cellsWith(std::size_t wish, const std::function<std::size_t(const Cells&)>& count) {
   constexpr double kCoarsest = 0.3, kStep = 0.995;
   double edge = kCoarsest;
@@ -77,22 +78,22 @@ Cells cellsWith(std::size_t wish, const std::function<std::size_t(const Cells&)>
   return Cells(edge);
 }
 
-/// Numbers the corners in use.
+/// Assigns indices to the corners in use.
 class Corners {
  public:
-  Corners(const Cells& cells, std::vector<Vector3d>& places) : cells_(cells), places_(places) {}
+  Corners(const Cells& cells, std::vector<Vector3d>& positions) : cells_(cells), positions_(positions) {}
 
   int operator()(const Vector3i& c) {
     const Vector3i size = cells_.size();
     const std::uint64_t key = (static_cast<std::uint64_t>(c.z()) * (size.y() + 1) + c.y()) * (size.x() + 1) + c.x();
-    const auto [found, isNew] = numbers_.try_emplace(key, static_cast<int>(places_.size()));
-    if (isNew) places_.push_back(cells_.place(c));
+    const auto [found, isNew] = numbers_.try_emplace(key, static_cast<int>(positions_.size()));
+    if (isNew) positions_.push_back(cells_.place(c));
     return found->second;
   }
 
  private:
   const Cells& cells_;
-  std::vector<Vector3d>& places_;
+  std::vector<Vector3d>& positions_;
   std::unordered_map<std::uint64_t, int> numbers_;
 };
 
@@ -141,7 +142,7 @@ TetMesh makeSlottedBeamTets(std::size_t tets) {
   Corners corner(cells, mesh.nodes);
   forEachFilled(cells, [&](const Vector3i& c) {
     const bool odd = c.sum() % 2 != 0;
-    // Corners by bits; mirrored in every other cell, so that faces have the same diagonal on both sides.
+    // Corners as bits; mirrored in every other cell, so that faces have the same diagonal on both sides.
     const auto at = [&](int bits) {
       return corner(c + Vector3i(((bits & 1) != 0) != odd, (bits >> 1) & 1, (bits >> 2) & 1));
     };
@@ -155,7 +156,7 @@ TetMesh makeSlottedBeamTets(std::size_t tets) {
 
 Eigen::Hyperplane<double, 3> slottedBeamPlane() {
   const Vector3d along = inSpace({1.0, 0.0, 0.0}) - inSpace({0.0, 0.0, 0.0});
-  return {along, inSpace({kPlanePlace, 0.5 * kWidth, 0.5 * kWidth})};
+  return {along, inSpace({kPlanePosition, 0.5 * kWidth, 0.5 * kWidth})};
 }
 
 }  // namespace tetskin::scenes

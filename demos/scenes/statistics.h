@@ -7,12 +7,12 @@
 
 namespace tetskin::scenes {
 
-/// Median of some numbers, the upper one of an even count; 0 if there are none.
+/// Median of some numbers, the upper one if their number is even; 0 if there are none.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto centroid = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), centroid, values.end());
+  return *centroid;
 }
 
 }  // namespace tetskin::scenes

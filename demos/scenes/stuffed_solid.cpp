@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// A node this near to where the surface cuts an edge, in shares of the edge, moves there: tets cut off would be flat.
-/// Those of the paper, with which no tet turns over.
+/// A node that is this near to where the surface cuts an edge, as a share of the edge, is moved there, as the tets cut
+/// off would be flat. The values are those of the paper, with which no tet is inverted.
 constexpr double kNearLongEdge = 0.249, kNearShort = 0.411;
 
 enum class Wanted { Everything, Surface };
 
-/// The nodes, in half sides of the cubes: corners have even coordinates, centres odd ones.
+/// The nodes, in units of half a cube's side: corners have even coordinates, centres odd ones.
 class Lattice {
  public:
   Lattice(const Box3& box, double spacing)
@@ -99,22 +99,22 @@ class Stuffing {
  private:
   double value(const Vector3i& node) const { return values_[lattice_.index(node)]; }
 
-  /// Where the surface cuts an edge of the lattice, in shares from `a`, by false positions.
+  /// The position at which the surface cuts an edge of the lattice, as a share from `a`, by regula falsi.
   double cut(const Vector3i& a, const Vector3i& b) const {
     constexpr int kSteps = 8;
     const Vector3d start = lattice_.point(a), edge = lattice_.point(b) - start;
-    double low = 0.0, high = 1.0, atLow = value(a), atHigh = value(b), share = 0.0;
+    double low = 0.0, high = 1.0, atLow = value(a), atHigh = value(b), fraction = 0.0;
     for (int step = 0; step < kSteps; ++step) {
-      share = (low * atHigh - high * atLow) / (atHigh - atLow);
-      const double found = solid_.value(start + share * edge);
+      fraction = (low * atHigh - high * atLow) / (atHigh - atLow);
+      const double found = solid_.value(start + fraction * edge);
       if (found == 0.0) break;
       if ((found < 0.0) == (atLow < 0.0)) {
-        low = share, atLow = found, atHigh *= 0.5;
+        low = fraction, atLow = found, atHigh *= 0.5;
       } else {
-        high = share, atHigh = found, atLow *= 0.5;
+        high = fraction, atHigh = found, atLow *= 0.5;
       }
     }
-    return share;
+    return fraction;
   }
 
   void snapNodes() {
@@ -133,18 +133,18 @@ class Stuffing {
       const Vector3i other = node + step;
       if ((other.array() < 0).any() || ((other / 2).array() >= lattice_.cubes().array()).any()) continue;
       if (value(other) * own >= 0.0) continue;
-      const double share = cut(node, other);
-      if (share > (step.squaredNorm() == 4 ? kNearLongEdge : kNearShort)) continue;
+      const double fraction = cut(node, other);
+      if (fraction > (step.squaredNorm() == 4 ? kNearLongEdge : kNearShort)) continue;
       const Vector3d edge = lattice_.point(other) - lattice_.point(node);
-      if (share * edge.norm() >= nearest) continue;
-      nearest = share * edge.norm();
-      snapped_[lattice_.index(node)] = lattice_.point(node) + share * edge;
+      if (fraction * edge.norm() >= nearest) continue;
+      nearest = fraction * edge.norm();
+      snapped_[lattice_.index(node)] = lattice_.point(node) + fraction * edge;
     }
     if (std::isfinite(nearest)) own = 0.0;
   }
 
   int append(const Vector3d& latticePoint, bool onSurface) {
-    mesh_.nodes.push_back(solid_.place(latticePoint));
+    mesh_.nodes.push_back(solid_.position(latticePoint));
     onSurface_.push_back(onSurface);
     return static_cast<int>(mesh_.nodes.size()) - 1;
   }
@@ -171,7 +171,7 @@ class Stuffing {
         std::count_if(nodes.begin(), nodes.end(), [&](const Vector3i& node) { return value(node) < 0.0; });
     if (inside == 0 || (inside == 4 && wanted == Wanted::Surface)) return;
     std::sort(nodes.begin(), nodes.end(), [&](const Vector3i& a, const Vector3i& b) { return value(a) < value(b); });
-    /// The node, or where the surface cuts the edge to it.
+    /// The node, or the vertex where the surface cuts the edge to it.
     const auto end = [&](const Vector3i& from, const Vector3i& node) {
       return value(node) > 0.0 ? nodeOn(from, node) : nodeAt(node);
     };
@@ -185,9 +185,9 @@ class Stuffing {
     }
   }
 
-  /// Two triangles, corner k opposite corner k + 3: as three tets, the diagonal of each side from the corner of the
-  /// lowest number, so that neighbours agree. Where both triangles share a corner, tets that would be flat are left
-  /// out.
+  /// A prism with two triangles, corner k opposite corner k + 3: as three tets, with the diagonal of each side from the
+  /// corner with the lowest index, so that neighbours agree. Where both triangles share a corner, tets that would be
+  /// flat are left out.
   void addPrism(std::array<int, 6> p) {
     const auto first = std::min_element(p.begin(), p.end()) - p.begin();
     if (first >= 3) std::swap_ranges(p.begin(), p.begin() + 3, p.begin() + 3);
@@ -214,9 +214,9 @@ class Stuffing {
 
   const ImplicitSolid& solid_;
   Lattice lattice_;
-  std::vector<double> values_;  ///< by node of the lattice; 0: moved to the surface
+  std::vector<double> values_;  ///< by node of the lattice; 0: it is moved to the surface
   std::unordered_map<std::size_t, Vector3d> snapped_;
-  std::unordered_map<std::size_t, int> nodes_, cuts_;  ///< numbers in the mesh
+  std::unordered_map<std::size_t, int> nodes_, cuts_;  ///< indices in the mesh
   TetMesh mesh_;
   std::vector<bool> onSurface_;  ///< nodeCount of the mesh
 };
@@ -235,7 +235,7 @@ TriangleMesh surfaceOf(const ImplicitSolid& solid, double spacing) {
   TriangleMesh mesh;
   std::unordered_map<int, int> vertices;
   for (std::array<int, 3> face : boundaryFaces(stuffing.mesh())) {
-    // The other boundary of a layer of tets is within the solid.
+    // The other boundary of a layer of tets is inside the solid.
     if (!std::all_of(face.begin(), face.end(), [&](int node) { return stuffing.onSurface(node); })) continue;
     for (int& corner : face) {
       const auto [vertex, isNew] = vertices.try_emplace(corner, static_cast<int>(mesh.positions.size()));

@@ -13,8 +13,8 @@ nlohmann::ordered_json summaryOf(const Model& model) {
   json["model"] = model.name;
   json["vertices"] = model.mesh.vertexCount();
   json["triangles"] = model.mesh.triangleCount();
-  json["nodes"] = model.cage.nodeCount();
-  json["tets"] = model.cage.tetCount();
+  json["nodes"] = model.cage.mesh.nodeCount();
+  json["tets"] = model.cage.mesh.tetCount();
   return json;
 }
 
@@ -25,8 +25,8 @@ nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit) {
   json["unbound"] = fit.unbound;
   json["attach_ms"] = fit.milliseconds;
   json["rest_error_max"] = fit.restErrorMax;
-  json["worst_distance"] = fit.worstDistance;
-  json["worst_vertex"] = fit.worstVertex;
+  json["worst_distance"] = fit.maxDistance;
+  json["worst_vertex"] = fit.maxDistanceVertex;
   return json;
 }
 

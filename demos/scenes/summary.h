@@ -9,11 +9,11 @@
 
 namespace tetskin::scenes {
 
-/// The head of a summary: what the model is, and how the mesh fits the cage.
+/// The beginning of a summary: the model, and how well the mesh fits the cage.
 nlohmann::ordered_json summaryOf(const Model& model);
 nlohmann::ordered_json summaryOf(const Model& model, const EmbedReport& fit);
 
-/// What the library's solver has done; null where another solver was in use.
+/// Adds the totals of the library's solver; null where another solver was in use.
 void tellSolve(const SolveTotals& totals, nlohmann::ordered_json& json);
 
 /// Throws InputError.

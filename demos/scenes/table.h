@@ -11,15 +11,15 @@
 
 namespace tetskin::scenes {
 
-/// Makes a scene with a cage that is already as large as it shall be in Bullet's world (see `placementOf`), centred at
-/// the origin. Throws InputError if Bullet cannot make a body of it, or if the scene holds none of its nodes.
+/// Makes a scene with a cage that already has its size in Bullet's world (see `placementOf`), centred at the origin.
+/// Throws InputError if Bullet cannot make a body of it, or if the scene pins none of its nodes.
 using MakeScene = std::unique_ptr<Scene> (*)(const Cage& cage, const SceneOptions& options);
 
 struct SceneEntry {
   std::string name;
-  int frames;         ///< its own, if the options do not say
+  int frames;         ///< number of frames if the options do not give one
   bool lands;         ///< bodies meet a floor
-  std::string about;  ///< for people: what happens to the body
+  std::string about;  ///< description for people: what happens to the body
   MakeScene maker;
 
   std::unique_ptr<Scene> make(const Cage& cage, SceneOptions options = {}) const;
@@ -27,9 +27,9 @@ struct SceneEntry {
 
 /// All scenes.
 const std::vector<SceneEntry>& sceneTable();
-/// All names, with commas.
+/// All names, separated by commas.
 std::string sceneNames();
-/// The scene of this name. Throws InputError with all names if there is none.
+/// The scene with this name. Throws InputError, with all names, if there is none.
 const SceneEntry& sceneNamed(const std::string& name);
 
 }  // namespace tetskin::scenes

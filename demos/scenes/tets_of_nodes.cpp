@@ -11,15 +11,16 @@
 namespace tetskin::scenes {
 namespace {
 
-/// By node the nearest of the mesh's vertices that its tets hold. Nodes whose tets hold none take a neighbour's.
+/// For each node, the nearest of the mesh's vertices that its tets contain. Nodes whose tets contain none take a
+/// neighbour's.
 class NearVertices {
  public:
   NearVertices(const TriangleMesh& mesh, const Cage& cage)
-      : mesh_(mesh), cage_(cage), nearest_(cage.nodeCount(), -1), distances_(cage.nodeCount(), kFar) {
+      : mesh_(mesh), cage_(cage), nearest_(cage.mesh.nodeCount(), -1), distances_(cage.mesh.nodeCount(), kFar) {
     for (std::size_t v = 0; v < cage.vertexTets.size(); ++v) {
-      for (const int node : cage.tets[cage.vertexTets[v]]) offer(node, static_cast<int>(v));
+      for (const int node : cage.mesh.tets[cage.vertexTets[v]]) offer(node, static_cast<int>(v));
     }
-    const auto edges = uniqueEdges(cage);
+    const auto edges = uniqueEdges(cage.mesh);
     for (bool changed = true; changed;) {
       changed = false;
       for (const auto& [a, b] : edges) {
@@ -35,7 +36,7 @@ class NearVertices {
 
   bool offer(int node, int vertex) {
     if (vertex < 0) return false;
-    const double distance = (cage_.nodes[node] - mesh_.positions[vertex]).norm();
+    const double distance = (cage_.mesh.nodes[node] - mesh_.positions[vertex]).norm();
     if (!(distance < distances_[node])) return false;
     nearest_[node] = vertex;
     distances_[node] = distance;
@@ -48,8 +49,8 @@ class NearVertices {
   std::vector<double> distances_;
 };
 
-std::vector<int> tetsByPlace(const Cage& driver, const Cage& cage) {
-  const auto embedding = embed(static_cast<const TetMesh&>(driver), viewOf(cage.nodes));
+std::vector<int> tetsByPosition(const Cage& driver, const Cage& cage) {
+  const auto embedding = embed(static_cast<const TetMesh&>(driver.mesh), viewOf(cage.mesh.nodes));
   require(embedding.status());
   std::vector<int> tets;
   for (const VertexBinding& binding : embedding.value().bindings()) tets.push_back(binding.tet);
@@ -60,9 +61,9 @@ std::vector<int> tetsByMap(const TriangleMesh& mesh, const Cage& driver, const C
   const NearVertices vertices(mesh, cage);
   const CageLocator locator(driver);
   std::vector<int> tets;
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
     const int vertex = vertices[n];
-    tets.push_back(locator.locate(cage.nodes[n], {vertex, vertex, vertex}));
+    tets.push_back(locator.locate(cage.mesh.nodes[n], {vertex, vertex, vertex}));
   }
   return tets;
 }
@@ -70,10 +71,10 @@ std::vector<int> tetsByMap(const TriangleMesh& mesh, const Cage& driver, const C
 }  // namespace
 
 std::vector<int> tetsOfNodes(const TriangleMesh& mesh, const Cage& driver, const Cage& cage) {
-  // Where neither is split, the nearest tet is the right one more often than the one that a search through faces ends
-  // in.
-  const bool byPlace = cage.vertexTets.empty() || !(cage.split() || driver.split());
-  return byPlace ? tetsByPlace(driver, cage) : tetsByMap(mesh, driver, cage);
+  // Where neither has duplicate elements, the nearest tet is the correct one more often than the one where a search
+  // through faces ends.
+  const bool byPosition = cage.vertexTets.empty() || !(cage.hasDuplicates() || driver.hasDuplicates());
+  return byPosition ? tetsByPosition(driver, cage) : tetsByMap(mesh, driver, cage);
 }
 
 }  // namespace tetskin::scenes

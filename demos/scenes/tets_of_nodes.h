@@ -3,14 +3,15 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <vector>
 
 namespace tetskin::scenes {
 
-/// By node of a cage: the tet of another one, of the same mesh, that it belongs to. Where these are split, by the
-/// nearest vertex of the mesh in the node's own tets; by its place otherwise. Throws InputError.
+/// For each node of a cage, the tet of another cage of the same mesh that it belongs to. Where cages have duplicate
+/// elements, it is found by the nearest vertex of the mesh in the node's own tets; otherwise by position. Throws
+/// InputError.
 std::vector<int> tetsOfNodes(const TriangleMesh& mesh, const Cage& driver, const Cage& cage);
 
 }  // namespace tetskin::scenes

@@ -6,7 +6,7 @@
 
 namespace tetskin::scenes {
 
-/// Time since construction, by one of the system's clocks.
+/// Time since construction, measured by one of the system's clocks.
 template <clockid_t clock>
 class Timer {
  public:
@@ -25,8 +25,8 @@ class Timer {
 };
 
 using WallTimer = Timer<CLOCK_MONOTONIC>;
-/// Processor time of the calling thread. On an idle machine that of a clock; on a busy one, without the time that other
-/// programs took.
+/// Processor time of the calling thread. On an idle machine it equals the elapsed time; on a busy one it excludes the
+/// time that other programs took.
 using CpuTimer = Timer<CLOCK_THREAD_CPUTIME_ID>;
 
 }  // namespace tetskin::scenes

@@ -16,8 +16,8 @@ Vector3d Twist::point(const Vector3d& p) const {
   return centre + Eigen::AngleAxisd(angleAt(p), Vector3d::Unit(axis)) * (p - centre);
 }
 
-/// The gradient of the map is R (I + rate (a x r) a^T), with R the turn, a the axis and r = p - centre. Its determinant
-/// is 1, so the normal goes with R (I - rate a (a x r)^T).
+/// The gradient of the map is R (I + rate (a x r) a^T), with R the rotation, a the axis and r = p - centre. Its
+/// determinant is 1, so the normal is transformed by R (I - rate a (a x r)^T).
 Vector3d Twist::normal(const Vector3d& p, const Vector3d& n) const {
   const double rate = turn / (to - from);
   const Vector3d a = Vector3d::Unit(axis);

@@ -30,7 +30,7 @@ Indices flat(const std::vector<std::array<int, 2>>& edges) {
   return ends;
 }
 
-/// Those of the boundary first.
+/// The cage's edges, those of the boundary first.
 Json edgesOf(const TetMesh& cage) {
   std::set<std::array<int, 2>> outer;
   for (const auto& [a, b, c] : boundaryFaces(cage)) {
@@ -45,7 +45,7 @@ Json edgesOf(const TetMesh& cage) {
   return {{"ends", packed(flat(edges))}, {"outer", inner - edges.begin()}};
 }
 
-/// By slot, three weights each, of planes.
+/// Three weights per vertex, by slot, from planes.
 Json weightsOf(const std::array<std::vector<float>, 3>& planes, std::size_t count) {
   std::vector<float> weights;
   for (std::size_t slot = 0; slot < count; ++slot) {
@@ -60,7 +60,7 @@ Json embeddingOf(const EmbeddingData& data) {
     starts.push_back(run.firstSlot);
     for (const int node : run.nodes) nodes.push_back(static_cast<std::uint32_t>(node));
   }
-  nodes.resize(nodes.size() - 4);  // the last run closes the list
+  nodes.resize(nodes.size() - 4);  // the last run ends the list
   return {{"runNodes", packed(nodes)},
           {"runStarts", packed(starts)},
           {"insideRuns", data.insideRunCount},
@@ -152,14 +152,14 @@ Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embeddi
   assert(embedding.vertexCount() == mesh.vertexCount());
   BindingOptions options;
   options.interpolation = Interpolation::Quadratic;
-  const auto binding = SkinBinding<float>::make(cage, mesh, options, embedding);
+  const auto binding = SkinBinding<float>::create(cage, mesh, options, embedding);
   require(binding.status());
-  const SkinParts<float>& parts = binding.value()->parts();
-  return {{"nodes", cage.nodeCount()},
-          {"tets", cage.tetCount()},
-          {"edges", edgesOf(cage)},
-          {"embedding", embeddingOf(parts.embedding.data())},
-          {"stencils", stencilsOf(*parts.quadratic)}};
+  const SkinData<float>& data = dataOf(*binding.value());
+  return {{"nodes", cage.mesh.nodeCount()},
+          {"tets", cage.mesh.tetCount()},
+          {"edges", edgesOf(cage.mesh)},
+          {"embedding", embeddingOf(dataOf(data.embedding))},
+          {"stencils", stencilsOf(*data.quadratic)}};
 }
 
 }  // namespace tetskin::scenes

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How a page holds what it draws: as JSON, its long arrays as {"u16": "..."}, {"u32": "..."} or {"f32": "..."}, base64
-// of little-endian numbers, which browsers turn into typed arrays.
+// How a page stores what it draws: as JSON, with long arrays as {"u16": "..."}, {"u32": "..."} or {"f32": "..."},
+// base64 of little-endian numbers, which browsers turn into typed arrays.
 #pragma once
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -20,18 +20,18 @@ namespace tetskin::scenes {
 using Json = nlohmann::ordered_json;
 
 std::string base64(std::string_view bytes);
-/// In 16 bits where they suffice for the largest.
+/// Uses 16 bits if they suffice for the largest index.
 Json packed(const std::vector<std::uint32_t>& indices);
 Json packed(const std::vector<std::uint16_t>& words);
 Json packed(const std::vector<float>& numbers);
 
-/// Triangles, and the materials of their groups by name.
+/// A mesh's triangles, and the materials of its groups by name.
 Json trianglesOf(const TriangleMesh& mesh);
-/// Those, and positions minus an origin: a mesh that does not deform.
+/// A mesh that does not deform: triangles, materials, and positions relative to an origin.
 Json rigidMeshOf(const TriangleMesh& mesh, const Eigen::Vector3d& origin);
 
-/// All that linear and quadratic skinning need of a mesh in its cage, and the cage's edges. Throws InputError if they
-/// do not fit.
+/// Everything that linear and quadratic skinning need of a mesh in its cage, and the cage's edges. Throws InputError if
+/// they do not fit.
 /// embedding  of the mesh in the cage
 Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding);
 

@@ -26,7 +26,7 @@ void ViewFrames::keep(const ViewMoment& moment) {
     where.pretranslate(-origin_);
     kept.props.emplace_back(where.matrix().cast<float>());
   }
-  if (moments_.size() > 2 && moments_.size() * bytesOf(kept) > mostBytes_) leaveOutEverySecond();
+  if (moments_.size() > 2 && moments_.size() * bytesOf(kept) > maxBytes_) leaveOutEverySecond();
 }
 
 Box3 ViewFrames::box(std::size_t moment) const {
@@ -37,7 +37,7 @@ Box3 ViewFrames::box(std::size_t moment) const {
   return box;
 }
 
-/// In the page: 16 bits a coordinate, 12 floats a prop.
+/// Bytes in the page: 16 bits per coordinate, 12 floats per prop.
 std::size_t ViewFrames::bytesOf(const Moment& moment) const {
   std::size_t bytes = moment.props.size() * 12 * sizeof(float);
   for (const std::vector<float>& nodes : moment.bodies) bytes += 2 * nodes.size();

@@ -10,33 +10,33 @@
 
 namespace tetskin::scenes {
 
-/// Where everything is at one moment.
+/// The positions of everything at one moment.
 struct ViewMoment {
-  std::vector<std::vector<Eigen::Vector3d>> bodies;  ///< by body: its nodes
-  std::vector<Eigen::Affine3d> props;                ///< by rigid thing that moves
+  std::vector<std::vector<Eigen::Vector3d>> bodies;  ///< the nodes of each body
+  std::vector<Eigen::Affine3d> props;                ///< one per moving rigid object
 };
 
-/// The moments of a run that a page keeps: all frames while they fit into some bytes, then every second of them, every
-/// fourth, and so on: the page goes evenly between those that it has. So a run may be of any length.
+/// The moments of a run that a page keeps: all frames while they fit into a number of bytes, then every second, every
+/// fourth, and so on. The page interpolates between those that it has, so a run may have any length.
 class ViewFrames {
  public:
-  /// Bytes of a page before base64, which takes a third more: a cage of 3,000 tets, which has a thousand nodes, for two
-  /// thousand frames.
-  static constexpr std::size_t kMostBytes = 12'000'000;
+  /// Bytes of a page before base64, which adds a third: enough for two thousand frames of a cage of 3,000 tets, which
+  /// has a thousand nodes.
+  static constexpr std::size_t kMaxBytes = 12'000'000;
 
-  explicit ViewFrames(std::size_t mostBytes = kMostBytes) : mostBytes_(mostBytes) {}
+  explicit ViewFrames(std::size_t maxBytes = kMaxBytes) : maxBytes_(maxBytes) {}
 
-  /// The next frame; all have as many bodies, nodes and props as the first.
+  /// Adds the next frame. All frames have as many bodies, nodes and props as the first.
   void keep(const ViewMoment& moment);
 
-  /// Kept; every `stride`-th frame, the first among them.
+  /// The number of moments kept: every `stride`-th frame, beginning with the first.
   std::size_t size() const { return moments_.size(); }
   int stride() const { return stride_; }
-  /// Subtracted from all of them, as pages draw in float: the middle of the first.
+  /// The centre of the first moment. It is subtracted from all positions, as pages draw in float.
   const Eigen::Vector3d& origin() const { return origin_; }
-  /// Coordinates of a body's nodes at a kept moment, three a node.
+  /// Coordinates of a body's nodes at a kept moment, three per node.
   const std::vector<float>& nodes(std::size_t moment, std::size_t body) const { return moments_[moment].bodies[body]; }
-  /// Of all bodies' nodes at a kept moment.
+  /// The box of all bodies' nodes at a kept moment.
   Box3 box(std::size_t moment) const;
   std::size_t bodyCount() const { return moments_.empty() ? 0 : moments_.front().bodies.size(); }
   std::size_t propCount() const { return moments_.empty() ? 0 : moments_.front().props.size(); }
@@ -50,9 +50,9 @@ class ViewFrames {
   std::size_t bytesOf(const Moment& moment) const;
   void leaveOutEverySecond();
 
-  std::size_t mostBytes_;
+  std::size_t maxBytes_;
   std::vector<Moment> moments_;
-  std::size_t told_ = 0;  ///< frames, kept or not
+  std::size_t told_ = 0;  ///< number of frames given, kept or not
   int stride_ = 1;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };

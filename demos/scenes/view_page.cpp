@@ -17,12 +17,12 @@ namespace {
 constexpr const char* kFolder = TETSKIN_VIEW;
 constexpr const char* kThree = TETSKIN_THREE;
 constexpr const char* kOrbitControls = TETSKIN_ORBIT_CONTROLS;
-/// In the order in which the page runs them.
+/// The scripts, in the order in which the page runs them.
 constexpr const char* kScripts[] = {"data.js", "skin.js", "shading.js", "stage.js", "player.js"};
 
 std::string partOf(const std::string& path) {
   std::optional<std::string> text = contentsOf(path);
-  if (!text) throw InputError(path + ": cannot be read; a page is made of it");
+  if (!text) throw InputError(path + ": cannot be read; the HTML page is made from it");
   return std::move(*text);
 }
 
@@ -37,7 +37,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// In a script element nothing may look like its end.
+/// Escapes what would look like the end of a script element.
 std::string escaped(const std::string& script) {
   return replaced(script, "</", "<\\/");
 }
@@ -48,13 +48,13 @@ std::string scripts() {
   return text;
 }
 
-/// The template with each word of the form @NAME@ replaced, once, by a text.
+/// The template, with each word of the form @NAME@ replaced once by its text.
 std::string filled(const std::string& text, const std::vector<std::pair<std::string, std::string>>& words) {
   std::string result;
   std::size_t copied = 0;
-  for (const auto& [word, instead] : words) {  // in the order of the template
+  for (const auto& [word, instead] : words) {  // in the order of their appearance in the template
     const std::size_t at = text.find(word, copied);
-    if (at == std::string::npos) throw InputError(inFolder("view.html") + ": has no " + word);
+    if (at == std::string::npos) throw InputError(inFolder("view.html") + ": does not contain " + word);
     result.append(text, copied, at - copied);
     result += instead;
     copied = at + word.size();
@@ -69,11 +69,11 @@ Json toJson(const Box3& box) {
   return {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
 }
 
-/// A coordinate in a box by 16 bits.
+/// A coordinate inside a box, quantised to 16 bits.
 std::uint16_t quantised(float x, double low, double size) {
-  constexpr double kMost = 65535.0;
+  constexpr double kMax = 65535.0;
   if (size == 0.0) return 0;
-  return static_cast<std::uint16_t>(std::lround(std::min(kMost, kMost * (static_cast<double>(x) - low) / size)));
+  return static_cast<std::uint16_t>(std::lround(std::min(kMax, kMax * (static_cast<double>(x) - low) / size)));
 }
 
 void appendMaterials(const TriangleMesh& mesh, Json& json) {
@@ -88,11 +88,11 @@ void appendMaterials(const TriangleMesh& mesh, Json& json) {
 
 std::string whyNoView() {
   const std::string cure =
-      "; install it (Debian: libjs-three) and configure again, or point TETSKIN_THREE and "
-      "TETSKIN_ORBIT_CONTROLS to three.min.js and OrbitControls.js";
+      "; install it (Debian: libjs-three) and configure again, or set TETSKIN_THREE and TETSKIN_ORBIT_CONTROLS to the "
+      "paths of three.min.js and OrbitControls.js";
   if (std::string(kThree).empty() || std::string(kOrbitControls).empty()) return "three.js was not found" + cure;
   for (const char* path : {kThree, kOrbitControls}) {
-    if (!std::filesystem::is_regular_file(path)) return std::string(path) + " is no longer there" + cure;
+    if (!std::filesystem::is_regular_file(path)) return std::string(path) + " no longer exists" + cure;
   }
   return {};
 }
@@ -103,14 +103,14 @@ void requireViewable() {
 }
 
 std::string viewPath(const OutputOptions& options) {
-  if (options.noView && !options.view.empty()) throw InputError("--view and --no-view exclude each other");
+  if (options.noView && !options.view.empty()) throw InputError("--view and --no-view cannot be used together");
   if (!options.view.empty()) {
     requireViewable();
     return options.view;
   }
   if (!options.viewByDefault || options.noView) return {};
   const std::string reason = whyNoView();
-  if (!reason.empty() && !options.quiet) std::printf("No view.html: %s\n", reason.c_str());
+  if (!reason.empty() && !options.quiet) std::printf("view.html is not written: %s\n", reason.c_str());
   if (!reason.empty()) return {};
   return (std::filesystem::path(options.out) / "view.html").string();
 }
@@ -163,12 +163,16 @@ Json ViewPage::bodyData(std::size_t body) const {
       words.push_back(quantised(nodes[i], box.min()[axis], box.sizes()[axis]));
     }
   }
-  const ViewBody& of = bodies_[body];
-  return {{"model", of.model}, {"label", of.label}, {"skin", of.skin}, {"box", toJson(box)}, {"nodes", packed(words)}};
+  const ViewBody& solved = bodies_[body];
+  return {{"model", solved.model},
+          {"label", solved.label},
+          {"skin", solved.skin},
+          {"box", toJson(box)},
+          {"nodes", packed(words)}};
 }
 
 Json ViewPage::propData(std::size_t prop) const {
-  std::vector<float> numbers;  // by moment: the columns of a matrix, without its last row
+  std::vector<float> numbers;  // for each moment: the columns of a matrix, without its last row
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     const Eigen::Matrix4f& matrix = frames_.prop(k, prop);
     for (Eigen::Index c = 0; c < 4; ++c) {
@@ -202,7 +206,7 @@ Json ViewPage::data() const {
 }
 
 std::string ViewPage::html() const {
-  // File names of models may be of any bytes, and look like any tag.
+  // File names of models may consist of any bytes, and may look like any tag.
   const std::string text = data().dump(-1, ' ', false, Json::error_handler_t::replace);
   return filled(partOf(inFolder("view.html")), {{"@STYLE@", partOf(inFolder("view.css"))},
                                                 {"@DATA@", replaced(text, "<", "\\u003c")},
@@ -218,13 +222,13 @@ void ViewPage::write(const std::string& path, bool quiet) const {
   if (quiet) return;
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
-  std::printf("\nSee it in a browser: %s, %s. Open file://%s\n", path.c_str(),
+  std::printf("\nTo see the run in a browser (%s, %s), open file://%s\n", path.c_str(),
               sizeText(static_cast<double>(page.size())).c_str(), absolute.c_str());
 }
 
 std::vector<std::string> factsOf(const Model& model) {
   return {withCommas(model.mesh.vertexCount()) + " vertices", withCommas(model.mesh.triangleCount()) + " triangles",
-          withCommas(model.cage.tetCount()) + " tets"};
+          withCommas(model.cage.mesh.tetCount()) + " tets"};
 }
 
 std::string titleOf(const std::string& name) {
@@ -234,7 +238,7 @@ std::string titleOf(const std::string& name) {
 
 std::string factOf(Contact contact, bool withItself) {
   const std::string where = contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
-  return withItself ? where + ", and with itself" : where;
+  return withItself ? where + ", self-contact" : where;
 }
 
 std::string withCommas(std::size_t number) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/triangle_mesh.h>
 
 #include <string>
 #include <vector>
@@ -16,50 +16,49 @@
 
 namespace tetskin::scenes {
 
-/// Why no page can be made, in a sentence; empty if one can be: pages contain three.js, which must have been there when
-/// the demos were configured, and be there still.
+/// Why no page can be made, in a sentence; empty if one can be made. Pages contain three.js, which must have been found
+/// when the demos were configured, and must still be there.
 std::string whyNoView();
 /// Throws InputError if no page can be made.
 void requireViewable();
-/// Where a run's page goes, empty for none. Where a default page cannot be made, says why. Throws
-/// InputError where one that was asked for cannot be made.
+/// The file of a run's page, empty for none. Where a default page cannot be made, prints why. Throws InputError where a
+/// page that was requested cannot be made.
 std::string viewPath(const OutputOptions& options);
 
-/// A body of a page.
+/// A body shown on a page.
 struct ViewBody {
   std::size_t model = 0;
   std::string label;  ///< drawn above it
-  std::string skin;   ///< "linear" or "quadratic", whatever the page's switch says; empty: as that says
+  std::string skin;   ///< "linear" or "quadratic" regardless of the page's switch; empty: as the switch says
 };
 
-/// One HTML file that plays a run in any browser, without a network: it holds each mesh, cage and embedding once and
-/// the cages' nodes by frame, and skins by itself, linearly and quadratically. See demos/view/.
+/// One HTML file that plays a run in any browser, without a network. It contains each mesh, cage and embedding once and
+/// the cages' nodes by frame, and does linear and quadratic skinning itself. See demos/view/.
 class ViewPage {
  public:
-  /// title  what is shown;  facts  about it, in the line below
+  /// title  what is shown; facts  about it, in the line below
   ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation);
 
-  /// A mesh in its cage, which any number of bodies may share: bodies of it are given by the cage's nodes. Returns its
-  /// number. Throws InputError if they do not fit.
+  /// A mesh in its cage, which any number of bodies may share: these bodies are given by the cage's nodes. Returns the
+  /// model's number. Throws InputError if they do not fit.
   std::size_t addModel(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding);
-  /// A mesh of which bodies are given by its vertices: smaller where the cage has more nodes than the mesh has
-  /// vertices.
+  /// A mesh whose bodies are given by its vertices: smaller where the cage has more nodes than the mesh has vertices.
   std::size_t addSurface(const TriangleMesh& mesh);
   void addBody(const ViewBody& body);
-  /// Rigid, and moved.
+  /// Adds a rigid object that moves.
   void addProp(const TriangleMesh& mesh);
-  /// Fixed, in the space of the nodes.
+  /// Sets the fixed obstacles, in the space of the nodes.
   void setObstacles(const TriangleMesh& mesh) { obstacles_ = mesh; }
-  /// What the first view shows; without it, all places where bodies are.
+  /// Sets the box that the first view shows; by default, it shows all positions of bodies.
   void setFocus(const Box3& focus) { focus_ = focus; }
 
-  /// The next frame: bodies and props in the order in which they were added.
+  /// Adds the next frame: bodies and props in the order in which they were added.
   void keep(const ViewMoment& moment) { frames_.keep(moment); }
   const ViewFrames& frames() const { return frames_; }
 
-  /// The page. Throws InputError if a part of it cannot be read.
+  /// The page. Throws InputError if one of its files cannot be read.
   std::string html() const;
-  /// Writes it, and tells where it is, how large, and how to look at it. Throws InputError.
+  /// Writes the page, and prints its path, its size, and how to look at it. Throws InputError.
   void write(const std::string& path, bool quiet) const;
 
  private:
@@ -80,13 +79,13 @@ class ViewPage {
   ViewFrames frames_;
 };
 
-/// A model by the name of its file, without the folder.
+/// A model's name: that of its file, without the folder.
 std::string titleOf(const std::string& name);
-/// What meets obstacles and other bodies.
+/// A sentence on what meets obstacles and other bodies.
 std::string factOf(Contact contact, bool withItself);
-/// "12,345".
+/// A number as "12,345".
 std::string withCommas(std::size_t number);
-/// Vertices, triangles and tets.
+/// Numbers of vertices, triangles and tets.
 std::vector<std::string> factsOf(const Model& model);
 
 }  // namespace tetskin::scenes

@@ -12,7 +12,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/reduced/reduced_body.h>
@@ -27,7 +27,7 @@
 namespace tetskin::scenes {
 namespace {
 
-/// Of what may touch, over the mesh's size: finer than obstacles here are thick.
+/// Spacing of contact samples, over the mesh's size: finer than obstacles here are thick.
 constexpr double kSampleSpacing = 0.04;
 
 ForceModel modelOf(Force force) {
@@ -110,13 +110,13 @@ void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, con
 }
 
 void World::touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself) {
-  if (!deformable_) throw InputError("contact of soft bodies at their surfaces needs the deformable world");
+  if (!deformable_) throw InputError("contact between soft bodies at their surfaces needs the deformable world");
   if (!softContacts_) {
     auto made = SoftContacts::add(*deformable_);
     require(made.status());
     softContacts_ = std::move(made).value();
   }
-  require(softContacts_->include(body, std::move(shape), itself));
+  require(softContacts_->add(body, std::move(shape), itself));
 }
 
 std::vector<SoftContact> World::softContacts() const {
@@ -131,7 +131,7 @@ btSoftBody& World::add(const Cage& cage, SoftBodyOptions options) {
     deformableBodies_.push_back(std::move(made).value());
     return deformableBodies_.back()->body();
   }
-  auto made = makeSoftBody(cage, *info_, options);
+  auto made = createSoftBody(cage, *info_, options);
   require(made.status());
   bodies_.emplace_back(std::move(made).value());
   btSoftBody& body = *bodies_.back();
@@ -151,7 +151,7 @@ btSoftBody& World::add(const Cage& cage, const VibrationModes& modes, const Redu
 }
 
 void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
-  const double shear = options.youngsModulus / (2.0 * (1.0 + options.poissonRatio));
+  const double shear = options.youngsModulus.value_or(0.0) / (2.0 * (1.0 + options.poissonRatio));
   auto elasticity = std::make_unique<btDeformableCorotatedForce>();
   elasticity->m_mu = static_cast<btScalar>(shear);
   elasticity->m_lambda = static_cast<btScalar>(2.0 * shear * options.poissonRatio / (1.0 - 2.0 * options.poissonRatio));
@@ -182,8 +182,8 @@ int World::step(double seconds) {
 void World::countSolve(const DeformableSolver& solver) {
   ++solveTotals_.steps;
   solveTotals_.iterations += solver.iterations();
-  solveTotals_.passes += solver.passes();
-  if (solver.unconverged() > 0) ++solveTotals_.unconverged;
+  solveTotals_.passes += solver.linearSolves();
+  if (solver.unconvergedSystems() > 0) ++solveTotals_.unconverged;
 }
 
 std::uint64_t World::hashOfNodes(std::uint64_t seed) const {
@@ -244,7 +244,7 @@ btRigidBody& World::addRigid(std::unique_ptr<btCollisionShape> shape, const btTr
   if (mass > 0.0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
   auto body = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, shape.get(), inertia);
   body->setWorldTransform(where);
-  // Bullet looks for contacts of soft bodies with this one, and does not set it itself.
+  // Bullet uses this one in its search for contacts of soft bodies, but does not set it itself.
   body->setInterpolationWorldTransform(where);
   body->setFriction(1);
   world_->addRigidBody(body.get());
@@ -269,7 +269,7 @@ void moveTo(btRigidBody& body, const Eigen::Vector3d& centre, double turn) {
   body.setWorldTransform(turned(centre, turn));
 }
 
-void moveHeldNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {
+void movePinnedNode(btSoftBody::Node& node, const Eigen::Vector3d& target, double seconds) {
   node.m_v = (toBullet(target) - node.m_x) / static_cast<btScalar>(seconds);
 }
 

@@ -6,10 +6,11 @@
 
 namespace tetskin::scenes {
 
-/// When what happens in the scene "wring", in frames. Twice as fast, and the twist gathers at the moved end.
+/// The times of events in the scene "wring", in frames. If it were twice as fast, the twist would gather at the moved
+/// end.
 constexpr int kTurned = 120, kReleased = 150;
 
-/// The twist between its held ends, in a frame before the release.
+/// The twist between the pinned ends, in a frame before the release.
 Twist wringAt(const Box3& cage, int frame);
 
 }  // namespace tetskin::scenes

@@ -56,10 +56,10 @@ bool isOneOf(const std::string& scene, std::initializer_list<const char*> scenes
 
 Simulation promised(const StressCase& ours) {
   constexpr double kStiffestInverted = 1e6;
-  constexpr double kLongestStep = 1.0 / 240;
+  constexpr double kMaxStep = 1.0 / 240;
   if (ours.stiffness > kStiffestOfOurs || ours.scene == "spin") return Simulation::Either;
   const bool restored = isOneOf(ours.scene, {"squash_flat", "stretch", "mirror"});
-  const bool coarse = ours.stiffness > kStiffestInverted && ours.substep() > kLongestStep;
+  const bool coarse = ours.stiffness > kStiffestInverted && ours.substep() > kMaxStep;
   return restored && coarse ? Simulation::Either : Simulation::Bounded;
 }
 

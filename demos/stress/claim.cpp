@@ -16,19 +16,24 @@ constexpr double kSpins[] = {0, 0.1, 1, 10}, kSteps[] = {1.0 / 60, 1.0 / 240, 1.
 constexpr Claim::Shape kShapes[] = {Claim::Shape::Sphere, Claim::Shape::Bar, Claim::Shape::Serpent};
 constexpr ClaimEvent kEvents[] = {ClaimEvent::Free, ClaimEvent::Landing, ClaimEvent::Dragged};
 
-/// Which value of each kind, numbered.
+/// The index of the value of each kind.
 using Choice = std::vector<int>;
 
 Choice choiceOf(const Claim& claim) {
-  const auto place = [](const auto& values, const auto& value) {
+  const auto toPosition = [](const auto& values, const auto& value) {
     return static_cast<int>(std::find(std::begin(values), std::end(values), value) - std::begin(values));
   };
-  return {static_cast<int>(claim.shape),       place(kModuli, claim.youngsModulus), place(kDensities, claim.density),
-          place(kDampings, claim.damping),     place(kSpins, claim.spin),           place(kSteps, claim.seconds),
-          place(kTolerances, claim.tolerance), static_cast<int>(claim.event)};
+  return {static_cast<int>(claim.shape),
+          toPosition(kModuli, claim.youngsModulus),
+          toPosition(kDensities, claim.density),
+          toPosition(kDampings, claim.damping),
+          toPosition(kSpins, claim.spin),
+          toPosition(kSteps, claim.seconds),
+          toPosition(kTolerances, claim.tolerance),
+          static_cast<int>(claim.event)};
 }
 
-/// All sets of so many of its values, each with its kind.
+/// All subsets with this many of its values, each with its kind.
 std::vector<Choice> groupsOf(const Choice& choice, std::size_t many) {
   std::vector<Choice> groups;
   for (int a = 0; a < static_cast<int>(choice.size()); ++a) {
@@ -78,22 +83,22 @@ std::vector<Claim> allClaims() {
   return claims;
 }
 
-/// Each one has the most pairs that none before it has; where all pairs occur, the most triples.
+/// Each choice has the most pairs that no earlier one has; once all pairs occur, the most triples.
 std::vector<Claim> chosenClaims(std::size_t count) {
   std::vector<Claim> left = allClaims(), chosen;
   std::set<Choice> seen;
   for (std::size_t many = 2; chosen.size() < count && !left.empty();) {
     auto best = left.end();
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (auto claim = left.begin(); claim != left.end(); ++claim) {
       std::size_t fresh = 0;
       for (const Choice& group : groupsOf(choiceOf(*claim), many)) fresh += seen.count(group) == 0;
-      if (fresh > most) {
-        most = fresh;
+      if (fresh > maximum) {
+        maximum = fresh;
         best = claim;
       }
     }
-    if (most == 0) {
+    if (maximum == 0) {
       if (many == 3) break;
       many = 3;
       continue;

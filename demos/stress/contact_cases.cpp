@@ -8,10 +8,11 @@ namespace {
 struct Touch {
   const char* scene;
   double harshness;  ///< 0: the scene's own
-  const char* word;  ///< of it
+  const char* word;  ///< suffix of the case's name
 };
 
-/// Speeds in sizes a second, masses over the body's, parts of the body's height, turns a second.
+/// Harshness: speeds in body lengths per second, masses relative to the body's, shares of the body's height, turns per
+/// second.
 constexpr Touch kTouches[] = {{"land", 0, ""},
                               {"impact", 5, "/speed=5"},
                               {"impact", 15, "/speed=15"},
@@ -42,19 +43,19 @@ constexpr Touch kTouches[] = {{"land", 0, ""},
                               {"body_goes", 1, "/in_step"},
                               {"body_goes", 2, "/between_steps"}};
 
-/// A box of a thousand times the body's mass leaves so little of the body that it is pressed into the floor.
+/// A box with a thousand times the body's mass flattens the body so much that it is pressed into the floor.
 bool isPressedIntoTheFloor(const StressCase& made) {
   return made.scene == "heavy_box" && made.harshness == 0;
 }
 
 /// Bullet 3.24 itself may end with a segmentation fault: when the body has exploded, its distance field of the box is
-/// asked for places beyond all its cells.
+/// queried at positions outside all of its cells.
 bool endsBullet(const StressCase& made) {
   return made.force == Force::NeoHookean && made.implicit && made.scene == "heavy_box" && made.harshness > 0;
 }
 
-/// Obstacles that are hard to meet, by the surface and by the cage. Nothing is promised of Bullet's forces, which meet
-/// them by the cage alone.
+/// Obstacles that are hard to handle in contact, by the surface and by the cage. Nothing is promised of Bullet's
+/// forces, where contact is by the cage only.
 void addContacts(Cases& cases) {
   for (const Method& method : methodsOf({Force::NeoHookean})) {
     for (const Touch& touch : kTouches) {
@@ -86,7 +87,7 @@ void addSoftContacts(Cases& cases) {
   }
 }
 
-/// A minute each; what moves is stopped after 50 seconds.
+/// A minute for each case; what moves is stopped after 50 seconds.
 void addLongContacts(Cases& cases) {
   constexpr int kFrames = 3600;
   for (const char* scene : {"soft_pile", "squeeze", "mill"}) {

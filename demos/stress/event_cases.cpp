@@ -9,7 +9,7 @@ constexpr const char* kEvents[] = {"land",      "pluck",    "squash_flat",   "st
                                    "permute",   "spin",     "teleport",      "impact",      "pull",
                                    "heavy_box", "node_nan", "node_infinite", "node_too_far"};
 
-/// What Bullet's bodies have been seen to survive, with the library's defaults, and with room to spare.
+/// True for events that Bullet's bodies have been observed to survive, with the library's defaults and a safety margin.
 bool survives(const std::string& scene) {
   return isOneOf(scene, {"land", "pluck", "squash_flat", "teleport", "pull", "heavy_box"});
 }
@@ -17,7 +17,7 @@ bool recovers(const std::string& scene) {
   return isOneOf(scene, {"pluck", "squash_flat", "teleport"});
 }
 
-/// Every event, with each interpolation and each kind of normals.
+/// Adds every event, with each interpolation and each kind of normals.
 void addEvents(Cases& cases) {
   for (const char* event : kEvents) {
     for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
@@ -35,12 +35,12 @@ void addEvents(Cases& cases) {
   }
 }
 
-/// Not finite by the event itself, whatever the force.
-bool isSpoilt(const std::string& scene) {
+/// The event itself makes positions invalid, whatever the force.
+bool isDamaged(const std::string& scene) {
   return isOneOf(scene, {"node_nan", "node_infinite", "node_too_far"});
 }
 
-/// With the skin that has most to be judged.
+/// An event with the skin that offers most to judge.
 StressCase eventOf(const std::string& group, const Method& method, const char* event,
                    std::initializer_list<std::string> words) {
   StressCase made = named(group, method, words);
@@ -50,31 +50,32 @@ StressCase eventOf(const std::string& group, const Method& method, const char* e
   return made;
 }
 
-/// Bodies are expected back in shape where they are promised to stay bounded. One of the stiffest ones that has been
-/// inside out keeps a bend for longer than is watched.
+/// Bodies are expected to recover their shape where they are promised to stay bounded. One of the stiffest bodies,
+/// after it was inverted, keeps a bend for longer than the run.
 bool comesBack(const StressCase& ours) {
   if (ours.scene == "mirror" && ours.stiffness >= kStiffestOfOurs) return false;
   const bool returns = isOneOf(ours.scene, {"pluck", "squash_flat", "stretch", "mirror", "teleport"});
   return returns && ours.simulation == Simulation::Bounded;
 }
 
-/// Every event with the library's force, at the default stiffness.
+/// Adds every event with the library's force, at the default stiffness.
 void addOurEvents(Cases& cases) {
   for (const char* event : kEvents) {
     StressCase made = eventOf("event", {Force::Elastic, false}, event, {event});
-    made.simulation = isSpoilt(event) ? Simulation::Either : promised(made);
+    made.simulation = isDamaged(event) ? Simulation::Either : promised(made);
     made.recovers = comesBack(made);
     made.quick = true;
     cases.push_back(made);
   }
 }
 
-/// The same of stiff bodies, the library's and Bullet's. Only explicit ones of Bullet's: its implicit steps forget
-/// velocities that are set by hand, so that nothing would spin, fall fast or be pulled.
+/// Adds every event for stiff bodies, with the library's and with Bullet's forces. With Bullet's, only explicit steps
+/// are used: its implicit steps lose velocities that are set by hand, so that nothing would spin, fall fast or be
+/// pulled.
 void addStiffEvents(Cases& cases) {
   for (const Method& method : {Method{Force::NeoHookean, false}, Method{Force::Elastic, false}}) {
     for (const char* event : kEvents) {
-      if (isSpoilt(event)) continue;
+      if (isDamaged(event)) continue;
       for (const int substeps : {1, 2, 4}) {
         for (const double stiffness : {1e5, 1e6, 1e7, 1e8, 1e9}) {
           if (!isOurs(method.force) && stiffness > kStiffestOfBullets) continue;
@@ -92,10 +93,10 @@ void addStiffEvents(Cases& cases) {
   }
 }
 
-/// Every event with a body of copies of tets, some of them nearly empty, soft and stiff.
+/// Adds every event with a body that has duplicate tets, some of them nearly empty, soft and stiff.
 void addSplitEvents(Cases& cases) {
   for (const char* event : kEvents) {
-    if (isSpoilt(event)) continue;
+    if (isDamaged(event)) continue;
     for (const double stiffness : {0.0, 1e6, 1e8}) {
       StressCase made = eventOf("split", {Force::Elastic, false}, event, {event, "E=" + text(stiffness)});
       made.cage = Cage::Split;

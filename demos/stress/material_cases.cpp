@@ -13,10 +13,10 @@ constexpr double kStiffnesses[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 
 constexpr double kTimeSteps[] = {1.0 / 1000, 1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30, 1.0 / 20, 1.0 / 15};
 constexpr double kDamping = 0.02;  ///< seconds
 constexpr double kStiffForExplicit = 1e6;
-constexpr int kFewestSteps = 60;  ///< of a cell of the map
+constexpr int kMinSteps = 60;  ///< for each cell of the map
 
-/// What is documented of bodies that land: explicit steps are stable up to a stiffness, which is also the default's
-/// bound; nothing is promised of implicit ones, and of the other force models of Bullet's.
+/// The documented behaviour of bodies that land: explicit steps are stable up to a stiffness, which also bounds the
+/// default; nothing is promised of implicit steps, and of Bullet's other force models.
 Simulation documented(const StressCase& landing) {
   if (isOurs(landing.force)) return promised(landing);
   const bool offered = landing.force == Force::LinearElasticity || landing.force == Force::NeoHookean;
@@ -24,12 +24,12 @@ Simulation documented(const StressCase& landing) {
   SoftBodyOptions stiffest = scenes::oneKilogram();  // its default stiffness is what `timeStep` bounds it by
   stiffest.relativeStiffness = 1e30;
   stiffest.timeStep = landing.substep();
-  const TetMesh cage = makeModel(Cage::Bar, Surface::Bar).cage;
+  const TetMesh cage = makeModel(Cage::Bar, Surface::Bar).cage.mesh;
   const bool stable = landing.stiffness <= scenes::defaultStiffness(cage, stiffest);
   return stable ? Simulation::Bounded : Simulation::Either;
 }
 
-/// A body lands with every stiffness at every step, and is watched for a second.
+/// A body lands with every stiffness and time step, and is observed for one second.
 void addStabilityMap(Cases& cases) {
   for (const Method& method : methodsOf({Force::NeoHookean})) {
     for (const double step : kTimeSteps) {
@@ -43,7 +43,7 @@ void addStabilityMap(Cases& cases) {
         cell.timeStep = step;
         cell.substeps = 1;
         cell.damping = std::max(kDamping, 0.5 * step);
-        cell.frames = std::max(kFewestSteps, static_cast<int>(std::lround(1.0 / step)));
+        cell.frames = std::max(kMinSteps, static_cast<int>(std::lround(1.0 / step)));
         cell.simulation = documented(cell);
         cell.quick = isOurs(method.force) || step == 1.0 / 60 || step == 1.0 / 15;
         cases.push_back(cell);
@@ -84,8 +84,8 @@ void addPoissonRatios(Cases& cases) {
   }
 }
 
-/// Bullet's explicit steps of a stiff body need half a substep's worth of damping, which it treats implicitly: that is
-/// enough in free motion, not always in a landing.
+/// Bullet's explicit steps of a stiff body need half a substep's worth of damping, which is treated implicitly: that is
+/// enough in free motion, but not always in a landing.
 Simulation documentedOfDamping(const StressCase& made) {
   if (isOurs(made.force)) return promised(made);
   if (made.implicit || made.scene != "pluck") return Simulation::Either;

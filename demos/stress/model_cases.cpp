@@ -25,8 +25,8 @@ void addCages(Cases& cases) {
   }
 }
 
-/// Of 300,000 tets none: that is about the skin. One of slivers has a density, and so a default stiffness, that is out
-/// of proportion.
+/// Nothing is promised of 300,000 tets: that case tests the skin. A cage of slivers has a density, and therefore a
+/// default stiffness, that is out of proportion.
 void addOurCages(Cases& cases) {
   for (int cage = 0; cage < static_cast<int>(Cage::Large); ++cage) {
     StressCase made = named("cage", {Force::Elastic, false}, {toString(static_cast<Cage>(cage))});

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "stress/models.h"
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,31 +17,31 @@ namespace {
 
 constexpr std::size_t kTriangles = 2000, kTets = 200;
 constexpr std::size_t kLargeTets = 300000;
-constexpr std::size_t kMillionTriangles = 2000000;  ///< of which three make three million vertices
+constexpr std::size_t kMillionTriangles = 2000000;  ///< makes three million vertices
 
 struct Carried {
   TriangleMesh mesh;
   tetskin::Cage cage;
 };
 
-/// A mesh in its cage, whose box is centred at the origin.
+/// A mesh in its cage, with the cage's box centred at the origin.
 Carried inItsCage(TriangleMesh mesh, std::size_t tets) {
   CageOptions options;
   options.targetTets = tets;
-  Result<tetskin::Cage> cage = buildCage(mesh, options);
+  Result<tetskin::Cage> cage = createCage(mesh, options);
   scenes::require(cage.status());
-  const scenes::Placement place = scenes::placementOf(boundingBox(cage.value().nodes));
-  place.toWorld(mesh.positions);
-  return {std::move(mesh), place.toWorld(std::move(cage).value())};
+  const scenes::Placement position = scenes::placementOf(boundingBox(cage.value().mesh.nodes));
+  position.toWorld(mesh.positions);
+  return {std::move(mesh), position.toWorld(std::move(cage).value())};
 }
 
-/// The bar along x, in bare tets.
+/// The bar along x, in tets without volume fractions.
 Carried makeBarModel(std::size_t triangles, std::size_t tets) {
   Carried bar = inItsCage(scenes::makeBar(triangles), tets);
-  return {std::move(bar.mesh), TetMesh(std::move(bar.cage))};
+  return {std::move(bar.mesh), TetMesh(std::move(bar.cage).mesh)};
 }
 
-/// Made once: nearly all cases use it.
+/// Made only once, as nearly all cases use it.
 const Carried& smallBar() {
   static const Carried bar = makeBarModel(kTriangles, kTets);
   return bar;
@@ -53,7 +53,7 @@ const Carried& slottedBeam() {
 }
 
 TetMesh oneTetAround(const Box3& box) {
-  // Corners of the simplex x, y, z >= 0, x + y + z <= 3 about the unit cube.
+  // Corners of the simplex x, y, z >= 0, x + y + z <= 3, which contains the unit cube.
   TetMesh cage;
   for (const Eigen::Vector3d& p :
        {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0, 3, 0), Eigen::Vector3d(0, 0, 3)}) {
@@ -68,14 +68,14 @@ void addFlatTets(TetMesh& cage) {
   std::vector<Tet> flat;
   for (std::size_t t = 0; t < cage.tetCount(); t += 10) {
     const Tet tet = cage.tets[t];
-    const int middle = static_cast<int>(cage.nodeCount());
+    const int centroid = static_cast<int>(cage.nodeCount());
     cage.nodes.emplace_back((cage.nodes[tet[0]] + cage.nodes[tet[1]] + cage.nodes[tet[2]]) / 3.0);
-    flat.push_back({tet[0], tet[1], tet[2], middle});
+    flat.push_back({tet[0], tet[1], tet[2], centroid});
   }
   cage.tets.insert(cage.tets.begin(), flat.begin(), flat.end());
 }
 
-/// As `makeSoftBody` decides: six-fold volume below a billionth of the longest edge's cube.
+/// The criterion of `createSoftBody`: six-fold volume below a billionth of the longest edge's cube.
 bool isFlat(const TetMesh& cage, const Tet& tet) {
   constexpr double kFlat = 1e-9;
   const Eigen::Vector3d p[4] = {cage.nodes[tet[0]], cage.nodes[tet[1]], cage.nodes[tet[2]], cage.nodes[tet[3]]};
@@ -88,7 +88,7 @@ bool isFlat(const TetMesh& cage, const Tet& tet) {
 }
 
 void scale(StressModel& model, const Eigen::Vector3d& factors) {
-  for (auto* points : {&model.cage.nodes, &model.mesh.positions}) {
+  for (auto* points : {&model.cage.mesh.nodes, &model.mesh.positions}) {
     for (Eigen::Vector3d& p : *points) p = p.cwiseProduct(factors);
   }
   model.size *= factors.maxCoeff();
@@ -101,7 +101,7 @@ void applyCage(Cage cage, StressModel& model) {
     case Cage::Large:
       return;
     case Cage::FlatTets:
-      return addFlatTets(model.cage);
+      return addFlatTets(model.cage.mesh);
     case Cage::NeedleTets:
       return scale(model, {1.0, 1e-4, 1e-4});
     case Cage::SliverTets:
@@ -109,14 +109,15 @@ void applyCage(Cage cage, StressModel& model) {
     case Cage::AllFlat:
       return scale(model, {1.0, 1e-12, 1.0});
     case Cage::Inverted:
-      for (std::size_t t = 0; t < model.cage.tetCount(); t += 2)
-        std::swap(model.cage.tets[t][2], model.cage.tets[t][3]);
+      for (std::size_t t = 0; t < model.cage.mesh.tetCount(); t += 2)
+        std::swap(model.cage.mesh.tets[t][2], model.cage.mesh.tets[t][3]);
       return;
     case Cage::Duplicates:
-      model.cage.tets.insert(model.cage.tets.end(), smallBar().cage.tets.begin(), smallBar().cage.tets.end());
+      model.cage.mesh.tets.insert(model.cage.mesh.tets.end(), smallBar().cage.mesh.tets.begin(),
+                                  smallBar().cage.mesh.tets.end());
       return;
     case Cage::Unreferenced:
-      for (int k = 0; k < 10; ++k) model.cage.nodes.emplace_back(0.1 * k - 0.5, 0.3, 0.0);
+      for (int k = 0; k < 10; ++k) model.cage.mesh.nodes.emplace_back(0.1 * k - 0.5, 0.3, 0.0);
       return;
     case Cage::Far1e5:
       model.offset = Eigen::Vector3d(1e5 * scenes::kSize, 0, 0);
@@ -130,7 +131,7 @@ void applyCage(Cage cage, StressModel& model) {
       return scale(model, Eigen::Vector3d::Constant(1e4));
     case Cage::OneTet:
       model.cage = oneTetAround(boundingBox(model.mesh.positions));
-      model.size = boundingBox(model.cage.nodes).sizes().maxCoeff();
+      model.size = boundingBox(model.cage.mesh.nodes).sizes().maxCoeff();
       return;
   }
 }
@@ -183,8 +184,8 @@ StressModel makeModel(Cage cage, Surface surface) {
   applySurface(surface, model.mesh);
   applyCage(cage, model);
   model.bodyCage = model.cage;
-  auto& tets = model.bodyCage.tets;
-  const auto flat = [&](const Tet& tet) { return isFlat(model.cage, tet); };
+  auto& tets = model.bodyCage.mesh.tets;
+  const auto flat = [&](const Tet& tet) { return isFlat(model.cage.mesh, tet); };
   if (cage != Cage::AllFlat) tets.erase(std::remove_if(tets.begin(), tets.end(), flat), tets.end());
   return model;
 }

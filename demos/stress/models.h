@@ -3,20 +3,20 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include "scenes/placement.h"
 #include "stress/stress_case.h"
 
 namespace tetskin::stress {
 
-/// What a case needs of geometry, all in rest space, near the origin.
+/// The geometry of a case, all in rest space, near the origin.
 struct StressModel {
-  tetskin::Cage cage;      ///< that the skin is bound to, whatever is wrong with it
-  tetskin::Cage bodyCage;  ///< the same nodes, without flat tets: that the body is made of
+  tetskin::Cage cage;      ///< the cage that the skin is bound to, whatever is wrong with it
+  tetskin::Cage bodyCage;  ///< the same nodes, without flat tets: the cage that the body is made of
   TriangleMesh mesh;
   double size = scenes::kSize;                       ///< largest side of the cage
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where in the world the body is put
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< position of the body in the world
 };
 
 StressModel makeModel(Cage cage, Surface surface);

@@ -14,12 +14,12 @@ StressCase reduced(std::initializer_list<std::string> words) {
 
 }  // namespace
 
-/// Bodies of vibrations, in Bullet's reduced solver. Modes that are too fast for the step are left out; nothing is
-/// promised where that leaves a few, of a body that hits something.
+/// Reduced bodies, in Bullet's reduced solver. Modes that are too fast for the step are left out; where that leaves
+/// only a few, nothing is promised of a body that hits something.
 void addReducedCases(Cases& cases) {
   for (const double stiffness : {1e2, 1e3, 1e4, 1e5}) {
     for (const int substeps : {1, 4, 16}) {
-      if (stiffness > 1e4 && substeps == 1) continue;  // not one mode is slow enough
+      if (stiffness > 1e4 && substeps == 1) continue;  // no mode is slow enough
       StressCase made = reduced({"land", text(stiffness), std::to_string(substeps)});
       made.scene = "land";
       made.stiffness = stiffness;

@@ -30,8 +30,8 @@ std::string hashWord(const Verdict& verdict) {
   return text;
 }
 
-std::string heldWord(const Verdict& verdict) {
-  return verdict.held() ? "held" : "NOT HELD: " + joined(verdict.broken);
+std::string pinnedWord(const Verdict& verdict) {
+  return verdict.passed() ? "passed" : "FAILED: " + joined(verdict.broken);
 }
 
 std::string cannotWord(const Row& row, const std::vector<Row>& rows) {
@@ -39,9 +39,9 @@ std::string cannotWord(const Row& row, const std::vector<Row>& rows) {
   return !cannot ? "" : *cannot ? "yes" : "no";
 }
 
-/// One line a stiffness, one letter a time step.
+/// One line per stiffness, one letter per time step.
 void printMapOf(const std::vector<const Row*>& cells, const char* title) {
-  std::printf("\n%s: stable (o) or not (x); stiffness against steps a second\n%10s", title, "");
+  std::printf("\n%s: stable (o) or not (x); rows: Young's modulus in Pa, columns: steps per second\n%10s", title, "");
   double stiffness = -1.0;
   for (const Row* cell : cells) {
     if (cell->stressCase.stiffness == cells.front()->stressCase.stiffness) {
@@ -94,7 +94,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["energy_stored"] = verdict.energyStored;
     row["momentum_lost"] = verdict.momentumLost;
     row["expected"] = toString(stressCase.simulation);
-    row["held"] = verdict.held();
+    row["held"] = verdict.passed();
     row["broken"] = verdict.broken;
     const std::optional<bool> cannot = bulletCannot(each, rows);
     row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();
@@ -126,23 +126,23 @@ std::string toMarkdown(const std::vector<Row>& rows) {
     const auto& [stressCase, verdict] = row;
     if (stressCase.group != group) {
       group = stressCase.group;
-      text +=
-          "\n## " + group +
-          "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | bullet cannot, "
-          "tetskin can | expectations |\n|---|---|---|---|---|---|---|---|---|\n";
+      text += "\n## " + group +
+              "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | stable with "
+              "tetskin "
+              "only | expectations |\n|---|---|---|---|---|---|---|---|---|\n";
     }
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, " | %s | %.3g | %s | %s | %.4f | %.1e | ", simulationWord(verdict).c_str(),
                   verdict.extentMax, verdict.skinFinite ? "finite" : "not finite", verdict.status.c_str(),
                   verdict.amplification, verdict.restError);
-    text += "| " + stressCase.name + numbers + cannotWord(row, rows) + " | " + heldWord(verdict) + " |\n";
+    text += "| " + stressCase.name + numbers + cannotWord(row, rows) + " | " + pinnedWord(verdict) + " |\n";
   }
   return text;
 }
 
 void printRow(const Row& row, bool hash) {
   const Verdict& verdict = row.verdict;
-  const std::string end = (hash ? hashWord(verdict) + "  " : "") + heldWord(verdict);
+  const std::string end = (hash ? hashWord(verdict) + "  " : "") + pinnedWord(verdict);
   if (row.stressCase.claim) {
     std::printf("%-72s energy %7.4f  momentum %8.1e  extent %7.4g %7.0f ms  %s\n", row.stressCase.name.c_str(),
                 verdict.energy, verdict.momentumLost, verdict.extentMax, verdict.milliseconds, end.c_str());
@@ -164,9 +164,9 @@ void printMap(const std::vector<Row>& rows) {
                      [](const Row* a, const Row* b) { return a->stressCase.stiffness < b->stressCase.stiffness; });
     if (!cells.empty()) printMapOf(cells, title);
   };
-  print("Bullet's force, explicit", false, false);
-  print("Bullet's force, implicit", false, true);
-  print("tetskin's force and solver", true, false);
+  print("Bullet's elasticity, explicit", false, false);
+  print("Bullet's elasticity, implicit", false, true);
+  print("tetskin's elasticity and solver", true, false);
 }
 
 }  // namespace tetskin::stress

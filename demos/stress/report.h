@@ -17,15 +17,16 @@ struct Row {
   Verdict verdict;
 };
 
-/// Whether a body of the library's force stayed bounded, and none of its twins did that are among the rows. Empty:
-/// there are none.
+/// Whether a body with the library's force stayed bounded while none of its counterparts with Bullet's forces among the
+/// rows did. Empty if there are no counterparts.
 std::optional<bool> bulletCannot(const Row& ours, const std::vector<Row>& rows);
 
-/// A list of one object a case.
+/// A list with one object per case.
 nlohmann::ordered_json toJson(const std::vector<Row>& rows);
-/// A table a group.
+/// One table per group.
 std::string toMarkdown(const std::vector<Row>& rows);
-/// On standard output: a line per case, if wished with the hash of its nodes, and the stability maps in letters.
+/// Prints to standard output: a line per case, with the hash of its nodes if requested; and the stability maps as
+/// letters.
 void printRow(const Row& row, bool hash);
 void printMap(const std::vector<Row>& rows);
 

@@ -10,17 +10,18 @@
 namespace tetskin::stress {
 namespace {
 
-/// RMS in diagonals, under its own weight or shortly after an event, of a shape that counts as recovered.
+/// RMS in diagonals, under gravity or shortly after an event, of a shape that counts as recovered.
 constexpr double kRecovered = 0.02;
-/// Sizes below a floor that a surface may have sunk in at the end, when it may still move.
+/// Depth below a floor, in units of the body's size, that a surface may have reached at the end, when it may still
+/// move.
 constexpr double kSunk = 0.02;
-/// Sizes a second that count as rest.
+/// Speed that counts as rest, in body lengths per second.
 constexpr double kAtRest = 0.02;
 
 void expectOfBody(const StressCase& stressCase, Verdict& verdict) {
   if (stressCase.staysAbove) verdict.expect(verdict.lowest >= -kSunk, "the surface is above the floor at the end");
   if (stressCase.rests) verdict.expect(verdict.restSpeed <= kAtRest, "the bodies are at rest at the end");
-  if (stressCase.recovers) verdict.expect(verdict.shapeError <= kRecovered, "the body comes back to its shape");
+  if (stressCase.recovers) verdict.expect(verdict.shapeError <= kRecovered, "the body recovers its shape");
   if (stressCase.simulation == Simulation::Either) return;
   const bool bounded = stressCase.simulation == Simulation::Bounded;
   verdict.expect(verdict.simulationBounded == bounded,
@@ -42,12 +43,12 @@ scenes::SceneOptions sceneOptions(const StressCase& stressCase, const StressMode
     options.modes = kModes;
   }
   SoftBodyOptions& body = options.body;
-  body.youngsModulus = stressCase.stiffness;
+  if (stressCase.stiffness > 0.0) body.youngsModulus = stressCase.stiffness;
   if (stressCase.force == scenes::Force::MassSpring && stressCase.stiffness > 0.0) {
     body.linkStiffness = stressCase.stiffness;
   }
   body.poissonRatio = stressCase.poisson;
-  body.damping = stressCase.damping;
+  body.stiffnessDamping = stressCase.damping;
   body.timeStep = stressCase.substep();
   body.implicit = stressCase.implicit;
   return options;
@@ -72,24 +73,24 @@ void simulate(const StressCase& stressCase, const StressModel& model, scenes::Sc
   judge.judgeRest();
 }
 
-/// A case that must be refused: the skin stays unbound, while the body goes on.
+/// A case that must be refused: the skin stays unbound, while the simulation of the body continues.
 void expectRefusal(const StressCase& stressCase, const Status& fit, SoftBodySkin& skin, Verdict& verdict) {
   verdict.status = "refused: " + std::string(toString(fit.code));
   verdict.expect(fit.code == stressCase.refusal, "the mesh is refused with the right status");
   verdict.expect(!fit.message.empty(), "the refusal has a message");
-  verdict.expect(skin.update() == UpdateStatus::Unbound, "a skin that was refused stays unbound");
+  verdict.expect(skin.update() == StatusCode::Unbound, "a skin that was refused stays unbound");
 }
 
 void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   const StressModel model = makeModel(stressCase.cage, stressCase.surface);
   btSoftBodyWorldInfo info;
-  const Result<std::unique_ptr<btSoftBody>> probe = makeSoftBody(model.bodyCage, info);
+  const Result<std::unique_ptr<btSoftBody>> probe = createSoftBody(model.bodyCage, info);
   if (!probe.ok()) {
     verdict.status = "refused: " + std::string(toString(probe.status().code));
     verdict.expect(probe.status().code == stressCase.refusal, "the cage is refused with the right status");
     MeshSkin<btScalar> skin;
     verdict.expect(skin.bind(model.cage, model.mesh).status().code == stressCase.refusal,
-                   "the skin refuses it likewise");
+                   "the skin refuses the cage with the same status");
     return;
   }
   const std::unique_ptr<scenes::Scene> scene =

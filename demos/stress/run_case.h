@@ -6,7 +6,7 @@
 
 namespace tetskin::stress {
 
-/// Simulates a case in Bullet with a skin on the body, and judges it.
+/// Simulates a case in Bullet with a skin on the body, and judges the result.
 Verdict runCase(const StressCase& stressCase);
 
 }  // namespace tetskin::stress

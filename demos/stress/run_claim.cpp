@@ -4,10 +4,10 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -33,11 +33,12 @@ using Eigen::Vector3d;
 constexpr double kSecondsRun = 1.0;
 constexpr double kPoisson = 0.3;
 constexpr double kGravity = 9.81;
-/// Of the energy that a body began with and was given; of momentum; of the size of a reference. What is dragged by a
-/// point that is light beside what it leads gains more, and in long steps, for a moment, as much as this.
-constexpr double kMostEnergy = 1.02, kMostDragged = 1.2, kMostInLongSteps = 1.5, kMostLost = 1e-3, kMostSize = 1.2;
+/// Limits relative to the initial energy and the work put in, to momentum, and to the size of a reference. A dragged
+/// body, whose point is light compared with the rest, gains more energy, and in long steps, for a moment, as much as
+/// kMaxInLongSteps.
+constexpr double kMaxEnergy = 1.02, kMaxDragged = 1.2, kMaxInLongSteps = 1.5, kMaxLost = 1e-3, kMaxSize = 1.2;
 constexpr double kLongStep = 0.01;
-/// E V times this is what the rounding of positions reads as elastic energy.
+/// E V times this is the elastic energy that rounding of positions appears as.
 constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 1e-11 : 1e-27;
 
 const Vector3d& spinAxis() {
@@ -62,21 +63,21 @@ TriangleMesh ellipsoid(const Vector3d& halves) {
       if (i < kRings - 1) mesh.triangles.push_back({b, b + kAround, a + kAround});
     }
   }
-  // The poles' rings are points.
-  std::vector<int> place(mesh.positions.size());
+  // The rings of the poles are points.
+  std::vector<int> index(mesh.positions.size());
   std::vector<Vector3d> kept;
-  for (std::size_t v = 0; v < place.size(); ++v) {
+  for (std::size_t v = 0; v < index.size(); ++v) {
     const bool pole = v < kAround || v >= kRings * kAround;
     if (pole && v % kAround != 0) {
-      place[v] = place[v - v % kAround];
+      index[v] = index[v - v % kAround];
       continue;
     }
-    place[v] = static_cast<int>(kept.size());
+    index[v] = static_cast<int>(kept.size());
     kept.push_back(mesh.positions[v]);
   }
   mesh.positions = std::move(kept);
   for (auto& t : mesh.triangles) {
-    for (int& v : t) v = place[static_cast<std::size_t>(v)];
+    for (int& v : t) v = index[static_cast<std::size_t>(v)];
   }
   return mesh;
 }
@@ -106,15 +107,15 @@ ClaimModel makeModel(Claim::Shape shape) {
   }
   CageOptions options;
   options.targetTets = 200;
-  model.cage = buildCage(model.mesh, options).value();
-  for (const Tet& tet : model.cage.tets) {
+  model.cage = createCage(model.mesh, options).value();
+  for (const Tet& tet : model.cage.mesh.tets) {
     Matrix3d edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = model.cage.nodes[tet[k + 1]] - model.cage.nodes[tet[0]];
+    for (int k = 0; k < 3; ++k) edges.col(k) = model.cage.mesh.nodes[tet[k + 1]] - model.cage.mesh.nodes[tet[0]];
     model.inverseEdges.push_back(edges.inverse());
     model.volumes.push_back(std::abs(edges.determinant()) / 6.0);
     model.volume += model.volumes.back();
   }
-  model.size = boundingBox(model.cage.nodes).sizes().maxCoeff();
+  model.size = boundingBox(model.cage.mesh.nodes).sizes().maxCoeff();
   return model;
 }
 
@@ -125,14 +126,14 @@ const ClaimModel& modelOf(Claim::Shape shape) {
   return found->second;
 }
 
-/// In double, by singular values: the solver's own would only agree with itself.
+/// In double precision, by singular values: the solver's own formula would only agree with itself.
 double elasticEnergy(const ClaimModel& model, const std::vector<double>& scale, double youngsModulus,
                      const std::vector<Vector3d>& nodes) {
   const double mu = youngsModulus / (2.0 * (1.0 + kPoisson));
   const double lambda = youngsModulus * kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
   double energy = 0.0;
   for (std::size_t t = 0; t < model.volumes.size(); ++t) {
-    const Tet& tet = model.cage.tets[t];
+    const Tet& tet = model.cage.mesh.tets[t];
     Matrix3d edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = nodes[tet[k + 1]] - nodes[tet[0]];
     const Matrix3d gradient = edges * model.inverseEdges[t];
@@ -173,7 +174,7 @@ Motion motionOf(const ClaimModel& model, const SoftBodyOptions& options, const b
     motion.extent = std::max(motion.extent, (nodes[n] - centre).norm());
   }
   motion.height = mass * kGravity * centre.y();
-  motion.elastic = elasticEnergy(model, options.stiffnessScale, options.youngsModulus, nodes);
+  motion.elastic = elasticEnergy(model, options.stiffnessScale, options.youngsModulus.value(), nodes);
   return motion;
 }
 
@@ -194,20 +195,20 @@ void giveVelocities(const Claim& claim, const ClaimModel& model, btSoftBody& bod
   }
 }
 
-/// The largest that a free body becomes, from its centre to its farthest node.
+/// The largest distance that a free body reaches from its centre to its farthest node.
 double referenceExtent(const Claim& claim, const ClaimModel& model, const SoftBodyOptions& options,
                        const btSoftBody& body) {
   ElasticOptions elastic;
   elastic.youngsModulus = claim.youngsModulus;
   elastic.poissonRatio = kPoisson;
-  elastic.damping = claim.damping;
+  elastic.stiffnessDamping = claim.damping;
   elastic.stiffnessScale = options.stiffnessScale;
   elastic.tolerance = 1e-6;
-  elastic.iterations = 2000;
+  elastic.maxIterations = 2000;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     elastic.nodeMasses.push_back(1.0 / static_cast<double>(body.m_nodes[n].m_im));
   }
-  auto reference = ElasticBody<double>::make(model.cage, elastic).value();
+  auto reference = ElasticBody<double>::create(model.cage.mesh, elastic).value();
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     for (int k = 0; k < 3; ++k) {
       reference.positions()[static_cast<std::size_t>(n)][k] = static_cast<double>(body.m_nodes[n].m_x[k]);
@@ -234,7 +235,7 @@ SoftBodyOptions optionsOf(const Claim& claim, const ClaimModel& model) {
   SoftBodyOptions options;
   options.youngsModulus = claim.youngsModulus;
   options.poissonRatio = kPoisson;
-  options.damping = claim.damping;
+  options.stiffnessDamping = claim.damping;
   options.density = claim.density > 0.0 ? claim.density : 1.0 / model.volume;
   options.solverTolerance = claim.tolerance;
   if (claim.tolerance < 1e-3) options.maxIterations = 2000;
@@ -248,15 +249,15 @@ class ClaimRun {
 
   void start();
   void step();
-  /// Whether it is all finite.
+  /// Returns true if everything is finite.
   bool look();
 
   const scenes::World& world() const { return world_; }
   const SoftBodyOptions& options() const { return options_; }
   btSoftBody& body() { return body_; }
-  double energy() const { return mostEnergy_; }  ///< the most so far, over what was there or put in
-  double stored() const { return mostStored_; }  ///< the same of elastic energy alone
-  double lost() const { return lost_; }          ///< the most of momentum and angular momentum
+  double energy() const { return maxEnergy_; }  ///< largest so far, over the initial energy and work
+  double stored() const { return maxStored_; }  ///< the same for elastic energy alone
+  double lost() const { return lost_; }         ///< the largest relative loss of momentum and angular momentum
   double extent() const { return extent_; }
   double growth() const { return extent_ / began_.extent; }
   double densityTimes(double squaredSpeed) const { return mass_ / model_.volume * squaredSpeed; }
@@ -272,7 +273,7 @@ class ClaimRun {
   SurfacePoint point_;
   std::unique_ptr<SurfaceSpring> spring_;
   Motion began_;
-  double mass_ = 0.0, work_ = 0.0, mostEnergy_ = 0.0, mostStored_ = 0.0, lost_ = 0.0, extent_ = 0.0;
+  double mass_ = 0.0, work_ = 0.0, maxEnergy_ = 0.0, maxStored_ = 0.0, lost_ = 0.0, extent_ = 0.0;
 };
 
 ClaimRun::ClaimRun(const Claim& claim, const ClaimModel& model)
@@ -280,7 +281,7 @@ ClaimRun::ClaimRun(const Claim& claim, const ClaimModel& model)
       model_(model),
       landing_(claim.event == ClaimEvent::Landing),
       world_(scenes::Force::Elastic, btVector3(0, landing_ ? btScalar(-kGravity) : btScalar(0), 0)),
-      options_(withCage(model.cage, optionsOf(claim, model))),
+      options_(withCageDefaults(model.cage, optionsOf(claim, model))),
       body_(world_.add(model.cage, optionsOf(claim, model))) {
   if (const Status fit = skin_.bind(body_, model.cage, model.mesh).status(); !fit.ok()) {
     throw scenes::InputError(fit.message);
@@ -296,7 +297,7 @@ void ClaimRun::start() {
   began_ = motionOf(model_, options_, body_);
   for (int n = 0; n < body_.m_nodes.size(); ++n) mass_ += 1.0 / static_cast<double>(body_.m_nodes[n].m_im);
   if (claim_.event != ClaimEvent::Dragged) return;
-  point_ = SurfaceTree(skin_.binding(), model_.mesh).pointOfVertex(body_, 0).value();
+  point_ = SurfaceTree::create(skin_.binding(), model_.mesh).value().pointAtVertex(body_, 0).value();
   spring_ = SurfaceSpring::add(world_.bullet(), point_).value();
   (void)spring_->setTarget(*point_.position() + btVector3(static_cast<btScalar>(model_.size), 0, 0));
 }
@@ -304,7 +305,7 @@ void ClaimRun::start() {
 void ClaimRun::step() {
   const btVector3 before = spring_ ? *point_.position() : btVector3(0, 0, 0);
   world_.step(claim_.seconds);
-  if (spring_ && point_.status() == TouchStatus::Ok) {
+  if (spring_ && point_.status() == StatusCode::Ok) {
     work_ += static_cast<double>(spring_->force().dot(*point_.position() - before));
   }
 }
@@ -317,10 +318,10 @@ bool ClaimRun::look() {
   const double chord = 1.0 / std::pow(std::cos(std::min(1.0, 0.5 * claim_.spin * claim_.seconds)), 2);
   const double rounding = kRounding * claim_.youngsModulus * model_.volume * (1.0 + model_.size);
   const double put = chord * (began_.kinetic + began_.elastic + std::max(0.0, work_ + fallen)) + rounding;
-  // Contact puts nodes where they do not get into the floor, each by itself: of a stiff body in a long step, that is
-  // strain, and work which the contact has done. It must not come back as motion.
-  mostEnergy_ = std::max(mostEnergy_, (now.kinetic + (landing_ ? 0.0 : now.elastic)) / put);
-  mostStored_ = std::max(mostStored_, now.elastic / put);
+  // Contact moves each node by itself to where it does not penetrate the floor. In a stiff body and a long step, this
+  // is strain, and work done by the contact. It must not return as motion.
+  maxEnergy_ = std::max(maxEnergy_, (now.kinetic + (landing_ ? 0.0 : now.elastic)) / put);
+  maxStored_ = std::max(maxStored_, now.elastic / put);
   if (claim_.event != ClaimEvent::Free) return true;
   const double linear = began_.momentum.norm(), angular = std::max(began_.spin.norm(), 0.01 * linear * model_.size);
   lost_ =
@@ -334,7 +335,7 @@ void runClaim(const Claim& claim, Verdict& verdict) {
   const ClaimModel& model = modelOf(claim.shape);
   ClaimRun run(claim, model);
   run.start();
-  // A body that its spin tears is as large as it becomes.
+  // The size of a body that is torn by its spin is not limited.
   const double tip = claim.spin * model.size;
   const bool compared = claim.event == ClaimEvent::Free && claim.compared;
   const bool holds = run.densityTimes(tip * tip) < claim.youngsModulus;
@@ -342,7 +343,7 @@ void runClaim(const Claim& claim, Verdict& verdict) {
                                              : std::numeric_limits<double>::infinity();
   const auto steps = static_cast<int>(std::lround(kSecondsRun / claim.seconds));
   const int every = std::max(1, steps / 120);
-  verdict.status = "updated";
+  verdict.status = toString(StatusCode::Ok);
   for (int step = 1; step <= steps && verdict.simulationFinite; ++step) {
     run.step();
     if (step > 40 && step % every != 0) continue;
@@ -354,12 +355,12 @@ void runClaim(const Claim& claim, Verdict& verdict) {
   verdict.energy = run.energy();
   verdict.energyStored = run.stored();
   verdict.momentumLost = run.lost();
-  const double mostDragged = claim.seconds > kLongStep ? kMostInLongSteps : kMostDragged;
-  const double most = claim.event == ClaimEvent::Dragged ? mostDragged : kMostEnergy;
-  verdict.simulationBounded = verdict.simulationFinite && run.energy() <= most;
-  verdict.expect(verdict.simulationBounded, "its energy stays below what was there or was put in");
-  verdict.expect(run.lost() <= kMostLost, "momentum and angular momentum are kept");
-  verdict.expect(run.extent() <= kMostSize * reference, "it is no larger than a fine reference");
+  const double maxDragged = claim.seconds > kLongStep ? kMaxInLongSteps : kMaxDragged;
+  const double maximum = claim.event == ClaimEvent::Dragged ? maxDragged : kMaxEnergy;
+  verdict.simulationBounded = verdict.simulationFinite && run.energy() <= maximum;
+  verdict.expect(verdict.simulationBounded, "its energy never exceeds the initial energy plus the work done on it");
+  verdict.expect(run.lost() <= kMaxLost, "linear and angular momentum are conserved");
+  verdict.expect(run.extent() <= kMaxSize * reference, "its extent does not exceed that of a fine reference");
 }
 
 }  // namespace tetskin::stress

@@ -11,21 +11,21 @@
 namespace tetskin::stress {
 namespace {
 
-/// A body of more than this many times the size that its scene gives it is not bounded, though Bullet's clamps may keep
+/// A body larger than this many times the size that its scene gives it is not bounded, though Bullet's clamps may keep
 /// it finite.
 constexpr double kBounded = 2.0;
-/// Part of an edge at rest that quadratic skinning may add inside a cage: 3/8 of half of it; outside, all of it.
-constexpr double kQuadraticShare = 0.1875;
-/// Of normals' lengths, which are floats.
+/// Share of a rest edge that quadratic skinning may add inside a cage: 3/8 of half of it; outside, the whole edge.
+constexpr double kQuadraticFraction = 0.1875;
+/// Tolerance of the lengths of normals, which are floats.
 constexpr double kUnitTolerance = 1e-5;
-/// Of the sum of weights stored as floats, over the largest of them.
+/// Tolerance of the sum of weights stored as floats, over the largest of them.
 constexpr double kWeightTolerance = 1e-6;
-/// Roundings of a position, in units of the scalar's epsilon times the largest coordinate that went into it.
+/// Rounding errors of a position, in units of the scalar's epsilon times the largest coordinate involved.
 constexpr double kRoundings = 32.0;
-/// Weights are stored as floats, whatever Bullet's precision is.
+/// Rounding of weights, which are stored as floats whatever Bullet's precision is.
 constexpr double kWeightRounding = 6e-8;
-/// Share of the size that a node must have gone for an amplification to mean anything.
-constexpr double kSmallWay = 0.001;
+/// Share of the body's size that a node must have moved for an amplification to be meaningful.
+constexpr double kSmallDirection = 0.001;
 
 template <class Scalar>
 std::vector<Scalar> copyOf(PointView<const Scalar> points) {
@@ -35,7 +35,7 @@ std::vector<Scalar> copyOf(PointView<const Scalar> points) {
   return copy;
 }
 
-/// The same bits; NaN included.
+/// True if all values have the same bits, NaN included.
 template <class Scalar>
 bool same(const std::vector<Scalar>& a, const std::vector<Scalar>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Scalar)) == 0);
@@ -45,8 +45,8 @@ Eigen::Vector3d pointAt(const btScalar* p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-/// Largest distance of a point to where it began.
-double longestWay(PointView<const btScalar> now, const std::vector<btScalar>& start) {
+/// Largest distance of a point from its initial position.
+double longestDirection(PointView<const btScalar> now, const std::vector<btScalar>& start) {
   double longest = 0.0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     longest = std::max(longest, (pointAt(now[i]) - pointAt(start.data() + 3 * i)).norm());
@@ -54,7 +54,7 @@ double longestWay(PointView<const btScalar> now, const std::vector<btScalar>& st
   return longest;
 }
 
-double largestCoordinate(PointView<const btScalar> points) {
+double maxCoordinate(PointView<const btScalar> points) {
   double largest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     largest = std::max(largest, pointAt(points[i]).cwiseAbs().maxCoeff());
@@ -86,10 +86,10 @@ SkinJudge::SkinJudge(const StressCase& stressCase, const StressModel& model, con
       startNodes_(copyOf(nodePositions(body_))),
       startSurface_(copyOf(skin.positions())),
       diagonal_(boundingBox(model.mesh.positions).diagonal().norm()),
-      longestEdge_(longestEdgeOf(model.cage)) {
+      longestEdge_(longestEdgeOf(model.cage.mesh)) {
   lastSurface_ = startSurface_;
   lastNormals_ = copyOf(skin.normals());
-  verdict_.status = toString(UpdateStatus::Updated);
+  verdict_.status = toString(StatusCode::Ok);
   judgeWeights();
 }
 
@@ -110,18 +110,18 @@ void SkinJudge::judgeWeights() {
 
 void SkinJudge::update() {
   judgeNodes();
-  const UpdateStatus status = skin_.update();
+  const StatusCode status = skin_.update();
   const std::size_t bad = firstUnusable(nodePositions(body_));
   if (bad < static_cast<std::size_t>(body_.m_nodes.size())) {
-    verdict_.status = toString(UpdateStatus::NonFinite);
-    verdict_.expect(status == UpdateStatus::NonFinite, "update reports nodes that are not finite");
-    verdict_.expect(skin_.firstBadNode() == bad, "update names the first bad node");
+    verdict_.status = toString(StatusCode::NonFinite);
+    verdict_.expect(status == StatusCode::NonFinite, "the update reports nodes that are not finite");
+    verdict_.expect(skin_.firstNonFiniteNode() == bad, "the update names the first node that is not finite");
     verdict_.expect(same(copyOf(skin_.positions()), lastSurface_) && same(copyOf(skin_.normals()), lastNormals_),
-                    "the last good surface stays");
+                    "the last valid surface is kept");
     return;
   }
-  verdict_.expect(status == UpdateStatus::Updated, "the surface is updated whenever all nodes are finite");
-  if (status != UpdateStatus::Updated) verdict_.status = toString(status);
+  verdict_.expect(status == StatusCode::Ok, "the surface is updated whenever all nodes are finite");
+  if (status != StatusCode::Ok) verdict_.status = toString(status);
   judgeFollowing();
   judgeNormals();
   lastSurface_ = copyOf(skin_.positions());
@@ -141,31 +141,31 @@ void SkinJudge::judgeFollowing() {
   verdict_.skinFinite = verdict_.skinFinite && finite;
   verdict_.expect(finite, "the surface is finite");
   if (!finite) return;
-  const double nodeWay = longestWay(nodes, startNodes_);
-  const double largest = std::max({largestCoordinate(nodes), largestCoordinate(surface), nodeWay});
+  const double nodeDirection = longestDirection(nodes, startNodes_);
+  const double largest = std::max({maxCoordinate(nodes), maxCoordinate(surface), nodeDirection});
   const double rounding = kRoundings * static_cast<double>(std::numeric_limits<btScalar>::epsilon()) * largest;
   const bool quadratic = case_.interpolation == Interpolation::Quadratic;
-  double surfaceWay = 0.0;
+  double surfaceDirection = 0.0;
   bool carried = true;
   for (std::size_t v = 0; v < surface.size(); ++v) {
-    const double way = (pointAt(surface[v]) - pointAt(startSurface_.data() + 3 * v)).norm();
-    const double added = !quadratic ? 0.0 : inside_[v] ? kQuadraticShare * longestEdge_ : longestEdge_;
-    carried = carried && way <= reach_[v] * (nodeWay + rounding) + added;
-    surfaceWay = std::max(surfaceWay, way);
+    const double direction = (pointAt(surface[v]) - pointAt(startSurface_.data() + 3 * v)).norm();
+    const double added = !quadratic ? 0.0 : inside_[v] ? kQuadraticFraction * longestEdge_ : longestEdge_;
+    carried = carried && direction <= reach_[v] * (nodeDirection + rounding) + added;
+    surfaceDirection = std::max(surfaceDirection, direction);
   }
-  verdict_.expect(carried, "no vertex goes farther than its nodes carry it");
-  if (nodeWay > kSmallWay * model_.size) {
-    verdict_.amplification = std::max(verdict_.amplification, surfaceWay / nodeWay);
+  verdict_.expect(carried, "no vertex moves farther than its nodes do");
+  if (nodeDirection > kSmallDirection * model_.size) {
+    verdict_.amplification = std::max(verdict_.amplification, surfaceDirection / nodeDirection);
   }
 }
 
 void SkinJudge::judgeNormals() {
   const PointView<const float> normals = skin_.normals();
   verdict_.expect(normals.size() == (case_.normals == Normals::None ? 0 : skin_.positions().size()),
-                  "there are normals if asked for");
+                  "there are normals if requested");
   for (std::size_t v = 0; v < normals.size(); ++v) {
     const double error = std::abs(Eigen::Map<const Eigen::Vector3f>(normals[v]).cast<double>().norm() - 1.0);
-    if (!(error <= verdict_.normalError)) verdict_.normalError = error;  // not a number: no error is larger
+    if (!(error <= verdict_.normalError)) verdict_.normalError = error;  // NaN counts as the largest
   }
   verdict_.expect(verdict_.normalError <= kUnitTolerance, "normals are unit vectors");
 }
@@ -184,23 +184,23 @@ void SkinJudge::judgeShape() {
 
 void SkinJudge::judgeRest() {
   skin_.markMoved();
-  verdict_.expect(skin_.update() == UpdateStatus::Updated, "the skin recovers once all nodes are finite");
+  verdict_.expect(skin_.update() == StatusCode::Ok, "the skin recovers when all nodes are finite again");
   const PointView<const btScalar> surface = skin_.positions();
   double squared = 0.0;
   for (std::size_t v = 0; v < surface.size(); ++v) {
     squared += (pointAt(surface[v]) - model_.mesh.positions[v]).squaredNorm();
   }
   verdict_.restError = std::sqrt(squared / static_cast<double>(surface.size())) / diagonal_;
-  double nodesSquared = 0.0;  // where the body began, against the cage: far from the origin its nodes are rounded
-  for (std::size_t n = 0; n < model_.cage.nodeCount(); ++n) {
-    nodesSquared += (pointAt(startNodes_.data() + 3 * n) - model_.offset - model_.cage.nodes[n]).squaredNorm();
+  double nodesSquared = 0.0;  // initial positions against the cage: far from the origin, nodes are rounded
+  for (std::size_t n = 0; n < model_.cage.mesh.nodeCount(); ++n) {
+    nodesSquared += (pointAt(startNodes_.data() + 3 * n) - model_.offset - model_.cage.mesh.nodes[n]).squaredNorm();
   }
-  const double nodeError = std::sqrt(nodesSquared / static_cast<double>(model_.cage.nodeCount())) / diagonal_;
+  const double nodeError = std::sqrt(nodesSquared / static_cast<double>(model_.cage.mesh.nodeCount())) / diagonal_;
   const double rounding =
       *std::max_element(reach_.begin(), reach_.end()) * longestEdge_ / diagonal_ *
       (kWeightRounding + kRoundings * static_cast<double>(std::numeric_limits<btScalar>::epsilon()));
-  verdict_.expect(verdict_.restError <= 2.0 * nodeError + rounding, "rest is recovered");
-  verdict_.expect(same(copyOf(surface), startSurface_), "rest is recovered to the bit");
+  verdict_.expect(verdict_.restError <= 2.0 * nodeError + rounding, "the rest shape is recovered");
+  verdict_.expect(same(copyOf(surface), startSurface_), "the rest shape is recovered bit for bit");
 }
 
 }  // namespace tetskin::stress

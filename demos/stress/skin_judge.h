@@ -13,42 +13,44 @@
 
 namespace tetskin::stress {
 
-/// What one case showed.
+/// The results of one case.
 struct Verdict {
   bool simulationFinite = true;
-  /// Finite, and never larger than kBounded times what the event itself makes of it.
+  /// The body is finite, and never larger than kBounded times the size that the event itself gives it.
   bool simulationBounded = true;
-  double extentMax = 1.0;  ///< largest side of the nodes' box, over that at rest
-  /// RMS in diagonals of the mesh: how far the surface was from its rest shape, wherever it lay, when the event was
-  /// over: whether the body has recovered.
+  double extentMax = 1.0;  ///< largest side of the nodes' box, relative to that at rest
+  /// RMS distance of the surface from its rest shape, regardless of its position, when the event was over, in diagonals
+  /// of the mesh's box: it tells whether the body has recovered.
   double shapeError = 0.0;
-  double lowest = 0.0;        ///< of the surface at the end, over the scene's floor, in sizes; 0 where there is none
-  double energy = 0.0;        ///< of a claim: the most there was, over what it began with and was given
-  double energyStored = 0.0;  ///< the same of elastic energy alone, also in the steps of a landing
-  double momentumLost = 0.0;  ///< likewise: the most of momentum and angular momentum, of a free body
-  double restSpeed = 0.0;     ///< root mean square of the nodes' in the last half second, in sizes a second
-  bool skinFinite = true;     ///< at every update
-  std::string status;         ///< the worst that `update` said, or why there is no skin
-  /// Largest over all updates of: the longest way of a vertex since bind, over the longest way of a node. Updates in
-  /// which no node has gone a thousandth of the size do not count.
+  double lowest = 0.0;  ///< height of the surface over the floor at the end, over the body's size; 0 without a floor
+  double energy = 0.0;  ///< of a claim: the largest energy, relative to the initial energy and the work put in
+  double energyStored = 0.0;  ///< the same for elastic energy alone, also in the steps of a landing
+  double momentumLost = 0.0;  ///< of a free body: the largest relative loss of momentum or angular momentum
+  double restSpeed = 0.0;     ///< RMS speed of nodes in the last half second, in body lengths per second
+  bool skinFinite = true;     ///< finite at every update
+  std::string status;         ///< the worst status that `update` returned, or why there is no skin
+  /// The largest value over all updates of: the largest displacement of a vertex since bind, over the largest
+  /// displacement of a node. Updates in which no node has moved by a thousandth of the body's size do not count.
   double amplification = 0.0;
-  double restError = 0.0;    ///< RMS in diagonals of the mesh, with all nodes back where they began
-  double normalError = 0.0;  ///< largest difference of a normal's length from 1
-  double weightError = 0.0;  ///< largest difference of a vertex' weights' sum from 1, over the largest weight
-  std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each step that is looked at
+  double restError = 0.0;  ///< RMS error with all nodes back at their initial positions, in diagonals of the mesh's box
+  double normalError = 0.0;  ///< largest deviation of a normal's length from 1
+  double weightError = 0.0;  ///< largest deviation of the sum of a vertex's weights from 1, over the largest weight
+  std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each checked step
   double milliseconds = 0.0;
   scenes::SolveTotals solve;
-  std::vector<std::string> broken;  ///< the expectations that did not hold, in words
+  std::vector<std::string> broken;  ///< the expectations that were not met, in words
 
-  bool held() const { return broken.empty(); }
+  bool passed() const { return broken.empty(); }
   void expect(bool condition, const std::string& what);
 };
 
-/// Updates a skin, and compares what it says and shows with the body's nodes, each time:
-/// - nodes finite and below kLargestCoordinate: `Updated`, the surface is finite, normals are finite unit vectors, and
-///   no vertex has gone farther than the nodes can have carried it: the longest way of a node times the sum of the
-///   vertex' absolute weights (1 inside the cage), and for quadratic surfaces what their edge vectors may add;
-/// - otherwise: `NonFinite`, the first such node is named, and the surface is, to the bit, the one before.
+/// Updates a skin, and compares its status and surface with the body's nodes each time:
+/// - if nodes are finite and below Limits::kMaxCoordinate: the status is `Ok`, the surface is finite, normals are
+/// finite unit vectors, and no vertex has moved farther than the nodes can have carried it: the largest displacement of
+/// a node times the sum of the vertex's absolute weights (1 inside the cage), and for quadratic surfaces what their
+/// edge vectors may add;
+/// - otherwise: the status is `NonFinite`, the first such node is reported, and the surface is bit-identical to the
+/// previous one.
 class SkinJudge {
  public:
   /// skin  bound to the body, which is at rest
@@ -56,9 +58,9 @@ class SkinJudge {
             Verdict& verdict);
 
   void update();
-  /// Of the last good surface.
+  /// Judges the shape of the last valid surface.
   void judgeShape();
-  /// With all nodes back where they began.
+  /// Judges the surface with all nodes back at their initial positions.
   void judgeRest();
 
  private:
@@ -75,8 +77,8 @@ class SkinJudge {
   Verdict& verdict_;
   std::vector<btScalar> startNodes_, startSurface_, lastSurface_;
   std::vector<float> lastNormals_;
-  double diagonal_;            ///< of the mesh
-  double longestEdge_;         ///< of the cage at rest
+  double diagonal_;            ///< diagonal of the mesh's box
+  double longestEdge_;         ///< longest edge of the cage at rest
   std::vector<bool> inside_;   ///< by vertex
   std::vector<double> reach_;  ///< by vertex: sum of its absolute weights, 1 inside
 };

@@ -8,7 +8,7 @@
 namespace tetskin::stress {
 namespace {
 
-/// Names in the order of the enumeration.
+/// Names, in the order of the enumeration.
 template <class Enum, std::size_t N>
 const char* nameIn(const char* const (&names)[N], Enum value) {
   const auto index = static_cast<std::size_t>(value);

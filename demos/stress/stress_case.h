@@ -13,22 +13,22 @@
 
 namespace tetskin::stress {
 
-/// The cage that the skin is bound to. The body is made of its tets that are not flat.
+/// The cage that the skin is bound to. The body is made of those of its tets that are not flat.
 enum class Cage {
-  Bar,           ///< the bar's own
+  Bar,           ///< the bar's own cage
   FlatTets,      ///< with tets of no volume in it
-  NeedleTets,    ///< squeezed to 1e-4 in two directions
-  SliverTets,    ///< squeezed to 1e-8 in one
-  AllFlat,       ///< squeezed to 1e-12 in one
-  Inverted,      ///< every other tet inside out
-  Duplicates,    ///< every tet twice
+  NeedleTets,    ///< tets squeezed to 1e-4 in two directions
+  SliverTets,    ///< tets squeezed to 1e-8 in one direction
+  AllFlat,       ///< tets squeezed to 1e-12 in one direction
+  Inverted,      ///< every other tet is inverted
+  Duplicates,    ///< every tet occurs twice
   Unreferenced,  ///< with nodes that no tet names
-  Far1e5,        ///< the body 1e5 lengths from the origin, the skin's origin there
-  Far1e7,        ///< 1e7 lengths
-  Tiny,          ///< 1e-4 of the size
+  Far1e5,        ///< the body 1e5 lengths from the origin, with the skin's origin there
+  Far1e7,        ///< the body 1e7 lengths from the origin
+  Tiny,          ///< 1e-4 times the size
   Huge,          ///< 1e4 times the size
-  OneTet,        ///< around all of the bar
-  Split,         ///< of a beam with a slot, which is narrower than its tets: split, filled
+  OneTet,        ///< one tet around the whole bar
+  Split,         ///< of a beam with a slot narrower than its tets: duplicate elements, volume fractions
   Large,         ///< 300,000 tets
 };
 
@@ -36,62 +36,62 @@ enum class Cage {
 enum class Surface {
   Bar,           ///< the bar
   FarOutside,    ///< with vertices up to 1,000 lengths outside the cage
-  Coincident,    ///< every vertex three times
-  NonFinite,     ///< one vertex is not a number: must be refused
+  Coincident,    ///< every vertex occurs three times
+  NonFinite,     ///< one vertex is NaN: must be refused
   ThreeMillion,  ///< three million vertices
-  NoVertices,    ///< must be refused
+  NoVertices,    ///< no vertices: must be refused
 };
 
-/// What the body is expected to do. Bullet's behaviour where it is not documented to be stable may differ between
-/// versions and machines: there the expectation is all about the skin.
+/// What the body is expected to do. Where Bullet's behaviour is not documented to be stable, it may differ between
+/// versions and machines: there, only the skin is judged.
 enum class Simulation { Bounded, Unbounded, Either };
 
-/// One row of the table: what is simulated, what the skin is asked for, and what the body and `bind` shall do. What the
-/// skin shall do follows: see `SkinJudge`.
+/// One row of the table: what is simulated, the options of the skin, and the expected result of the body and of `bind`.
+/// What is expected of the skin follows from these: see `SkinJudge`.
 struct StressCase {
   std::string group;
   std::string name;
 
   scenes::Force force =
-      scenes::Force::NeoHookean;  ///< mass-spring in the classic world, the others in the deformable one
+      scenes::Force::NeoHookean;  ///< mass-spring in the classic world, all others in the deformable one
   bool implicit = false;
-  /// Young's modulus, Pa, for a body of 1 kg and 2 m; mass-spring: link stiffness from 0 to 1. 0: the library's
-  /// default.
+  /// Young's modulus, Pa, for a body of 1 kg and 2 m; for mass-spring, the links' stiffness from 0 to 1. 0: the
+  /// library's default.
   double stiffness = 0.0;
   double poisson = 0.3;
   double damping = 0.02;         ///< seconds
-  double timeStep = 1.0 / 60.0;  ///< seconds a frame
-  int substeps = 4;              ///< of a frame
+  double timeStep = 1.0 / 60.0;  ///< seconds per frame
+  int substeps = 4;              ///< per frame
   int frames = 30;
 
-  std::string scene = "land";  ///< of the table of scenes: what happens to the body
-  double harshness = 0.0;      ///< of the scene, in units of its own; 0: its own
+  std::string scene = "land";  ///< name in the table of scenes: what happens to the body
+  double harshness = 0.0;      ///< of the scene, in units of its own; 0: the scene's own
   Cage cage = Cage::Bar;
   Surface surface = Surface::Bar;
-  bool touchesBySurface = false;  ///< rigid bodies, instead of by the cage's nodes
+  bool touchesBySurface = false;  ///< rigid bodies meet its surface, instead of the cage's nodes
   Interpolation interpolation = Interpolation::Linear;
   Normals normals = Normals::None;
 
   Simulation simulation = Simulation::Bounded;
-  bool recovers = false;                ///< the body shall come back to its shape
-  bool staysAbove = false;              ///< its surface shall be above the scene's floor at the end
-  bool rests = false;                   ///< it shall be at rest at the end
-  StatusCode refusal = StatusCode::Ok;  ///< of makeSoftBody and bind, or of bind alone
+  bool recovers = false;                ///< the body is expected to recover its shape
+  bool staysAbove = false;              ///< its surface is expected to be above the scene's floor at the end
+  bool rests = false;                   ///< it is expected to be at rest at the end
+  StatusCode refusal = StatusCode::Ok;  ///< expected status of createSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
-  bool lasts = false;                   ///< a minute and more of simulated time, or one of thousands: only with --long
-  std::optional<Claim> claim;           ///< what is run and judged instead of all the above
+  bool lasts = false;          ///< a minute or more of simulated time, or one of thousands of claims: only with --long
+  std::optional<Claim> claim;  ///< is run and judged instead of everything above
 
   double substep() const { return timeStep / substeps; }
 };
 
-/// Whether the force is the library's own.
+/// True if the force is the library's own.
 bool isOurs(scenes::Force force);
 
-/// Whether a case of Bullet's neo-Hookean force is the same as one of the library's in all that a body feels but its
-/// force and integrator. The skins may differ, and so may default stiffnesses.
+/// True if a case with Bullet's neo-Hookean force and one with the library's are the same in everything that a body
+/// feels except force and integrator. The skins may differ, and so may default stiffnesses.
 bool areTwins(const StressCase& ours, const StressCase& bullets);
 
-/// Names for reports.
+/// Names used in reports.
 const char* toString(scenes::Force force);
 const char* toString(Simulation simulation);
 const char* toString(Cage cage);
@@ -99,7 +99,7 @@ const char* toString(Surface surface);
 const char* toString(Interpolation interpolation);
 const char* toString(Normals normals);
 
-/// All cases, in groups: first the stability maps, whose cells are runs of their own.
+/// All cases, in groups: first the stability maps, whose cells are separate runs.
 std::vector<StressCase> stressCases();
 
 }  // namespace tetskin::stress

@@ -1,6 +1,6 @@
-# Bullet's CMake package has variables only: a relative include path, libraries in the wrong order for static linking,
-# the precision as a compiler flag. tetskin_find_bullet() makes one proper target of them, tetskin::bullet_physics, for
-# the precision that TETSKIN_DOUBLE_PRECISION asks for.
+# Bullet's CMake package sets only variables: a relative include path, libraries in the wrong order for static linking,
+# and the precision as a compiler flag. tetskin_find_bullet() makes one proper target of them, tetskin::bullet_physics,
+# for the precision that TETSKIN_DOUBLE_PRECISION requests.
 
 function(_tetskin_check_bullet_precision)
   get_directory_property(definitions COMPILE_DEFINITIONS)
@@ -9,8 +9,8 @@ function(_tetskin_check_bullet_precision)
       "Set TETSKIN_DOUBLE_PRECISION=ON, or remove that definition.")
   endif()
 
-  # The mangled name of btSoftBody::setTotalMass carries the type of btScalar, so a library of the other precision
-  # does not link. Nothing else would notice before memory is corrupted.
+  # The mangled name of btSoftBody::setTotalMass contains the type of btScalar, so a library with the other precision
+  # does not link. Otherwise the error would only be noticed when memory is corrupted.
   set(probe "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/tetskin_bullet_probe.cpp")
   file(WRITE "${probe}" "#include <BulletSoftBody/btSoftBody.h>\n"
     "void (btSoftBody::*volatile probe)(btScalar, bool) = &btSoftBody::setTotalMass;\n"
@@ -33,7 +33,8 @@ function(tetskin_find_bullet)
   if(TARGET tetskin::bullet_physics)
     return()
   endif()
-  # Debian keeps both precisions side by side; a Bullet built from source has one configuration that says which.
+  # Debian has both precisions side by side; a Bullet built from source has one configuration, which states its
+  # precision.
   set(configs BulletConfig.cmake)
   if(TETSKIN_DOUBLE_PRECISION)
     list(PREPEND configs BulletConfig-float64.cmake)
@@ -83,7 +84,7 @@ function(tetskin_find_bullet)
 
   add_library(tetskin::bullet_physics INTERFACE IMPORTED GLOBAL)
   set_target_properties(tetskin::bullet_physics PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${includes}"  # of an imported target, hence system headers
+    INTERFACE_INCLUDE_DIRECTORIES "${includes}"  # of an imported target, and therefore system headers
     INTERFACE_LINK_LIBRARIES "${libraries}")
   if(TETSKIN_DOUBLE_PRECISION)
     set_target_properties(tetskin::bullet_physics PROPERTIES INTERFACE_COMPILE_DEFINITIONS BT_USE_DOUBLE_PRECISION)

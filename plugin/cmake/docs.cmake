@@ -1,5 +1,5 @@
-# Target docs: pages of what is public, by Doxygen, in build/docs. Any warning is an error: everything public has a
-# comment, and what a comment names exists.
+# Target docs: pages of the public API, by Doxygen, in build/docs. Any warning is an error: everything public has a
+# comment, and every name that a comment mentions exists.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
   return()
@@ -10,7 +10,7 @@ if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
   set(main_page ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
 endif()
 file(GLOB public_headers CONFIGURE_DEPENDS tetskin/*.h tetskin/*/*.h)
-list(FILTER public_headers EXCLUDE REGEX "/export[.]h$")  # marks of the libraries themselves
+list(FILTER public_headers EXCLUDE REGEX "/export[.]h$")  # export macros of the libraries themselves
 
 set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
 set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${main_page})
@@ -27,8 +27,8 @@ foreach(fact Cost Error Errors Lifetime Memory Ownership)
 endforeach()
 set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
 set(DOXYGEN_SORT_MEMBER_DOCS NO)
-set(DOXYGEN_EXCLUDE_SYMBOLS *_detail tetskin::SkinParts)
-# What macros make of the libraries' marks says nothing to a reader.
+set(DOXYGEN_EXCLUDE_SYMBOLS *_detail tetskin::SkinData)
+# The expansions of the libraries' export macros are of no use to a reader.
 set(DOXYGEN_MACRO_EXPANSION YES)
 set(DOXYGEN_EXPAND_ONLY_PREDEF YES)
 set(DOXYGEN_SEARCH_INCLUDES NO)
@@ -40,5 +40,5 @@ endforeach()
 set(DOXYGEN_HAVE_DOT NO)
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
-set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)  # a parameter whose type and name say all has no line of its own
+set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)  # a parameter needs no line of its own if its type and name are clear
 doxygen_add_docs(docs ${main_page} ${public_headers} COMMENT "Pages of the public headers: ${PROJECT_BINARY_DIR}/docs")

@@ -1,5 +1,5 @@
-# tetskin.pc: all libraries that were built, for applications that are not built with CMake. It finds itself, so that
-# what is installed may be moved, unless its folders were given as absolute paths.
+# tetskin.pc: all libraries that were built, for applications that are not built with CMake. Its paths are relative to
+# itself, so that an installation may be moved, unless its folders were given as absolute paths.
 set(pc_prefix ${CMAKE_INSTALL_PREFIX})
 if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
   file(RELATIVE_PATH up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
@@ -13,7 +13,7 @@ set(pc_libraries)
 set(pc_definitions -DEIGEN_MPL2_ONLY)
 set(pc_requires "eigen3 >= 3.4")
 set(pc_system_libraries)
-foreach(part reduced touch contact bullet io elastic cage threads core)  # dependent before dependency
+foreach(part reduced touch contact bullet io elastic cage threads core)  # dependent libraries before their dependencies
   if(NOT TARGET tetskin_${part})
     continue()
   endif()
@@ -25,7 +25,8 @@ if(TARGET tetskin_bullet)
   if(TETSKIN_DOUBLE_PRECISION)
     list(APPEND pc_definitions -DBT_USE_DOUBLE_PRECISION -DTETSKIN_BULLET_DOUBLE)
   endif()
-  # Bullet's own bullet.pc says nothing of its precision: its libraries by their paths, as in tetskin::bullet_physics.
+  # Bullet's own bullet.pc does not state its precision: its libraries are given by their paths, as in
+  # tetskin::bullet_physics.
   get_target_property(bullet_includes tetskin::bullet_physics INTERFACE_INCLUDE_DIRECTORIES)
   get_target_property(bullet_libraries tetskin::bullet_physics INTERFACE_LINK_LIBRARIES)
   foreach(folder ${bullet_includes})

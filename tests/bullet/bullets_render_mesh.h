@@ -19,12 +19,12 @@ namespace tetskin::test {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// A point as Bullet's precision has it.
+/// A point rounded to Bullet's precision.
 inline Eigen::Vector3d inBulletsPrecision(const Eigen::Vector3d& p) {
   return toEigen(toBullet(p));
 }
 
-/// Render nodes at these points, bound to nothing yet.
+/// Sets render nodes at these points, not yet bound to anything.
 inline void setRenderNodes(btSoftBody& body, const Points& points) {
   body.m_renderNodes.resize(0);
   for (const Eigen::Vector3d& p : points) {
@@ -46,7 +46,7 @@ class RenderMeshes : public testing::Test {
   void make(const TetMesh& restCage) {
     cage = restCage;
     for (Eigen::Vector3d& p : cage.nodes) p = inBulletsPrecision(p);
-    body = makeSoftBody(cage, info).value();
+    body = createSoftBody(cage, info).value();
     ASSERT_TRUE(body);
   }
   /// Binds both to these vertices, where the body is now.
@@ -55,11 +55,11 @@ class RenderMeshes : public testing::Test {
     for (Eigen::Vector3d& p : vertices) p = inBulletsPrecision(p);
     setRenderNodes(*body, vertices);
     btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
-    ASSERT_TRUE(skin.bind(*body, tetMeshOf(*body), meshOf(vertices), options).ok());
+    ASSERT_TRUE(skin.bind(*body, readTetMesh(*body), meshOf(vertices), options).ok());
   }
   void updateBoth() {
     body->interpolateRenderMesh();
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
   }
 
   static TriangleMesh meshOf(const Points& points) {

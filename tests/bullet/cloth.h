@@ -9,13 +9,13 @@
 
 namespace tetskin::test {
 
-/// A square of cloth with springs of Bullet's, held at two corners, as in Bullet's own examples.
+/// A square of cloth with Bullet's springs, pinned at two corners, as in Bullet's own examples.
 class Cloth {
  public:
-  explicit Cloth(EmptyWorld& ofWorld, bool held = true) : world(ofWorld.deformable()) {
+  explicit Cloth(EmptyWorld& ofWorld, bool pinned = true) : world(ofWorld.deformable()) {
     const btScalar s = 1, y = 3;
     body.reset(btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), btVector3(-s, y, -s), btVector3(s, y, -s),
-                                              btVector3(-s, y, s), btVector3(s, y, s), 9, 9, held ? 1 + 2 : 0, true));
+                                              btVector3(-s, y, s), btVector3(s, y, s), 9, 9, pinned ? 1 + 2 : 0, true));
     body->getCollisionShape()->setMargin(btScalar(0.02));
     body->generateBendingConstraints(2);
     body->setTotalMass(1);

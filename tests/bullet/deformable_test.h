@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/deformable_world.h>
 
 #include <cmath>
 #include <memory>
@@ -22,14 +22,14 @@ class EmptyWorld : public DeformableWorldBase {
   btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
 };
 
-/// The same with the library's solver.
+/// A deformable world without a body of its own, with the library's solver.
 class TetskinWorld : public EmptyWorld {
  public:
   TetskinWorld() : EmptyWorld(std::make_unique<DeformableSolver>()) {}
   DeformableSolver& bodySolver() { return static_cast<DeformableSolver&>(*softSolver); }
 };
 
-/// With the library's solver where the force needs it, else with Bullet's.
+/// A world with the library's solver where the force needs it, otherwise with Bullet's.
 inline std::unique_ptr<EmptyWorld> worldFor(ForceModel model) {
   if (model == ForceModel::Corotated) return std::make_unique<TetskinWorld>();
   return std::make_unique<EmptyWorld>();
@@ -63,7 +63,7 @@ inline double kineticEnergyOf(const btSoftBody& body) {
   return energy;
 }
 
-/// Of all bodies.
+/// The elastic energy of all bodies.
 inline double elasticEnergyIn(EmptyWorld& world) {
   double energy = 0.0;
   const auto& forces = *static_cast<btDeformableBodySolver&>(*world.softSolver).getLagrangianForceArray();
@@ -81,15 +81,15 @@ inline TetMesh cageAbove(double height) {
   return cage;
 }
 
-/// A tenth as many tets, for what does not depend on them.
+/// A cage of a tenth as many tets, for tests that do not depend on their number.
 inline TetMesh smallCageAbove(double height) {
   TetMesh cage = latticeCage(2, 2, 3, 0.3);
   for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
   return cage;
 }
 
-/// The cage and a copy of it three units along x, which share no node.
-inline TetMesh twoParts(TetMesh cage) {
+/// The cage and a copy of it three units along x; the two share no node.
+inline TetMesh twoComponents(TetMesh cage) {
   const int first = static_cast<int>(cage.nodeCount());
   for (int n = 0; n < first; ++n) cage.nodes.push_back(cage.nodes[n] + Eigen::Vector3d(3, 0, 0));
   const std::vector<Tet> tets = cage.tets;

@@ -6,7 +6,7 @@
 
 #include "deformable_test.h"
 
-#include <tetskin/bullet/force_record.h>
+#include <tetskin/bullet/deformable_world.h>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 namespace tetskin::test {
 
-/// Of a body of 1 kg, as the tests' are: the tests' gravity is 10.
+/// The weight of a body of 1 kg, as the tests' bodies are: the tests' gravity is 10.
 constexpr double kWeight = 10.0;
 
 inline std::unique_ptr<ForceRecord> forcesIn(EmptyWorld& world) {
@@ -39,7 +39,7 @@ inline bool isNothing(const AppliedForces& forces) {
   return true;
 }
 
-/// Bullet's contactTest asks for one, whatever is done with what it finds.
+/// Bullet's contactTest requires a callback, even where its results are not used.
 struct IgnoredResults : btCollisionWorld::ContactResultCallback {
   btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*,
                            int, int) override {

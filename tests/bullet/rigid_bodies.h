@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Rigid bodies for the tests of the solver, and what they and soft ones have of momentum.
+// Rigid bodies for the tests of the solver, and the momentum of rigid and soft bodies.
 #pragma once
 
 #include "deformable_test.h"
@@ -14,7 +14,7 @@
 
 namespace tetskin::test {
 
-/// A box or a ball in a world, as long as it lives.
+/// A box or a ball, which is in a world as long as this object lives.
 struct Rigid {
   Rigid(TetskinWorld& in, std::unique_ptr<btCollisionShape> ofShape, btScalar mass, const btVector3& at)
       : world(in), shape(std::move(ofShape)) {
@@ -31,7 +31,7 @@ struct Rigid {
   Rigid& operator=(const Rigid&) = delete;
 
   btVector3 momentum() const { return body->getLinearVelocity() / body->getInvMass(); }
-  /// About the origin.
+  /// Angular momentum about the origin.
   btVector3 spin() const {
     const btMatrix3x3& frame = body->getWorldTransform().getBasis();
     const btVector3 own = frame * (body->getLocalInertia() * (frame.transpose() * body->getAngularVelocity()));
@@ -59,7 +59,7 @@ inline btVector3 momentumOf(const btSoftBody& body) {
   return sum;
 }
 
-/// About the origin.
+/// Angular momentum about the origin.
 inline btVector3 spinOf(const btSoftBody& body) {
   btVector3 sum(0, 0, 0);
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -75,7 +75,7 @@ inline void forEachSubstep(TetskinWorld& world, int steps, const std::function<v
   }
 }
 
-/// A block that flies at what is above the origin, in a world without gravity.
+/// A block that flies at whatever is above the origin, in a world without gravity.
 struct FlyingBlock {
   explicit FlyingBlock(double height = 5.0) {
     world.deformable().setGravity(btVector3(0, 0, 0));

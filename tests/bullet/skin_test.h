@@ -14,13 +14,13 @@
 
 namespace tetskin::test {
 
-/// Of positions of a body about 1 in size.
+/// Tolerance for positions of a body about 1 in size.
 constexpr double kRounding = 2e-6;
 
-/// A body of a lattice cage, which is at rest, in no world, and a sphere that sticks out of it.
+/// A body made from a lattice cage, at rest and in no world, and a sphere that sticks out of it.
 class SkinTest : public testing::Test {
  protected:
-  SkinTest() : body(makeSoftBody(cage, info).value()) {}
+  SkinTest() : body(createSoftBody(cage, info).value()) {}
 
   void bend() {
     for (int n = 0; n < body->m_nodes.size(); ++n) {
@@ -30,21 +30,21 @@ class SkinTest : public testing::Test {
     }
   }
 
-  /// Those of the sleeping body that may move unnoticed, by trying.
+  /// The nodes of the sleeping body that can move unnoticed, found by trying.
   std::vector<int> nodesNotLookedAt() {
     std::vector<int> unseen;
     for (int n = 0; n < body->m_nodes.size(); ++n) {
       const btVector3 here = body->m_nodes[n].m_x;
       body->m_nodes[n].m_x += btVector3(0, 1, 0);
-      if (skin.update() == UpdateStatus::Asleep) unseen.push_back(n);
+      if (skin.update() == StatusCode::Asleep) unseen.push_back(n);
       body->m_nodes[n].m_x = here;
       (void)skin.update();
     }
     return unseen;
   }
 
-  static Eigen::Vector3d at(const SoftBodySkin& of, std::size_t v) {
-    const btScalar* p = of.positions()[v];
+  static Eigen::Vector3d at(const SoftBodySkin& body, std::size_t v) {
+    const btScalar* p = body.positions()[v];
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
   }
 

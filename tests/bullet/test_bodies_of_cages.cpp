@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies of cages that know their fill, factor and masses, and of cages with copies of tets.
+// Bodies made from cages that carry volume fractions, stiffness factors and masses, and from cages with duplicate
+// elements.
 #include "deformable_test.h"
 #include "support/two_plates.h"
 
@@ -17,10 +18,10 @@ using test::TetskinWorld;
 
 constexpr double kDensity = 7.0;
 
-/// High up, with its masses and all.
+/// The cage of two plates with all its data, high above the floor.
 Cage plates(double joinedUntil = -1.0) {
   Cage cage = test::platesOfCopies(joinedUntil).cage;
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += 20.0;
+  for (Eigen::Vector3d& p : cage.mesh.nodes) p.y() += 20.0;
   return cage;
 }
 
@@ -47,7 +48,7 @@ TEST(BodiesOfCages, HaveItsMassesTimesTheDensity) {
   const Cage cage = plates();
   TetskinWorld world;
   const std::vector<double> masses = massesOf(addedCage(world, cage, dense())->body());
-  ASSERT_EQ(masses.size(), cage.nodeCount());
+  ASSERT_EQ(masses.size(), cage.mesh.nodeCount());
   for (std::size_t n = 0; n < masses.size(); ++n) EXPECT_NEAR(masses[n] / (kDensity * cage.masses[n]), 1.0, 1e-6);
 }
 
@@ -61,7 +62,7 @@ TEST(BodiesOfCages, DistributeAGivenMassAsItsMasses) {
   EXPECT_NEAR(masses[1] / masses[0], cage.masses[1] / cage.masses[0], 1e-5);
 }
 
-/// Positions after some steps.
+/// The nodes' positions after some steps.
 std::vector<btVector3> fallen(const Cage& cage, const SoftBodyOptions& options) {
   TetskinWorld world;
   const auto body = addedCage(world, cage, options);
@@ -84,9 +85,9 @@ TEST_P(ModelsOfCages, MoveAsIfItsValuesWereGivenByHand) {
   options.youngsModulus = 500.0;
   const auto known = fallen(cage, options);
   for (const double mass : cage.masses) options.nodeMasses.push_back(kDensity * mass);
-  const auto plain = fallen(TetMesh(cage), options);
+  const auto plain = fallen(TetMesh(cage.mesh), options);
   options.stiffnessScale = cage.stiffnessScale();
-  const auto byHand = fallen(TetMesh(cage), options);
+  const auto byHand = fallen(TetMesh(cage.mesh), options);
   ASSERT_EQ(known.size(), byHand.size());
   bool same = true, sameWithoutStiffness = true;
   for (std::size_t n = 0; n < known.size(); ++n) {
@@ -102,8 +103,8 @@ TEST(BodiesOfCages, GiveBulletsForcesTheStiffnessAsTheMeasureOfATet) {
   const std::vector<double> scale = cage.stiffnessScale();
   for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::LinearElasticity, ForceModel::Corotated}) {
     btSoftBodyWorldInfo info;
-    const auto known = makeSoftBody(cage, info, dense(model)).value();
-    const auto plain = makeSoftBody(TetMesh(cage), info, dense(model)).value();
+    const auto known = createSoftBody(cage, info, dense(model)).value();
+    const auto plain = createSoftBody(TetMesh(cage.mesh), info, dense(model)).value();
     for (int t = 0; t < known->m_tetras.size(); ++t) {
       const double ratio =
           static_cast<double>(known->m_tetras[t].m_element_measure / plain->m_tetras[t].m_element_measure);
@@ -117,30 +118,30 @@ TEST(BodiesOfCages, OfMassAndSpringsTakeAFilledCageButNoStiffness) {
   const Cage cage = plates();
   btSoftBodyWorldInfo info;
   SoftBodyOptions options = dense(ForceModel::MassSpring);
-  EXPECT_TRUE(withCage(cage, options).stiffnessScale.empty());
-  const auto made = makeSoftBody(cage, info, options);
+  EXPECT_TRUE(withCageDefaults(cage, options).stiffnessScale.empty());
+  const auto made = createSoftBody(cage, info, options);
   ASSERT_TRUE(made.ok()) << made.status().message;
   EXPECT_NEAR(massesOf(*made.value())[3] / (kDensity * cage.masses[3]), 1.0, 1e-6);
   options.stiffnessScale = cage.stiffnessScale();
-  EXPECT_EQ(makeSoftBody(cage, info, options).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(createSoftBody(cage, info, options).status().code, StatusCode::InvalidOption);
 }
 
 TEST(BodiesOfCages, LeaveGivenOptionsAlone) {
   const Cage cage = plates();
   SoftBodyOptions options = dense();
-  options.nodeMasses.assign(cage.nodeCount(), 0.25);
-  options.stiffnessScale.assign(cage.tetCount(), 0.75);
-  const SoftBodyOptions with = withCage(cage, options);
+  options.nodeMasses.assign(cage.mesh.nodeCount(), 0.25);
+  options.stiffnessScale.assign(cage.mesh.tetCount(), 0.75);
+  const SoftBodyOptions with = withCageDefaults(cage, options);
   EXPECT_EQ(with.nodeMasses, options.nodeMasses);
   EXPECT_EQ(with.stiffnessScale, options.stiffnessScale);
   EXPECT_EQ(with.density, kDensity);
-  const SoftBodyOptions plain = withCage(TetMesh(cage), dense());
+  const SoftBodyOptions plain = withCageDefaults(TetMesh(cage.mesh), dense());
   EXPECT_TRUE(plain.nodeMasses.empty() && plain.stiffnessScale.empty());
 }
 
 TEST(BodiesOfCages, RefuseACageThatMakesNoSense) {
   Cage cage = plates();
-  cage.factor[2] = 0.0;
+  cage.stiffnessFactor[2] = 0.0;
   TetskinWorld world;
   EXPECT_EQ(DeformableBody::add(world.deformable(), cage, dense()).status().code, StatusCode::InvalidOption);
   cage = plates();
@@ -149,26 +150,27 @@ TEST(BodiesOfCages, RefuseACageThatMakesNoSense) {
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
-/// How far the outermost sheets of two plates come apart at their ends, where they are pulled apart; the other ends are
-/// held.
-double opening(Cage cage, const test::TwoPlates& of) {
-  const std::vector<VertexBinding> bindings = embed(cage, of.mesh).value().bindings();
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += 20.0;
+/// How far the outermost sheets of two plates separate at the ends where they are pulled apart; the other ends are
+/// pinned.
+double opening(Cage cage, const test::TwoPlates& item) {
+  const std::vector<VertexBinding> bindings = embed(cage, item.mesh).value().bindings();
+  for (Eigen::Vector3d& p : cage.mesh.nodes) p.y() += 20.0;
   SoftBodyOptions options;
-  options.nodeMasses.assign(cage.nodeCount(), 0.1);
-  options.stiffnessScale.assign(cage.tetCount(), 1.0);
+  options.nodeMasses.assign(cage.mesh.nodeCount(), 0.1);
+  options.stiffnessScale.assign(cage.mesh.tetCount(), 1.0);
   options.youngsModulus = 200.0;
-  options.damping = 0.05;
+  options.stiffnessDamping = 0.05;
   options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
   TetskinWorld world;
   const auto body = addedCage(world, cage, options);
   EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
 
-  const std::size_t lower = of.plateVertices / 2 - 4, upper = of.mesh.vertexCount() - 4;  // in the middle of the ends
+  const std::size_t lower = item.plateVertices / 2 - 4,
+                    upper = item.mesh.vertexCount() - 4;  // middle of the ends
   const auto height = [&](std::size_t vertex) {
     btScalar y = 0;
     for (int k = 0; k < 4; ++k) {
-      y += bindings[vertex].weights[k] * body->body().m_nodes[cage.tets[bindings[vertex].tet][k]].m_x.y();
+      y += bindings[vertex].weights[k] * body->body().m_nodes[cage.mesh.tets[bindings[vertex].tet][k]].m_x.y();
     }
     return static_cast<double>(y);
   };
@@ -178,7 +180,7 @@ double opening(Cage cage, const test::TwoPlates& of) {
   for (int s = 0; s < 480; ++s) {
     for (const auto& [vertex, force] : {std::pair{upper, kPull}, std::pair{lower, -kPull}}) {
       for (int k = 0; k < 4; ++k) {
-        btSoftBody::Node& node = body->body().m_nodes[cage.tets[bindings[vertex].tet][k]];
+        btSoftBody::Node& node = body->body().m_nodes[cage.mesh.tets[bindings[vertex].tet][k]];
         node.m_v += btVector3(0, kStep * force * bindings[vertex].weights[k] * node.m_im, 0);
       }
     }

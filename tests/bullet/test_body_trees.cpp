@@ -14,13 +14,13 @@ using test::added;
 using test::smallCageAbove;
 using test::step;
 using test::TetskinWorld;
-using test::twoParts;
+using test::twoComponents;
 
 struct Ray {
   btVector3 from, to;
 };
 
-/// Rays from all around to points in and near the body, of which some are missed by it, and on.
+/// Rays from all around through points in and near the body; some miss it.
 std::vector<Ray> raysAround(const btSoftBody& body, unsigned seed) {
   Box3 box;
   for (int n = 0; n < body.m_nodes.size(); ++n) box.extend(toEigen(body.m_nodes[n].m_x));
@@ -33,7 +33,7 @@ std::vector<Ray> raysAround(const btSoftBody& body, unsigned seed) {
   return rays;
 }
 
-/// Where the ray meets the body's first face, as a fraction of it; 1 if it meets none.
+/// Where the ray first hits a face of the body, as a fraction of the ray; 1 if it hits none.
 double nearestHit(const btSoftBody& body, const Ray& ray) {
   btScalar nearest = 1;
   for (int f = 0; f < body.m_faces.size(); ++f) {
@@ -52,13 +52,13 @@ double hitIn(const btCollisionWorld& world, const btSoftBody& body, const Ray& r
                                                                   : 1.0;
 }
 
-/// Every ray that meets the body before the floor meets it where brute force does.
+/// Every ray that hits the body before the floor hits it where brute force says.
 void expectRaysAsByBruteForce(const btCollisionWorld& world, const btSoftBody& body, unsigned seed) {
   int hits = 0;
   for (const Ray& ray : raysAround(body, seed)) {
     const double expected = nearestHit(body, ray);
-    const btVector3 meets = ray.from + static_cast<btScalar>(expected) * (ray.to - ray.from);
-    if (meets.y() < 0 || ray.from.y() < 0) continue;
+    const btVector3 collides = ray.from + static_cast<btScalar>(expected) * (ray.to - ray.from);
+    if (collides.y() < 0 || ray.from.y() < 0) continue;
     ASSERT_NEAR(hitIn(world, body, ray), expected, 1e-6) << "ray " << hits;
     hits += expected < 1.0;
   }
@@ -67,7 +67,7 @@ void expectRaysAsByBruteForce(const btCollisionWorld& world, const btSoftBody& b
 
 TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
   TetskinWorld world;
-  const auto body = added(world, twoParts(smallCageAbove(0.5)));
+  const auto body = added(world, twoComponents(smallCageAbove(0.5)));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 1);
   step(world, 3);
   expectRaysAsByBruteForce(world.deformable(), body->body(), 2);
@@ -77,7 +77,7 @@ TEST(BodyTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
 
 TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
   TetskinWorld world;
-  const auto body = added(world, twoParts(smallCageAbove(0.5)));
+  const auto body = added(world, twoComponents(smallCageAbove(0.5)));
   step(world, 10);
   body->body().translate(btVector3(5, 1, 0));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 1);
@@ -89,7 +89,7 @@ TEST(BodyTrees, FollowABodyThatIsMovedByHand) {
 
 TEST(BodyTrees, AreRightForASleeperAlsoOnceItIsMoved) {
   TetskinWorld world;
-  const auto body = added(world, twoParts(smallCageAbove(0.05)));
+  const auto body = added(world, twoComponents(smallCageAbove(0.05)));
   for (int frame = 0; body->body().isActive() && frame < 900; ++frame) step(world, 1);
   ASSERT_FALSE(body->body().isActive());
   step(world, 2);
@@ -107,14 +107,14 @@ using ClassicWorlds = testing::Types<test::RigidWorld, test::MultiBodyWorld>;
 TYPED_TEST_SUITE(ClassicTrees, ClassicWorlds);
 
 TYPED_TEST(ClassicTrees, RaysMeetABodyOfTwoPartsAsByBruteForce) {
-  TypeParam world(twoParts(smallCageAbove(0.5)));
+  TypeParam world(twoComponents(smallCageAbove(0.5)));
   expectRaysAsByBruteForce(*world.world, world.body(), 1);
   for (int k = 0; k < 20; ++k) world.world->stepSimulation(btScalar(1) / 60);
   expectRaysAsByBruteForce(*world.world, world.body(), 2);
 }
 
 TEST(BodyTrees, StayThroughNewMassesSoThatTheNextStepDoesNotHang) {
-  test::DeformableWorld bare(twoParts(smallCageAbove(0.5)));
+  test::DeformableWorld bare(twoComponents(smallCageAbove(0.5)));
   const auto stepped = [&] {
     bare.world->stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
     expectRaysAsByBruteForce(*bare.world, bare.body(), 1);
@@ -133,7 +133,7 @@ TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
   TetskinWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 1.2; };
-  const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
+  const auto body = added(world, twoComponents(smallCageAbove(0.5)), options);
   step(world, 5);
   for (int n = 0; n < body->body().m_nodes.size(); ++n) {
     if (body->isPinned(n)) body->body().setMass(n, btScalar(0.01));
@@ -146,14 +146,14 @@ TEST(BodyTrees, OfADeformableBodyStayThroughBulletsOwnSetMass) {
 
 TEST(BodyTrees, AreBuiltAnewForFacesAndNodesThatWereAdded) {
   TetskinWorld world;
-  const auto body = added(world, twoParts(smallCageAbove(0.5)));
+  const auto body = added(world, twoComponents(smallCageAbove(0.5)));
   btSoftBody& soft = body->body();
   const btDbvtNode* root = soft.m_fdbvt.m_root;
   soft.m_bUpdateRtCst = true;
   updateConstants(soft);
-  EXPECT_EQ(soft.m_fdbvt.m_root, root);  // nothing to do
+  EXPECT_EQ(soft.m_fdbvt.m_root, root);  // nothing needs to be done
   soft.m_bUpdateRtCst = true;
-  soft.appendFace(0, 30, 60);  // the array of faces moves, and all that point into it
+  soft.appendFace(0, 30, 60);  // the array of faces moves, and so does everything that points into it
   updateConstants(soft);
   EXPECT_FALSE(soft.m_bUpdateRtCst);
   expectRaysAsByBruteForce(world.deformable(), soft, 1);
@@ -163,7 +163,7 @@ TEST(BodyTrees, LeftOutLetRaysMissAndNothingHang) {
   SoftBodyOptions options;
   options.faceTree = false;
   TetskinWorld world;
-  const auto body = added(world, twoParts(smallCageAbove(0.5)), options);
+  const auto body = added(world, twoComponents(smallCageAbove(0.5)), options);
   const auto expectMisses = [&] {
     for (const Ray& ray : raysAround(body->body(), 1)) EXPECT_EQ(hitIn(world.deformable(), body->body(), ray), 1.0);
   };
@@ -183,7 +183,7 @@ TEST(BodyTrees, LeftOutInAClassicWorldMeetTheTets) {
   SoftBodyOptions options;
   options.faceTree = false;
   options.forceModel = ForceModel::MassSpring;
-  test::RigidWorld world(twoParts(smallCageAbove(3)), options);
+  test::RigidWorld world(twoComponents(smallCageAbove(3)), options);
   for (int k = 0; k < 5; ++k) world.world->stepSimulation(btScalar(1) / 60);
   expectRaysAsByBruteForce(*world.world, world.body(), 1);
   world.body().translate(btVector3(0, 1, 0));
@@ -192,13 +192,13 @@ TEST(BodyTrees, LeftOutInAClassicWorldMeetTheTets) {
 }
 
 TYPED_TEST(ClassicTrees, AreThereAgainAfterAStepThatDeletesThem) {
-  TypeParam world(twoParts(smallCageAbove(3)));
+  TypeParam world(twoComponents(smallCageAbove(3)));
   btSoftBody& body = world.body();
-  body.setTotalMass(5);  // Bullet's own: the next step deletes the tree of faces, and they keep pointing into it
+  body.setTotalMass(5);  // Bullet's own: the next step deletes the tree of faces, but the faces keep pointing into it
   world.world->stepSimulation(btScalar(1) / 60);
   expectRaysAsByBruteForce(*world.world, body, 1);
   ASSERT_EQ(body.m_nodes.size(), body.m_nodes.capacity());
-  body.appendNode(btVector3(0, 9, 0), 1);  // moves the nodes, and tells every leaf
+  body.appendNode(btVector3(0, 9, 0), 1);  // moves the nodes and updates every leaf
   for (int f = 0; f < body.m_faces.size(); ++f) ASSERT_EQ(body.m_faces[f].m_leaf->data, &body.m_faces[f]);
 }
 
@@ -206,7 +206,7 @@ TEST(BodyTrees, LeftOutStayLeftOutWhereNodesAreAppended) {
   btSoftBodyWorldInfo info;
   SoftBodyOptions options;
   options.faceTree = false;
-  const std::unique_ptr<btSoftBody> body(makeSoftBody(smallCageAbove(0), info, options).value());
+  const std::unique_ptr<btSoftBody> body(createSoftBody(smallCageAbove(0), info, options).value());
   body->appendNode(btVector3(0, 9, 0), 1);
   for (const Ray& ray : raysAround(*body, 1)) {
     btSoftBody::sRayCast hit;
@@ -218,7 +218,7 @@ TEST(BodyTrees, LeftOutStayLeftOutWhereNodesAreAppended) {
 
 TEST(BodyTrees, OfAnExplodedBodyAreBuilt) {
   btSoftBodyWorldInfo info;
-  const std::unique_ptr<btSoftBody> body(makeSoftBody(smallCageAbove(0), info).value());
+  const std::unique_ptr<btSoftBody> body(createSoftBody(smallCageAbove(0), info).value());
   for (int n = 0; n < body->m_nodes.size(); n += 3) body->m_nodes[n].m_x.setX(btScalar(NAN));
   buildTrees(*body);
   EXPECT_EQ(body->m_fdbvt.m_leaves, body->m_faces.size());
@@ -229,8 +229,8 @@ TEST(BulletsFaceTreeDeathTest, NeverEndsForABodyOfTwoParts) {
   EXPECT_EXIT(
       {
         btSoftBodyWorldInfo info;
-        const std::unique_ptr<btSoftBody> body(makeSoftBody(twoParts(test::singleTet()), info).value());
-        alarm(1);  // for eight faces
+        const std::unique_ptr<btSoftBody> body(createSoftBody(twoComponents(test::singleTet()), info).value());
+        alarm(1);  // a second is ample for eight faces
         body->initializeFaceTree();
       },
       testing::KilledBySignal(SIGALRM), "");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/bullet/bullet_parallel_for.h>
+#include <tetskin/bullet/soft_body.h>
 
 #include <algorithm>
 #include <memory>
@@ -19,7 +19,7 @@ void expectEachTaskOnce() {
   }
 }
 
-/// Hands out pieces from the last to the first, and counts them: what an application's own scheduler may do.
+/// Hands out tasks from the last to the first and counts them, as an application's own scheduler may do.
 class BackwardsScheduler : public btITaskScheduler {
  public:
   BackwardsScheduler() : btITaskScheduler("backwards") {}
@@ -53,7 +53,7 @@ TEST_F(BulletThreads, RunsOnBulletsSequentialScheduler) {
 }
 
 TEST_F(BulletThreads, RunsOnBulletsDefaultSchedulerIfThereIsOne) {
-  // Null where Bullet was built without BT_THREADSAFE.
+  // This is null where Bullet was built without BT_THREADSAFE.
   const std::unique_ptr<btITaskScheduler> scheduler(btCreateDefaultTaskScheduler());
   btSetTaskScheduler(scheduler.get());
   expectEachTaskOnce();

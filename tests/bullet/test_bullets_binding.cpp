@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How Bullet binds a render mesh to tets or faces, beside how we do: where both agree, and the defects of its own path
-// that can be reproduced with the installed Bullet. The table in tests/README.md names these tests.
+// How Bullet binds a render mesh to tets or faces, compared with this library: where both agree, and the defects of
+// Bullet's path that can be reproduced with the installed version. The table in tests/README.md names these tests.
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ using test::figure;
 using test::Points;
 
 constexpr bool kDouble = sizeof(btScalar) == 8;
-/// Of slivers, over their size: about.
+/// The approximate thickness of slivers relative to their size.
 constexpr double kThickness = 1e-3;
 
 class BulletsBinding : public test::RenderMeshes {
  protected:
-  /// The tet that Bullet chose, by its nodes; -1 if none.
+  /// The tet that Bullet chose, identified by its nodes; -1 if none.
   int bulletsTet(int v) const {
     const auto& parents = body->m_renderNodesParents[v];
     if (parents.size() != 4) return -1;
@@ -41,7 +41,7 @@ class BulletsBinding : public test::RenderMeshes {
 };
 
 TEST_F(BulletsBinding, AgreesWithOursOnGoodCages) {
-  // Irregular: in a lattice, vertices outside have several equally good tets.
+  // The cage is irregular because in a lattice several tets are equally good for a vertex outside.
   TetMesh irregular = test::latticeCage(4, 4, 4, 0.25);
   const auto noise =
       test::randomPoints(irregular.nodeCount(), {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.06)}, 5);
@@ -61,7 +61,7 @@ TEST_F(BulletsBinding, AgreesWithOursOnGoodCages) {
     const int tet = bulletsTet(v);
     ASSERT_GE(tet, 0);
     if (tet != bindings[v].tet) {
-      // Bullet decides in its own precision: it may differ where two tets are equally good.
+      // Bullet decides in its own precision: it may choose differently where two tets are equally good.
       EXPECT_NEAR(barycentric(tet, vertices[v]), barycentric(bindings[v].tet, vertices[v]), 1e-5);
       ++otherTets;
       continue;
@@ -71,7 +71,7 @@ TEST_F(BulletsBinding, AgreesWithOursOnGoodCages) {
   EXPECT_LE(otherTets, kDouble ? 0 : 3);
 }
 
-/// Farther than 1,000 altitudes from every tet, Bullet keeps no tet, and draws the vertex at the world's origin.
+/// Bullet binds no vertex that is farther than 1,000 altitudes from every tet, and draws it at the world's origin.
 TEST_F(BulletsBinding, DrawsAFarVertexAtTheOrigin) {
   make(test::latticeCage(4, 4, 4, 0.25));
   bindBoth({{400.0, 0.3, 0.4}});
@@ -82,7 +82,8 @@ TEST_F(BulletsBinding, DrawsAFarVertexAtTheOrigin) {
   EXPECT_LT((ours(0) - Eigen::Vector3d(400.0, 2.3, 0.4)).norm(), 1e-2);
 }
 
-/// The same without any tet: with faces and links only, such as a cloth's. We refuse, and say why.
+/// Bullet draws a vertex at the world's origin also where a body has no tets, only faces and links, such as a cloth.
+/// This library refuses such a body and says why.
 TEST_F(BulletsBinding, DrawsABodyWithoutTetsAtTheOrigin) {
   make(test::latticeCage(1, 1, 1));
   while (body->m_tetras.size() > 0) body->m_tetras.pop_back();
@@ -111,13 +112,13 @@ TEST_F(BulletsBinding, StoresWeightsThatWereNeverSet) {
   EXPECT_GT(difference, 0.1);
 }
 
-/// Tets without volume but for rounding, each the only one of a body: Bullet divides by their volume.
+/// The only tet of each body has no volume except for rounding, and Bullet divides by that volume.
 TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
   const int trials = 1000;
   int bound = 0, inside = 0, notFinite = 0, lost = 0;
   const Points corners = test::randomPoints(3 * trials, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 9);
   for (int trial = 0; trial < trials; ++trial) {
-    // The fourth corner lies in the plane of the others, the vertex at the fourth corner.
+    // The fourth corner lies in the plane of the others, and the vertex lies at the fourth corner.
     const Eigen::Vector3d &a = corners[3 * trial], &b = corners[3 * trial + 1], &c = corners[3 * trial + 2];
     const Eigen::Vector3d d = 0.3 * a + 0.5 * b + 0.2 * c;
     make(test::singleTet());
@@ -133,9 +134,9 @@ TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
     const btVector4 w = body->m_renderNodesInterpolationWeights[0];
     inside += w[0] >= 0 && w[1] >= 0 && w[2] >= 0 && w[3] >= 0;
     notFinite += !std::isfinite(w[0]) || !std::isfinite(w[1]) || !std::isfinite(w[2]) || !std::isfinite(w[3]);
-    if (!skin.bind(*body, meshOf({d})).ok()) continue;  // refused as flat
+    if (!skin.bind(*body, meshOf({d})).ok()) continue;  // refused because it is flat
     vertices = {d};
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
     EXPECT_LT((ours(0) - d).norm(), 1e-5);
   }
   figure("flat tets taken, of 1,000", bound);
@@ -146,7 +147,8 @@ TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
   EXPECT_GT(notFinite, 0);
 }
 
-/// Four independent quotients: on slivers, an error that grows with the distance to the world's origin.
+/// Bullet computes the four weights as independent quotients: on slivers, their error grows with the distance to the
+/// world's origin.
 TEST_F(BulletsBinding, HasWeightsThatDoNotSumToOne) {
   const int trials = 1000;
   const btVector3 away(1000, 0, 0);
@@ -176,7 +178,7 @@ TEST_F(BulletsBinding, HasWeightsThatDoNotSumToOne) {
   EXPECT_GT(bulletsError, (kDouble ? 0.0 : 30.0) * oursError);
 }
 
-/// The least negative weight is a distance over an altitude: a big tet far away beats a thin one near by.
+/// The least negative weight is a distance divided by an altitude: a big tet far away wins over a thin one nearby.
 TEST_F(BulletsBinding, TakesABigInnerTetInsteadOfTheThinLayerBelowTheVertex) {
   make(test::thinLayerCage(0.02));
   const Box3 box = boundingBox(cage.nodes);
@@ -199,12 +201,12 @@ TEST_F(BulletsBinding, TakesABigInnerTetInsteadOfTheThinLayerBelowTheVertex) {
   EXPECT_LT(bulletsInLayer, 40);
 }
 
-/// Bullet binds wherever the nodes are now; a mesh in its rest place then gets the weights of another place.
+/// Bullet binds to the nodes' current positions; a mesh at rest then gets the weights of a different position.
 TEST_F(BulletsBinding, BindsAtTheCurrentShapeWhateverTheMeshWasMadeFor) {
   make(test::latticeCage(4, 4, 4, 0.25));
   const Points rest = test::randomPoints(500, boundingBox(cage.nodes), 8);
   const TetMesh restCage = cage;
-  body->translate(btVector3(btScalar(0.4), 0, 0));  // it has fallen a little before it is bound
+  body->translate(btVector3(btScalar(0.4), 0, 0));  // the body has fallen a little before it is bound
   test::setRenderNodes(*body, rest);
   btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
   ASSERT_TRUE(skin.bind(*body, restCage, meshOf(rest)).ok());
@@ -225,7 +227,7 @@ TEST_F(BulletsBinding, BindsAtTheCurrentShapeWhateverTheMeshWasMadeFor) {
 /// Render nodes bound to faces.
 class BulletsFaces : public BulletsBinding {
  protected:
-  /// A hollow ball: nodes and faces of a sphere, with a cage of its own for ours.
+  /// A hollow ball: nodes and faces of a sphere; this library binds to a cage of its own.
   void makeBall(int rings) {
     const TriangleMesh ball = test::sphere(rings, 1.0, Eigen::Vector3d::Zero());
     std::vector<btVector3> nodes;
@@ -240,8 +242,8 @@ class BulletsFaces : public BulletsBinding {
   }
 };
 
-/// While it has found no face above which a vertex lies, Bullet takes any, however far: on a convex body the opposite
-/// one.
+/// Where Bullet has not yet found a face above which a vertex lies, it takes any face, however far away: on a convex
+/// body, one on the opposite side.
 TEST_F(BulletsFaces, AreOnTheFarSideForSomeVertices) {
   makeBall(12);
   Points above = test::randomPoints(4000, {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)}, 7);
@@ -256,7 +258,7 @@ TEST_F(BulletsFaces, AreOnTheFarSideForSomeVertices) {
   figure("vertices 2 % outside a ball bound to its far side, of 4,000", farSide);
   EXPECT_GT(farSide, 0);
 
-  const TetMesh lattice = test::latticeCage(8, 8, 8, 0.25);  // ours, with a cage of the ball's size
+  const TetMesh lattice = test::latticeCage(8, 8, 8, 0.25);  // for this library: a cage of the ball's size
   make({test::scaledAndMoved(lattice.nodes, 1.0, Eigen::Vector3d::Constant(-1.0)), lattice.tets});
   ASSERT_TRUE(skin.bind(*body, cage, meshOf(above)).ok());
   const auto bindings = skin.binding()->embedding().bindings();
@@ -266,7 +268,7 @@ TEST_F(BulletsFaces, AreOnTheFarSideForSomeVertices) {
   }
 }
 
-/// The offset from a face is a length of its own that `scale` leaves alone.
+/// The offset from a face is a separate length that `scale` does not change.
 TEST_F(BulletsFaces, KeepTheirOffsetsWhenTheBodyIsScaled) {
   const btVector3 nodes[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0)};
   const Eigen::Vector3d vertex(0.25, 0.25, 0.5);
@@ -287,13 +289,13 @@ TEST_F(BulletsFaces, KeepTheirOffsetsWhenTheBodyIsScaled) {
   EXPECT_NEAR(ours(0).z(), 1.0, 1e-5);
 }
 
-/// Each face has a normal and an offset of its own: the surface comes apart at their edges when they bend.
+/// Each face has a normal and an offset of its own: the surface comes apart at the faces' edges when they bend.
 TEST_F(BulletsFaces, TearTheSurfaceAtTheirEdgesWhenBent) {
   const btVector3 nodes[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(1, 1, 0), btVector3(0, 1, 0)};
   body = std::make_unique<btSoftBody>(&info, 4, nodes, nullptr);
   body->appendFace(0, 1, 2);
   body->appendFace(0, 2, 3);
-  test::setRenderNodes(*body, {{0.5005, 0.4995, 0.3}, {0.4995, 0.5005, 0.3}});  // either side of the edge
+  test::setRenderNodes(*body, {{0.5005, 0.4995, 0.3}, {0.4995, 0.5005, 0.3}});  // on either side of the edge
   btSoftBodyHelpers::extrapolateBarycentricWeights(body.get());
   body->m_nodes[3].m_x = btVector3(btScalar(0.3), btScalar(0.7), btScalar(0.6));  // folded about the edge
   body->interpolateRenderMesh();
@@ -301,7 +303,7 @@ TEST_F(BulletsFaces, TearTheSurfaceAtTheirEdgesWhenBent) {
   figure("gap between vertices 0.0014 apart, of a face bent about their edge", gap);
   EXPECT_GT(gap, 0.1);
 
-  // Ours, above a cage of two tets a side that share the edge's plane, folded likewise.
+  // This library binds to a cage of two tets per side that share the edge's plane, folded in the same way.
   make(test::latticeCage(2, 2, 1, 0.5));
   bindBoth({{0.5005, 0.4995, 0.8}, {0.4995, 0.5005, 0.8}});
   for (int n = 0; n < body->m_nodes.size(); ++n) {
@@ -313,7 +315,7 @@ TEST_F(BulletsFaces, TearTheSurfaceAtTheirEdgesWhenBent) {
   EXPECT_LT((ours(0) - ours(1)).norm(), 0.01);
 }
 
-/// A face that has collapsed has no normal, and Bullet divides by its length.
+/// A face that has collapsed has no normal, and Bullet divides by the normal's length.
 TEST_F(BulletsFaces, GiveVerticesThatAreNotNumbersWhenCollapsed) {
   const btVector3 nodes[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0)};
   body = std::make_unique<btSoftBody>(&info, 3, nodes, nullptr);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// When and what Bullet updates of a render mesh, beside what we do: the defects of its own path that can be reproduced
-// with the installed Bullet. The table in tests/README.md names these tests.
+// When and what Bullet updates in a render mesh, compared with this library: the defects of Bullet's path that can be
+// reproduced with the installed version. The table in tests/README.md names these tests.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ using test::figure;
 using test::Points;
 
 constexpr btScalar kStep = btScalar(1) / 240;
-/// Where no update puts a vertex.
+/// A position that no update gives to a vertex.
 const btVector3 kNowhere(-77, -77, -77);
 
 TetMesh cube() {
@@ -44,10 +44,10 @@ struct Both {
     mesh.positions = vertices;
     EXPECT_TRUE(skin.bind(body, cube(), mesh).ok());
   }
-  /// Forgets where Bullet last put its first vertex.
+  /// Overwrites the position that Bullet last gave to its first vertex.
   void forget() { body.m_renderNodes[0].m_x = kNowhere; }
   bool bulletHasUpdated() const { return body.m_renderNodes[0].m_x != kNowhere; }
-  /// Lets it fall asleep, and then some.
+  /// Steps until the body sleeps, and then one step more.
   void letSleep() {
     for (int step = 0; step < 3000 && body.isActive(); ++step) {
       world.world->stepSimulation(kStep, 1, kStep);
@@ -59,7 +59,7 @@ struct Both {
   }
 };
 
-/// Looks after every substep at whether Bullet has updated its render mesh.
+/// Checks after every substep whether Bullet has updated its render mesh.
 class CountUpdates : public btActionInterface {
  public:
   explicit CountUpdates(Both<test::DeformableWorld>& watched) : both(watched) { both.world.world->addAction(this); }
@@ -74,7 +74,7 @@ class CountUpdates : public btActionInterface {
   int count = 0;
 };
 
-/// Only the last of a frame's updates is ever drawn.
+/// Bullet updates in every substep, although only the last update of a frame is ever drawn.
 TEST(BulletsUpdates, HappenInEverySubstep) {
   Both<test::DeformableWorld> both;
   CountUpdates updates(both);
@@ -82,7 +82,7 @@ TEST(BulletsUpdates, HappenInEverySubstep) {
   ASSERT_EQ(both.world.world->stepSimulation(btScalar(10.01) * kStep, 10, kStep), 10);
   figure("Bullet's updates in a frame of 10 substeps", updates.count);
   EXPECT_EQ(updates.count, 10);
-  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);  // ours: this one
+  EXPECT_EQ(both.skin.update(), StatusCode::Ok);  // the library's only update for this frame
 }
 
 TEST(BulletsUpdates, HappenWhileTheBodySleeps) {
@@ -91,7 +91,7 @@ TEST(BulletsUpdates, HappenWhileTheBodySleeps) {
   both.forget();
   both.world.world->stepSimulation(kStep, 1, kStep);
   EXPECT_TRUE(both.bulletHasUpdated());
-  EXPECT_EQ(both.skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(both.skin.update(), StatusCode::Asleep);
 }
 
 TEST(BulletsUpdates, NeverHappenInASoftRigidWorld) {
@@ -100,7 +100,7 @@ TEST(BulletsUpdates, NeverHappenInASoftRigidWorld) {
   for (int step = 0; step < 100; ++step) both.world.world->stepSimulation(kStep, 1, kStep);
   EXPECT_FALSE(both.bulletHasUpdated());
   const double before = both.skin.bounds().min().y();
-  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(both.skin.update(), StatusCode::Ok);
   EXPECT_LT(both.skin.bounds().min().y(), before - 0.1);
 }
 
@@ -109,20 +109,20 @@ TEST(BulletsUpdates, HappenInASoftMultiBodyWorldAsOursDo) {
   both.forget();
   both.world.world->stepSimulation(kStep, 1, kStep);
   EXPECT_TRUE(both.bulletHasUpdated());
-  EXPECT_EQ(both.skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(both.skin.update(), StatusCode::Ok);
 }
 
-/// Bullet calls its update where it has moved the nodes; what an application moves stays behind until the next step.
+/// Bullet updates where it has moved the nodes itself; what an application moves stays behind until the next step.
 TEST(BulletsUpdates, AreNotMadeByATransform) {
   Both<test::DeformableWorld> both;
   const btVector3 before = both.body.m_renderNodes[3].m_x;
   both.body.translate(btVector3(5, 0, 0));
   EXPECT_EQ(both.body.m_renderNodes[3].m_x, before);
-  ASSERT_EQ(both.skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(both.skin.update(), StatusCode::Ok);
   EXPECT_NEAR(static_cast<double>(both.skin.positions()[3][0]), both.vertices[3].x() + 5.0, 1e-5);
 }
 
-/// Asleep or not, we notice without being told.
+/// The library notices a teleport without being told, whether the body sleeps or not.
 TEST(BulletsUpdates, LeaveATeleportedSleeperBehind) {
   Both<test::DeformableWorld> both;
   both.letSleep();
@@ -130,14 +130,14 @@ TEST(BulletsUpdates, LeaveATeleportedSleeperBehind) {
   const btVector3 bullets = both.body.m_renderNodes[3].m_x;
   both.body.translate(btVector3(5, 0, 0));
   EXPECT_EQ(both.body.m_renderNodes[3].m_x, bullets);
-  ASSERT_EQ(both.skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(both.skin.update(), StatusCode::Ok);
   EXPECT_NEAR(both.skin.bounds().min().x(), before.min().x() + 5.0, 1e-5);
 }
 
 TEST(BulletsUpdates, NeverTouchNormals) {
   TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   btSoftBodyWorldInfo info;
-  const std::unique_ptr<btSoftBody> body(makeSoftBody(cage, info).value());
+  const std::unique_ptr<btSoftBody> body(createSoftBody(cage, info).value());
   TriangleMesh mesh;
   mesh.positions = {{0.5, 0.5, 0.5}};
   mesh.normals = {{0, 1, 0}};
@@ -150,17 +150,17 @@ TEST(BulletsUpdates, NeverTouchNormals) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
   body->rotate(btQuaternion(btVector3(0, 0, 1), btScalar(SIMD_HALF_PI)));
   body->interpolateRenderMesh();
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_EQ(body->m_renderNodes[0].m_normal, btVector3(0, 1, 0));
   EXPECT_LT((Eigen::Map<const Eigen::Vector3f>(skin.normals()[0]) - Eigen::Vector3f(-1, 0, 0)).norm(), 1e-5f);
 }
 
-/// The soft body's own node normals are those of the substep before.
+/// The soft body's own node normals are those of the previous substep.
 TEST(BulletsUpdates, LeaveNodeNormalsASubstepBehind) {
   Both<test::DeformableWorld> both;
   both.body.rotate(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)));
   both.body.updateNormals();
-  for (int n = 0; n < both.body.m_nodes.size(); ++n) {  // turning fast
+  for (int n = 0; n < both.body.m_nodes.size(); ++n) {  // the body turns fast
     const btVector3 arm = both.body.m_nodes[n].m_x - both.body.m_nodes[0].m_x;
     both.body.m_nodes[n].m_v = btVector3(0, 0, 20).cross(arm);
   }
@@ -177,8 +177,8 @@ TEST(BulletsUpdates, LeaveNodeNormalsASubstepBehind) {
   EXPECT_GT(worst, 0.04);
 }
 
-/// When the node array moves in memory, Bullet's tets and the parents of its render nodes stay pointing to where it
-/// was.
+/// When the node array moves in memory, Bullet's tets and the parents of its render nodes still point to its old
+/// address.
 TEST(BulletsUpdates, ReadThroughPointersLeftBehindByAppendNode) {
   Both<test::DeformableWorld> both;
   btSoftBody& body = both.body;
@@ -195,13 +195,13 @@ TEST(BulletsUpdates, ReadThroughPointersLeftBehindByAppendNode) {
   figure("tets with dangling pointers, of 162", danglingTets);
   EXPECT_EQ(dangling, body.m_renderNodes.size());
   EXPECT_EQ(danglingTets, body.m_tetras.size());
-  EXPECT_EQ(both.skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(both.skin.update(), StatusCode::TopologyChanged);
   EXPECT_LT(std::abs(static_cast<double>(both.skin.positions()[3][0]) - both.vertices[3].x()), 1e-5);
 }
 
 using BulletsUpdatesDeathTest = testing::Test;
 
-/// Render nodes that were added but never bound: Bullet reads past the end of an empty array in the next step.
+/// For render nodes that were added but never bound, Bullet reads past the end of an empty array in the next step.
 TEST_F(BulletsUpdatesDeathTest, CrashOnRenderNodesThatWereNeverBound) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_DEATH(
@@ -212,10 +212,10 @@ TEST_F(BulletsUpdatesDeathTest, CrashOnRenderNodesThatWereNeverBound) {
       },
       "");
   SoftBodySkin unbound;
-  EXPECT_EQ(unbound.update(), UpdateStatus::Unbound);
+  EXPECT_EQ(unbound.update(), StatusCode::Unbound);
 }
 
-/// Bound to faces, of which the body has none.
+/// The render nodes are bound to faces, but the body has none.
 TEST_F(BulletsUpdatesDeathTest, CrashOnABodyWithoutFaces) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_DEATH(

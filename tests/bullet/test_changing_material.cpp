@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A DeformableBody that is changed while it lives, and what it sets of its world.
+// A DeformableBody that is changed while it exists, and which settings of its world it changes.
 #include "deformable_test.h"
 
 namespace tetskin {
@@ -15,15 +15,15 @@ using test::rmsSpeed;
 using test::step;
 using test::TetskinWorld;
 
-/// A beam in the air, held at one end.
-std::unique_ptr<DeformableBody> heldBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {
+/// A beam in the air, pinned at one end.
+std::unique_ptr<DeformableBody> pinnedBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {
   TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
   for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
   options.forceModel = model;
   options.youngsModulus = youngsModulus;
-  options.damping = 0.05;
+  options.stiffnessDamping = 0.05;
   return added(world, beam, options);
 }
 
@@ -32,8 +32,8 @@ INSTANTIATE_TEST_SUITE_P(DeformableBody, Models, testing::Values(ForceModel::Neo
 
 TEST_P(Models, ANewStiffnessBendsAsIfItHadBeenThereFromTheStart) {
   EmptyWorld world, other;
-  const auto changed = heldBeam(world, GetParam(), 900);
-  const auto stiff = heldBeam(other, GetParam(), 6000);
+  const auto changed = pinnedBeam(world, GetParam(), 900);
+  const auto stiff = pinnedBeam(other, GetParam(), 6000);
   step(world, 60);
   step(other, 240);
   ASSERT_LT(lowest(changed->body()), lowest(stiff->body()) - 0.2);
@@ -46,8 +46,8 @@ TEST_P(Models, ANewStiffnessBendsAsIfItHadBeenThereFromTheStart) {
 TEST_P(Models, MoreDampingStopsASwingSooner) {
   const auto speedAfterASecond = [](double damping) {
     EmptyWorld world;
-    const auto body = heldBeam(world, GetParam(), 6000);
-    EXPECT_TRUE(body->setDamping(damping).ok());
+    const auto body = pinnedBeam(world, GetParam(), 6000);
+    EXPECT_TRUE(body->setStiffnessDamping(damping).ok());
     step(world, 60);
     return rmsSpeed(body->body());
   };
@@ -81,14 +81,14 @@ TEST(DeformableBody, RefusesAMaterialThatMakesNoSenseAndKeepsItsOwn) {
     EXPECT_EQ(body->setPoissonRatio(bad).code, StatusCode::InvalidOption) << bad;
   }
   for (const double bad : {-0.1, HUGE_VAL, std::nan("")}) {
-    EXPECT_EQ(body->setDamping(bad).code, StatusCode::InvalidOption) << bad;
+    EXPECT_EQ(body->setStiffnessDamping(bad).code, StatusCode::InvalidOption) << bad;
   }
   if (sizeof(btScalar) == sizeof(float)) {
     EXPECT_EQ(body->setYoungsModulus(1e39).code, StatusCode::InvalidOption);  // infinite as a float
   }
   EXPECT_EQ(body->youngsModulus(), stiffness);
   EXPECT_EQ(body->poissonRatio(), 0.3);
-  EXPECT_EQ(body->damping(), 0.02);
+  EXPECT_EQ(body->stiffnessDamping(), 0.02);
 }
 
 TEST(DeformableBody, IsNotMadeOfAMaterialBeyondBulletsNumbers) {
@@ -97,12 +97,12 @@ TEST(DeformableBody, IsNotMadeOfAMaterialBeyondBulletsNumbers) {
   options.youngsModulus = HUGE_VAL;
   EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
   options = {};
-  options.damping = HUGE_VAL;
+  options.stiffnessDamping = HUGE_VAL;
   EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), options).status().code, StatusCode::InvalidOption);
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
-/// Of Bullet's forces in Bullet's solver, and of the library's in its own.
+/// Gravity for Bullet's forces in Bullet's solver, and for the library's forces in its own solver.
 class Gravity : public testing::TestWithParam<ForceModel> {};
 INSTANTIATE_TEST_SUITE_P(DeformableBody, Gravity, testing::Values(ForceModel::NeoHookean, ForceModel::Corotated));
 
@@ -134,19 +134,19 @@ TEST(DeformableBody, NodesArePinnedAndLetGoWhileItMoves) {
   step(world, 10);
   const btVector3 where = body->body().m_nodes[0].m_x;
   const btScalar mass = body->body().getMass(0);
-  ASSERT_TRUE(body->pin(0).ok());
-  ASSERT_TRUE(body->pin(0).ok());
+  ASSERT_TRUE(body->setPinned(0).ok());
+  ASSERT_TRUE(body->setPinned(0).ok());
   EXPECT_TRUE(body->isPinned(0));
   step(world, 60);
   EXPECT_LT((body->body().m_nodes[0].m_x - where).length(), 1e-5);
-  EXPECT_GT(lowest(body->body()), 0.3);  // hangs from it
-  ASSERT_TRUE(body->unpin(0).ok());
+  EXPECT_GT(lowest(body->body()), 0.3);  // the body hangs from the pinned node
+  ASSERT_TRUE(body->setPinned(0, false).ok());
   EXPECT_FALSE(body->isPinned(0));
   EXPECT_EQ(body->body().getMass(0), mass);
   step(world, 180);
   EXPECT_LT(lowest(body->body()), 0.1);
-  EXPECT_EQ(body->pin(-1).code, StatusCode::IndexOutOfRange);
-  EXPECT_EQ(body->unpin(body->body().m_nodes.size()).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body->setPinned(-1).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body->setPinned(body->body().m_nodes.size(), false).code, StatusCode::IndexOutOfRange);
 }
 
 TEST(DeformableBody, LetsGoOfNodesThatWerePinnedFromTheStart) {
@@ -154,21 +154,56 @@ TEST(DeformableBody, LetsGoOfNodesThatWerePinnedFromTheStart) {
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d&) { return true; };
   options.mass = 3.0;
-  const auto body = added(world, test::twoParts(cageAbove(0.3)), options);
+  const auto body = added(world, test::twoComponents(cageAbove(0.3)), options);
   step(world, 10);
-  for (int n = 0; n < body->body().m_nodes.size(); ++n) ASSERT_TRUE(body->unpin(n).ok());
+  for (int n = 0; n < body->body().m_nodes.size(); ++n) ASSERT_TRUE(body->setPinned(n, false).ok());
   EXPECT_NEAR(body->body().getTotalMass(), 3.0, 1e-4);
   step(world, 60);
   EXPECT_LT(lowest(body->body()), 0.15);
 }
 
-/// What the world's solver was told in the last substep.
+TEST(DeformableBody, LeadsOnlyPinnedNodesToFinitePositions) {
+  TetskinWorld world;
+  const auto body = added(world, test::smallCageAbove(2));
+  const btVector3 start = body->body().m_nodes[0].m_x, target = start + btVector3(btScalar(0.25), 0, 0);
+  EXPECT_EQ(body->setPinnedPosition(0, target).code, StatusCode::InvalidOption) << "it is free";
+  ASSERT_TRUE(body->setPinned(0).ok());
+  EXPECT_EQ(body->setPinnedPosition(0, btVector3(0, NAN, 0)).code, StatusCode::NonFinite);
+  EXPECT_EQ(body->setPinnedPosition(-1, target).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body->body().m_nodes[0].m_x, start);
+  body->body().setActivationState(ISLAND_SLEEPING);
+  ASSERT_TRUE(body->setPinnedPosition(0, target).ok());
+  EXPECT_TRUE(body->body().isActive());
+  step(world, 30);
+  EXPECT_LT((body->body().m_nodes[0].m_x - target).length(), 1e-6);
+}
+
+TEST(DeformableBody, TakesTheMassesThatTheFreeFunctionsSet) {
+  TetskinWorld world;
+  const auto body = added(world, test::smallCageAbove(2));
+  step(world, 2);
+  setTotalMass(body->body(), 6);
+  setMass(body->body(), 3, btScalar(0.5));
+  ASSERT_TRUE(body->setPinned(3).ok());
+  step(world, 2);
+  ASSERT_TRUE(body->setPinned(3, false).ok());
+  EXPECT_NEAR(body->body().getMass(3), 0.5, 1e-6);
+  setMass(body->body(), 0, 0);
+  body->body().m_nodes[0].m_v.setZero();
+  const btVector3 where = body->body().m_nodes[0].m_x;
+  step(world, 30);
+  EXPECT_LT((body->body().m_nodes[0].m_x - where).length(), 1e-5) << "pinned by its mass";
+  EXPECT_LT(lowest(body->body()), where.y());
+}
+
+/// Options of a body with Bullet's neo-Hookean force.
 SoftBodyOptions neoHookean() {
   SoftBodyOptions options;
   options.forceModel = ForceModel::NeoHookean;
   return options;
 }
 
+/// What the world's solver was told in the last substep.
 struct Told : btDeformableBodySolver {
   static bool implicit(const btSoftBodySolver& solver) {
     return static_cast<const btDeformableBodySolver&>(solver).*(&Told::m_implicit);
@@ -190,7 +225,7 @@ TEST(DeformableBody, LeavesAnImplicitWorldImplicit) {
   step(world, 1);
   EXPECT_TRUE(Told::implicit(*world.softSolver));
   EXPECT_TRUE(Told::lineSearch(*world.softSolver));
-  EXPECT_TRUE(Told::projection(*world.softSolver));  // without which bodies do not land
+  EXPECT_TRUE(Told::projection(*world.softSolver));  // without projection, bodies do not land
 }
 
 TEST(DeformableBody, MakesTheWorldWhatIsAskedFor) {

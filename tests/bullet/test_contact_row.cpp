@@ -13,9 +13,9 @@ namespace {
 
 using State = ContactRow::State;
 
-constexpr double kRounding = 1e-4;  // of impulses of some units, in float
+constexpr double kRounding = 1e-4;  // for impulses of some units, in float
 
-/// From -1 to 1.
+/// Random numbers from -1 to 1.
 class Random {
  public:
   btScalar operator()() { return static_cast<btScalar>(generator_()) / btScalar(2147483648.0) - 1; }
@@ -28,7 +28,7 @@ class Random {
   std::mt19937 generator_{7};
 };
 
-/// D 10, T 3, a bound of friction of 0.8, as far as a test does not change it.
+/// A row with stiffness 10, tangent stiffness 3 and a friction bound of 0.8, unless a test changes them.
 ContactRow slanted() {
   ContactRow row;
   row.normal = btVector3(1, 2, -2) / 3;
@@ -49,7 +49,7 @@ double quadratic(const btMatrix3x3& m, const btVector3& v) {
   return static_cast<double>(v.dot(m * v));
 }
 
-/// How the impulse falls, by differences to both sides.
+/// The negative derivative of the impulse, by central differences.
 btMatrix3x3 fallOf(const ContactRow& row, const btVector3& u, btScalar step) {
   btMatrix3x3 fall;
   for (int k = 0; k < 3; ++k) {
@@ -63,11 +63,11 @@ btMatrix3x3 fallOf(const ContactRow& row, const btVector3& u, btScalar step) {
 }
 
 double farthest(const btMatrix3x3& a, const btMatrix3x3& b) {
-  double most = 0.0;
+  double maximum = 0.0;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) most = std::max(most, std::abs(static_cast<double>(a[i][j] - b[i][j])));
+    for (int j = 0; j < 3; ++j) maximum = std::max(maximum, std::abs(static_cast<double>(a[i][j] - b[i][j])));
   }
-  return most;
+  return maximum;
 }
 
 TEST(ContactRow, PushesInProportionToWhatIsBelowItsGapAndNeverPulls) {
@@ -172,7 +172,7 @@ TEST(ContactRow, FallsByItsTangentWhereItSticks) {
     State state;
     impulseAt(row, u, false, state);
     ASSERT_EQ(state, State::Sticks);
-    // Linear there, so that large differences are as good.
+    // The impulse is linear there, so large differences are as accurate as small ones.
     EXPECT_LT(farthest(tangentAt(row, u, state, 1), fallOf(row, u, btScalar(0.02))), 0.01);
   }
 }
@@ -191,8 +191,8 @@ TEST(ContactRow, FallsByItsTangentWhereItSlidesAndNothingOfThatIsKept) {
   }
 }
 
-/// What is left out would be a resistance that falls with speed; with all of it kept, friction is resisted as if it
-/// were in proportion to the slip.
+/// The omitted term would be a resistance that falls with speed; with all of it kept, friction is resisted as if it
+/// were proportional to the slip.
 TEST(ContactRow, KeepsOfSlidingWhatMakesItAResistance) {
   const ContactRow row = slanted();
   Random random;

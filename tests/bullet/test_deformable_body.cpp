@@ -19,14 +19,14 @@ using test::lowest;
 using test::rmsSpeed;
 using test::step;
 using test::TetskinWorld;
-using test::twoParts;
+using test::twoComponents;
 
 struct Material {
   const char* name;
   ForceModel model;
   bool implicit;
 };
-void PrintTo(const Material& material, std::ostream* out) {  // not byte by byte: some are padding
+void PrintTo(const Material& material, std::ostream* out) {  // not byte by byte: some bytes are padding
   *out << material.name;
 }
 
@@ -62,27 +62,27 @@ TEST(DeformableBody, FallsFreelyWithoutDampingItsFall) {
     options.forceModel = model;
     const auto body = added(world, cageAbove(10.0), options);
     step(world, 60);
-    EXPECT_NEAR(lowest(body->body()), 10.0 - 5.0, 0.1);  // half of 10 m/s2, one second
+    EXPECT_NEAR(lowest(body->body()), 10.0 - 5.0, 0.1);  // half of 10 m/s2 in one second
   }
 }
 
 TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
-  // Bullet's addForce would give the second body the first one's.
+  // Bullet's addForce would give the second body the stiffness of the first.
   TetskinWorld world;
   const Box3 left(Eigen::Vector3d(-0.1, 0, -9), Eigen::Vector3d(0.1, 9, 9));
-  SoftBodyOptions firm, limp;
-  firm.pinned = limp.pinned = pinnedIn(left);
-  firm.youngsModulus = 20000;
+  SoftBodyOptions stiff, limp;
+  stiff.pinned = limp.pinned = pinnedIn(left);
+  stiff.youngsModulus = 20000;
   limp.youngsModulus = 600;
   TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
   for (Eigen::Vector3d& p : beam.nodes) p.y() += 5.0;
   TetMesh aside = beam;
   for (Eigen::Vector3d& p : aside.nodes) p.z() += 3.0;
-  const auto firmBody = added(world, beam, firm);
+  const auto stiffBody = added(world, beam, stiff);
   const auto limpBody = added(world, aside, limp);
-  EXPECT_EQ(firmBody->youngsModulus(), 20000);
+  EXPECT_EQ(stiffBody->youngsModulus(), 20000);
   step(world, 60);
-  EXPECT_LT(lowest(limpBody->body()), lowest(firmBody->body()) - 0.3);
+  EXPECT_LT(lowest(limpBody->body()), lowest(stiffBody->body()) - 0.3);
 }
 
 TEST(DeformableBody, PinnedNodesStayWhereTheyAre) {
@@ -110,7 +110,7 @@ TEST(DeformableBody, LeavesTheWorldWithItsForces) {
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
   auto* solver = static_cast<btDeformableBodySolver*>(world.softSolver.get());
   EXPECT_EQ(solver->getLagrangianForceArray()->size(), 0);
-  step(world, 2);  // nothing dangles
+  step(world, 2);  // no pointers dangle
 }
 
 TEST(DeformableBody, LeavesItsBodyToAnotherWorldThatItWasMovedTo) {
@@ -144,7 +144,7 @@ TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
   }
 }
 
-/// As the guide says.
+/// The replacement follows the guide.
 TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
   TetskinWorld world;
   const TetMesh cage = test::smallCageAbove(1);
@@ -158,15 +158,15 @@ TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
   step(world, 1);
   body->body().m_nodes[3].m_v.setX(std::numeric_limits<btScalar>::quiet_NaN());
   step(world, 1);
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
   body.reset();
   body = added(world, cage);
   ASSERT_TRUE(skin.bind(body->body(), binding).ok());
   step(world, 60);
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
-  for (const btSoftBody* of : {&body->body(), &healthy->body()}) {
-    EXPECT_GT(lowest(*of), -0.05);
-    EXPECT_LT(lowest(*of), 0.5);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
+  for (const btSoftBody* solved : {&body->body(), &healthy->body()}) {
+    EXPECT_GT(lowest(*solved), -0.05);
+    EXPECT_LT(lowest(*solved), 0.5);
   }
 }
 
@@ -202,7 +202,7 @@ TEST(DeformableBody, DefaultStiffnessIsBoundedByTheTimeStepForFineCages) {
 }
 
 TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
-  // A table on four thin legs, fine enough that a stiffness chosen by size alone would explode on impact.
+  // This table on four thin legs is so fine that a stiffness chosen by size alone would explode on impact.
   TetMesh cage = test::latticeCage(16, 8, 16, 1.0 / 16);
   const auto kept = [](const Eigen::Vector3d& c) {
     const bool leg = (c.x() < 0.13 || c.x() > 0.87) && (c.z() < 0.13 || c.z() > 0.87);
@@ -232,9 +232,9 @@ TEST(DeformableBody, FineCageOfThinPartsLandsAndRests) {
 }
 
 TEST(DeformableBody, PartsThatShareNoNodeFallAndRest) {
-  // With its tree of faces, Bullet 3.24 would never come back from the first step.
+  // With its tree of faces, Bullet 3.24 would never return from the first step.
   TetskinWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.3)));
+  const auto body = added(world, twoComponents(cageAbove(0.3)));
   step(world, 240);
   EXPECT_GT(lowest(body->body()), -0.05);
   EXPECT_LT(lowest(body->body()), 0.1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies under the library's own solve, that land, rest and slide, and bear what lands on them.
+// Bodies solved by the library's own solver that land, rest and slide, and that carry what lands on them.
 #include "deformable_test.h"
 
 #include <cmath>
@@ -15,13 +15,13 @@ using test::lowest;
 using test::rmsSpeed;
 using test::step;
 using test::TetskinWorld;
-using test::twoParts;
+using test::twoComponents;
 
 using Vector = Eigen::Vector3d;
 
 class Landing : public testing::TestWithParam<double> {};
 
-/// Steps of 1/240 s, of a stiffness in density x gravity x size.
+/// Steps of 1/240 s; the parameter is the stiffness in units of density x gravity x size.
 TEST_P(Landing, BouncesAndRests) {
   TetskinWorld world;
   SoftBodyOptions options;
@@ -33,7 +33,7 @@ TEST_P(Landing, BouncesAndRests) {
   EXPECT_LT(lowest(body->body()), 0.03);  // the margin is 0.02
 }
 
-/// One step a frame.
+/// One step per frame.
 TEST_P(Landing, HoldsInLongSteps) {
   TetskinWorld world;
   SoftBodyOptions options;
@@ -44,7 +44,7 @@ TEST_P(Landing, HoldsInLongSteps) {
   EXPECT_GT(lowest(body->body()), -0.005);
 }
 
-/// Beside each other, one of them held at a side.
+/// Several bodies side by side, one of them pinned at a side.
 TEST_P(Landing, HoldsForSeveralBodiesAndWithPins) {
   for (const int substeps : {4, 1}) {
     TetskinWorld world;
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(DeformableSolver, Landing, testing::Values(50.0, 300.0,
 
 TEST(DeformableSolver, CarriesPartsThatShareNoNode) {
   TetskinWorld world;
-  const auto body = added(world, twoParts(cageAbove(0.5)));
+  const auto body = added(world, twoComponents(cageAbove(0.5)));
   step(world, 180);
   EXPECT_LT(rmsSpeed(body->body()), 0.05);
   EXPECT_GT(lowest(body->body()), -0.005);
@@ -99,11 +99,11 @@ TEST(DeformableSolver, LetsBodiesSlideDownASlipperySlopeAndNotAStickyOne) {
     const auto body = added(world, cage, options);
     const btVector3 before = body->body().m_nodes[0].m_x;
     step(world, 60);
-    const double way = static_cast<double>((body->body().m_nodes[0].m_x - before).length());
+    const double direction = static_cast<double>((body->body().m_nodes[0].m_x - before).length());
     world.deformable().removeRigidBody(&slope);
-    return way;
+    return direction;
   };
-  // a = g (sin - mu cos): 2.9 without friction, 1.0 with 0.2; held above tan(0.3) = 0.31
+  // a = g (sin - mu cos): 2.9 without friction, 1.0 with 0.2; the body sticks above tan(0.3) = 0.31
   EXPECT_NEAR(slid(0.0), 0.5 * 10.0 * std::sin(0.3), 0.15);
   EXPECT_NEAR(slid(0.2), 0.5 * 10.0 * (std::sin(0.3) - 0.2 * std::cos(0.3)), 0.25);
   EXPECT_LT(slid(0.6), 0.1);
@@ -129,7 +129,7 @@ TEST(DeformableSolver, LetsAHeavyBoxRestOnALightBody) {
   world.deformable().removeRigidBody(&box);
 }
 
-/// As Bullet's own solver has it: what such a contact does is nothing.
+/// Such contacts have no effect, as in Bullet's own solver.
 TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
   for (const ForceModel model : {ForceModel::Corotated, ForceModel::NeoHookean}) {
     struct : TetskinWorld {

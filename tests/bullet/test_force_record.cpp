@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies that touch by their nodes do to each other, as ForceRecord tells it.
+// What bodies in contact by their nodes do to each other, as ForceRecord reports it.
 #include "recorded_forces.h"
 #include "rigid_bodies.h"
 
@@ -14,20 +14,20 @@
 namespace tetskin::test {
 namespace {
 
-/// Of its mass.
+/// The body's centre of mass.
 btVector3 centroidOf(const btSoftBody& body) {
   btVector3 sum(0, 0, 0);
   for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x / body.m_nodes[n].m_im;
   return sum;
 }
 
-/// A block at rest on the floor, that does not sleep.
+/// A block that rests on the floor and does not sleep.
 struct RestingBlock {
   explicit RestingBlock(int frames = 240) {
     block->body().setActivationState(DISABLE_DEACTIVATION);
     step(world, frames);
   }
-  AppliedForces onFloor() { return forces->on(floorOf(world)); }
+  AppliedForces onFloor() { return forces->forcesOn(floorOf(world)); }
 
   TetskinWorld world;
   std::unique_ptr<DeformableBody> block = added(world, smallCageAbove(0.03));
@@ -42,34 +42,34 @@ TEST(ForceRecord, AtRestTheSumOfForcesIsTheWeight) {
   expectNear(floor.total().force, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
   EXPECT_NEAR(floor.contact.force.y(), -kWeight, 1e-3 * kWeight);
   EXPECT_TRUE(isNothing({{}, {}, floor.joints, floor.anchors}));
-  // The floor's centre is the origin of its frame, 1 below.
+  // The floor's centre is the origin of its frame, 1 below its surface.
   expectNear(floor.total().torque, btVector3(0.3, -0.5, 0.45).cross(btVector3(0, -kWeight, 0)), 0.01 * kWeight);
-  const AppliedForces block = at.forces->on(at.block->body());
+  const AppliedForces block = at.forces->forcesOn(at.block->body());
   expectNear(block.total().force, -floor.total().force, 1e-6);
   expectNear(block.total().torque, btVector3(0, 0, 0), 5e-3 * kWeight);
-  const AppliedForces pair = at.forces->on(floorOf(at.world), at.block->body());
+  const AppliedForces pair = at.forces->forcesBetween(floorOf(at.world), at.block->body());
   EXPECT_EQ(pair.total().force, floor.total().force);
-  EXPECT_TRUE(isNothing(at.forces->on(at.block->body(), at.block->body())));
+  EXPECT_TRUE(isNothing(at.forces->forcesBetween(at.block->body(), at.block->body())));
 }
 
 TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   TetskinWorld world;
   TetMesh cage = latticeCage(10, 2, 2, 0.1);
   for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.5, 2.01, -0.1);
-  SoftBodyOptions firm;
-  firm.relativeStiffness = 1000;
-  // Heavier at one end.
-  for (const Eigen::Vector3d& p : cage.nodes) firm.nodeMasses.push_back((1 + p.x()) / double(cage.nodeCount()));
-  const auto bar = added(world, cage, firm);
+  SoftBodyOptions stiff;
+  stiff.relativeStiffness = 1000;
+  // The bar is heavier at one end.
+  for (const Eigen::Vector3d& p : cage.nodes) stiff.nodeMasses.push_back((1 + p.x()) / double(cage.nodeCount()));
+  const auto bar = added(world, cage, stiff);
   bar->body().setActivationState(DISABLE_DEACTIVATION);
   const auto support = [] { return std::make_unique<btBoxShape>(btVector3(0.5, 0.5, 0.5)); };
   Rigid left(world, support(), 0, btVector3(-0.75, 1.48, 0)), right(world, support(), 0, btVector3(0.85, 1.48, 0));
   const auto forces = forcesIn(world);
   step(world, 240);
-  // Where along the bar a support pushes, from its force and torque: they meet at the bar's underside.
+  // The position along the bar at which a support pushes, from its force and torque: they meet at the bar's underside.
   const btVector3 centre = centroidOf(bar->body());
   const auto arm = [&](const Rigid& under) {
-    const Wrench on = forces->on(*under.body).total();
+    const Wrench on = forces->forcesOn(*under.body).total();
     const btVector3 origin = under.body->getWorldTransform().getOrigin();
     const double height = lowest(bar->body()) - static_cast<double>(origin.y());
     const double x = (static_cast<double>(on.torque.z()) + height * static_cast<double>(on.force.x())) /
@@ -78,7 +78,8 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   };
   const double a = -arm(left), b = arm(right);
   EXPECT_GT(a, b + 0.1);
-  const btVector3 onLeft = forces->on(*left.body).total().force, onRight = forces->on(*right.body).total().force;
+  const btVector3 onLeft = forces->forcesOn(*left.body).total().force,
+                  onRight = forces->forcesOn(*right.body).total().force;
   EXPECT_NEAR(-onLeft.y(), kWeight * b / (a + b), 0.01 * kWeight * b / (a + b));
   EXPECT_NEAR(-onRight.y(), kWeight * a / (a + b), 0.01 * kWeight * a / (a + b));
   expectNear(onLeft + onRight, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
@@ -88,9 +89,9 @@ TEST(ForceRecord, AGripperHoldsByFriction) {
   TetskinWorld world;
   TetMesh cage = latticeCage(3, 3, 3, 0.1);
   for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.15, 3, -0.15);
-  SoftBodyOptions rough;
-  rough.friction = 1;
-  const auto held = added(world, cage, rough);
+  SoftBodyOptions highFriction;
+  highFriction.friction = 1;
+  const auto held = added(world, cage, highFriction);
   held->body().setActivationState(DISABLE_DEACTIVATION);
   const auto plate = [] { return std::make_unique<btBoxShape>(btVector3(0.1, 0.5, 0.5)); };
   const btScalar margin = held->body().getCollisionShape()->getMargin();
@@ -110,15 +111,15 @@ TEST(ForceRecord, AGripperHoldsByFriction) {
   }
   AppliedForces onLeft, onRight;
   btVector3 sum(0, 0, 0);
-  // Nodes come and go: contacts found by Bullet are some thousandths of a second's.
+  // The set of nodes in contact changes: contacts that Bullet finds last some thousandths of a second.
   for (int f = 0; f < 30; ++f) {
     step(world, 1);
-    onLeft = forces->on(*left.body, held->body());
-    onRight = forces->on(*right.body, held->body());
+    onLeft = forces->forcesBetween(*left.body, held->body());
+    onRight = forces->forcesBetween(*right.body, held->body());
     sum += onLeft.total().force + onRight.total().force;
   }
   expectNear(sum / 30, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
-  // Bullet's normals are not quite upright.
+  // Bullet's normals are not exactly upright.
   EXPECT_NEAR(onLeft.friction.force.y() + onRight.friction.force.y(), -kWeight, 0.2 * kWeight);
   EXPECT_LT(onLeft.contact.force.x(), -kWeight);
   EXPECT_NEAR(onLeft.contact.force.x() + onRight.contact.force.x(), 0, 0.05 * kWeight);
@@ -136,7 +137,7 @@ TEST(ForceRecord, TellsAnchorsFromContacts) {
   }
   const auto forces = forcesIn(world);
   step(world, 480);
-  const AppliedForces onHook = forces->on(*hook.body);
+  const AppliedForces onHook = forces->forcesOn(*hook.body);
   expectNear(onHook.anchors.force, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
   expectNear(onHook.anchors.torque, btVector3(0, 0, 0), 0.01 * kWeight);
   EXPECT_TRUE(isNothing({onHook.contact, onHook.friction, onHook.joints, {}}));
@@ -144,7 +145,7 @@ TEST(ForceRecord, TellsAnchorsFromContacts) {
 
 // ---- dynamics
 
-/// A block without gravity flies at a ball and hits it beside its centre.
+/// A block flies without gravity at a ball and hits it beside its centre.
 TEST(ForceRecord, IsTheChangeOfMomentumOverAStepSimulation) {
   FlyingBlock flying(5.0);
   Rigid target(flying.world, ball(), 2, btVector3(0.2, 4.6, 0.1));
@@ -155,7 +156,7 @@ TEST(ForceRecord, IsTheChangeOfMomentumOverAStepSimulation) {
     const btVector3 softBefore = momentumOf(flying.body()), rigidBefore = target.momentum();
     const btVector3 spinBefore = target.body->getAngularVelocity();
     step(flying.world, 1);
-    const Wrench onRigid = forces->on(*target.body).total(), onSoft = forces->on(flying.body()).total();
+    const Wrench onRigid = forces->forcesOn(*target.body).total(), onSoft = forces->forcesOn(flying.body()).total();
     expectNear(onRigid.force / 60, target.momentum() - rigidBefore, 1e-4);
     expectNear(onSoft.force / 60, momentumOf(flying.body()) - softBefore, 1e-4);
     const btVector3 spin = target.body->getLocalInertia() * (target.body->getAngularVelocity() - spinBefore);
@@ -179,8 +180,8 @@ TEST(ForceRecord, IsTheMeanOverAllSubstepsOfTheLastStepSimulation) {
   for (int f = 0; f < 60; ++f) {
     step(world[0], 1);
     btVector3 sum(0, 0, 0);
-    forEachSubstep(world[1], 4, [&] { sum += forces[1]->on(floorOf(world[1])).total().force; });
-    const btVector3 mean = forces[0]->on(floorOf(world[0])).total().force;
+    forEachSubstep(world[1], 4, [&] { sum += forces[1]->forcesOn(floorOf(world[1])).total().force; });
+    const btVector3 mean = forces[0]->forcesOn(floorOf(world[0])).total().force;
     expectNear(mean, sum / 4, 1e-4 * (1 + static_cast<double>(sum.length())));
     met += !mean.isZero();
   }
@@ -201,7 +202,7 @@ TEST(ForceRecord, IsNothingOnceAContactHasEnded) {
   at.block->body().translate(btVector3(0, 3, 0));
   step(at.world, 1);
   EXPECT_TRUE(isNothing(at.onFloor()));
-  EXPECT_TRUE(isNothing(at.forces->on(at.block->body())));
+  EXPECT_TRUE(isNothing(at.forces->forcesOn(at.block->body())));
 }
 
 TEST(ForceRecord, StaysAsItIsWhileABodySleeps) {
@@ -241,19 +242,19 @@ TEST(ForceRecord, TellsNothingOfWhatHasLeftTheWorld) {
   const auto table = [] { return std::make_unique<btBoxShape>(btVector3(1, 0.95, 1)); };
   auto under = std::make_unique<Rigid>(world, table(), 0, btVector3(0, 1, 0));
   step(world, 60);
-  ASSERT_GT(forces->on(block->body()).total().force.y(), 0.5 * kWeight);
+  ASSERT_GT(forces->forcesOn(block->body()).total().force.y(), 0.5 * kWeight);
   world.deformable().removeRigidBody(under->body.get());
-  EXPECT_TRUE(isNothing(forces->on(*under->body)));
-  EXPECT_TRUE(isNothing(forces->on(block->body())));
-  // In the world again, and another one at the same address: neither has been touched.
+  EXPECT_TRUE(isNothing(forces->forcesOn(*under->body)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(block->body())));
+  // The table is in the world again: it has not been touched yet, nor has another object at its address.
   world.deformable().addRigidBody(under->body.get());
-  EXPECT_TRUE(isNothing(forces->on(*under->body)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(*under->body)));
   step(world, 60);
-  ASSERT_FALSE(isNothing(forces->on(*under->body)));
+  ASSERT_FALSE(isNothing(forces->forcesOn(*under->body)));
   under.reset();
-  EXPECT_TRUE(isNothing(forces->on(block->body())));
+  EXPECT_TRUE(isNothing(forces->forcesOn(block->body())));
   step(world, 1);
-  EXPECT_TRUE(isNothing(forces->on(block->body())));
+  EXPECT_TRUE(isNothing(forces->forcesOn(block->body())));
 }
 
 TEST(ForceRecord, OutlivesBodiesThatSleepOnEachOther) {
@@ -261,11 +262,11 @@ TEST(ForceRecord, OutlivesBodiesThatSleepOnEachOther) {
   auto block = added(world, smallCageAbove(0.03));
   const auto forces = forcesIn(world);
   for (int f = 0; f < 1200 && block->body().isActive(); ++f) step(world, 1);
-  ASSERT_FALSE(isNothing(forces->on(floorOf(world))));
+  ASSERT_FALSE(isNothing(forces->forcesOn(floorOf(world))));
   block.reset();
-  EXPECT_TRUE(isNothing(forces->on(floorOf(world))));
+  EXPECT_TRUE(isNothing(forces->forcesOn(floorOf(world))));
   step(world, 2);
-  EXPECT_TRUE(isNothing(forces->on(floorOf(world))));
+  EXPECT_TRUE(isNothing(forces->forcesOn(floorOf(world))));
 }
 
 TEST(ForceRecord, MayBeAskedForTwiceAndChangesNoStep) {
@@ -275,13 +276,13 @@ TEST(ForceRecord, MayBeAskedForTwiceAndChangesNoStep) {
   const auto second = forcesIn(with);
   step(with, 30);
   step(without, 30);
-  EXPECT_EQ(first->on(floorOf(with)).total().force, second->on(floorOf(with)).total().force);
-  EXPECT_FALSE(isNothing(second->on(floorOf(with))));
+  EXPECT_EQ(first->forcesOn(floorOf(with)).total().force, second->forcesOn(floorOf(with)).total().force);
+  EXPECT_FALSE(isNothing(second->forcesOn(floorOf(with))));
   first.reset();
   step(with, 30);
   step(without, 30);
   for (int n = 0; n < a->body().m_nodes.size(); ++n) EXPECT_EQ(a->body().m_nodes[n].m_x, b->body().m_nodes[n].m_x);
-  EXPECT_FALSE(isNothing(second->on(floorOf(with))));
+  EXPECT_FALSE(isNothing(second->forcesOn(floorOf(with))));
 }
 
 TEST(ForceRecord, NeedsTheLibrarysSolver) {
@@ -329,7 +330,7 @@ TEST(ForceRecord, DrawsPointsNormalsAndForces) {
     expectNear(drawer.points[k].normal, btVector3(0, 1, 0), 1e-5);
     sum += drawer.arrows[k];
   }
-  // Its weight, as long as its longest side.
+  // The sum is the weight, drawn as long as the body's longest side.
   const btVector3 size = at.block->body().m_bounds[1] - at.block->body().m_bounds[0];
   EXPECT_NEAR(sum.y(), size[size.maxAxis()], 0.01);
   drawer.points.clear();

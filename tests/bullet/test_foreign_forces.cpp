@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// An application's own body, with Bullet's own forces, in a world where bodies of ours come and go.
+// An application's own body, with Bullet's own forces, in a world where bodies of this library come and go.
 #include "deformable_test.h"
 
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
@@ -14,11 +14,12 @@ using test::EmptyWorld;
 using test::smallCageAbove;
 using test::step;
 
-/// What the application makes: a body with gravity and material of its own, added by Bullet's means.
+/// What the application makes: a body with its own gravity and material, added through Bullet's interface.
 class OwnBody {
  public:
   explicit OwnBody(btDeformableMultiBodyDynamicsWorld& world, double height = 20.0)
-      : body_(makeSoftBody(smallCageAbove(height), world.getWorldInfo(), test::oneKilogram()).value()), world_(world) {
+      : body_(createSoftBody(smallCageAbove(height), world.getWorldInfo(), test::oneKilogram()).value()),
+        world_(world) {
     world.addSoftBody(body_.get());
     world.addForce(body_.get(), &gravity);
     world.addForce(body_.get(), &elasticity);
@@ -29,7 +30,8 @@ class OwnBody {
     world_.removeSoftBody(body_.get());
   }
 
-  /// World units per second squared, over so many frames; a body in free fall, whatever its material.
+  /// The acceleration downwards in world units per second squared over this many frames; for a body in free fall,
+  /// whatever its material.
   double fallsAt(EmptyWorld& world, int frames = 12) {
     const auto speed = [&] {
       double sum = 0.0;
@@ -64,7 +66,8 @@ ForceList& forcesOf(EmptyWorld& world) {
   return *static_cast<btDeformableBodySolver*>(world.softSolver.get())->getLagrangianForceArray();
 }
 
-/// Bullet's solver in explicit worlds, and in implicit ones, in which it takes one gravity for all; and ours.
+/// Bullet's solver in explicit worlds, Bullet's solver in implicit worlds, where it uses one gravity for all bodies,
+/// and the library's solver.
 enum class Kind { Explicit, Implicit, Tetskin };
 
 const char* toString(Kind kind) {
@@ -162,12 +165,12 @@ TEST_P(ForeignForces, AreLeftAloneWhenTheApplicationTakesOurBodyOut) {
   ours.reset();
   EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
   ours = added(world, smallCageAbove(40), optionsOf(GetParam()));
-  EXPECT_EQ(forcesOf(world).size(), 4);  // the places that were kept are gone
+  EXPECT_EQ(forcesOf(world).size(), 4);  // no stale entries are left
   EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
 }
 
 TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
-  // A beam held at one end; beside it, ours, of a hundredth of its stiffness.
+  // A beam pinned at one end; the library's body beside it has a hundredth of its stiffness.
   const auto tip = [](bool besideOurs) {
     test::TetskinWorld world;
     TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
@@ -178,7 +181,7 @@ TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
     std::unique_ptr<DeformableBody> ours;
     if (besideOurs) ours = added(world, beam, options);
     for (Eigen::Vector3d& p : beam.nodes) p.z() += 3;
-    const std::unique_ptr<btSoftBody> own(makeSoftBody(beam, world.deformable().getWorldInfo(), options).value());
+    const std::unique_ptr<btSoftBody> own(createSoftBody(beam, world.deformable().getWorldInfo(), options).value());
     btDeformableGravityForce gravity(btVector3(0, -10, 0));
     btDeformableNeoHookeanForce elasticity(2400, 3600, btScalar(0.05));
     world.deformable().addSoftBody(own.get());

@@ -22,7 +22,7 @@ Surface surfaceOf(const SoftBodySkin& skin) {
   return all;
 }
 
-/// Largest difference to the surface at `alpha` between two others.
+/// Largest deviation of a surface from the one that is the fraction `alpha` of the way between two others.
 double distance(const Surface& surface, const Surface& before, const Surface& after, double alpha) {
   double largest = surface.size() == before.size() ? 0.0 : 1e9;
   for (std::size_t i = 0; i < surface.size() && i < before.size(); ++i) {
@@ -34,22 +34,22 @@ double distance(const Surface& surface, const Surface& before, const Surface& af
 
 class FramesBetweenSteps : public test::SkinTest {
  protected:
-  /// The body at rest, then bent, each kept as after a step.
+  /// Records the body at rest and then bent, each as after a step.
   void bindAndKeepTwo(const SkinOptions& options = {}) {
     ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
     rest = surfaceOf(skin);
-    skin.keepStep();
+    skin.recordStep();
     bend();
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
     bent = surfaceOf(skin);
-    skin.keepStep();
+    skin.recordStep();
   }
   void moveUp() { body->translate(btVector3(0, 1, 0)); }
   Surface at(btScalar alpha) {
-    EXPECT_EQ(skin.update(alpha), UpdateStatus::Updated);
+    EXPECT_EQ(skin.update(alpha), StatusCode::Ok);
     return surfaceOf(skin);
   }
-  /// Every update shows the body as it is now.
+  /// Checks that every update shows the body as it is now.
   void expectNothingBetween() {
     SoftBodySkin now;
     ASSERT_TRUE(now.bind(*body, skin.binding()).ok());
@@ -68,7 +68,7 @@ TEST_F(FramesBetweenSteps, AreSkinsOfTheNodesBetweenThem) {
     EXPECT_LT(distance(at(alpha), rest, bent, double(alpha)), kRounding);
   }
   EXPECT_EQ(at(0), rest);
-  skin.keepStep();  // a step in which nothing moved
+  skin.recordStep();  // a step in which nothing moved
   for (const btScalar alpha : {btScalar(0.0), btScalar(0.5)}) EXPECT_EQ(at(alpha), bent);
 }
 
@@ -86,7 +86,7 @@ TEST_F(FramesBetweenSteps, AreToldNodeByNode) {
   EXPECT_LT((skin.nodeAt(3, btScalar(0.5)) - (before + now) / 2).length(), kRounding);
   EXPECT_EQ(skin.nodeAt(3), now);
   InstanceOptions plain;
-  plain.leaveOutQuadratic = true;
+  plain.disableQuadratic = true;
   ASSERT_TRUE(skin.bind(*body, skin.binding(), plain).ok());
   EXPECT_EQ(skin.interpolation(), Interpolation::Linear);
   EXPECT_EQ(skin.nodeAt(3, 0), now);
@@ -124,11 +124,11 @@ TEST_F(FramesBetweenSteps, CostTwoCopiesOfTheNodesAndOnlyIfStepsAreKept) {
   (void)skin.update(btScalar(0.5));
   EXPECT_EQ(test::allocationCount(), count) << "no step is kept";
   const std::size_t before = test::allocatedBytes();
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_EQ(test::allocatedBytes() - before, 6 * sizeof(btScalar) * cage.nodeCount());
   const std::size_t kept = test::allocationCount();
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   (void)skin.update(btScalar(0.5));
   skin.markTeleported();
   EXPECT_EQ(test::allocationCount(), kept);
@@ -137,12 +137,12 @@ TEST_F(FramesBetweenSteps, CostTwoCopiesOfTheNodesAndOnlyIfStepsAreKept) {
 }
 
 TEST_F(FramesBetweenSteps, WithoutAStepKeptOrWithOneShowTheBodyAsItIs) {
-  skin.keepStep();
-  skin.markTeleported();  // unbound, there is nothing to do
+  skin.recordStep();
+  skin.markTeleported();  // there is nothing to do while unbound
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   bend();
   expectNothingBetween();
-  skin.keepStep();
+  skin.recordStep();
   expectNothingBetween();
 }
 
@@ -153,38 +153,38 @@ TEST_F(FramesBetweenSteps, DoNotShowATeleportedBodyOnItsWay) {
   expectNothingBetween();
   const Surface there = at(1);
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   const Surface next = at(1);
-  EXPECT_LT(distance(at(btScalar(0.5)), there, next, 0.5), 100 * kRounding);  // and goes on from there
+  EXPECT_LT(distance(at(btScalar(0.5)), there, next, 0.5), 100 * kRounding);  // and it continues from there
   body->translate(btVector3(0, 100, 0));
-  skin.keepStep();
-  skin.markTeleported();  // said after the step
+  skin.recordStep();
+  skin.markTeleported();  // called after the step
   expectNothingBetween();
   body->setActivationState(ISLAND_SLEEPING);
-  skin.keepStep();
-  skin.keepStep();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);
+  skin.recordStep();
+  skin.recordStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Asleep);
   body->translate(btVector3(0, 100, 0));
   skin.markTeleported();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Asleep);
 }
 
 TEST_F(FramesBetweenSteps, ReachTheLastStepOfABodyThatFallsAsleepAndThenCostNothing) {
   bindAndKeepTwo();
   const Surface before = at(1);
   moveUp();
-  body->setActivationState(ISLAND_SLEEPING);  // in this step
-  skin.keepStep();
+  body->setActivationState(ISLAND_SLEEPING);  // the body falls asleep in this step
+  skin.recordStep();
   bent = at(1);
   for (const btScalar alpha : {btScalar(0.75), btScalar(0.25), btScalar(0.25)}) {
     EXPECT_LT(distance(at(alpha), before, bent, double(alpha)), kRounding);
   }
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_EQ(at(btScalar(0.1)), bent);
   for (const btScalar alpha : {btScalar(0.1), btScalar(0.9), btScalar(1)}) {
-    EXPECT_EQ(skin.update(alpha), UpdateStatus::Asleep);
-    skin.keepStep();
+    EXPECT_EQ(skin.update(alpha), StatusCode::Asleep);
+    skin.recordStep();
   }
   EXPECT_EQ(surfaceOf(skin), bent);
 }
@@ -192,27 +192,27 @@ TEST_F(FramesBetweenSteps, ReachTheLastStepOfABodyThatFallsAsleepAndThenCostNoth
 TEST_F(FramesBetweenSteps, FollowATeleportOfASleepingBodyWithoutAWord) {
   bindAndKeepTwo();
   body->setActivationState(ISLAND_SLEEPING);
-  skin.keepStep();
-  skin.keepStep();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Asleep);  // it was drawn there before
+  skin.recordStep();
+  skin.recordStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Asleep);  // the body has already been drawn there
   moveUp();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
-  EXPECT_EQ(skin.update(btScalar(0.7)), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
+  EXPECT_EQ(skin.update(btScalar(0.7)), StatusCode::Asleep);
   expectNothingBetween();
 }
 
 TEST_F(FramesBetweenSteps, DoNotComeFromWhereABodyFellAsleepWhenItWakes) {
   bindAndKeepTwo();
   body->setActivationState(ISLAND_SLEEPING);
-  skin.keepStep();
-  skin.keepStep();
+  skin.recordStep();
+  skin.recordStep();
   body->forceActivationState(ACTIVE_TAG);
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   expectNothingBetween();
   const Surface awake = at(1);
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   const Surface next = at(1);
   EXPECT_LT(distance(at(btScalar(0.5)), awake, next, 0.5), 4 * kRounding);
 }
@@ -220,26 +220,26 @@ TEST_F(FramesBetweenSteps, DoNotComeFromWhereABodyFellAsleepWhenItWakes) {
 TEST_F(FramesBetweenSteps, BeginAnewWithAnotherBindingAndForAnotherNumberOfNodes) {
   bindAndKeepTwo();
   const TetMesh small = test::latticeCage(2, 2, 2, 0.5);
-  const std::unique_ptr<btSoftBody> other(makeSoftBody(small, info).value());
+  const std::unique_ptr<btSoftBody> other(createSoftBody(small, info).value());
   ASSERT_TRUE(skin.bind(*other, small, mesh).ok());
   other->translate(btVector3(0, 1, 0));
   const btScalar height = surfaceOf(skin)[1];
   EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.0, 4 * kRounding);
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.0, 4 * kRounding);
   other->translate(btVector3(0, 1, 0));
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 1.5, 4 * kRounding);
   other->appendNode(btVector3(0, 0, 0), 1);
   const Surface good = surfaceOf(skin);
-  EXPECT_EQ(skin.update(btScalar(0.2)), UpdateStatus::TopologyChanged);
-  skin.keepStep();
+  EXPECT_EQ(skin.update(btScalar(0.2)), StatusCode::TopologyChanged);
+  skin.recordStep();
   skin.markTeleported();
-  EXPECT_EQ(skin.update(btScalar(0.2)), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(btScalar(0.2)), StatusCode::TopologyChanged);
   EXPECT_EQ(surfaceOf(skin), good);
   other->m_nodes.pop_back();
   EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 2.0, 4 * kRounding);
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_NEAR(double(at(btScalar(0.5))[1] - height), 2.0, 4 * kRounding);
 }
 
@@ -248,17 +248,17 @@ TEST_F(FramesBetweenSteps, KeepTheLastGoodSurfaceWhileNodesAreNotFinite) {
   const Surface good = at(btScalar(0.5));
   const btScalar x = body->m_nodes[20].m_x.x();
   body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
-  skin.keepStep();
+  skin.recordStep();
   for (const btScalar alpha : {btScalar(0), btScalar(0.5), btScalar(1)}) {
-    EXPECT_EQ(skin.update(alpha), UpdateStatus::NonFinite);
-    EXPECT_EQ(skin.firstBadNode(), 20u);
+    EXPECT_EQ(skin.update(alpha), StatusCode::NonFinite);
+    EXPECT_EQ(skin.firstNonFiniteNode(), 20u);
     EXPECT_EQ(surfaceOf(skin), good);
   }
   body->m_nodes[20].m_x.setX(x);
-  skin.keepStep();
+  skin.recordStep();
   expectNothingBetween();
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   EXPECT_LT(distance(at(0), bent, bent, 0.0), kRounding);
 }
 
@@ -266,14 +266,14 @@ TEST_F(FramesBetweenSteps, OfAHiddenSkinAreNotKeptAndBeginWhereItIsShown) {
   bindAndKeepTwo();
   skin.setVisible(false);
   moveUp();
-  skin.keepStep();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Hidden);
+  skin.recordStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Hidden);
   moveUp();
   skin.setVisible(true);
   const Surface shown = surfaceOf(skin);
   expectNothingBetween();
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   const Surface next = at(1);
   EXPECT_LT(distance(at(btScalar(0.5)), shown, next, 0.5), 4 * kRounding);
 }
@@ -283,15 +283,15 @@ TEST_F(FramesBetweenSteps, HaveTheMotionSinceTheFrameBefore) {
   options.previousPositions = true;
   ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
   const auto motion = [&] { return double(skin.positions()[9][1] - skin.previousPositions()[9][1]); };
-  skin.keepStep();
+  skin.recordStep();
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   (void)at(btScalar(0.25));
   EXPECT_NEAR(motion(), 0.25, 8 * kRounding);
   (void)at(btScalar(0.75));
   EXPECT_NEAR(motion(), 0.5, 8 * kRounding);
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   (void)at(btScalar(0.5));
   EXPECT_NEAR(motion(), 0.75, 8 * kRounding);
   body->translate(btVector3(0, 100, 0));
@@ -299,7 +299,7 @@ TEST_F(FramesBetweenSteps, HaveTheMotionSinceTheFrameBefore) {
   (void)at(btScalar(0.75));
   EXPECT_EQ(motion(), 0.0);
   moveUp();
-  skin.keepStep();
+  skin.recordStep();
   (void)at(btScalar(0.25));
   EXPECT_NEAR(motion(), 0.25, 100 * kRounding);
 }
@@ -309,26 +309,26 @@ TEST_F(FramesBetweenSteps, AreEachSkinsOwn) {
   SoftBodySkin late, never;
   ASSERT_TRUE(late.bind(*body, skin.binding()).ok());
   ASSERT_TRUE(never.bind(*body, skin.binding()).ok());
-  late.keepStep();
+  late.recordStep();
   moveUp();
   const Surface before = surfaceOf(late);
-  late.keepStep();
+  late.recordStep();
   (void)never.update(btScalar(0.5));
   (void)late.update(btScalar(0.5));
   EXPECT_LT(distance(surfaceOf(late), before, surfaceOf(never), 0.5), 4 * kRounding);
-  EXPECT_LT(distance(at(btScalar(0.5)), rest, bent, 0.5), kRounding);  // has not kept this step
+  EXPECT_LT(distance(at(btScalar(0.5)), rest, bent, 0.5), kRounding);  // this skin has not recorded the step
 }
 
 TEST_F(FramesBetweenSteps, AreAMovedSkinsStill) {
   bindAndKeepTwo();
   const Surface half = at(btScalar(0.5));
   SoftBodySkin other = std::move(skin);
-  EXPECT_EQ(other.update(btScalar(0.25)), UpdateStatus::Updated);
-  EXPECT_EQ(other.update(btScalar(0.5)), UpdateStatus::Updated);
+  EXPECT_EQ(other.update(btScalar(0.25)), StatusCode::Ok);
+  EXPECT_EQ(other.update(btScalar(0.5)), StatusCode::Ok);
   EXPECT_EQ(surfaceOf(other), half);
   skin = SoftBodySkin();
-  skin.keepStep();
-  EXPECT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Unbound);
+  skin.recordStep();
+  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Unbound);
 }
 
 TEST_F(FramesBetweenSteps, TakeANewOrigin) {
@@ -365,21 +365,21 @@ TEST(FramesInTheDeformableWorld, ReachTheStepInWhichABodyFallsAsleep) {
   Surface before;
   const auto advance = [&] {
     world.world->stepSimulation(step, 4, step / 4);
-    skin.keepStep();
+    skin.recordStep();
     before = surfaceOf(now);
     (void)now.update();
   };
   for (int k = 0; world.body().isActive() && k < 3000; ++k) {
     advance();
-    ASSERT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
   }
   ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
   EXPECT_LT(distance(surfaceOf(skin), before, surfaceOf(now), 0.5), kRounding);
   advance();
-  ASSERT_EQ(skin.update(btScalar(0.5)), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
   EXPECT_EQ(surfaceOf(skin), surfaceOf(now));
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(skin.update(btScalar(0.9)), UpdateStatus::Asleep);
+    EXPECT_EQ(skin.update(btScalar(0.9)), StatusCode::Asleep);
     advance();
   }
 }

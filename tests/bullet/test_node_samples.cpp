@@ -47,7 +47,7 @@ TEST(NodeSamples, OfAFlatBodyAreAnyFour) {
 
 TEST(NodeSamples, AreChosenInOneLookAtAFewLayersHoweverManyNodesThereAre) {
   const std::vector<Eigen::Vector3d> nodes = test::latticeCage(40, 40, 40, 1.0).nodes;
-  EXPECT_LT(sampled(nodes).looks, 64 * 2 * 41 * 41);  // from every start there is, 120,000,000
+  EXPECT_LT(sampled(nodes).looks, 64 * 2 * 41 * 41);  // from every possible start it would be 120,000,000
 }
 
 TEST(NodeSamples, OfNodesThatAreNearlyAllInOnePlaneAreStillFoundInLinearTime) {

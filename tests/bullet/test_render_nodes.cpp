@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bindRenderNodes makes of a body, beside what Bullet makes of it.
+// How bindRenderNodes binds a body, compared with Bullet.
 #include "bullets_render_mesh.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
@@ -18,12 +17,12 @@ namespace tetskin {
 namespace {
 
 constexpr bool kDouble = sizeof(btScalar) == 8;
-/// Of barycentric distances computed by Bullet.
+/// Rounding of barycentric distances computed by Bullet.
 constexpr double kBulletsRounding = kDouble ? 1e-9 : 1e-5;
 
 using test::setRenderNodes;
 
-/// Four parents of one render node as node indices.
+/// The four parents of one render node, as node indices.
 Tet parentsOf(const btSoftBody& body, int v) {
   Tet tet{-1, -1, -1, -1};
   const auto& parents = body.m_renderNodesParents[v];
@@ -45,7 +44,7 @@ class RenderNodes : public testing::Test {
  protected:
   void make(const TetMesh& cage, const std::vector<Eigen::Vector3d>& points) {
     for (std::unique_ptr<btSoftBody>* body : {&ours, &bullets}) {
-      *body = makeSoftBody(cage, info).value();
+      *body = createSoftBody(cage, info).value();
       ASSERT_TRUE(*body);
       setRenderNodes(**body, points);
     }
@@ -58,8 +57,8 @@ class RenderNodes : public testing::Test {
     }
   }
 
-  /// Binds both, compares tets and weights; then bends both, and compares the points that Bullet's update computes.
-  /// Returns how many render nodes have another tet.
+  /// Binds both and compares tets and weights; then bends both and compares the points that Bullet's update computes.
+  /// Returns how many render nodes have different tets.
   int compare() {
     const Result<EmbedReport> report = bindRenderNodes(*ours);
     EXPECT_TRUE(report.ok()) << report.status().message;
@@ -90,7 +89,7 @@ class RenderNodes : public testing::Test {
     const btVector4 w = ours->m_renderNodesInterpolationWeights[v];
     EXPECT_NEAR(static_cast<double>(w[0] + w[1] + w[2] + w[3]), 1.0, 1e-6 * largestWeight(w));
     if (our != their) {
-      // Bullet decides in its own precision: it may differ where two tets are equally good.
+      // Bullet decides in its own precision: it may choose differently where two tets are equally good.
       EXPECT_NEAR(distanceIn(*ours, our, v), distanceIn(*ours, their, v), kBulletsRounding * largestWeight(w));
       return false;
     }
@@ -109,7 +108,7 @@ const Box3 kAround(Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(1
 
 TEST_F(RenderNodes, AgreeWithBulletOnALattice) {
   make(test::latticeCage(4, 4, 4, 0.25), test::randomPoints(3000, kAround, 3));
-  // Outside, the tets of a lattice are often equally good.
+  // For points outside, the tets of a lattice are often equally good.
   EXPECT_LT(compare(), 1000);
 }
 
@@ -128,7 +127,8 @@ TEST_F(RenderNodes, AgreeWithBulletOnOverlappingTets) {
   TetMesh cage = test::randomTets(150, 0.5, 8);
   const auto thin = [&](const Tet& tet) {
     const TetCorners p = cornersOf(cage, tet);
-    return 6.0 * signedVolume(p) < 0.02 * std::pow(tetSize(p), 3.0);  // Bullet's float weights are good to 1e-5 above
+    // Above this thickness, Bullet's float weights are accurate to 1e-5.
+    return 6.0 * signedVolume(p) < 0.02 * std::pow(tetSize(p), 3.0);
   };
   cage.tets.erase(std::remove_if(cage.tets.begin(), cage.tets.end(), thin), cage.tets.end());
   make(cage, test::randomPoints(2000, kAround, 9));
@@ -163,7 +163,7 @@ TEST_F(RenderNodes, FarOnesFollowWhereBulletLosesThem) {
 
 TEST_F(RenderNodes, NeverBoundToAFlatTet) {
   make(test::singleTet(), test::randomPoints(200, kAround, 2));
-  // Two tets squeezed flat: one across the first, one at a corner of it.
+  // Two tets are squeezed flat: one across the first tet, one at a corner of it.
   for (const btVector3& p : {btVector3(1, 1, 1), btVector3(0, 0, 1)}) ours->appendNode(p, 1);
   while (ours->m_tetras.size() > 0) ours->m_tetras.pop_back();  // the nodes may have moved in memory
   ours->appendTetra(4, 1, 2, 3);

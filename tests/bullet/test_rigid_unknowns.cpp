@@ -37,9 +37,9 @@ struct Box {
     body->setLinearVelocity(btVector3(btScalar(0.3), -1, btScalar(0.5)));
     body->setAngularVelocity(btVector3(2, -3, 1));
   }
-  void moveTo(const btTransform& place) {
-    body->setWorldTransform(place);
-    body->setInterpolationWorldTransform(place);
+  void moveTo(const btTransform& position) {
+    body->setWorldTransform(position);
+    body->setInterpolationWorldTransform(position);
     body->updateInertiaTensor();
   }
   btVector3 corner() const { return body->getWorldTransform() * kHalf; }
@@ -49,7 +49,8 @@ struct Box {
   std::unique_ptr<btRigidBody> body;
 };
 
-/// A free base and two links on hinges, which a world has stepped: masses are asked for after Bullet's own solve.
+/// A free base and two links on hinges, already stepped by a world, because masses are asked for after Bullet's own
+/// solve.
 struct Chain {
   Chain() {
     world.deformable().setGravity(btVector3(0, 0, 0));
@@ -94,7 +95,7 @@ struct Chain {
   std::array<std::unique_ptr<btMultiBodyLinkCollider>, 3> colliders;
 };
 
-/// Gives the unknowns their places in a vector, and returns its size.
+/// Assigns each unknown its position in a vector, and returns the vector's size.
 Eigen::Index number(RigidUnknowns& rigids) {
   Eigen::Index size = 0;
   for (RigidUnknown& unknown : rigids.list()) {
@@ -172,7 +173,7 @@ TEST(RigidUnknowns, AreMovedByAnImpulseAsTheyMoveThePoint) {
   ASSERT_EQ(size, 6 + 6 + 8);
   for (const RigidPoint& point : points) {
     expectTransposes(rigids, point, size);
-    // H in the corner of a matrix that is symmetric and has what it does to the point.
+    // The added stiffness must be symmetric, and must do to the unknowns what H does to the point.
     const Eigen::Matrix3d h = Vector3d(1, 2, 3).asDiagonal();
     MatrixXd stiffness = MatrixXd::Zero(size, size);
     rigids.addStiffness(point, point, h, 1.0, stiffness);
@@ -193,7 +194,7 @@ TEST(RigidUnknowns, YieldAsBulletsBodiesDoToAnImpulse) {
   for (const bool locked : {false, true}) {
     Box box;
     if (locked) {
-      // Of a body along the axes, as the factors are.
+      // The body is aligned with the axes because the factors are along the axes.
       box.moveTo(btTransform(btQuaternion::getIdentity(), btVector3(1, 2, 3)));
       box.body->setLinearFactor(btVector3(1, 1, 0));
       box.body->setAngularFactor(btVector3(0, 0, 1));
@@ -217,7 +218,7 @@ TEST(RigidUnknowns, YieldAsBulletsMultibodiesDoToAnImpulse) {
   const btVector3 direction = btVector3(1, -2, 2) / 3;
   const RigidPoint point = rigids.at(chain.last(), chain.corner());
   ASSERT_EQ(number(rigids), 8);
-  // J^T by the transpose that another test checks; M^-1 and the velocities are Bullet's.
+  // J^T comes from the transpose that another test checks; M^-1 and the velocities are Bullet's.
   VectorXd push = VectorXd::Zero(8);
   rigids.addImpulse(point, direction, push);
   std::array<btScalar, 8> force, answer;
@@ -240,7 +241,7 @@ TEST(RigidUnknowns, OfAMultibodyMoveAPointAsBulletDoes) {
     const btVector3 local(btScalar(0.1), btScalar(0.2), btScalar(-0.1));
     const btVector3 where = collider.getWorldTransform() * local;
     const btVector3 velocity = rigids.velocityAt(rigids.at(collider, where), collider, kStep);
-    Chain later;  // the same, of one step more
+    Chain later;  // the same chain one step later
     later.world.deformable().stepSimulation(kStep, 1, kStep);
     const auto& moved = *later.colliders[static_cast<std::size_t>(link)];
     const btVector3 went = (moved.getWorldTransform() * local - where) / kStep;
@@ -313,7 +314,7 @@ TEST(RigidUnknowns, CarryAPointTheStraightWayToWhereItsTurnEnds) {
   EXPECT_LT((rigids.velocityAt(point, *box.body, 0) - box.body->getVelocityInLocalPoint(box.arm())).length(), 1e-6);
 }
 
-/// A turn of so little in a step that few digits of its arc cosine are left.
+/// The body turns so little per step that few digits of the turn's arc cosine are left.
 TEST(RigidUnknowns, CarryAPointOfAKinematicBodyByItsPlaces) {
   Box box(0);
   btRigidBody& body = *box.body;
@@ -345,7 +346,7 @@ TEST(RigidUnknowns, CarryAPointOfAKinematicBodyByItsPlaces) {
   if (sizeof(btScalar) == sizeof(float)) {
     EXPECT_GT(bullets, 3e-3) << "Bullet's own";
   }
-  // Put elsewhere, which is no motion.
+  // The body is put elsewhere, which does not count as motion.
   rigids.clear();
   body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 7, 0)));
   EXPECT_LT((velocity() - body.getVelocityInLocalPoint(arm)).length(), 0.01);

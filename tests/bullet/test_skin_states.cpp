@@ -20,12 +20,12 @@ TEST_F(SkinState, HiddenSkinIsLeftAloneAndRightAtOnceWhenShown) {
   skin.setVisible(false);
   EXPECT_FALSE(skin.visible());
   body->translate(btVector3(2, 0, 0));
-  EXPECT_EQ(skin.update(), UpdateStatus::Hidden);
+  EXPECT_EQ(skin.update(), StatusCode::Hidden);
   EXPECT_EQ(at(skin, 17), before);
-  skin.setVisible(true);  // without an update of the caller's
+  skin.setVisible(true);  // the caller does not call update
   EXPECT_LT((at(skin, 17) - before - Eigen::Vector3d(2, 0, 0)).norm(), 4 * kRounding);
   body->translate(btVector3(0, 3, 0));
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_LT((at(skin, 17) - before - Eigen::Vector3d(2, 3, 0)).norm(), 8 * kRounding);
 }
 
@@ -39,27 +39,27 @@ TEST_F(SkinState, ShownAgainIsRightEvenIfItsBodyHasFallenAsleep) {
   body->setActivationState(ISLAND_SLEEPING);
   skin.setVisible(true);
   EXPECT_GT((at(skin, 17) - before).norm(), 0.1);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 TEST_F(SkinState, SleepingBodyIsSkippedUntilTeleportedOrMarked) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   body->setActivationState(ISLAND_SLEEPING);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
   body->translate(btVector3(1, 0, 0));
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
-  // Nodes moved by hand are seen only if they are among the four looked at: so the caller says so.
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
+  // Nodes moved by hand are noticed only if they are among the four samples, so the caller reports the motion.
   const Eigen::Vector3d before = at(skin, 0);
   const std::vector<int> unseen = nodesNotLookedAt();
   ASSERT_EQ(static_cast<int>(unseen.size()), body->m_nodes.size() - 4);
   for (const int n : unseen) body->m_nodes[n].m_x += btVector3(0, 1, 0);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
   EXPECT_EQ(at(skin, 0), before);
   skin.markMoved();
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_GT((at(skin, 0) - before).norm(), 0.1);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 TEST_F(SkinState, SleepingBodyIsSeenToMoveInEveryAffineWay) {
@@ -75,12 +75,12 @@ TEST_F(SkinState, SleepingBodyIsSeenToMoveInEveryAffineWay) {
     if (std::find(unseen.begin(), unseen.end(), n) == unseen.end()) lookedAt.push_back(body->m_nodes[n].m_x);
   }
   ASSERT_EQ(lookedAt.size(), 4u);
-  // About each of its edges, whose ends stay where they are; then stretched along each axis.
+  // The tet turns about each of its edges, whose ends stay where they are, and is then stretched along each axis.
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < a; ++b) {
       turn((lookedAt[a] - lookedAt[b]).normalized(), lookedAt[a]);
-      EXPECT_EQ(skin.update(), UpdateStatus::Updated) << a << ", " << b;
-      EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+      EXPECT_EQ(skin.update(), StatusCode::Ok) << a << ", " << b;
+      EXPECT_EQ(skin.update(), StatusCode::Asleep);
       turn((lookedAt[b] - lookedAt[a]).normalized(), lookedAt[a]);
       (void)skin.update();
     }
@@ -89,8 +89,8 @@ TEST_F(SkinState, SleepingBodyIsSeenToMoveInEveryAffineWay) {
     btVector3 stretch(1, 1, 1);
     stretch[axis] = btScalar(1.5);
     body->scale(stretch);
-    EXPECT_EQ(skin.update(), UpdateStatus::Updated) << axis;
-    EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+    EXPECT_EQ(skin.update(), StatusCode::Ok) << axis;
+    EXPECT_EQ(skin.update(), StatusCode::Asleep);
   }
 }
 
@@ -99,66 +99,66 @@ TEST_F(SkinState, KeepsTheLastGoodSurfaceWhenTheSimulationExplodes) {
   const Eigen::Vector3d good = at(skin, 17);
   body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
   body->m_nodes[31].m_x.setZ(-std::numeric_limits<btScalar>::infinity());
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
-  EXPECT_EQ(skin.firstBadNode(), 20u);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
+  EXPECT_EQ(skin.firstNonFiniteNode(), 20u);
   EXPECT_EQ(at(skin, 17), good);
   body->m_nodes[20].m_x = toBullet(cage.nodes[20]);
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
-  EXPECT_EQ(skin.firstBadNode(), 31u);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
+  EXPECT_EQ(skin.firstNonFiniteNode(), 31u);
   body->m_nodes[31].m_x = toBullet(cage.nodes[31]);
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_EQ(at(skin, 17), good);
 }
 
 TEST_F(SkinState, RecoversFromAnExplosionEvenIfTheBodySleepsSince) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   for (int n = 0; n < body->m_nodes.size(); ++n) body->m_nodes[n].m_x.setY(std::numeric_limits<btScalar>::quiet_NaN());
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
   body->setActivationState(ISLAND_SLEEPING);
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
   for (int n = 0; n < body->m_nodes.size(); ++n) {
     body->m_nodes[n].m_x = toBullet(cage.nodes[n] + Eigen::Vector3d(0, 5, 0));
   }
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_LT((at(skin, 17) - mesh.positions[17] - Eigen::Vector3d(0, 5, 0)).norm(), 4 * kRounding);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 TEST_F(SkinState, RecoversFromASingleBadNodeOfASleepingBodyAboutTheOrigin) {
-  // Every node but one is where it was, and their mean is 0: nothing to see in the few nodes that are looked at.
+  // Every node but one is where it was, and their mean is 0: the few sampled nodes show no change.
   for (Eigen::Vector3d& p : cage.nodes) p -= Eigen::Vector3d::Constant(0.5);
   for (Eigen::Vector3d& p : mesh.positions) p -= Eigen::Vector3d::Constant(0.5);
-  body = makeSoftBody(cage, info).value();
+  body = createSoftBody(cage, info).value();
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   body->m_nodes[31].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
-  EXPECT_EQ(skin.update(), UpdateStatus::NonFinite);
+  EXPECT_EQ(skin.update(), StatusCode::NonFinite);
   body->setActivationState(ISLAND_SLEEPING);
   body->m_nodes[31].m_x = toBullet(cage.nodes[31]);
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 TEST_F(SkinState, NoticesAppendedNodesAndTets) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   const Eigen::Vector3d good = at(skin, 17);
   body->appendNode(btVector3(0, 0, 0), 1);
-  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(), StatusCode::TopologyChanged);
   EXPECT_EQ(at(skin, 17), good);
-  const std::unique_ptr<btSoftBody> other(makeSoftBody(cage, info).value());
+  const std::unique_ptr<btSoftBody> other(createSoftBody(cage, info).value());
   ASSERT_TRUE(skin.bind(*other, cage, mesh).ok());
   other->appendTetra(0, 1, 5, 25);
-  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
-  other->setActivationState(ISLAND_SLEEPING);  // tets more or less are seen when it wakes
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::TopologyChanged);
+  other->setActivationState(ISLAND_SLEEPING);  // added or removed tets are noticed when the body wakes
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
   other->forceActivationState(ACTIVE_TAG);
-  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(), StatusCode::TopologyChanged);
   other->setActivationState(ISLAND_SLEEPING);
   other->appendNode(btVector3(0, 0, 0), 1);
-  EXPECT_EQ(skin.update(), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(), StatusCode::TopologyChanged);
 }
 
 TEST_F(SkinState, UnboundSkinSaysSo) {
-  EXPECT_EQ(skin.update(), UpdateStatus::Unbound);
+  EXPECT_EQ(skin.update(), StatusCode::Unbound);
   EXPECT_TRUE(skin.positions().empty());
   EXPECT_EQ(skin.binding(), nullptr);
 }
@@ -171,23 +171,23 @@ TEST_F(SkinState, PreviousPositionsAreThoseOfTheUpdateBefore) {
   const auto motion = [&](std::size_t v) -> double { return skin.positions()[v][1] - skin.previousPositions()[v][1]; };
   EXPECT_TRUE(still());
   body->translate(btVector3(0, 1, 0));
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(motion(9), 1.0, 8 * kRounding);
   body->translate(btVector3(0, 2, 0));
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(motion(9), 2.0, 8 * kRounding);
 
   body->setActivationState(ISLAND_SLEEPING);
-  ASSERT_EQ(skin.update(), UpdateStatus::Asleep);
+  ASSERT_EQ(skin.update(), StatusCode::Asleep);
   EXPECT_TRUE(still());
   body->setActivationState(ACTIVE_TAG);
   body->translate(btVector3(0, 3, 0));
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(motion(9), 3.0, 16 * kRounding);
 
   skin.setVisible(false);
   body->translate(btVector3(0, 4, 0));
-  ASSERT_EQ(skin.update(), UpdateStatus::Hidden);
+  ASSERT_EQ(skin.update(), StatusCode::Hidden);
   EXPECT_TRUE(still());
   skin.setVisible(true);
   EXPECT_TRUE(still());
@@ -195,22 +195,22 @@ TEST_F(SkinState, PreviousPositionsAreThoseOfTheUpdateBefore) {
 
   const btScalar good = body->m_nodes[20].m_x.x();
   body->translate(btVector3(0, 1, 0));
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   body->m_nodes[20].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
-  ASSERT_EQ(skin.update(), UpdateStatus::NonFinite);
+  ASSERT_EQ(skin.update(), StatusCode::NonFinite);
   EXPECT_TRUE(still());
   body->m_nodes[20].m_x.setX(good);
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(motion(9), 0.0, 16 * kRounding);
 }
 
 TEST_F(SkinState, EveryUpdateStatusHasAName) {
-  EXPECT_STREQ(toString(UpdateStatus::Updated), "updated");
-  EXPECT_STREQ(toString(UpdateStatus::Asleep), "asleep");
-  EXPECT_STREQ(toString(UpdateStatus::Hidden), "hidden");
-  EXPECT_STREQ(toString(UpdateStatus::NonFinite), "not finite");
-  EXPECT_STREQ(toString(UpdateStatus::TopologyChanged), "topology changed");
-  EXPECT_STREQ(toString(UpdateStatus::Unbound), "unbound");
+  EXPECT_STREQ(toString(StatusCode::Ok), "ok");
+  EXPECT_STREQ(toString(StatusCode::Asleep), "asleep");
+  EXPECT_STREQ(toString(StatusCode::Hidden), "hidden");
+  EXPECT_STREQ(toString(StatusCode::NonFinite), "not finite");
+  EXPECT_STREQ(toString(StatusCode::TopologyChanged), "topology changed");
+  EXPECT_STREQ(toString(StatusCode::Unbound), "unbound");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 
 #include <memory>
 
@@ -12,14 +13,14 @@ namespace tetskin {
 namespace {
 
 std::unique_ptr<btSoftBody> makeBody(const TetMesh& cage, btSoftBodyWorldInfo& info) {
-  return std::unique_ptr<btSoftBody>(makeSoftBody(cage, info).value());
+  return std::unique_ptr<btSoftBody>(createSoftBody(cage, info).value());
 }
 
 TEST(SoftBodyAdapter, ReadsNodesAndTetsByIndex) {
   btSoftBodyWorldInfo info;
   const TetMesh cage = test::latticeCage(3, 2, 1, 0.5);
   const auto body = makeBody(cage, info);
-  const TetMesh read = tetMeshOf(*body);
+  const TetMesh read = readTetMesh(*body);
   EXPECT_EQ(read.nodes, cage.nodes);
   EXPECT_EQ(read.tets, cage.tets);
 }
@@ -42,7 +43,7 @@ TEST(SoftBodyAdapter, TellsEmbeddedPointsOfItsNodes) {
   const Embedding embedding = embed(cage, viewOf(vertices)).value();
   const auto body = makeBody(cage, info);
   body->rotate(btQuaternion(btVector3(0, 1, 0), btScalar(0.7)));
-  const btVector3 turning(0, 2, 0);  // about the origin
+  const btVector3 turning(0, 2, 0);  // angular velocity about the origin
   for (int n = 0; n < body->m_nodes.size(); ++n) body->m_nodes[n].m_v = turning.cross(body->m_nodes[n].m_x);
   setMass(*body, 0, 0);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -57,7 +58,7 @@ TEST(SoftBodyAdapter, TellsEmbeddedPointsOfItsNodes) {
       if (node > 0) momentum += change / body->m_nodes[node].m_im;
     });
     for (std::size_t k = 0; k < 4; ++k) {
-      if (point.nodes[k] == 0) pinned = point.clamped[k] * btVector3(1, 2, 3);
+      if (point.nodes[k] == 0) pinned = point.clampedWeights[k] * btVector3(1, 2, 3);
     }
     EXPECT_LT((momentum + pinned - btVector3(1, 2, 3)).length(), 1e-5) << v;
     const btVector3 gained = point.clampedVelocity(velocitiesIn(*body)) - before;
@@ -74,7 +75,7 @@ TEST(SoftBodyAdapter, BodyWithoutNodesIsEmpty) {
   btSoftBodyWorldInfo info;
   const btSoftBody body(&info);
   EXPECT_TRUE(nodePositions(body).empty());
-  EXPECT_TRUE(tetMeshOf(body).tets.empty());
+  EXPECT_TRUE(readTetMesh(body).tets.empty());
 }
 
 TEST(SoftBodyAdapter, TetsLeftDanglingByAppendedNodesAreReportedNotRead) {
@@ -82,16 +83,16 @@ TEST(SoftBodyAdapter, TetsLeftDanglingByAppendedNodesAreReportedNotRead) {
   const auto body = makeBody(test::latticeCage(1, 1, 1), info);
   const btSoftBody::Node* const before = &body->m_nodes[0];
   while (&body->m_nodes[0] == before) body->appendNode(btVector3(0, 0, 0), 1);  // until the array moves
-  const TetMesh read = tetMeshOf(*body);
+  const TetMesh read = readTetMesh(*body);
   const TetMeshReport report = checkTetMesh(read);
   EXPECT_EQ(report.indexOutOfRange.count, read.tetCount());
-  EXPECT_EQ(usable(read, report).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(validate(read, report).code, StatusCode::IndexOutOfRange);
 }
 
 TEST(SoftBodyAdapter, ViewsThePositionsOfABulletVertexBuffer) {
   std::vector<float> buffer(4 * 8, -1.0f);
-  btCPUVertexBufferDescriptor descriptor(buffer.data(), 2, 8, 5, 8);  // positions at 2, normals at 5, stride 8
-  const PointView<float> view = positionsOf(descriptor, 4);
+  btCPUVertexBufferDescriptor descriptor(buffer.data(), 2, 8, 5, 8);  // positions at offset 2, normals at 5, stride 8
+  const PointView<float> view = positionView(descriptor, 4);
   view[3][1] = 42.0f;
   EXPECT_EQ(buffer[3 * 8 + 2 + 1], 42.0f);
   EXPECT_EQ(view.size(), 4u);

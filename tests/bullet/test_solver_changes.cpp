@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What changes between steps, and in the middle of them: bodies that sleep and wake, come and go, or are given other
-// nodes and other sizes.
+// What changes between steps and during them: bodies that sleep and wake, are added and removed, or get other nodes and
+// other sizes.
 #include "cloth.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ TEST(SolverWithOthers, SleepersStayWhereTheyAreAndWake) {
   TetskinWorld world;
   SoftBodyOptions options;
   options.relativeStiffness = 300.0;
-  options.damping = 0.1;
+  options.stiffnessDamping = 0.1;
   std::vector<std::unique_ptr<DeformableBody>> bodies;
   for (int b = 0; b < 6; ++b) {
     TetMesh cage = smallCageAbove(0.02);
@@ -74,13 +74,13 @@ TEST(SolverWithOthers, FollowsABodyThatIsScaled) {
   EXPECT_NEAR(static_cast<double>(high - low), 2 * 0.9, 0.01);
 }
 
-/// Bullet's tets dangle after `appendNode`: they are not stepped any more, and nothing is read past its end.
+/// Bullet's tets dangle after `appendNode`: the solver no longer steps the body, and reads nothing past its end.
 TEST(SolverWithOthers, SurvivesNodesThatAreAppended) {
   TetskinWorld world;
   const auto body = added(world, smallCageAbove(5));
   step(world, 2);
   body->body().appendNode(btVector3(0, 9, 0), btScalar(0.1));
-  body->body().m_tetras.resize(0);  // or Bullet itself reads through them
+  body->body().m_tetras.resize(0);  // otherwise Bullet itself reads through them
   step(world, 5);
   EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
 }
@@ -99,7 +99,7 @@ TEST(SolverWithOthers, BodiesMayGoInBulletsCallbacks) {
     for (int b = 0; b < 3; ++b) bodies.all.push_back(added(world, cageAbove(0.021 + 1.5 * b)));
     world.deformable().setWorldUserInfo(&bodies);
     if (afterSolve) {
-      world.deformable().setSolverCallback(Bodies::goes);  // before and after
+      world.deformable().setSolverCallback(Bodies::goes);  // called before and after the solve
     } else {
       const auto tick = [](btDynamicsWorld* in, btScalar) {
         Bodies::goes(0, static_cast<btDeformableMultiBodyDynamicsWorld*>(in));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Contacts and anchors of nodes with rigid bodies, in scenes that are checked by hand.
+// Contacts and anchors of nodes with rigid bodies, in scenes whose results can be checked by hand.
 #include "rigid_bodies.h"
 
 #include <algorithm>
@@ -31,16 +31,17 @@ double distance(const btVector3& a, const btVector3& b) {
 
 TEST(SolverContacts, KeepMomentumAndAngularMomentum) {
   for (const double mass : {0.05, 1.0, 20.0}) {
-    FlyingBlock of;
-    Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(btScalar(0.25), btScalar(4.7), btScalar(0.1)));
-    of.body().setVelocity(btVector3(0, -2, 0));
-    const btVector3 momentum = momentumOf(of.body()), spin = spinOf(of.body());
+    FlyingBlock item;
+    Rigid rigid(item.world, ball(), static_cast<btScalar>(mass),
+                btVector3(btScalar(0.25), btScalar(4.7), btScalar(0.1)));
+    item.body().setVelocity(btVector3(0, -2, 0));
+    const btVector3 momentum = momentumOf(item.body()), spin = spinOf(item.body());
     double lost = 0.0, lostSpin = 0.0, turned = 0.0;
-    forEachSubstep(of.world, 60, [&] {
-      lost = std::max(lost, distance(momentumOf(of.body()) + rigid.momentum(), momentum));
-      lostSpin = std::max(lostSpin, distance(spinOf(of.body()) + rigid.spin(), spin));
-      turned = std::max(turned, distance(spinOf(of.body()), spin));
-      EXPECT_EQ(of.world.bodySolver().unconverged(), 0);
+    forEachSubstep(item.world, 60, [&] {
+      lost = std::max(lost, distance(momentumOf(item.body()) + rigid.momentum(), momentum));
+      lostSpin = std::max(lostSpin, distance(spinOf(item.body()) + rigid.spin(), spin));
+      turned = std::max(turned, distance(spinOf(item.body()), spin));
+      EXPECT_EQ(item.world.bodySolver().unconvergedSystems(), 0);
     });
     EXPECT_GT(turned, 0.01) << "they have met";
     EXPECT_LT(lost, 1e-5 * 2.0) << mass;
@@ -49,15 +50,15 @@ TEST(SolverContacts, KeepMomentumAndAngularMomentum) {
 }
 
 TEST(SolverContacts, HoldABodyOnAPlateThatLiesOnTheFloor) {
-  FlyingBlock of(0.13);
-  of.world.deformable().setGravity(btVector3(0, -10, 0));
-  Rigid under(of.world, plate(), btScalar(0.1), btVector3(0, btScalar(0.05), 0));
-  forEachSubstep(of.world, 240, [] {});
+  FlyingBlock item(0.13);
+  item.world.deformable().setGravity(btVector3(0, -10, 0));
+  Rigid under(item.world, plate(), btScalar(0.1), btVector3(0, btScalar(0.05), 0));
+  forEachSubstep(item.world, 240, [] {});
   double highest = 0.0, lowest = 1.0, fastest = 0.0;
-  forEachSubstep(of.world, 24, [&] {
+  forEachSubstep(item.world, 24, [&] {
     highest = std::max(highest, under.height());
     lowest = std::min(lowest, under.height());
-    fastest = std::max(fastest, test::rmsSpeed(of.body()));
+    fastest = std::max(fastest, test::rmsSpeed(item.body()));
   });
   EXPECT_GT(lowest, 0.05 - 0.001);
   EXPECT_LT(highest, 0.05 + 0.001);
@@ -65,7 +66,7 @@ TEST(SolverContacts, HoldABodyOnAPlateThatLiesOnTheFloor) {
   EXPECT_LT(under.body->getAngularVelocity().length(), 0.01);
 }
 
-/// A bar of 1 kg and a box of 2 hang from four nodes: (M + m / 2) g L / (E A).
+/// A bar of 1 kg and a box of 2 kg hang from four nodes and stretch the bar by (M + m / 2) g L / (E A).
 TEST(SolverContacts, HangABoxByAnchorsAsFarAsByHand) {
   TetskinWorld world;
   TetMesh cage = latticeCage(1, 4, 1, 0.25);
@@ -73,20 +74,20 @@ TEST(SolverContacts, HangABoxByAnchorsAsFarAsByHand) {
   SoftBodyOptions options;
   options.youngsModulus = 2e4;
   options.poissonRatio = 0;
-  options.damping = 0.08;
+  options.stiffnessDamping = 0.08;
   options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 2.99; };
   const auto bar = added(world, cage, options);
   btSoftBody& soft = bar->body();
   Rigid box(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))), 2,
             btVector3(0, btScalar(1.8), 0));
   world.deformable().removeRigidBody(box.body.get());
-  world.deformable().addRigidBody(box.body.get(), 2, 0);  // held, and met by nothing
+  world.deformable().addRigidBody(box.body.get(), 2, 0);  // anchored, and in contact with nothing
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
     if (soft.m_nodes[n].m_x.y() < btScalar(2.01)) soft.appendDeformableAnchor(n, box.body.get());
   }
   ASSERT_EQ(soft.m_deformableAnchors.size(), 4);
   forEachSubstep(world, 360, [] {});
-  double mass = 0.0, moment = 0.0;  // of the bar below its top
+  double mass = 0.0, moment = 0.0;  // of the bar's free nodes; the moment is about its top
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
     const double m = soft.m_nodes[n].m_im > 0 ? 1.0 / static_cast<double>(soft.m_nodes[n].m_im) : 0.0;
     mass += m;
@@ -100,54 +101,54 @@ TEST(SolverContacts, HangABoxByAnchorsAsFarAsByHand) {
   soft.m_deformableAnchors.clear();
 }
 
-std::vector<btVector3> placesOf(const btSoftBody& body) {
-  std::vector<btVector3> places;
-  for (int n = 0; n < body.m_nodes.size(); ++n) places.push_back(body.m_nodes[n].m_x);
-  return places;
+std::vector<btVector3> positionsOf(const btSoftBody& body) {
+  std::vector<btVector3> positions;
+  for (int n = 0; n < body.m_nodes.size(); ++n) positions.push_back(body.m_nodes[n].m_x);
+  return positions;
 }
 
 /// A block falls onto a box.
 struct Landing {
-  Landing() : of(0.35), box(of.world, plate(), btScalar(0.5), btVector3(btScalar(0.1), btScalar(0.05), 0)) {
-    of.world.deformable().setGravity(btVector3(0, -10, 0));
+  Landing() : item(0.35), box(item.world, plate(), btScalar(0.5), btVector3(btScalar(0.1), btScalar(0.05), 0)) {
+    item.world.deformable().setGravity(btVector3(0, -10, 0));
   }
   void step() {
-    forEachSubstep(of.world, 1, [] {});
+    forEachSubstep(item.world, 1, [] {});
   }
-  /// Where all of it is, the box behind the nodes.
-  std::vector<btVector3> places() {
-    std::vector<btVector3> all = placesOf(of.body());
+  /// Positions of the nodes, followed by the box.
+  std::vector<btVector3> positions() {
+    std::vector<btVector3> all = positionsOf(item.body());
     all.push_back(box.body->getWorldTransform().getOrigin());
     for (int k = 0; k < 3; ++k) all.push_back(box.body->getWorldTransform().getBasis()[k]);
     return all;
   }
 
-  FlyingBlock of;
+  FlyingBlock item;
   Rigid box;
 };
 
 TEST(SolverContacts, InATriggerHaveTheSameBits) {
-  const auto placesWith = [](bool trigger) {
+  const auto positionsWith = [](bool trigger) {
     Landing scene;
     std::unique_ptr<Rigid> around;
     if (trigger) {
-      around = std::make_unique<Rigid>(scene.of.world, std::make_unique<btBoxShape>(btVector3(5, 5, 5)), 0,
+      around = std::make_unique<Rigid>(scene.item.world, std::make_unique<btBoxShape>(btVector3(5, 5, 5)), 0,
                                        btVector3(0, 0, 0));
       around->body->setCollisionFlags(around->body->getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
     }
     for (int k = 0; k < 120; ++k) scene.step();
-    return scene.places();
+    return scene.positions();
   };
-  const auto without = placesWith(false);
+  const auto without = positionsWith(false);
   EXPECT_LT(without[0].y(), 0.2) << "it has landed";
-  EXPECT_EQ(placesWith(true), without);
+  EXPECT_EQ(positionsWith(true), without);
 }
 
 TEST(SolverContacts, OfTwoWorldsDoNotKnowEachOther) {
   const auto alone = [] {
     Landing scene;
     for (int k = 0; k < 100; ++k) scene.step();
-    return scene.places();
+    return scene.positions();
   }();
   Landing first;
   auto second = std::make_unique<Landing>();
@@ -156,33 +157,33 @@ TEST(SolverContacts, OfTwoWorldsDoNotKnowEachOther) {
     if (k < 60) second->step();
     if (k == 60) second.reset();
   }
-  EXPECT_EQ(first.places(), alone);
+  EXPECT_EQ(first.positions(), alone);
 }
 
-/// A block of 1 kg lies on a plate of 1 kg that a motor holds level, 0.6 m from its hinge: 12 Nm, 0.05 Nms a step.
+/// A block of 1 kg lies on a plate of 1 kg that a motor holds level, 0.6 m from its hinge: 12 Nm, 0.05 Nms per step.
 TEST(SolverContacts, AreHeldByAHingeAsFarAsItsMotorCan) {
-  for (const double most : {0.2, 0.02}) {
-    FlyingBlock of(0.57);
-    of.world.deformable().setGravity(btVector3(0, -10, 0));
-    Rigid lever(of.world, plate(), 1, btVector3(0, btScalar(0.5), 0));
+  for (const double maximum : {0.2, 0.02}) {
+    FlyingBlock item(0.57);
+    item.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid lever(item.world, plate(), 1, btVector3(0, btScalar(0.5), 0));
     const btVector3 pivot(btScalar(-0.6), 0, 0);
     btHingeConstraint hinge(*lever.body, pivot, btVector3(0, 0, 1));
-    hinge.enableAngularMotor(true, 0, static_cast<btScalar>(most));
-    of.world.deformable().addConstraint(&hinge);
+    hinge.enableAngularMotor(true, 0, static_cast<btScalar>(maximum));
+    item.world.deformable().addConstraint(&hinge);
     double apart = 0.0;
-    forEachSubstep(of.world, 100, [&] {
+    forEachSubstep(item.world, 100, [&] {
       apart = std::max(apart,
                        distance(lever.body->getWorldTransform() * pivot, btVector3(btScalar(-0.6), btScalar(0.5), 0)));
     });
-    if (most > 0.05) {
+    if (maximum > 0.05) {
       EXPECT_NEAR(lever.height(), 0.5, 0.002);
-      EXPECT_GT(test::lowest(of.body()), 0.54);
-      EXPECT_LT(test::rmsSpeed(of.body()), 0.02);
+      EXPECT_GT(test::lowest(item.body()), 0.54);
+      EXPECT_LT(test::rmsSpeed(item.body()), 0.02);
     } else {
       EXPECT_LT(lever.height(), 0.4) << "more than it can";
     }
     EXPECT_LT(apart, 0.003) << "it stays on its hinge";
-    of.world.deformable().removeConstraint(&hinge);
+    item.world.deformable().removeConstraint(&hinge);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Forces of the application's, or several, on bodies that the library's solver solves for.
+// An application's own forces, and several forces at once, on bodies that the library's solver solves for.
 #include "deformable_test.h"
 
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
@@ -34,16 +34,16 @@ TEST(SolverWithOthers, MousePicksBodies) {
   EXPECT_LT(lowest(body->body()), 0.1);
 }
 
-/// A spring of the application's own, from a node to a place, and how often Bullet's interface is used.
+/// An application's own spring from a node to a position, which counts how often Bullet's interface is used.
 class OwnSpring : public btDeformableLagrangianForce {
  public:
-  OwnSpring(const btSoftBody::Node& ofNode, const btVector3& to) : node(ofNode), place(to) {}
+  OwnSpring(const btSoftBody::Node& ofNode, const btVector3& to) : node(ofNode), position(to) {}
   void addScaledForces(btScalar scale, TVStack& force) override {
     addScaledExplicitForce(scale, force);
     addScaledDampingForce(scale, force);
   }
   void addScaledExplicitForce(btScalar scale, TVStack& force) override {
-    force[node.index] += scale * stiffness * (place - node.m_q);
+    force[node.index] += scale * stiffness * (position - node.m_q);
   }
   void addScaledDampingForce(btScalar scale, TVStack& force) override {
     force[node.index] -= scale * damping * node.m_v;
@@ -61,7 +61,7 @@ class OwnSpring : public btDeformableLagrangianForce {
   btDeformableLagrangianForceType getForceType() override { return type; }
 
   const btSoftBody::Node& node;
-  btVector3 place;
+  btVector3 position;
   btScalar stiffness = 50, damping = 5;
   btDeformableLagrangianForceType type = BT_MASSSPRING_FORCE;
   int products = 0, elasticProducts = 0, steps = 0;
@@ -85,13 +85,13 @@ TEST(SolverWithOthers, OwnForcesHaveTheirPartInEveryProduct) {
       EXPECT_GT(spring.products, 8);
       EXPECT_EQ(spring.elasticProducts > 0, mouse);
       step(world, 240);
-      EXPECT_LT((spring.node.m_x - spring.place).length(), btScalar(0.6));
+      EXPECT_LT((spring.node.m_x - spring.position).length(), btScalar(0.6));
       world.deformable().removeForce(&body->body(), &spring);
     }
   }
 }
 
-/// Stiff enough to explode if it had no part in the matrix: dt d / m is 100.
+/// The force is stiff enough to explode if it were left out of the matrix: dt d / m is 100.
 TEST(SolverWithOthers, OwnForcesAreSolvedForImplicitly) {
   TetskinWorld world;
   const auto body = added(world, smallCageAbove(1));
@@ -99,12 +99,12 @@ TEST(SolverWithOthers, OwnForcesAreSolvedForImplicitly) {
   spring.damping = 1000;
   world.deformable().addForce(&body->body(), &spring);
   step(world, 30);
-  EXPECT_LT((spring.node.m_x - spring.place).length(), btScalar(0.1));
+  EXPECT_LT((spring.node.m_x - spring.position).length(), btScalar(0.1));
   EXPECT_LT(rmsSpeed(body->body()), 5.0);
   world.deformable().removeForce(&body->body(), &spring);
 }
 
-/// A mouse that holds still what rests must leave it at rest, however the solve is cut short.
+/// A mouse that holds a resting body still must leave it at rest, even where the solve stops early.
 TEST(SolverWithOthers, BulletsForcesGainNoEnergyOnElasticBodies) {
   for (const double youngsModulus : {2e4, 2e5}) {
     TetskinWorld world;

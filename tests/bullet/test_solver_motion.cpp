@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies under the library's own solve, that move freely or hang.
+// Bodies solved by the library's own solver that move freely or hang.
 #include "deformable_test.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ using test::TetskinWorld;
 
 using Vector = Eigen::Vector3d;
 
-/// Kilograms, and the moments of motion about the centre of mass.
+/// A body's mass in kilograms, kinetic energy, size, momentum and angular momentum about the centre of mass.
 struct Motion {
   double mass = 0.0, kinetic = 0.0, size = 0.0;
   Vector momentum = Vector::Zero(), spin = Vector::Zero();
@@ -45,7 +45,7 @@ Motion motionOf(const btSoftBody& body) {
   return motion;
 }
 
-/// Radians a second about an axis through the centre, and a push.
+/// Sets a rotation in radians per second about an axis through the centre, and a velocity.
 void spin(btSoftBody& body, const Vector& rate, const Vector& push) {
   Vector centre = Vector::Zero();
   for (int n = 0; n < body.m_nodes.size(); ++n) centre += toEigen(body.m_nodes[n].m_x) / body.m_nodes.size();
@@ -66,7 +66,7 @@ TEST(DeformableSolver, LetsBodiesFallLikeStones) {
   }
 }
 
-/// A turn a second, stiff and soft.
+/// One turn per second, with a soft and a stiff body.
 TEST(DeformableSolver, KeepsSpinAndGainsNoEnergy) {
   for (const double stiffness : {50.0, 1e4}) {
     TetskinWorld world;
@@ -78,7 +78,7 @@ TEST(DeformableSolver, KeepsSpinAndGainsNoEnergy) {
     spin(body->body(), rate, Vector(0.3, -0.2, 0.1));
     const Motion before = motionOf(body->body());
     const double tip = rate.norm() * before.size;
-    // Velocities are chords of the turn of a step.
+    // Velocities are chords of the arc that a step turns through.
     const double chord = 1.0 / std::pow(std::cos(0.5 * rate.norm() / 240.0), 2);
     for (int f = 0; f < 600; ++f) {
       step(world, 1);
@@ -90,7 +90,7 @@ TEST(DeformableSolver, KeepsSpinAndGainsNoEnergy) {
   }
 }
 
-/// Pinned by its upper layer; stretched by its weight as a bar is: rho g L^2 / 2 E.
+/// The body is pinned by its upper layer and stretches under its weight as a bar does: rho g L^2 / 2 E.
 TEST(DeformableSolver, HangsFromItsPinsAsLongAsItShould) {
   TetskinWorld world;
   TetMesh cage = test::latticeCage(2, 10, 2, 0.1);
@@ -99,7 +99,7 @@ TEST(DeformableSolver, HangsFromItsPinsAsLongAsItShould) {
   options.density = 10.0;
   options.youngsModulus = 5000.0;
   options.poissonRatio = 0.0;
-  options.damping = 0.1;
+  options.stiffnessDamping = 0.1;
   options.pinned = pinnedIn(Box3(Vector(-1, 5.999, -1), Vector(1, 7, 1)));
   const auto body = added(world, cage, options);
   step(world, 300);
@@ -121,20 +121,20 @@ double volumeOf(const btSoftBody& body) {
   return static_cast<double>(sum);
 }
 
-/// Nodes are put on a plane, mirrored, or all to one place.
+/// Nodes are put on a plane, mirrored, or all put at one position.
 TEST(DeformableSolver, BringsBackWhatIsFlatOrInsideOut) {
-  using Place = std::function<btVector3(const btVector3&)>;
-  const Place places[] = {[](const btVector3& x) { return btVector3(x.x(), 5, x.z()); },
-                          [](const btVector3& x) { return btVector3(x.x(), 10 - x.y(), x.z()); },
-                          [](const btVector3&) { return btVector3(0, 5, 0); }};
+  using Position = std::function<btVector3(const btVector3&)>;
+  const Position places[] = {[](const btVector3& x) { return btVector3(x.x(), 5, x.z()); },
+                             [](const btVector3& x) { return btVector3(x.x(), 10 - x.y(), x.z()); },
+                             [](const btVector3&) { return btVector3(0, 5, 0); }};
   const TetMesh cage = cageAbove(5);
-  for (const Place& place : places) {
+  for (const Position& toPosition : places) {
     TetskinWorld world;
     const auto body = added(world, cage);
     EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
     btSoftBody& soft = body->body();
     for (int n = 0; n < soft.m_nodes.size(); ++n)
-      soft.m_nodes[n].m_x = soft.m_nodes[n].m_q = place(soft.m_nodes[n].m_x);
+      soft.m_nodes[n].m_x = soft.m_nodes[n].m_q = toPosition(soft.m_nodes[n].m_x);
     step(world, 240);
     EXPECT_LT(rmsSpeed(soft), 100.0);
     EXPECT_NEAR(volumeOf(soft), totalVolume(cage), 1e-3);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The library's own solve: where it is in use, by which settings, and what it tells of itself.
+// The library's own solve: where it is used, with which settings, and what it reports about itself.
 #include "cloth.h"
 
 #include <tetskin/threads/thread_pool.h>
@@ -46,7 +46,7 @@ TEST(DeformableSolver, IsWhatBodiesAreSolvedByUnlessTheyAreBullets) {
   EXPECT_EQ(bullets->solverPath(), SolverPath::Bullet);
 }
 
-/// How a world's settings of Bullet's solve are set.
+/// A world's settings of Bullet's solve.
 struct Settings {
   bool implicit, lineSearch, projection;
 };
@@ -61,7 +61,7 @@ TEST(DeformableSolver, SolvesWhateverTheWorldsSettingsOfBulletsSolveAre) {
     options.configureWorld = false;
     const auto body = added(world, cageAbove(0.3), options);
     step(world, 60);
-    EXPECT_TRUE(world.bodySolver().solves());
+    EXPECT_TRUE(world.bodySolver().ownSolveActive());
     EXPECT_LT(lowest(body->body()), 0.1);
     EXPECT_GT(lowest(body->body()), -0.03);
     return positionsOf(body->body());
@@ -92,7 +92,7 @@ TEST(DeformableSolver, LeavesAWorldOfBulletsForcesAloneToBulletsCode) {
       step(world, 30);
       positions[k] = positionsOf(body->body());
     }
-    EXPECT_FALSE(ours.bodySolver().solves());
+    EXPECT_FALSE(ours.bodySolver().ownSolveActive());
     EXPECT_TRUE(sameBits(positions[0], positions[1])) << settings.implicit << settings.lineSearch;
   }
 }
@@ -100,18 +100,18 @@ TEST(DeformableSolver, LeavesAWorldOfBulletsForcesAloneToBulletsCode) {
 TEST(DeformableSolver, TellsTheEnergyAndAskingChangesNothing) {
   TetskinWorld asked, left;
   const auto a = added(asked, cageAbove(0.2)), b = added(left, cageAbove(0.2));
-  double fallen = 0.0, most = 0.0;
+  double fallen = 0.0, maximum = 0.0;
   for (int f = 0; f < 40; ++f) {
     step(asked, 1);
     step(left, 1);
-    most = std::max(most, test::elasticEnergyIn(asked));
-    if (f == 5) fallen = most;
+    maximum = std::max(maximum, test::elasticEnergyIn(asked));
+    if (f == 5) fallen = maximum;
     ASSERT_TRUE(sameBits(positionsOf(a->body()), positionsOf(b->body()))) << f;
   }
-  EXPECT_LT(fallen, 1e-3);  // in free fall it is not deformed
-  // Of 1 kg that has fallen by 0.2 with 10 m/s2, 2 J: a part goes into the deformation.
-  EXPECT_GT(most, 0.1);
-  EXPECT_LT(most, 2.0 * 1.5);
+  EXPECT_LT(fallen, 1e-3);  // a body in free fall is not deformed
+  // A body of 1 kg that has fallen by 0.2 with 10 m/s2 has 2 J, some of which goes into the deformation.
+  EXPECT_GT(maximum, 0.1);
+  EXPECT_LT(maximum, 2.0 * 1.5);
 }
 
 TEST(DeformableSolver, DoesNotBoundTheDefaultStiffnessByTheStep) {
@@ -120,7 +120,7 @@ TEST(DeformableSolver, DoesNotBoundTheDefaultStiffnessByTheStep) {
   SoftBodyOptions options;
   options.relativeStiffness = 1e4;
   const TetMesh cage = cageAbove(5);
-  const double wanted = 1e4 * (1.0 / totalVolume(cage)) * 10.0;  // of 1 kg, 1 unit long
+  const double wanted = 1e4 * (1.0 / totalVolume(cage)) * 10.0;  // a body of 1 kg, 1 unit long
   EXPECT_NEAR(added(ours, cage, options)->youngsModulus(), wanted, 1e-6 * wanted);
   options.forceModel = ForceModel::NeoHookean;
   EXPECT_LT(added(bullets, cage, options)->youngsModulus(), 0.5 * wanted);
@@ -236,7 +236,7 @@ TEST(DeformableSolver, CountsTheIterationsOfTheLastStepAlone) {
   EXPECT_EQ(world.bodySolver().iterations(), 0);
   step(world, 1);
   EXPECT_GT(world.bodySolver().iterations(), 0);
-  // Nothing but gravity is left.
+  // Only gravity is left.
   world.deformable().removeForce(cloth.body.get(), &cloth.springs);
   step(world, 1);
   EXPECT_EQ(world.bodySolver().iterations(), 0);
@@ -252,7 +252,7 @@ TEST(DeformableSolver, CountsTheIterationsOfTheLastStepAlone) {
   EXPECT_GT(world.bodySolver().iterations(), 0);
 }
 
-/// Rays find a body wherever it has gone, though its trees are not fitted in each step.
+/// Rays find a body wherever it has gone, although its trees are not refitted in each step.
 TEST(DeformableSolver, LeavesBodiesToBeFoundByRays) {
   TetskinWorld world;
   const auto body = added(world, cageAbove(6));

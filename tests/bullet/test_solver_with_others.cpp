@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What else may be in a world, beside bodies that the library's solver solves for: it goes on as with Bullet's solver.
+// What else may be in a world beside bodies that the library's solver solves for: it behaves as with Bullet's solver.
 #include "cloth.h"
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
@@ -28,9 +28,10 @@ btVector3 centreOf(const btSoftBody& body) {
 }
 
 double largestDifference(const btSoftBody& a, const btSoftBody& b) {
-  btScalar most = 0;
-  for (int n = 0; n < a.m_nodes.size(); ++n) most = std::max(most, (a.m_nodes[n].m_x - b.m_nodes[n].m_x).length());
-  return static_cast<double>(most);
+  btScalar maximum = 0;
+  for (int n = 0; n < a.m_nodes.size(); ++n)
+    maximum = std::max(maximum, (a.m_nodes[n].m_x - b.m_nodes[n].m_x).length());
+  return static_cast<double>(maximum);
 }
 
 TEST(SolverWithOthers, ClothHangsAsWithBulletsSolver) {
@@ -124,7 +125,7 @@ TEST(SolverWithOthers, AnchorsHoldBodies) {
   world.deformable().removeRigidBody(&box);
 }
 
-/// A multibody of a base and a link falls on a body.
+/// A multibody falls on a body.
 TEST(SolverWithOthers, MultibodiesRestOnBodies) {
   TetskinWorld world;
   SoftBodyOptions options;
@@ -151,7 +152,7 @@ TEST(SolverWithOthers, MultibodiesRestOnBodies) {
   world.deformable().removeCollisionObject(&collider);
 }
 
-/// The world's choice is known in its first step only after the solver has been asked to begin it.
+/// The world's setting becomes known in its first step, only after the solver has been asked to begin that step.
 TEST(SolverWithOthers, WorldsWithoutProjectionKeepTheirRigidBodies) {
   TetskinWorld world;
   SoftBodyOptions options;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies and dynamic rigid ones that push each other, in the library's solver.
+// Soft bodies and dynamic rigid bodies that push each other, in the library's solver.
 #include "rigid_bodies.h"
 
 namespace tetskin {
@@ -19,114 +19,116 @@ using test::step;
 TEST(SolverWithRigidBodies, TheyTakeTheMomentumThatTheBodyLoses) {
   for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
     for (const double aside : {0.0, 0.2}) {
-      FlyingBlock of;
-      Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(static_cast<btScalar>(aside), 4, 0));
-      of.body().setVelocity(btVector3(0, -2, 0));
-      const btVector3 before = momentumOf(of.body());
-      double given = 0.0, most = 0.0;
-      forEachSubstep(of.world, 240, [&] {
+      FlyingBlock item;
+      Rigid rigid(item.world, ball(), static_cast<btScalar>(mass), btVector3(static_cast<btScalar>(aside), 4, 0));
+      item.body().setVelocity(btVector3(0, -2, 0));
+      const btVector3 before = momentumOf(item.body());
+      double given = 0.0, maximum = 0.0;
+      forEachSubstep(item.world, 240, [&] {
         given = std::max(given, static_cast<double>(rigid.momentum().length()));
-        most = std::max(most, static_cast<double>((momentumOf(of.body()) + rigid.momentum() - before).length()));
+        maximum =
+            std::max(maximum, static_cast<double>((momentumOf(item.body()) + rigid.momentum() - before).length()));
       });
       EXPECT_GT(given, 0.9 * std::min(1.0, mass)) << mass;
-      EXPECT_LT(most, 0.01 * 2.0) << mass << " " << aside;
+      EXPECT_LT(maximum, 0.01 * 2.0) << mass << " " << aside;
     }
   }
 }
 
 TEST(SolverWithRigidBodies, NothingGainsEnergyByAnImpact) {
   for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
-    FlyingBlock of;
-    Rigid rigid(of.world, ball(), static_cast<btScalar>(mass), btVector3(btScalar(0.1), 4, 0));
-    of.body().setVelocity(btVector3(0, -2, 0));
+    FlyingBlock item;
+    Rigid rigid(item.world, ball(), static_cast<btScalar>(mass), btVector3(btScalar(0.1), 4, 0));
+    item.body().setVelocity(btVector3(0, -2, 0));
     const double impact = 0.5 * 4.0;
-    double least = impact, risen = 0.0;
-    forEachSubstep(of.world, 240, [&] {
-      const double energy = test::kineticEnergyOf(of.body()) + test::elasticEnergyIn(of.world) + rigid.kineticEnergy();
-      least = std::min(least, energy);
-      risen = std::max(risen, energy - least);
+    double minimum = impact, risen = 0.0;
+    forEachSubstep(item.world, 240, [&] {
+      const double energy =
+          test::kineticEnergyOf(item.body()) + test::elasticEnergyIn(item.world) + rigid.kineticEnergy();
+      minimum = std::min(minimum, energy);
+      risen = std::max(risen, energy - minimum);
     });
-    EXPECT_LT(least, 0.999 * impact) << mass;
+    EXPECT_LT(minimum, 0.999 * impact) << mass;
     EXPECT_LT(risen, 0.01 * impact) << mass;
   }
 }
 
 TEST(SolverWithRigidBodies, TwoBodiesPushOneFromBothSides) {
-  FlyingBlock of;
+  FlyingBlock item;
   TetMesh above = latticeCage(3, 3, 3, 0.3);
   for (Eigen::Vector3d& p : above.nodes) p += Eigen::Vector3d(-0.45, 2.1, -0.45);
-  const auto other = added(of.world, above);
-  Rigid rigid(of.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
-  of.body().setVelocity(btVector3(0, -2, 0));
+  const auto other = added(item.world, above);
+  Rigid rigid(item.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
+  item.body().setVelocity(btVector3(0, -2, 0));
   other->body().setVelocity(btVector3(0, 2, 0));
-  double most = 0.0, fastest = 0.0;
-  forEachSubstep(of.world, 240, [&] {
-    const btVector3 all = momentumOf(of.body()) + momentumOf(other->body()) + rigid.momentum();
-    most = std::max(most, static_cast<double>(all.length()));
+  double maximum = 0.0, fastest = 0.0;
+  forEachSubstep(item.world, 240, [&] {
+    const btVector3 all = momentumOf(item.body()) + momentumOf(other->body()) + rigid.momentum();
+    maximum = std::max(maximum, static_cast<double>(all.length()));
     fastest = std::max(fastest, static_cast<double>(rigid.body->getLinearVelocity().length()));
   });
-  // What is left of 2 kg m/s: stopped, or thrown back.
-  EXPECT_GT(momentumOf(of.body()).y(), -0.1);
+  // Of 2 kg m/s nothing is left: the body has stopped or was thrown back.
+  EXPECT_GT(momentumOf(item.body()).y(), -0.1);
   EXPECT_LT(momentumOf(other->body()).y(), 0.1);
-  EXPECT_LT(most, 1e-4 * 4.0);
+  EXPECT_LT(maximum, 1e-4 * 4.0);
   EXPECT_LT(fastest, 4.0);
 }
 
 TEST(SolverWithRigidBodies, LockedFactorsStayLocked) {
-  FlyingBlock of;
-  Rigid rigid(of.world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.1), btScalar(0.4))), 1,
+  FlyingBlock item;
+  Rigid rigid(item.world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.1), btScalar(0.4))), 1,
               btVector3(btScalar(0.6), 4, 0));
   rigid.body->setLinearFactor(btVector3(1, 0, 1));
   rigid.body->setAngularFactor(btVector3(1, 1, 0));
-  of.body().setVelocity(btVector3(0, -2, 0));
-  forEachSubstep(of.world, 120, [&] {
+  item.body().setVelocity(btVector3(0, -2, 0));
+  forEachSubstep(item.world, 120, [&] {
     ASSERT_NEAR(rigid.body->getLinearVelocity().y(), 0, 1e-12);
-    ASSERT_NEAR(rigid.body->getAngularVelocity().z(), 0, 1e-3);  // Bullet's own gyroscopic forces
+    ASSERT_NEAR(rigid.body->getAngularVelocity().z(), 0, 1e-3);  // changed by Bullet's own gyroscopic forces
   });
-  EXPECT_GT(momentumOf(of.body()).y(), 0);  // as from a wall
+  EXPECT_GT(momentumOf(item.body()).y(), 0);  // the body bounces as if off a wall
 }
 
-/// Of which the solve knows nothing: the joint's answer would be lost.
+/// A solve that knew nothing of the joint would lose the joint's reaction.
 TEST(SolverWithRigidBodies, HangOnTheirJoints) {
-  FlyingBlock of;
-  Rigid rigid(of.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
+  FlyingBlock item;
+  Rigid rigid(item.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
   btPoint2PointConstraint joint(*rigid.body, btVector3(0, 0, 0));
-  of.world.deformable().addConstraint(&joint);
-  of.body().setVelocity(btVector3(0, -2, 0));
+  item.world.deformable().addConstraint(&joint);
+  item.body().setVelocity(btVector3(0, -2, 0));
   double farthest = 0.0;
-  forEachSubstep(of.world, 120, [&] {
+  forEachSubstep(item.world, 120, [&] {
     const btVector3 away = rigid.body->getWorldTransform().getOrigin() - btVector3(0, 4, 0);
     farthest = std::max(farthest, static_cast<double>(away.length()));
   });
-  EXPECT_GT(momentumOf(of.body()).y(), -1.8);  // it was met
+  EXPECT_GT(momentumOf(item.body()).y(), -1.8);  // the two have met
   EXPECT_LT(farthest, 0.02);
-  of.world.deformable().removeConstraint(&joint);
+  item.world.deformable().removeConstraint(&joint);
 }
 
 TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
   for (const double mass : {0.1, 1.0, 3.0}) {
-    FlyingBlock of(0.05);
-    of.world.deformable().setGravity(btVector3(0, -10, 0));
-    Rigid on(of.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.3))),
+    FlyingBlock item(0.05);
+    item.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid on(item.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.3))),
              static_cast<btScalar>(mass), btVector3(0, btScalar(1.2), 0));
-    step(of.world, 300);
+    step(item.world, 300);
     const double height = on.height();
-    double most = 0.0;
-    forEachSubstep(of.world, 60, [&] { most = std::max(most, std::abs(on.height() - height)); });
+    double maximum = 0.0;
+    forEachSubstep(item.world, 60, [&] { maximum = std::max(maximum, std::abs(on.height() - height)); });
     EXPECT_GT(height, 0.7) << mass;
     EXPECT_LT(height, 1.1) << mass;
-    EXPECT_LT(most, 0.002) << mass;
+    EXPECT_LT(maximum, 0.002) << mass;
   }
   for (const double mass : {1.0, 3.0}) {
-    // On the floor, which has a part in where the box goes.
-    FlyingBlock of(0.35);
-    of.world.deformable().setGravity(btVector3(0, -10, 0));
-    Rigid under(of.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.15), btScalar(0.6))),
+    // The box lies between the body and the floor, which affects where the box moves.
+    FlyingBlock item(0.35);
+    item.world.deformable().setGravity(btVector3(0, -10, 0));
+    Rigid under(item.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.15), btScalar(0.6))),
                 static_cast<btScalar>(mass), btVector3(0, btScalar(0.15), 0));
-    step(of.world, 180);
+    step(item.world, 180);
     EXPECT_NEAR(under.height(), 0.15, 0.01) << mass;
-    EXPECT_GT(test::lowest(of.body()), 0.28) << mass;
-    EXPECT_LT(test::rmsSpeed(of.body()), 0.02) << mass;
+    EXPECT_GT(test::lowest(item.body()), 0.28) << mass;
+    EXPECT_LT(test::rmsSpeed(item.body()), 0.02) << mass;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The skin in each of Bullet's worlds: after stepSimulation it is the weights applied to the nodes.
+// The skin in each of Bullet's worlds: after stepSimulation it equals the weights applied to the nodes.
 #include "support/odd_meshes.h"
 #include "worlds.h"
 
@@ -20,7 +20,7 @@ struct NamedWorld {
   const char* name;
   MakeWorld make;
 };
-void PrintTo(const NamedWorld& world, std::ostream* out) {  // not byte by byte: there are addresses among them
+void PrintTo(const NamedWorld& world, std::ostream* out) {  // not byte by byte: some of it is addresses
   *out << world.name;
 }
 
@@ -40,7 +40,7 @@ class Worlds : public testing::TestWithParam<NamedWorld> {
     EXPECT_GT(report.value().outside, 0u);
   }
 
-  /// Compares the skin with the weights applied to the nodes, in double.
+  /// Compares the skin with the weights applied to the nodes in double precision.
   void expectSkinFollowsNodes() const {
     const auto bindings = skin.binding()->embedding().bindings();
     const PointView<const btScalar> positions = skin.positions();
@@ -74,17 +74,17 @@ constexpr btScalar kStep = btScalar(1) / 240;
 TEST_P(Worlds, SkinFollowsTheNodesAfterOneSubstep) {
   for (int step = 0; step < 120; ++step) {
     ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
     expectSkinFollowsNodes();
   }
-  EXPECT_LT(skin.bounds().min().y(), 0.25);  // it fell
+  EXPECT_LT(skin.bounds().min().y(), 0.25);  // the body fell
 }
 
 TEST_P(Worlds, SkinFollowsTheNodesAfterTenSubsteps) {
   for (int step = 0; step < 12; ++step) {
-    // A little more than ten steps of time, so that rounding does not leave it at nine.
+    // The time is a little more than ten steps, so that rounding does not reduce it to nine.
     ASSERT_EQ(world->world->stepSimulation(btScalar(10.01) * kStep, 10, kStep), 10);
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
     expectSkinFollowsNodes();
   }
   EXPECT_LT(skin.bounds().min().y(), 0.25);
@@ -92,25 +92,25 @@ TEST_P(Worlds, SkinFollowsTheNodesAfterTenSubsteps) {
 
 TEST_P(Worlds, NothingMovesWithoutASubstep) {
   ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
   const auto before = surface();
   ASSERT_EQ(world->world->stepSimulation(kStep / 100, 10, kStep), 0);
-  ASSERT_EQ(skin.update(), UpdateStatus::Updated);  // needless, but right
+  ASSERT_EQ(skin.update(), StatusCode::Ok);  // unnecessary, but allowed
   EXPECT_EQ(surface(), before);
 }
 
 TEST_P(Worlds, FramesBetweenStepsGoFromEachStepToTheNext) {
   SoftBodySkin between;
   ASSERT_TRUE(between.bind(world->body(), skin.binding()).ok());
-  between.keepStep();
+  between.recordStep();
   for (int step = 0; step < 20; ++step) {
     const auto before = surface();
     ASSERT_GT(world->world->stepSimulation(4 * kStep, 4, kStep), 0);
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated);
-    between.keepStep();
+    ASSERT_EQ(skin.update(), StatusCode::Ok);
+    between.recordStep();
     const auto after = surface();
     for (const double alpha : {0.125, 0.375, 0.625, 0.875}) {
-      ASSERT_EQ(between.update(static_cast<btScalar>(alpha)), UpdateStatus::Updated);
+      ASSERT_EQ(between.update(static_cast<btScalar>(alpha)), StatusCode::Ok);
       for (std::size_t v = 0; v < after.size(); ++v) {
         const btScalar* p = between.positions()[v];
         ASSERT_LT((Eigen::Vector3d(p[0], p[1], p[2]) - before[v] - alpha * (after[v] - before[v])).norm(), 1e-5);
@@ -146,19 +146,19 @@ TEST(DeformableWorld, SleepingBodyIsSkippedUntilItIsMoved) {
   int steps = 0;
   while (world.body().isActive() && steps++ < 3000) {
     world.world->stepSimulation(kStep, 1, kStep);
-    ASSERT_EQ(skin.update(), UpdateStatus::Updated) << "the step of falling asleep is still updated";
+    ASSERT_EQ(skin.update(), StatusCode::Ok) << "the step of falling asleep is still updated";
   }
   ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
   const Box3 before = skin.bounds();
   world.world->stepSimulation(kStep, 1, kStep);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 
   world.body().translate(btVector3(2, 0, 0));  // a teleport does not wake it
   ASSERT_FALSE(world.body().isActive());
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(skin.bounds().min().x(), before.min().x() + 2.0, 1e-5);
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 }  // namespace

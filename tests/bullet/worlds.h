@@ -23,7 +23,7 @@
 
 namespace tetskin::test {
 
-/// A world with a floor at y = 0. Derived classes make the world and remove their body before it goes.
+/// A world with a floor at y = 0. Derived classes create the world and remove their body before the world is destroyed.
 class TestWorld {
  public:
   virtual ~TestWorld() { world->removeRigidBody(floor.get()); }
@@ -57,7 +57,7 @@ class TestWorld {
   std::unique_ptr<btSoftBody> body_;
 };
 
-/// The classic worlds differ in type only.
+/// The classic worlds differ only in type.
 template <class World, class Solver>
 class ClassicWorld : public TestWorld {
  public:
@@ -72,7 +72,7 @@ class ClassicWorld : public TestWorld {
     soft->getWorldInfo().m_sparsesdf.Initialize();
     options = oneKilogram(options);
     options.forceModel = ForceModel::MassSpring;
-    body_ = makeSoftBody(cage, soft->getWorldInfo(), options).value();
+    body_ = createSoftBody(cage, soft->getWorldInfo(), options).value();
     soft->addSoftBody(body_.get());
   }
   ~ClassicWorld() override { soft->removeSoftBody(body_.get()); }
@@ -84,7 +84,7 @@ class ClassicWorld : public TestWorld {
 using RigidWorld = ClassicWorld<btSoftRigidDynamicsWorld, btSequentialImpulseConstraintSolver>;
 using MultiBodyWorld = ClassicWorld<btSoftMultiBodyDynamicsWorld, btMultiBodyConstraintSolver>;
 
-/// Deformable worlds share everything but the body and its solver.
+/// Deformable worlds share everything except the body and its solver.
 class DeformableWorldBase : public TestWorld {
  public:
   ~DeformableWorldBase() override {
@@ -111,21 +111,22 @@ class DeformableWorldBase : public TestWorld {
 
   btDeformableMultiBodyDynamicsWorld* soft;
   btDeformableGravityForce gravity{btVector3(0, -10, 0)};
-  // Here, not in the class that adds it: the body leaves the world, and its forces, in this class's destructor.
+  // The force is here, not in the class that adds it: the body leaves the world, with its forces, in this class's
+  // destructor.
   btDeformableNeoHookeanForce elasticity{400, 600, btScalar(0.05)};
 };
 
 class DeformableWorld : public DeformableWorldBase {
  public:
   explicit DeformableWorld(const TetMesh& cage) : DeformableWorldBase(std::make_unique<btDeformableBodySolver>()) {
-    body_ = makeSoftBody(cage, soft->getWorldInfo(), oneKilogram()).value();
+    body_ = createSoftBody(cage, soft->getWorldInfo(), oneKilogram()).value();
     soft->addSoftBody(body_.get());
     soft->addForce(body_.get(), &gravity);
     soft->addForce(body_.get(), &elasticity);
   }
 };
 
-/// A reduced body with two modes that are polynomials of the rest position: no files needed.
+/// A reduced body with two modes that are polynomials of the rest position: it needs no files.
 class ReducedWorld : public DeformableWorldBase {
  public:
   explicit ReducedWorld(const TetMesh& cage);

@@ -46,7 +46,7 @@ bool hasCrowdedFace(const TetMesh& cage) {
   return false;
 }
 
-/// True if the items are connected, where items with a key in common are neighbours.
+/// Whether the items are connected, where items with a key in common are neighbours.
 template <class Key>
 bool connected(const std::vector<std::vector<Key>>& keysOfItem) {
   std::vector<int> parent(keysOfItem.size());
@@ -68,7 +68,7 @@ bool connected(const std::vector<std::vector<Key>>& keysOfItem) {
   return true;
 }
 
-/// Around every node, the tets hang together by faces at that node.
+/// Whether there is a node around which the tets are not connected face to face.
 bool hasPinchedNode(const TetMesh& cage) {
   std::vector<std::vector<std::vector<Face>>> faces(cage.nodeCount());
   for (const Tet& tet : cage.tets) {
@@ -83,7 +83,8 @@ bool hasPinchedNode(const TetMesh& cage) {
   return !std::all_of(faces.begin(), faces.end(), [](const auto& f) { return connected(f); });
 }
 
-/// Every boundary edge in two boundary faces, and the boundary faces of every node connected by edges at that node.
+/// Whether every boundary edge is in two boundary faces, and the boundary faces of every node are connected by edges at
+/// that node.
 bool hasManifoldBoundary(const TetMesh& cage) {
   std::map<Edge, int> count;
   std::map<int, std::vector<std::vector<int>>> links;  // by node: the other two nodes of each face
@@ -109,9 +110,9 @@ std::string faultOfTopology(const TetMesh& cage) {
 }
 
 std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report) {
-  const TetMeshReport check = checkTetMesh(cage);
+  const TetMeshReport check = checkTetMesh(cage.mesh);
   if (!check.clean()) return check.describe();
-  const DihedralRange range = dihedralRange(cage);
+  const DihedralRange range = dihedralRange(cage.mesh);
   if (range.minDeg < kMinDihedralDeg || range.maxDeg > kMaxDihedralDeg) {
     return "dihedral angles " + std::to_string(range.minDeg) + " to " + std::to_string(range.maxDeg);
   }
@@ -119,7 +120,8 @@ std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageRe
   if (const Status status = embed(cage, mesh, {}, &embedded).status(); !status.ok()) return status.message;
   if (embedded.inside != mesh.vertexCount() || embedded.mapped != mesh.vertexCount()) return embedded.describe();
   if (report.verticesOutside != 0) return "the report counts vertices outside";
-  if (report.tets != cage.tetCount() || report.nodes != cage.nodeCount()) return "the report has other counts";
+  if (report.tets != cage.mesh.tetCount() || report.nodes != cage.mesh.nodeCount())
+    return "the report has other counts";
   std::string fault = faultOfKnowledge(mesh, cage, report);
   return fault.empty() ? faultOfCopies(cage, report) : fault;
 }
@@ -130,7 +132,7 @@ std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fi
   CageOptions options;
   options.targetTets = targetTets;
   options.fit = fit;
-  const Result<Cage> cage = buildCage(mesh, options, &used);
+  const Result<Cage> cage = createCage(mesh, options, &used);
   std::string fault = cage.ok() ? faultOfCage(mesh, cage.value(), used) : cage.status().message;
   if (fault.empty() && !used.targetMet()) fault = std::to_string(used.tets) + " tets";
   return fault.empty() ? "" : "at " + std::to_string(targetTets) + " tets: " + fault;

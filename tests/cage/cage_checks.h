@@ -2,22 +2,22 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <string>
 
 namespace tetskin::test {
 
-/// What a cage promises, as the first thing that does not hold; empty if all does: clean (`checkTetMesh`), dihedral
-/// angles, every vertex inside (by `embed`, which believes the map), what it knows of the mesh, parts without hinges,
+/// The first promise of a cage that does not hold; empty if all hold: clean (`checkTetMesh`), dihedral angles, every
+/// vertex inside (by `embed`, which trusts the map), what the cage stores about the mesh, components without hinges,
 /// and a report that agrees.
 std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report);
 
-/// Of a cage that is not split: at most two tets at a face, no coincident nodes, tets connected face to face around
-/// every node, a manifold boundary.
+/// The first fault in the topology of a cage without duplicate elements; empty if there is none: at most two tets at a
+/// face, no coincident nodes, tets connected face to face around every node, and a manifold boundary.
 std::string faultOfTopology(const TetMesh& cage);
 
-/// Builds a cage and says what is wrong with it, the number of tets included; empty if nothing is.
+/// Creates a cage and describes what is wrong with it, including the number of tets; empty if nothing is.
 std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fit = true, CageReport* report = nullptr);
 
 }  // namespace tetskin::test

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Triangle meshes, good and bad, for the tests of the cage builder.
+// Well-formed and damaged triangle meshes for the tests of the cage builder.
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <cstddef>
 
 namespace tetskin::test {
 
-/// Unit sphere about the origin, see `sphere` in support.
+/// Unit sphere about the origin; see `sphere` in tests/support.
 TriangleMesh unitSphere(int rings);
-/// The part of a unit sphere with polar angles up to `openingRadians` (pi / 2: a hemisphere), outwards.
+/// The part of a unit sphere with polar angles up to `openingRadians` (pi / 2: a hemisphere), facing outwards.
 TriangleMesh openSphereMesh(int rings, double openingRadians);
 /// Torus about z with radii 1 and 0.35.
 TriangleMesh torusMesh(int segments);
@@ -25,15 +25,15 @@ TriangleMesh figurineMesh(int rings);
 /// Sphere with a fin 0.001 thick and 1 long.
 TriangleMesh finnedSphereMesh();
 
-/// Both meshes in one, sharing nothing.
+/// Both meshes in one; they share no vertices.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
-/// All triangles turned.
+/// The mesh with all triangles reversed.
 TriangleMesh invertedMesh(TriangleMesh mesh);
-/// About half the triangles turned, the same ones every time.
+/// The mesh with about half of the triangles reversed, the same ones each time.
 TriangleMesh shuffledOrientation(TriangleMesh mesh);
-/// Every triangle with three vertices of its own.
+/// The mesh with three separate vertices for each triangle.
 TriangleMesh unwelded(const TriangleMesh& mesh);
-/// Every position becomes scale * p + offset.
+/// The mesh with each position p replaced by scale * p + offset.
 TriangleMesh transformed(TriangleMesh mesh, double scale, const Eigen::Vector3d& offset);
 
 }  // namespace tetskin::test

@@ -2,28 +2,29 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 
 #include <string>
 
 namespace tetskin::test {
 
-/// Number of parts of a mesh of tets that are connected by faces: more than by nodes if some hang together by a node or
-/// an edge alone, which is a hinge.
-std::size_t countPartsByFaces(const TetMesh& cage);
+/// Number of components of a tet mesh that are connected by faces. There are more of these than of components connected
+/// by nodes if some tets share only a node or an edge, which is a hinge.
+std::size_t countComponentsByFaces(const TetMesh& cage);
 
-/// What tets with copies must be in place of what `faultOfTopology` asks of cages that are not split: at most two
-/// places of the lattice at a face, parts connected by faces, and numbered so; empty if they are.
+/// The first fault of a cage with duplicate elements, which need not satisfy `faultOfTopology`; empty if there is none:
+/// at most two tets of the lattice at a face, and components that are connected by faces and numbered accordingly.
 std::string faultOfCopies(const Cage& cage, const CageReport& report);
 
-/// What a cage knows of its mesh, as the first thing that does not hold: every vertex in the tet that the map names,
-/// those at one position in the same; masses that add up to the mesh's volume, none below 0.09 of the mean; fill.
+/// The first fault in what a cage stores about its mesh; empty if there is none: every vertex is in the tet that the
+/// map names, vertices at one position are in the same tet, the masses add up to the mesh's volume and none is below
+/// 0.09 of the mean, and the volume fractions agree.
 std::string faultOfKnowledge(const TriangleMesh& mesh, const Cage& cage, const CageReport& report);
 
-/// Sum of the tets' volumes times their fill.
+/// Sum of the tets' volumes times their volume fractions.
 double filledVolume(const Cage& cage);
 
-/// True if both are the same to the bit, whatever is known of the mesh included.
+/// Whether both cages are equal to the bit, including what they store about the mesh.
 bool sameCage(const Cage& a, const Cage& b);
 
 }  // namespace tetskin::test

@@ -156,7 +156,7 @@ TEST(LatticeMesh, WholeCubesFillSpaceWithoutGaps) {
 
 TEST(CageJoints, LeaveACleanSetAlone) {
   LatticeSet set = randomSet(1.1, 0);
-  joinPinches(set);  // the outline of whole cubes is ragged
+  joinPinches(set);  // the outline of a set of whole cubes is ragged
   EXPECT_EQ(joinPinches(set), 0u);
   LatticeSet one;
   one.add({{0, 0, 0}, 3});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which tets are kept: those that touch the surface, those inside, and no others.
+// Which tets are kept: those that intersect the surface, those inside, and no others.
 #include "cage_models.h"
 #include "support/odd_meshes.h"
 
@@ -22,7 +22,7 @@ using namespace cage_detail;
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kNoLimit = 100'000'000;
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
-/// Anywhere but on round coordinates.
+/// The origin lies away from round coordinates.
 const Eigen::Vector3d kOrigin(0.0123, -0.0271, 0.0317);
 
 LatticeSet touched(const TriangleMesh& mesh, double half) {
@@ -42,7 +42,7 @@ bool holds(const LatticeSet& set, double half, const Eigen::Vector3d& p) {
   return set.contains(locate(LatticeFrame{kOrigin, half}.toLattice(p)));
 }
 
-/// Nearest and farthest distance from the origin to a tet, rest space.
+/// Least and greatest distance of a tet from the origin, in rest space.
 std::array<double, 2> distances(const LatticeTet& tet, double half) {
   TetCorners p;
   double farthest = 0.0;
@@ -125,7 +125,7 @@ TEST(InsideFill, BowlsAndBunniesAreFilledUpToTheirRims) {
   const LatticeSet half = filled(openSphereMesh(30, kPi / 2), 0.1);
   EXPECT_TRUE(holds(half, 0.1, {0, 0, 0.3}));
   EXPECT_FALSE(holds(half, 0.1, {0, 0, -0.3}));
-  // Open at the bottom, with a hole much wider than a tet.
+  // The mesh is open at the bottom, with a hole much wider than a tet.
   const LatticeSet most = filled(openSphereMesh(30, 0.8 * kPi), 0.1);
   EXPECT_TRUE(holds(most, 0.1, kZero));
   EXPECT_TRUE(holds(most, 0.1, {0, 0, -0.6}));
@@ -140,7 +140,8 @@ TEST(InsideFill, CavityStaysEmptyAndNestedPartIsFilled) {
 }
 
 TEST(InsideFill, PocketOfAirIsNotInside) {
-  // A thick open shell: the air in it is enclosed by touched tets if its mouth is narrower than a tet, yet outside.
+  // A thick open shell: if its mouth is narrower than a tet, intersected tets enclose the air in it, which nevertheless
+  // is outside.
   TriangleMesh shell =
       joined(openSphereMesh(40, 0.97 * kPi), invertedMesh(transformed(openSphereMesh(40, 0.97 * kPi), 0.7, kZero)));
   const int rim = 1 + 39 * 80, other = static_cast<int>(shell.vertexCount() / 2);

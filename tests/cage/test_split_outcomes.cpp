@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What becomes of meshes whose parts cannot be told apart, or of which it is not clear what is inside.
+// The results for meshes whose components cannot be separated, or for which the inside is unclear.
 #include "cage_checks.h"
 #include "cage_models.h"
 #include "copy_checks.h"
+#include "support/component_models.h"
 #include "support/odd_meshes.h"
-#include "support/part_models.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ CageReport reportOf(const TriangleMesh& mesh, std::size_t target) {
   CageOptions options;
   options.targetTets = target;
   CageReport report;
-  const Cage cage = buildCage(mesh, options, &report).value();
+  const Cage cage = createCage(mesh, options, &report).value();
   EXPECT_EQ(faultOfCage(mesh, cage, report), "") << target;
   return report;
 }
@@ -30,22 +30,22 @@ TEST(SplitOutcomes, WhatLiesInEachOtherStaysTogether) {
         joined(unitSphere(16), sphere(16, 0.8, {0.9, 0.1, 0.2}))}) {
     for (const std::size_t target : {300, 2000}) {
       const CageReport report = reportOf(mesh, target);
-      EXPECT_EQ(report.parts, 1u);
-      EXPECT_EQ(report.fusedParts, report.meshComponents - 1u);
+      EXPECT_EQ(report.components, 1u);
+      EXPECT_EQ(report.fusedComponents, report.meshComponents - 1u);
     }
   }
 }
 
 TEST(SplitOutcomes, WhatTouchesStaysTogether) {
-  EXPECT_EQ(reportOf(twoPlates(0.0).mesh, 1000).parts, 1u);
-  EXPECT_EQ(reportOf(joined(boxMesh({1, 1, 1}), transformed(boxMesh({1, 1, 1}), 1.0, {1, 0, 0})), 1000).parts, 1u);
+  EXPECT_EQ(reportOf(twoPlates(0.0).mesh, 1000).components, 1u);
+  EXPECT_EQ(reportOf(joined(boxMesh({1, 1, 1}), transformed(boxMesh({1, 1, 1}), 1.0, {1, 0, 0})), 1000).components, 1u);
 }
 
 TEST(SplitOutcomes, FusedPartsAreThoseThatTheCageDoesNotTellApart) {
   for (const double gap : {1e-3, 0.02, 0.1, 0.3}) {
     const CageReport report = reportOf(twoPlates(gap).mesh, 500);
-    EXPECT_EQ(report.fusedParts, 2u - report.parts) << gap;
-    EXPECT_EQ(report.describe().find("fused") == std::string::npos, report.parts == 2u);
+    EXPECT_EQ(report.fusedComponents, 2u - report.components) << gap;
+    EXPECT_EQ(report.describe().find("fused") == std::string::npos, report.components == 2u);
   }
 }
 
@@ -54,14 +54,14 @@ TEST(SplitOutcomes, SheetsHaveNoInsideAndMayFuse) {
     for (const std::size_t target : {300, 3000}) {
       const CageReport report = reportOf(twoSheets(gap).mesh, target);
       EXPECT_EQ(report.meshVolume, 0.0);
-      EXPECT_GE(report.parts, 1u);
-      EXPECT_EQ(report.parts + report.fusedParts, 2u);
+      EXPECT_GE(report.components, 1u);
+      EXPECT_EQ(report.components + report.fusedComponents, 2u);
     }
   }
 }
 
 TEST(SplitOutcomes, UnorientedSurfacesAreNotSplit) {
-  // A Moebius band: there is no inside.
+  // A Moebius band has no inside.
   TriangleMesh band;
   constexpr int kSteps = 48;
   for (int k = 0; k < kSteps; ++k) {
@@ -77,11 +77,11 @@ TEST(SplitOutcomes, UnorientedSurfacesAreNotSplit) {
     band.triangles.push_back({a, c, b});
     band.triangles.push_back({b, c, d});
   }
-  EXPECT_EQ(reportOf(band, 1000).copies, 0u);
-  EXPECT_EQ(reportOf(band, 1000).parts, 1u);
+  EXPECT_EQ(reportOf(band, 1000).duplicateTets, 0u);
+  EXPECT_EQ(reportOf(band, 1000).components, 1u);
 }
 
-/// As jaw, but of parts that are not one consistent closed surface.
+/// Variants of the jaw that are not one consistent closed surface.
 TEST(SplitOutcomes, DamagedMeshesGetSoundCages) {
   const TriangleMesh good = jaw(0.08).mesh;
   std::vector<TriangleMesh> damaged = {
@@ -89,10 +89,10 @@ TEST(SplitOutcomes, DamagedMeshesGetSoundCages) {
       invertedMesh(good), joined(good, good),        joined(good, invertedMesh(good))};
   TriangleMesh holed = good;
   for (std::size_t t = 0; t < holed.triangles.size(); t += 7) holed.triangles[t] = holed.triangles.back();
-  damaged.push_back(holed);  // with repeated triangles, too
+  damaged.push_back(holed);  // this one also has repeated triangles
   TriangleMesh loose = good;
   loose.positions.emplace_back(3.0, 0.0, 0.5);  // in the gap
-  loose.positions.emplace_back(2.0, 3.0, 0.5);  // far from all
+  loose.positions.emplace_back(2.0, 3.0, 0.5);  // far from everything
   damaged.push_back(loose);
   TriangleMesh crossing = good;
   for (Eigen::Vector3d& p : crossing.positions) {
@@ -102,7 +102,7 @@ TEST(SplitOutcomes, DamagedMeshesGetSoundCages) {
   for (const TriangleMesh& mesh : damaged) {
     for (const std::size_t target : {200, 800}) {
       const CageReport report = reportOf(mesh, target);
-      EXPECT_LE(report.parts, report.meshComponents + report.looseVertices);
+      EXPECT_LE(report.components, report.meshComponents + report.looseVertices);
     }
   }
 }
@@ -110,8 +110,8 @@ TEST(SplitOutcomes, DamagedMeshesGetSoundCages) {
 TEST(SplitOutcomes, ASoupOfTheJawIsSplitAsTheJawIs) {
   const TriangleMesh good = jaw(0.08).mesh;
   const CageReport whole = reportOf(good, 1500), soup = reportOf(shuffledOrientation(unwelded(good)), 1500);
-  EXPECT_EQ(soup.copies, whole.copies);
-  EXPECT_EQ(soup.parts, 1u);
+  EXPECT_EQ(soup.duplicateTets, whole.duplicateTets);
+  EXPECT_EQ(soup.components, 1u);
 }
 
 TEST(SplitOutcomes, LooseVerticesBelongToNothingButTheirPlace) {
@@ -120,8 +120,8 @@ TEST(SplitOutcomes, LooseVerticesBelongToNothingButTheirPlace) {
   mesh.positions.emplace_back(0.0, 5.0, 0.0);   // far away
   const CageReport report = reportOf(mesh, 3000);
   EXPECT_EQ(report.looseVertices, 2u);
-  EXPECT_EQ(report.parts + report.fusedParts, 4u);
-  EXPECT_GE(report.parts, 3u);
+  EXPECT_EQ(report.components + report.fusedComponents, 4u);
+  EXPECT_GE(report.components, 3u);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using cage_detail::prepareSurface;
 using cage_detail::Surface;
 
 constexpr double kPi = 3.14159265358979323846;
-/// What the winding number may be off by, see WindingTree.
+/// The allowed error of the winding number; see WindingTree.
 constexpr double kDipoleError = 0.03;
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 
@@ -61,7 +61,7 @@ TEST(Surface, KeepsDegenerateTrianglesApart) {
 TEST(Surface, FindsLoosePoints) {
   TriangleMesh mesh = boxMesh({1, 1, 1});
   mesh.positions.emplace_back(9, 9, 9);
-  mesh.positions.emplace_back(0.5, 0.5, 0.5);  // at a corner that is used
+  mesh.positions.emplace_back(0.5, 0.5, 0.5);  // same position as a vertex that is used
   EXPECT_EQ(prepareSurface(mesh).loosePoints, std::vector<int>{8});
 }
 

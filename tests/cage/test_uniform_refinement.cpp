@@ -22,8 +22,8 @@ TEST(UniformRefinement, CutsEveryTetIntoEightOfAnEighth) {
     }
     for (std::size_t k = 0; k < fine.edges.size(); ++k) {
       const auto [a, b] = fine.edges[k];
-      const Eigen::Vector3d middle = 0.5 * (coarse.nodes[a] + coarse.nodes[b]);
-      EXPECT_LT((fine.mesh.nodes[coarse.nodeCount() + k] - middle).norm(), 1e-12);
+      const Eigen::Vector3d centroid = 0.5 * (coarse.nodes[a] + coarse.nodes[b]);
+      EXPECT_LT((fine.mesh.nodes[coarse.nodeCount() + k] - centroid).norm(), 1e-12);
     }
   }
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Binds surfaces 1 % of the diagonal inside and outside of each cage's boundary, moves the nodes at random and then
-// with Bullet, and compares every vertex with brute force in double after every update. See tests/clients/run.
+// Binds surfaces 1 % of the diagonal inside and outside of each cage's boundary, moves the nodes first at random and
+// then with Bullet, and compares every vertex with brute force in double precision after every update. See
+// tests/clients/run.
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/src/search/tolerances.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -22,17 +23,17 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Of the cage's diagonal.
+/// Relative to the cage's diagonal.
 constexpr double kDistance = 0.01, kJitter = 0.01;
-/// No vertex may stray farther under the default rule: the largest weight may come with another as large, of opposite
-/// sign, and the boundary moves, too.
-constexpr double kMostStrayed = 10.0 * kJitter;
-static_assert(2.0 * kLargestWeight + 2.0 <= 10.0);
+/// No vertex may deviate by more under the default rule: besides the largest weight there may be one as large of the
+/// opposite sign, and the boundary moves, too.
+constexpr double kMaxStrayed = 10.0 * kJitter;
+static_assert(2.0 * kMaxWeight + 2.0 <= 10.0);
 constexpr int kSteps = 60;
-/// Error of a weighted sum in float, over the sum of the weights' and coordinates' absolute values.
+/// Error of a weighted sum in float, relative to the sum of the weights' and coordinates' absolute values.
 constexpr double kFloatError = 0x1p-21;
 
-/// Both surfaces in one.
+/// The inner and the outer surface in one mesh.
 TriangleMesh surfacesBeside(const TetMesh& cage, double distance) {
   const int cuts = cage.nodeCount() < 1000 ? 1 : 0;
   TriangleMesh mesh = surfaceBeside(cage, -distance, cuts);
@@ -43,7 +44,7 @@ TriangleMesh surfacesBeside(const TetMesh& cage, double distance) {
   return mesh;
 }
 
-/// Where vertices are by the tets and the weights that brute force finds, all in double.
+/// The vertices' positions by the tets and weights that brute force finds, all in double precision.
 class Oracle {
  public:
   Oracle(const TetMesh& cage, const Points& vertices, OutsideRule rule)
@@ -59,7 +60,7 @@ class Oracle {
                       [](const BruteHit& a, const VertexBinding& b) { return a.tet == b.tet && a.inside == b.inside; });
   }
   bool agrees(PointView<const btScalar> positions, const Points& nodes) const {
-    const double extent = largestCoordinate(boundingBox(nodes));
+    const double extent = maxCoordinate(boundingBox(nodes));
     for (std::size_t v = 0; v < hits_.size(); ++v) {
       const TetCorners p = cornersOf({nodes, {}}, cage_.tets[hits_[v].tet]);
       const Eigen::Vector4d& b = weights_[v];
@@ -85,19 +86,19 @@ Points nodesOf(const btSoftBody& body) {
   return nodes;
 }
 
-/// What is printed of one cage under one rule, and what is wrong.
+/// What is printed for one cage under one rule, and what is wrong.
 struct Row {
   EmbedReport fit;
-  double strayed = 0.0;  ///< in diagonals
+  double strayed = 0.0;  ///< relative to the diagonal
   std::string failure;
 };
 
-/// Distance that the surface of a skin strays from where the boundary takes it.
+/// How far the surface of a skin deviates from where the boundary takes it.
 double strayed(PointView<const btScalar> positions, const Points& expected) {
   double longest = 0.0;
   for (std::size_t v = 0; v < expected.size(); ++v) {
     const double length = (Eigen::Vector3d(positions[v][0], positions[v][1], positions[v][2]) - expected[v]).norm();
-    longest = length <= longest ? longest : length;  // NaN is the longest
+    longest = length <= longest ? longest : length;  // NaN counts as the largest
   }
   return longest;
 }
@@ -115,7 +116,7 @@ Row check(const TetMesh& cage, OutsideRule rule) {
   btSoftBody& body = world.body();
   SkinOptions options;
   options.outside = rule;
-  SoftBodySkin alone, connected;  // without triangles, and with them
+  SoftBodySkin alone, connected;  // bound without triangles, and with them
   const Result<EmbedReport> fit = alone.bind(body, cage, viewOf(mesh.positions), options);
   const Result<EmbedReport> report = connected.bind(body, cage, mesh, options);
   if (!fit.ok() || !report.ok()) return row.failure = fit.status().message + report.status().message, row;
@@ -123,7 +124,7 @@ Row check(const TetMesh& cage, OutsideRule rule) {
   if (!oracle.agrees(alone.binding()->embedding())) return row.failure = "tets are not those of brute force", row;
 
   const auto updated = [&](const char* when) {
-    const bool done = alone.update() == UpdateStatus::Updated && connected.update() == UpdateStatus::Updated;
+    const bool done = alone.update() == StatusCode::Ok && connected.update() == StatusCode::Ok;
     if (!done || !oracle.agrees(alone.positions(), nodesOf(body))) {
       row.failure = std::string("positions are not those of brute force ") + when;
     }
@@ -133,7 +134,7 @@ Row check(const TetMesh& cage, OutsideRule rule) {
   if (!updated("with nodes moved at random")) return row;
   const Points expected = BoundaryFollower(cage, mesh.positions).positions(nodesOf(body));
   row.strayed = std::max(strayed(alone.positions(), expected), strayed(connected.positions(), expected)) / diagonal;
-  if (rule == OutsideRule::Nearest && !(row.strayed <= kMostStrayed)) row.failure = "strays too far";
+  if (rule == OutsideRule::Nearest && !(row.strayed <= kMaxStrayed)) row.failure = "strays too far";
 
   setNodes(body, cage.nodes);
   body.translate(btVector3(0, btScalar(0.05 * diagonal - boundingBox(cage.nodes).min().y()), 0));
@@ -144,7 +145,7 @@ Row check(const TetMesh& cage, OutsideRule rule) {
   return row;
 }
 
-/// Prints the row of a cage; returns whether all is well.
+/// Prints the row of a cage, and returns whether it has no fault.
 bool report(const std::string& path) {
   const std::string name = path.substr(path.find_last_of('/') + 1);
   Result<TetMesh> read = loadTetMesh(path);
@@ -154,8 +155,8 @@ bool report(const std::string& path) {
   const Row nearest = check(cage, OutsideRule::Nearest), barycentric = check(cage, OutsideRule::Barycentric);
   const std::string& failure = nearest.failure.empty() ? barycentric.failure : nearest.failure;
   std::printf("%-24s %6zu %7zu %7zu %7zu %9.3g %9.4f %11.4f  %s\n", name.c_str(), cage.tetCount(), nearest.fit.inside,
-              nearest.fit.outside, nearest.fit.rescued, nearest.fit.largestWeight, nearest.strayed, barycentric.strayed,
-              failure.empty() ? "ok" : ("FAILED: " + failure).c_str());
+              nearest.fit.outside, nearest.fit.reassignedByWeight, nearest.fit.maxWeight, nearest.strayed,
+              barycentric.strayed, failure.empty() ? "ok" : ("FAILED: " + failure).c_str());
   return failure.empty();
 }
 

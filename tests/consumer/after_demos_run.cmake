@@ -1,5 +1,5 @@
-# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: what demos/run --all builds can be installed, and the package be found.
-# Nothing is compiled: see no_compiler.
+# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: tests that what demos/run --all builds can be installed, and that the
+# package is found. Nothing is compiled: see no_compiler.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

@@ -3,7 +3,7 @@
 file(GLOB_RECURSE pc ${PREFIX}/tetskin.pc)
 cmake_path(GET pc PARENT_PATH pc_folder)
 set(ENV{PKG_CONFIG_PATH} ${pc_folder})
-set(ENV{LD_LIBRARY_PATH} ${pc_folder}/..)  # for shared libraries
+set(ENV{LD_LIBRARY_PATH} ${pc_folder}/..)  # needed with shared libraries
 execute_process(COMMAND ${PKG_CONFIG} --cflags --libs tetskin OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY
   OUTPUT_STRIP_TRAILING_WHITESPACE)
 separate_arguments(flags UNIX_COMMAND "${flags}")
@@ -11,13 +11,13 @@ file(MAKE_DIRECTORY ${FOLDER})
 file(WRITE ${FOLDER}/umbrella.cpp "#include <tetskin/tetskin.h>\n#include <cstdio>\n"
   "int main() {\n"
   "  tetskin::TriangleMesh mesh;\n"
-  "  const auto cage = tetskin::buildCage(mesh);\n"
-  "  tetskin::Cage body = cage.value();\n"
+  "  const auto cage = tetskin::createCage(mesh);\n"
+  "  tetskin::Cage body;\n"
   "  const auto calibrated = tetskin::calibrate(body);\n"
   "  const tetskin::ThreadPool pool;\n"
   "  const auto loaded = tetskin::loadMesh(\"none.obj\");\n"
   "  tetskin::SoftBodySkin skin;\n"
-  "  const bool bound = skin.update() != tetskin::UpdateStatus::Unbound;\n"
+  "  const bool bound = skin.update() != tetskin::StatusCode::Unbound;\n"
   "  std::puts(TETSKIN_VERSION);\n"
   "  return cage.ok() || calibrated.ok() || loaded.ok() || bound;\n}\n")
 foreach(source ${SOURCE}/demos/hello.cpp ${FOLDER}/umbrella.cpp)

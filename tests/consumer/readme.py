@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Does what the first page says, with the page's own blocks, as one who has just cloned the repository: builds and installs
-the library, builds and runs the first program against that, and then the lines after it. Prints each block and its time.
+"""Follows the first page with the page's own blocks, as somebody who has just cloned the repository: builds and
+installs the library, builds and runs the first program with it, and then the lines after it. Prints each block and its
+time.
 
 readme.py --folder FOLDER --prefix PREFIX --generator GENERATOR
 
-Nothing of a developer's build is there: no joined files (unity builds), which hide an include that is missing, no compiler
-cache, nothing installed before. PREFIX is left for other tests.
+Nothing of a developer's build is used: no options except the page's, no compiler cache, nothing installed before.
+PREFIX is kept for other tests.
 """
 import argparse
 import os
@@ -27,7 +28,7 @@ OF_DEVELOPERS = ("CMAKE_UNITY_BUILD", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_PREF
 
 
 def block(language, words):
-    """The one block of the page with these words."""
+    """The only block of the page that contains these words."""
     found = [text for kind, text in page.blocks(README) if kind == language and words in text]
     if len(found) != 1:
         sys.exit(f"README.md: {len(found)} blocks of {language} have '{words}', not one: follow the page here")
@@ -35,7 +36,7 @@ def block(language, words):
 
 
 def copy_repository(folder):
-    """What a clone would have, and what is not committed yet."""
+    """Copies what a clone would have, and files that are not committed yet."""
     names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY,
                            check=True, capture_output=True, text=True).stdout
     for name in filter(None, names.split("\0")):
@@ -54,18 +55,18 @@ def run(name, script, folder, environment):
 
 
 def with_lines(program, lines):
-    """The program with more lines at its end, which speak of a pointer `world`."""
+    """The program with more lines at its end; they are in a function of their own, because one of them may return."""
     end = "  return 0;\n}\n"
     if not program.endswith(end):
         sys.exit("README.md: the first program no longer ends as it did: follow it here")
-    call = f"  [&](btDeformableMultiBodyDynamicsWorld* world) {{\n{lines}std::puts(fit.status().message.c_str());\n"
-    return f"#include <tetskin/tetskin.h>\n{program[:-len(end)]}{call}if (!fit.ok()) std::exit(1);\n}}(&world);\n{end}"
+    call = f"  [&] {{\n{lines}std::puts(fit.status().message.c_str());\nif (!fit.ok()) std::exit(1);\n}}();\n"
+    return f"#include <tetskin/tetskin.h>\n{program[:-len(end)]}{call}{end}"
 
 
 def run_program(name, program, libraries, prefix, folder, environment):
     folder.mkdir()
     (folder / "main.cpp").write_text(program)
-    text = block("cmake", "find_package(tetskin").replace("tetskin::tetskin)", f"tetskin::tetskin{libraries})")
+    text = block("cmake", "find_package(tetskin").replace("tetskin::cage)", f"tetskin::cage{libraries})")
     (folder / "CMakeLists.txt").write_text(text)
     write_ring(folder / "dragon.obj")
     run(name, f"cmake -DCMAKE_PREFIX_PATH={prefix} -DCMAKE_BUILD_TYPE=Release -S . -B build && cmake --build build && build/app",
@@ -89,7 +90,7 @@ def main():
         environment)
     program = block("cpp", "int main()")
     run_program("first program", program, "", prefix, folder / "first", environment)
-    run_program("a mesh of yours", with_lines(program, block("cpp", "\"dragon.obj\"")), " tetskin::cage tetskin::io", prefix,
+    run_program("a mesh of yours", with_lines(program, block("cpp", "\"dragon.obj\"")), " tetskin::io", prefix,
                 folder / "yours", environment)
 
 

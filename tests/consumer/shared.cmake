@@ -14,7 +14,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${FOLDER}/consumer -G ${GENE
 run(${CMAKE_COMMAND} --build ${FOLDER}/consumer)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${FOLDER}/consumer --output-on-failure --no-tests=error)
 
-# And without CMake, wherever the libraries are installed.
+# The program is also built without CMake, wherever the libraries are installed.
 if(PKG_CONFIG)
   run(${CMAKE_COMMAND} -DSOURCE=${SOURCE} -DPREFIX=${prefix} -DCOMPILER=${COMPILER} -DPKG_CONFIG=${PKG_CONFIG}
     -DFOLDER=${FOLDER}/pkg_config -P ${SOURCE}/tests/consumer/pkg_config.cmake)
@@ -30,7 +30,7 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
     continue()
   endif()
   execute_process(COMMAND ${NM} -D -C --defined-only ${so} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
-  # Of functions, tables and classes; templates have their result in front.
+  # Symbols of functions, tables and classes; those of templates begin with their result type.
   set(shown " [TWVDRBu] ([a-z ]+ for )?([A-Za-z:]+ )?tetskin::")
   # Bodies in Bullet's worlds are stepped by these.
   if(library STREQUAL elastic)
@@ -40,7 +40,7 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
   if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()
-  if(NOT names MATCHES "${shown}(embed|makeSoftBody|buildCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree)")
+  if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree)")
     message(FATAL_ERROR "${so} does not show what is public")
   endif()
 endforeach()

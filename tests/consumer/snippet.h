@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the documentation's snippets speak of without declaring it: what an application would have by then. They are
-// compiled and linked, not run.
+// What the documentation's snippets use without declaring it: objects that an application would have at that point. The
+// snippets are compiled and linked, but not run.
 #pragma once
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
@@ -16,12 +16,12 @@ struct Vertex {
 
 inline btDeformableMultiBodyDynamicsWorld* world = nullptr;
 inline btDeformableMultiBodyDynamicsWorld* reducedWorld = nullptr;  // made with a btReducedDeformableBodySolver
-inline tetskin::TetMesh cage;
+inline tetskin::Cage cage;
 inline tetskin::TetMesh fineTets;
 inline tetskin::TriangleMesh mesh;
 inline std::unique_ptr<tetskin::DeformableBody> body;
-inline btSoftBody* softBody = nullptr;  // the application's own
-inline btRigidBody* finger = nullptr;   // likewise
+inline btSoftBody* softBody = nullptr;  // a soft body of the application's
+inline btRigidBody* finger = nullptr;   // a rigid body of the application's
 inline tetskin::SkinOptions options;
 inline tetskin::SoftBodySkin skin;
 inline tetskin::Embedding embedding;

@@ -1,7 +1,8 @@
-# What the documentation shows between fences, ```cpp and ```cmake, as files: so it is compiled, and stays true.
+# Writes the code that the documentation shows between fences, ```cpp and ```cmake, to files, so that it is compiled and
+# stays correct.
 
-# From the text `rest`: `before`, which ends with the next fence, and what follows as the new `rest`; empty if there is
-# no such fence.
+# Splits the text `rest`: `before` ends with the next fence, and the new `rest` is what follows; empty if there is no
+# such fence.
 macro(next_fence fence)
   string(FIND "${rest}" "${fence}" start)
   if(start EQUAL -1)

@@ -7,8 +7,8 @@
 #include <memory>
 
 #ifdef WITH_ALL_PARTS
-#include <tetskin/cage/cage_builder.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/io/files.h>
 #include <tetskin/threads/thread_pool.h>
 #endif
 
@@ -19,12 +19,12 @@ int main() {
   mesh.triangles = {{0, 1, 2}};
 #ifdef WITH_ALL_PARTS
   if (tetskin::loadMesh("no such file.obj").ok()) return 1;
-  tetskin::Result<tetskin::Cage> built = tetskin::buildCage(mesh);
+  tetskin::Result<tetskin::Cage> built = tetskin::createCage(mesh);
   if (!built.ok()) return 2;
   cage = std::move(built).value();
 #endif
   btSoftBodyWorldInfo worldInfo;
-  const std::unique_ptr<btSoftBody> body = tetskin::makeSoftBody(cage, worldInfo).value();
+  const std::unique_ptr<btSoftBody> body = tetskin::createSoftBody(cage, worldInfo).value();
   tetskin::SkinOptions options;
 #ifdef WITH_ALL_PARTS
   tetskin::ThreadPool pool;
@@ -34,6 +34,6 @@ int main() {
   const tetskin::Result<tetskin::EmbedReport> fit = skin.bind(*body, cage, mesh, options);
   std::printf("%s", fit.value().describe().c_str());
   body->translate(btVector3(0, 5, 0));
-  const bool moved = skin.update() == tetskin::UpdateStatus::Updated && skin.bounds().min().y() > 5;
+  const bool moved = skin.update() == tetskin::StatusCode::Ok && skin.bounds().min().y() > 5;
   return fit.ok() && fit.value().inside == 3 && moved ? 0 : 3;
 }

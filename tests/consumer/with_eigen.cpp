@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// An application that uses Eigen's matrices of any size itself, beside a part of the library that does.
-#include <tetskin/cage/cage_builder.h>
+// An application that itself uses Eigen's matrices of dynamic size, together with a part of the library that uses them.
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/calibration.h>
 
 #include <Eigen/Dense>
@@ -16,7 +16,7 @@ int main() {
   pyramid.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   tetskin::CageOptions options;
   options.targetTets = 200;
-  tetskin::Cage cage = tetskin::buildCage(pyramid, options).value();
+  tetskin::Cage cage = tetskin::createCage(pyramid, options).value();
   const auto calibrated = tetskin::calibrate(cage);
   if (!calibrated.ok()) return std::fprintf(stderr, "%s\n", calibrated.status().message.c_str()), 1;
   return ones.isOnes() ? 0 : 1;

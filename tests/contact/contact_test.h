@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body whose surface lies well within its cage, and what it may fall on.
+// A body whose surface lies well within its cage, and the things that it falls on.
 #pragma once
 
 #include "bullet/deformable_test.h"
@@ -14,10 +14,10 @@
 
 namespace tetskin::test {
 
-/// The largest side of the cage's box.
+/// The largest side of the cage's bounding box.
 constexpr double kBodySize = 1.0;
 
-/// In the cube of this half side, the same each time.
+/// Points in the cube of this half side, the same points each time.
 inline std::vector<btVector3> pointsWithin(btScalar reach, int count) {
   std::mt19937 random(7);
   std::vector<btVector3> points;
@@ -29,7 +29,7 @@ inline std::vector<btVector3> pointsWithin(btScalar reach, int count) {
   return points;
 }
 
-/// A ball around the origin, about as finely cut along its rings as across.
+/// A ball around the origin, cut about as finely along its rings as across them.
 inline TriangleMesh ballMesh(int rings, double radius) {
   return sphere(rings, radius, Eigen::Vector3d::Zero(), 2 * rings);
 }
@@ -46,7 +46,7 @@ inline TriangleMesh boxMesh(const Eigen::Vector3d& half) {
   return mesh;
 }
 
-/// The unit cube around the origin, of 6 x 4^3 tets: a fifth of its size is between it and the surface in it.
+/// The unit cube around the origin, as 6 x 4^3 tets: between it and the surface in it there is a fifth of its size.
 inline TetMesh looseCage() {
   TetMesh cage = latticeCage(4, 4, 4, kBodySize / 4);
   for (Eigen::Vector3d& p : cage.nodes) p -= Eigen::Vector3d::Constant(kBodySize / 2);
@@ -59,7 +59,7 @@ struct TouchingBody {
                const SoftBodyOptions& material = {})
       : mesh(std::move(surface)) {
     TetMesh cage = looseCage();
-    binding = SoftBodyBinding::make(cage, mesh).value();
+    binding = SoftBodyBinding::create(cage, mesh).value();
     for (Eigen::Vector3d& p : cage.nodes) p += toEigen(at);
     body = added(world, cage, material);
     Result<std::unique_ptr<SurfaceContact>> made =
@@ -69,10 +69,10 @@ struct TouchingBody {
     EXPECT_TRUE(skin.bind(body->body(), binding).ok());
   }
 
-  /// World space.
+  /// The surface in world space.
   std::vector<Eigen::Vector3d> surface() {
     skin.markMoved();
-    EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+    EXPECT_EQ(skin.update(), StatusCode::Ok);
     std::vector<Eigen::Vector3d> points;
     for (std::size_t v = 0; v < skin.positions().size(); ++v) {
       const btScalar* p = skin.positions()[v];
@@ -80,12 +80,12 @@ struct TouchingBody {
     }
     return points;
   }
-  /// Least distance of the surface's vertices by a function of a point.
+  /// The least distance of the surface's vertices, where `distance` gives the distance of a point.
   template <class Distance>
   double gap(const Distance& distance) {
-    double least = HUGE_VAL;
-    for (const Eigen::Vector3d& p : surface()) least = std::min(least, static_cast<double>(distance(p)));
-    return least;
+    double minimum = HUGE_VAL;
+    for (const Eigen::Vector3d& p : surface()) minimum = std::min(minimum, static_cast<double>(distance(p)));
+    return minimum;
   }
   double height() {
     return gap([](const Eigen::Vector3d& p) { return p.y(); });
@@ -98,7 +98,7 @@ struct TouchingBody {
   SoftBodySkin skin;
 };
 
-/// A rigid body in a world, as long as it lives.
+/// A rigid body, which is in a world as long as this object lives.
 class Obstacle {
  public:
   Obstacle(EmptyWorld& world, std::unique_ptr<btCollisionShape> shape, const btTransform& at, btScalar mass = 0)

@@ -19,7 +19,7 @@
 
 namespace tetskin::test {
 
-/// A ball in a cage of cubes of 0.2 along each side, 1 long.
+/// A ball in a cage 1 long, made of cubes of edge 0.2.
 struct Ball {
   static constexpr double kRadius = 0.42;
 
@@ -28,7 +28,7 @@ struct Ball {
   std::shared_ptr<const ContactShape> shape = makeShape({});
 
   std::shared_ptr<const ContactShape> makeShape(const ContactShapeOptions& options) const {
-    Result<std::shared_ptr<const ContactShape>> made = makeContactShape(cage, mesh, options);
+    Result<std::shared_ptr<const ContactShape>> made = ContactShape::create(cage, mesh, options);
     EXPECT_TRUE(made.ok()) << made.status().message;
     return made.value();
   }
@@ -39,13 +39,13 @@ struct Ball {
   }
 };
 
-/// Shared: it takes a while to make.
+/// Shared, because it takes a while to create.
 inline const Ball& ball() {
   static const Ball made;
   return made;
 }
 
-/// A plate 1 x 0.12 x 1, in a cage of one layer of cubes.
+/// A plate of 1 x 0.12 x 1, in a cage of one layer of cubes.
 struct Plate {
   static constexpr double kHalfThickness = 0.06;
   TetMesh cage = latticeCage(5, 1, 5, 0.2);
@@ -59,7 +59,7 @@ struct Plate {
     }
     mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
                       {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-    Result<std::shared_ptr<const ContactShape>> made = makeContactShape(cage, mesh);
+    Result<std::shared_ptr<const ContactShape>> made = ContactShape::create(cage, mesh);
     EXPECT_TRUE(made.ok()) << made.status().message;
     shape = made.value();
   }
@@ -105,7 +105,7 @@ inline std::unique_ptr<DeformableBody> addBall(EmptyWorld& world, const Eigen::V
   return added(world, ball().at(at), options);
 }
 
-/// Of all their nodes, units per second.
+/// The largest speed of any node of these bodies, in units per second.
 inline double fastestNode(const std::vector<std::unique_ptr<DeformableBody>>& bodies) {
   btScalar fastest = 0;
   for (const auto& body : bodies) {
@@ -116,8 +116,8 @@ inline double fastestNode(const std::vector<std::unique_ptr<DeformableBody>>& bo
   return static_cast<double>(fastest);
 }
 
-/// By how much the deepest vertex of one body is inside another, by all vertices, all tets and all triangles. At rest
-/// both are `mesh` in `cage`.
+/// How deep the deepest vertex of one body lies inside another, found by testing all vertices, all tets and all
+/// triangles. At rest, both bodies are `mesh` in `cage`.
 inline double deepest(const btSoftBody& body, const TetMesh& cage, const TriangleMesh& mesh, const btSoftBody& other,
                       const TetMesh& otherCage, const TriangleMesh& otherMesh) {
   const TriangleBvh surface(otherMesh);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How Bullet's own contact of soft and rigid bodies fails, as far as it can be reproduced with the installed Bullet,
-// with SurfaceContact beside it doing it right. The table in tests/README.md names these tests.
+// How Bullet's own contact between soft and rigid bodies fails, as far as this can be reproduced with the installed
+// version, and how SurfaceContact does it right. The table in tests/README.md names these tests.
 #include "bullets_figure.h"
 #include "contact_test.h"
 
@@ -16,8 +16,8 @@
 namespace tetskin::test {
 namespace {
 
-/// What `SurfaceContact` measures other convex shapes by, too: it adds the margin, and takes hulls by their faces and
-/// cylinders exactly.
+/// `SurfaceContact` uses the same algorithm for other convex shapes, but adds the margin; it treats hulls by their
+/// faces and cylinders exactly.
 btScalar gjkDistance(const btConvexShape& shape, const btVector3& point, btVector3* normal = nullptr) {
   btGjkEpaSolver2::sResults results;
   const btScalar distance = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
@@ -30,7 +30,7 @@ double degreesBetween(const btVector3& a, const btVector3& b) {
   return std::acos(std::min(cosine, 1.0)) * 180.0 / EIGEN_PI;
 }
 
-/// Above the middle of a face, at half a unit from what is drawn.
+/// The point is above the middle of a face, half a unit from the hull as drawn.
 TEST(BulletsContact, FindsHullsAMarginLargerThanTheyAreDrawn) {
   btConvexHullShape hull;
   for (const Eigen::Vector3d& p : boxMesh(Eigen::Vector3d(1, 1, 1)).positions) hull.addPoint(toBullet(p));
@@ -40,7 +40,7 @@ TEST(BulletsContact, FindsHullsAMarginLargerThanTheyAreDrawn) {
   EXPECT_GT(hull.getMargin(), btScalar(0.03));
 }
 
-/// The largest error of a normal around a cylinder as high as it is thick, at 0.02 to 0.5 of its radius.
+/// The largest error of a normal around a cylinder as high as it is wide, at distances of 0.02 to 0.5 of its radius.
 double worstNormalAround(btScalar radius) {
   btCylinderShape cylinder(btVector3(radius, radius, radius));
   cylinder.setMargin(0);
@@ -57,7 +57,7 @@ double worstNormalAround(btScalar radius) {
   return worst;
 }
 
-/// Its accuracy is absolute; in double precision it is that of smaller ones.
+/// The accuracy of Bullet's algorithm is absolute; in double precision it is that for smaller shapes.
 TEST(BulletsContact, HasNormalsThatAreOffAroundSmallShapes) {
   if (sizeof(btScalar) > sizeof(float)) GTEST_SKIP() << "of Bullet in float";
   const double large = worstNormalAround(1), small = worstNormalAround(btScalar(0.1)),
@@ -70,7 +70,7 @@ TEST(BulletsContact, HasNormalsThatAreOffAroundSmallShapes) {
   EXPECT_GT(tiny, 10.0);
 }
 
-/// Half a second after it began just above something whose upper side is at 3.5.
+/// The body's height half a second after it starts just above something whose upper side is at 3.5.
 double heightOver(TetskinWorld& world, bool ours, const btVector3& at) {
   TouchingBody body(world, ballMesh(16, 0.35), at);
   if (!ours) body.contact.reset();
@@ -78,7 +78,7 @@ double heightOver(TetskinWorld& world, bool ours, const btVector3& at) {
   return body.height();
 }
 
-/// Under Bullet's own force and solver.
+/// A body under Bullet's own force, for Bullet's solver.
 std::unique_ptr<DeformableBody> bulletsBody(EmptyWorld& world, const btVector3& at) {
   SoftBodyOptions options;
   options.forceModel = ForceModel::NeoHookean;
@@ -95,14 +95,14 @@ TEST(BulletsContact, PlacesChildrenOfChildrenElsewhere) {
     btCompoundShape inner;
     inner.addChildShape(placeAt(btVector3(2, 0, 0)), &box);
     auto outer = std::make_unique<btCompoundShape>();
-    outer->addChildShape(placeAt(btVector3(0, 0, 0), quarter), &inner);  // so that the box is at -z
+    outer->addChildShape(placeAt(btVector3(0, 0, 0), quarter), &inner);  // turned so that the box is at -z
     const Obstacle obstacle(world, std::move(outer), placeAt(btVector3(0, 3, 0)));
     const double height = heightOver(world, ours, btVector3(0, btScalar(4.1), -2));
     EXPECT_EQ(std::abs(height - 3.5) < 0.01, ours) << height;
   }
 }
 
-/// With the transform that is drawn, but not with the one that Bullet predicts from.
+/// The shelf gets the transform that is drawn, but not the one from which Bullet predicts motion.
 TEST(BulletsContact, MissesBodiesThatWereOnlyToldOnceWhereTheyAre) {
   const auto addShelf = [](EmptyWorld& world) {
     auto shelf = std::make_unique<Obstacle>(world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)),
@@ -123,7 +123,7 @@ TEST(BulletsContact, MissesBodiesThatWereOnlyToldOnceWhereTheyAre) {
   }
 }
 
-/// Ours: ContactFilters.ForbidWhatBegins, by the surface and by nodes.
+/// The library's counterpart is ContactFilters.ForbidWhatBegins, for contact by the surface and by nodes.
 TEST(BulletsContact, AsksOnlyTheRigidBodyWhetherItResponds) {
   EmptyWorld world;
   const auto body = bulletsBody(world, btVector3(0, btScalar(0.6), 0));
@@ -133,7 +133,7 @@ TEST(BulletsContact, AsksOnlyTheRigidBodyWhetherItResponds) {
   EXPECT_GT(lowest(soft), -0.2);
 }
 
-/// The box by which the broadphase finds partners is around where nodes were when the step began.
+/// The bounding box by which the broadphase finds partners encloses the nodes as they were when the step began.
 TEST(BulletsContact, LooksForPartnersWhereABodyWas) {
   EmptyWorld world;
   SoftBodyOptions options;
@@ -152,11 +152,11 @@ TEST(BulletsContact, LooksForPartnersWhereABodyWas) {
   EXPECT_LT(predicted, low.y() - btScalar(0.9));
 }
 
-/// Bullet's distance field has cubes of 0.25, whatever it is of.
+/// Bullet's distance field has cells of 0.25, whatever the size of the shape.
 TEST(BulletsContact, HasADistanceFieldTooCoarseForSmallBodies) {
   const btScalar radius = btScalar(0.1);
   btSphereShape ball(radius);
-  const ExactShape exact = *ExactShape::of(ball);
+  const ExactShape exact = *ExactShape::exactShape(ball);
   btSparseSdf<3> field;
   field.Initialize();
   double worst = 0.0, worstOfOurs = 0.0;
@@ -171,7 +171,7 @@ TEST(BulletsContact, HasADistanceFieldTooCoarseForSmallBodies) {
   EXPECT_LT(worstOfOurs, 1e-6);
 }
 
-/// The field knows a shape by its address alone.
+/// The distance field identifies a shape only by its address.
 TEST(BulletsContact, MeetsAShapeThatIsGoneWhereAnotherTookItsPlace) {
   btSparseSdf<3> field;
   field.Initialize();
@@ -188,7 +188,7 @@ TEST(BulletsContact, MeetsAShapeThatIsGoneWhereAnotherTookItsPlace) {
 
 using BulletsContactDeathTest = testing::Test;
 
-/// So that a body that has exploded near a box ends the program.
+/// The consequence is that a body that has exploded near a box ends the program.
 TEST_F(BulletsContactDeathTest, CrashesFarFromADistanceField) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   btBoxShape box(btVector3(1, 1, 1));

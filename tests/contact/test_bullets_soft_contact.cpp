@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How Bullet's own contact among soft bodies of a deformable world fails, and what else of such a world stands in the
-// way, as far as it can be reproduced with the installed Bullet. The table in tests/README.md names these tests.
+// How Bullet's own contact between soft bodies of a deformable world fails, and what else in such a world causes
+// problems, as far as this can be reproduced with the installed version. The table in tests/README.md names these
+// tests.
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 
 #include "bullets_figure.h"
@@ -22,7 +23,7 @@ TetMesh cubeAt(const Vector3d& at) {
   return cage;
 }
 
-/// What the cube is drawn as: its cage.
+/// The cube's render surface is its cage.
 const std::shared_ptr<const ContactShape>& cubeShape() {
   static const std::shared_ptr<const ContactShape> shape = [] {
     const TetMesh cage = cubeAt(Vector3d::Zero());
@@ -30,14 +31,14 @@ const std::shared_ptr<const ContactShape>& cubeShape() {
     mesh.positions = cage.nodes;
     mesh.triangles = boundaryFaces(cage);
     ContactShapeOptions options;
-    options.samples = 1000;
-    options.cells = 32;
-    return makeContactShape(cage, mesh, options).value();
+    options.sampleCount = 1000;
+    options.gridResolution = 32;
+    return ContactShape::create(cage, mesh, options).value();
   }();
   return shape;
 }
 
-/// A cube and another nearly above it, 0.1 from it. The options' pinned nodes are of the lower one.
+/// A cube and another one nearly above it, 0.1 away. The options' pinned nodes belong to the lower one.
 struct TwoCubes {
   explicit TwoCubes(int collisions, double height = 5.0, SoftBodyOptions options = {},
                     ForceModel model = ForceModel::NeoHookean)
@@ -61,7 +62,8 @@ struct TwoCubes {
   std::unique_ptr<DeformableBody> lower, upper;
 };
 
-/// How far apart a cube and one that falls on it are in the end, the lower one held. Less than 0: they have passed.
+/// The final distance between a cube and one that falls on it; the lower one is pinned. Less than 0: they have passed
+/// through each other.
 btScalar restingOn(int collisions) {
   SoftBodyOptions held;
   held.pinned = [](const Vector3d&) { return true; };
@@ -70,7 +72,7 @@ btScalar restingOn(int collisions) {
   return cubes.apart();
 }
 
-/// They are of the classic worlds.
+/// These kinds of collision belong to the classic worlds.
 TEST(BulletsSoftContact, HasKindsThatDoNothingInADeformableWorld) {
   EXPECT_LT(restingOn(Collisions::VF_SS), 0);
   EXPECT_LT(restingOn(Collisions::CL_SS), 0);
@@ -81,47 +83,48 @@ TEST(BulletsSoftContact, IsOffWhereTwoKindsAreAskedFor) {
   EXPECT_LT(restingOn(Collisions::VF_DD | Collisions::VF_SS), 0);
 }
 
-/// What two cubes meet each other by.
-enum class Meeting { Nothing, Bullets, Ours };
+/// How two cubes collide with each other.
+enum class PairState { Nothing, Bullets, Ours };
 
-/// The largest speed of two stiff cubes on the floor after one was thrown on the other, over that of the impact.
-double wildest(double speed, Meeting meeting) {
+/// The largest speed of two stiff cubes on the floor after one was thrown onto the other, relative to the impact speed.
+double wildest(double speed, PairState pairState) {
   SoftBodyOptions options;
   options.youngsModulus = 20000;
-  const bool ours = meeting == Meeting::Ours;
-  TwoCubes cubes(meeting == Meeting::Bullets ? Collisions::VF_DD : 0, 0.1, options,
+  const bool ours = pairState == PairState::Ours;
+  TwoCubes cubes(pairState == PairState::Bullets ? Collisions::VF_DD : 0, 0.1, options,
                  ours ? ForceModel::Corotated : ForceModel::NeoHookean);
   std::unique_ptr<SoftContacts> contacts;
   if (ours) {
     contacts = contactsIn(cubes.world);
-    EXPECT_TRUE(contacts->include(cubes.lower->body(), cubeShape()).ok());
-    EXPECT_TRUE(contacts->include(cubes.upper->body(), cubeShape()).ok());
+    EXPECT_TRUE(contacts->add(cubes.lower->body(), cubeShape()).ok());
+    EXPECT_TRUE(contacts->add(cubes.upper->body(), cubeShape()).ok());
   }
   cubes.upper->body().setVelocity(btVector3(0, static_cast<btScalar>(-speed), 0));
-  double most = 0.0;
+  double maximum = 0.0;
   for (int frame = 0; frame < 60; ++frame) {
     step(cubes.world, 1);
-    most = std::max({most, rmsSpeed(cubes.lower->body()), rmsSpeed(cubes.upper->body())});
+    maximum = std::max({maximum, rmsSpeed(cubes.lower->body()), rmsSpeed(cubes.upper->body())});
   }
-  return most / speed;
+  return maximum / speed;
 }
 
 TEST(BulletsSoftContact, ExplodesWhereStiffBodiesMeetFast) {
-  double most[3] = {};
+  double maximum[3] = {};
   for (const double speed : {10.0, 12.0, 14.0, 15.0, 16.0, 18.0, 20.0}) {
-    for (const Meeting meeting : {Meeting::Nothing, Meeting::Bullets, Meeting::Ours}) {
-      double& of = most[static_cast<int>(meeting)];
-      of = std::max(of, wildest(speed, meeting));
+    for (const PairState pairState : {PairState::Nothing, PairState::Bullets, PairState::Ours}) {
+      double& value = maximum[static_cast<int>(pairState)];
+      value = std::max(value, wildest(speed, pairState));
     }
   }
-  figure("speed over that of the impact, VF_DD", most[1]);
-  figure("speed over that of the impact, ours", most[2]);
-  EXPECT_LT(most[0], 1.2) << "the force alone bears it";
-  EXPECT_GT(most[1], 2.0);
-  EXPECT_LT(most[2], 1.1);
+  figure("speed over that of the impact, VF_DD", maximum[1]);
+  figure("speed over that of the impact, ours", maximum[2]);
+  EXPECT_LT(maximum[0], 1.2) << "the force alone bears it";
+  EXPECT_GT(maximum[1], 2.0);
+  EXPECT_LT(maximum[2], 1.1);
 }
 
-/// A tet, point down, hits another that is as heavy at 1 a second. Returns how fast any node of it comes back.
+/// A tet, point down, hits another of the same mass at 1 unit per second. Returns the largest rebound speed of its
+/// nodes.
 btScalar thrownBack(btScalar stiffness) {
   const auto tetOf = [](double y, double half) {
     TetMesh tet;
@@ -156,7 +159,7 @@ TEST(BulletsSoftContact, ThrowsBackFasterThanItWasHit) {
   EXPECT_GT(fastest, btScalar(1.1));
 }
 
-/// Contacts by continuous detection are listed, and the list of others is gone through.
+/// Contacts found by continuous detection are appended to one list, but the solver reads another.
 TEST(BulletsSoftContact, FindsFastContactsAndForgetsThem) {
   TwoCubes cubes(Collisions::VF_DD);
   cubes.floatFreely();
@@ -171,7 +174,7 @@ TEST(BulletsSoftContact, FindsFastContactsAndForgetsThem) {
   EXPECT_LT(cubes.apart(), -0.9) << "they have passed through each other";
 }
 
-/// With the world's projection on, without which bodies hang in the air.
+/// This happens with the world's projection on, without which bodies hang in the air.
 TEST(BulletsSoftContact, LetsFacesFallThroughTheFloor) {
   EmptyWorld world;
   SoftBodyOptions options;
@@ -185,7 +188,8 @@ TEST(BulletsSoftContact, LetsFacesFallThroughTheFloor) {
   EXPECT_GT(lowest(byNodes->body()), 0.0);
 }
 
-/// A body of makeSoftBody under Bullet's own force. What `DeformableBody` does instead: SurfaceContact.FallsAsleep...
+/// A body made by createSoftBody under Bullet's own force. SurfaceContact.FallsAsleep... tests what `DeformableBody`
+/// does instead.
 TEST(BulletsSoftContact, JumpsWhenItFallsAsleep) {
   DeformableWorld world(cubeAt({0, 0.1, 0}));
   btSoftBody& soft = world.body();
@@ -217,7 +221,7 @@ TEST(BulletsSoftContact, IgnoresAddForce) {
   EXPECT_NEAR(momentumOf(body->body()).x(), 0, 1e-6) << "of 267";
 }
 
-/// In explicit steps.
+/// The force is applied twice in explicit steps.
 TEST(BulletsSoftContact, PicksTwiceAStep) {
   EmptyWorld world;
   SoftBodyOptions options;

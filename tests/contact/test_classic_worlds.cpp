@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bullet's own contact of soft bodies in the classic worlds, at the cages' surfaces, with bodies made here.
+// Bullet's own contact of soft bodies in the classic worlds, at the cages' surfaces, with bodies made by this library.
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
@@ -27,7 +27,7 @@ btScalar lowestOf(const btSoftBody& body) {
   return y;
 }
 
-/// How high the upper of two bodies comes to lie: the lower one is 0.9 high.
+/// The height at which the upper of two bodies comes to rest: the lower one is 0.9 high.
 template <class World, class BulletsWorld>
 btScalar restingHeight(int collisions) {
   SoftBodyOptions options = test::oneKilogram();
@@ -35,7 +35,7 @@ btScalar restingHeight(int collisions) {
   options.linkStiffness = 0.9;
   World world(cubeAbove(0.05), options);
   auto& soft = static_cast<BulletsWorld&>(*world.world);
-  auto upper = makeSoftBody(cubeAbove(1.1), soft.getWorldInfo(), options).value();
+  auto upper = createSoftBody(cubeAbove(1.1), soft.getWorldInfo(), options).value();
   soft.addSoftBody(upper.get());
   for (btSoftBody* body : {&world.body(), upper.get()}) {
     body->m_cfg.collisions |= collisions;

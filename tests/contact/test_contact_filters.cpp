@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an application does not want to meet is not met: by the surface, by nodes, and among soft bodies; and what it
-// changes of that while a body lies there counts from the next step.
+// Contacts that an application filters out do not happen: by the surface, by nodes, and among soft bodies; and a filter
+// that changes while a body rests on something takes effect in the next step.
 #include "contact_test.h"
 #include "soft_fixtures.h"
 
@@ -34,8 +34,8 @@ struct OnAPlatform {
   btSoftBody& soft() { return body.body->body(); }
   btBroadphaseProxy& proxy() { return *soft().getBroadphaseHandle(); }
   btRigidBody& rigid() { return platform.body(); }
-  /// Whether the platform holds the body after so many frames.
-  bool isHeld(int frames) {
+  /// Whether the platform still supports the body after so many frames.
+  bool isPinned(int frames) {
     step(world, frames);
     return body.height() > 4.9;
   }
@@ -45,7 +45,7 @@ struct OnAPlatform {
   TouchingBody body;
 };
 
-/// Lets nothing pass while it is `closed`.
+/// A filter that lets no pair pass while it is `closed`.
 struct Gate : btOverlapFilterCallback {
   bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override { return !closed; }
   bool closed = false;
@@ -95,28 +95,28 @@ class ContactFilters : public testing::TestWithParam<std::tuple<By, Filter>> {
 TEST_P(ContactFilters, ForbidWhatBegins) {
   OnAPlatform scene(by());
   set(scene, true);
-  EXPECT_FALSE(scene.isHeld(60));
+  EXPECT_FALSE(scene.isPinned(60));
 }
 
 TEST_P(ContactFilters, CountFromTheNextStep) {
   OnAPlatform scene(by());
-  ASSERT_TRUE(scene.isHeld(60));
+  ASSERT_TRUE(scene.isPinned(60));
   set(scene, true);
-  EXPECT_TRUE(scene.isHeld(1));
+  EXPECT_TRUE(scene.isPinned(1));
   set(scene, false);
-  ASSERT_TRUE(scene.isHeld(60)) << "forbidden for a frame";
+  ASSERT_TRUE(scene.isPinned(60)) << "forbidden for a frame";
   set(scene, true);
-  EXPECT_FALSE(scene.isHeld(40));
+  EXPECT_FALSE(scene.isPinned(40));
 }
 
 TEST_P(ContactFilters, WakeWhatLiesThere) {
   OnAPlatform scene(by());
-  ASSERT_TRUE(scene.isHeld(60));
+  ASSERT_TRUE(scene.isPinned(60));
   scene.soft().forceActivationState(ISLAND_SLEEPING);
-  ASSERT_TRUE(scene.isHeld(60));
+  ASSERT_TRUE(scene.isPinned(60));
   ASSERT_FALSE(scene.soft().isActive());
   set(scene, true);
-  EXPECT_FALSE(scene.isHeld(40));
+  EXPECT_FALSE(scene.isPinned(40));
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ContactFilters,
@@ -131,14 +131,14 @@ TEST(ContactFiltersOfAWorld, AskTheWorldsCallback) {
     Gate gate;
     OnAPlatform scene(by);
     scene.world.deformable().getPairCache()->setOverlapFilterCallback(&gate);
-    ASSERT_TRUE(scene.isHeld(60)) << by;
+    ASSERT_TRUE(scene.isPinned(60)) << by;
     gate.closed = true;
-    EXPECT_FALSE(scene.isHeld(40)) << by;
+    EXPECT_FALSE(scene.isPinned(40)) << by;
     scene.world.deformable().getPairCache()->setOverlapFilterCallback(nullptr);
   }
 }
 
-/// Of a pair that was refused when the boxes began to overlap Bullet knows nothing.
+/// Bullet does not keep a pair that was refused when the boxes began to overlap.
 TEST(ContactFiltersOfAWorld, AllowARefusedPairAfterARefresh) {
   for (const By by : {By::Nodes, By::Surface}) {
     OnAPlatform scene(by);
@@ -147,21 +147,21 @@ TEST(ContactFiltersOfAWorld, AllowARefusedPairAfterARefresh) {
     step(scene.world, 2);
     scene.proxy().m_collisionFilterMask = -1;
     scene.world.deformable().refreshBroadphaseProxy(&scene.soft());
-    EXPECT_TRUE(scene.isHeld(60)) << by;
+    EXPECT_TRUE(scene.isPinned(60)) << by;
   }
 }
 
-/// One ball that lies on another, which is held.
+/// One ball that lies on another, which is pinned.
 struct OnABall {
   OnABall()
       : lower(added(*world, ball().at({0, 5, 0}))),
         upper(added(*world, ball().at({0, 5.85, 0}))),
         contacts(contactsIn(*world)) {
     for (int n = 0; n < lower->body().m_nodes.size(); ++n) lower->body().setMass(n, 0);
-    EXPECT_TRUE(contacts->include(lower->body(), ball().shape).ok());
-    EXPECT_TRUE(contacts->include(upper->body(), ball().shape).ok());
+    EXPECT_TRUE(contacts->add(lower->body(), ball().shape).ok());
+    EXPECT_TRUE(contacts->add(upper->body(), ball().shape).ok());
   }
-  bool isHeld(int frames) {
+  bool isPinned(int frames) {
     step(*world, frames);
     return centreOf(upper->body()).y() > 6;
   }
@@ -194,20 +194,20 @@ TEST(ContactFiltersAmongSoftBodies, CountFromTheNextStep) {
       OnABall scene;
       btSoftBody& own = (ofUpper ? scene.upper : scene.lower)->body();
       const btSoftBody& other = (ofUpper ? scene.lower : scene.upper)->body();
-      ASSERT_TRUE(scene.isHeld(30)) << name;
+      ASSERT_TRUE(scene.isPinned(30)) << name;
       change(own, other, true);
-      EXPECT_TRUE(scene.isHeld(1)) << name;
+      EXPECT_TRUE(scene.isPinned(1)) << name;
       EXPECT_TRUE(scene.contacts->contacts().empty()) << name;
       change(own, other, false);
-      ASSERT_TRUE(scene.isHeld(30)) << name << ": forbidden for a frame";
+      ASSERT_TRUE(scene.isPinned(30)) << name << ": forbidden for a frame";
       EXPECT_FALSE(scene.contacts->contacts().empty()) << name;
       for (DeformableBody* body : {scene.lower.get(), scene.upper.get()}) {
         body->body().forceActivationState(ISLAND_SLEEPING);
       }
-      ASSERT_TRUE(scene.isHeld(10)) << name;
+      ASSERT_TRUE(scene.isPinned(10)) << name;
       ASSERT_FALSE(scene.upper->body().isActive()) << name;
       change(own, other, true);
-      EXPECT_FALSE(scene.isHeld(30)) << name;
+      EXPECT_FALSE(scene.isPinned(30)) << name;
     }
   }
 }
@@ -216,9 +216,9 @@ TEST(ContactFiltersAmongSoftBodies, AskTheWorldsCallback) {
   Gate gate;
   OnABall scene;
   scene.world->deformable().getPairCache()->setOverlapFilterCallback(&gate);
-  ASSERT_TRUE(scene.isHeld(30));
+  ASSERT_TRUE(scene.isPinned(30));
   gate.closed = true;
-  EXPECT_FALSE(scene.isHeld(30));
+  EXPECT_FALSE(scene.isPinned(30));
   scene.world->deformable().getPairCache()->setOverlapFilterCallback(nullptr);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies that touch by their surfaces do to each other, as ForceRecord tells it.
+// What bodies in contact by their surfaces do to each other, as ForceRecord reports it.
 #include "bullet/recorded_forces.h"
 #include "contact_test.h"
 #include "soft_fixtures.h"
@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-SoftBodyOptions firm() {
+SoftBodyOptions stiff() {
   SoftBodyOptions options;
   options.relativeStiffness = 1000;
   options.friction = 1;
@@ -35,13 +35,13 @@ TEST(ContactForces, AtRestTheSumIsTheWeight) {
   body.body->body().setActivationState(DISABLE_DEACTIVATION);
   const auto forces = forcesIn(world);
   step(world, 300);
-  const AppliedForces onFloor = forces->on(floorOf(world));
+  const AppliedForces onFloor = forces->forcesOn(floorOf(world));
   expectNear(onFloor.total().force, weightOf(1), 1e-3 * kWeight);
   expectNear(onFloor.contact.force, weightOf(1), 1e-3 * kWeight);
-  expectNear(forces->on(body.body->body()).total().force, -weightOf(1), 1e-3 * kWeight);
+  expectNear(forces->forcesOn(body.body->body()).total().force, -weightOf(1), 1e-3 * kWeight);
 }
 
-/// Two feet stand 0.45 to the one side of the centre, two 0.25 to the other.
+/// Two feet stand 0.45 to one side of the centre, and two 0.25 to the other.
 TEST(ContactForces, TwoSupportsShareTheWeightByTheLeverRule) {
   TetskinWorld world;
   TriangleMesh mesh = boxMesh(Vector3d(0.45, 0.35, 0.4));
@@ -51,11 +51,12 @@ TEST(ContactForces, TwoSupportsShareTheWeightByTheLeverRule) {
   const auto half = [] { return std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.5), 1)); };
   Obstacle left(world, half(), placeAt(btVector3(btScalar(-0.45), btScalar(1.5), 0)));
   Obstacle right(world, half(), placeAt(btVector3(btScalar(0.25), btScalar(1.5), 0)));
-  TouchingBody body(world, mesh, btVector3(0, btScalar(2.36), 0), {}, firm());
+  TouchingBody body(world, mesh, btVector3(0, btScalar(2.36), 0), {}, stiff());
   body.body->body().setActivationState(DISABLE_DEACTIVATION);
   const auto forces = forcesIn(world);
   step(world, 240);
-  const btVector3 onLeft = forces->on(left.body()).total().force, onRight = forces->on(right.body()).total().force;
+  const btVector3 onLeft = forces->forcesOn(left.body()).total().force,
+                  onRight = forces->forcesOn(right.body()).total().force;
   EXPECT_NEAR(-onLeft.y(), kWeight * 0.25 / 0.7, 0.01 * kWeight * 0.25 / 0.7);
   EXPECT_NEAR(-onRight.y(), kWeight * 0.45 / 0.7, 0.01 * kWeight * 0.45 / 0.7);
   expectNear(onLeft + onRight, weightOf(1), 1e-3 * kWeight);
@@ -64,7 +65,7 @@ TEST(ContactForces, TwoSupportsShareTheWeightByTheLeverRule) {
 /// Two kinematic plates close on a box in the air.
 TEST(ContactForces, AGripperHoldsByFriction) {
   TetskinWorld world;
-  TouchingBody held(world, boxMesh(Vector3d(0.35, 0.35, 0.35)), btVector3(0, 3, 0), {}, firm());
+  TouchingBody held(world, boxMesh(Vector3d(0.35, 0.35, 0.35)), btVector3(0, 3, 0), {}, stiff());
   held.body->body().setActivationState(DISABLE_DEACTIVATION);
   const auto plate = [] { return std::make_unique<btBoxShape>(btVector3(btScalar(0.2), 1, 1)); };
   const auto at = [](btScalar x) { return placeAt(btVector3(x, 3, 0)); };
@@ -82,7 +83,8 @@ TEST(ContactForces, AGripperHoldsByFriction) {
     step(world, 1);
   }
   const btSoftBody& soft = held.body->body();
-  const AppliedForces onLeft = forces->on(left.body(), soft), onRight = forces->on(right.body(), soft);
+  const AppliedForces onLeft = forces->forcesBetween(left.body(), soft),
+                      onRight = forces->forcesBetween(right.body(), soft);
   EXPECT_NEAR(onLeft.friction.force.y() + onRight.friction.force.y(), -kWeight, 1e-3 * kWeight);
   EXPECT_NEAR(onLeft.friction.force.y(), -kWeight / 2, 0.02 * kWeight);
   EXPECT_NEAR(onLeft.contact.force.x() + onRight.contact.force.x(), 0, 1e-3 * kWeight);
@@ -104,7 +106,7 @@ TEST(ContactForces, ARigidBodyFeelsWhatChangesItsMomentum) {
     const btVector3 linear = target.body().getLinearVelocity(), angular = target.body().getAngularVelocity();
     const btVector3 before = momentumOf(body.body->body());
     step(world, 1);
-    const Wrench on = forces->on(target.body()).total();
+    const Wrench on = forces->forcesOn(target.body()).total();
     expectNear(on.force / 60, 2 * (target.body().getLinearVelocity() - linear), 2e-5);
     expectNear(on.torque / 60, target.body().getLocalInertia() * (target.body().getAngularVelocity() - angular), 2e-5);
     expectNear(-on.force / 60, momentumOf(body.body->body()) - before, 1e-4);
@@ -138,7 +140,7 @@ TEST(ContactForces, ALinkFeelsWhatChangesItsMomentum) {
     for (int f = 0; f < 30; ++f) {
       const btVector3 before = multi.getBaseVel();
       step(world, 1);
-      expectNear(forces->on(link).total().force / 60, multi.getBaseVel() - before, 1e-4);
+      expectNear(forces->forcesOn(link).total().force / 60, multi.getBaseVel() - before, 1e-4);
     }
     EXPECT_LT(multi.getBaseVel().y(), -0.3);
   }
@@ -155,7 +157,7 @@ struct Balls {
     options.youngsModulus = 2000.0;
     options.margin = 0.002;
     bodies.push_back(added(*world, ball().at(at), options));
-    EXPECT_TRUE(contacts->include(bodies.back()->body(), ball().shape).ok());
+    EXPECT_TRUE(contacts->add(bodies.back()->body(), ball().shape).ok());
     return bodies.back()->body();
   }
 
@@ -174,19 +176,19 @@ TEST(ContactForces, OfAPairAreTheChangeOfMomentumOfEach) {
     const btVector3 before[] = {momentumOf(a), momentumOf(b)};
     const btVector3 centres[] = {centreOf(a), centreOf(b)};
     step(*balls.world, 1);
-    const Wrench onA = forces->on(a, b).total(), onB = forces->on(b, a).total();
+    const Wrench onA = forces->forcesBetween(a, b).total(), onB = forces->forcesBetween(b, a).total();
     EXPECT_EQ(onA.force, -onB.force);
-    EXPECT_EQ(forces->on(a).total().force, onA.force);
+    EXPECT_EQ(forces->forcesOn(a).total().force, onA.force);
     expectNear(onA.force / 60, momentumOf(a) - before[0], 1e-4);
     expectNear(onB.force / 60, momentumOf(b) - before[1], 1e-4);
-    // About one point: the two act at one place, but for how far they are from or in each other.
+    // About one point: both forces act at the same position, except for the gap or penetration between the bodies.
     const btVector3 torque = onA.torque + onB.torque + (centres[0] - centres[1]).cross(onA.force);
     EXPECT_LT(torque.length(), 0.05 * static_cast<double>(onA.force.length()) + 1e-4);
     pushed += onA.force.length() / 60;
   }
   EXPECT_GT(pushed, 1);
   step(*balls.world, 60);
-  EXPECT_TRUE(isNothing(forces->on(a)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(a)));
 }
 
 TEST(ContactForces, OfABodyOnAnotherAreItsWeight) {
@@ -195,17 +197,17 @@ TEST(ContactForces, OfABodyOnAnotherAreItsWeight) {
     TetMesh cage = plate().cage;
     for (Vector3d& p : cage.nodes) p.y() += height;
     auto made = added(*balls.world, cage, options);
-    EXPECT_TRUE(balls.contacts->include(made->body(), plate().shape).ok());
+    EXPECT_TRUE(balls.contacts->add(made->body(), plate().shape).ok());
     made->body().setActivationState(DISABLE_DEACTIVATION);
     return made;
   };
-  SoftBodyOptions held = firm();
+  SoftBodyOptions held = stiff();
   held.pinned = pinnedIn(Box3(Vector3d(-9, -9, -9), Vector3d(9, 9, 9)));
-  const auto below = addPlate(1, held), above = addPlate(1.13, firm());
+  const auto below = addPlate(1, held), above = addPlate(1.13, stiff());
   const auto forces = forcesIn(*balls.world);
   step(*balls.world, 240);
-  expectNear(forces->on(below->body(), above->body()).total().force, weightOf(1), 1e-3 * kWeight);
-  expectNear(forces->on(above->body()).total().force, -weightOf(1), 1e-3 * kWeight);
+  expectNear(forces->forcesBetween(below->body(), above->body()).total().force, weightOf(1), 1e-3 * kWeight);
+  expectNear(forces->forcesOn(above->body()).total().force, -weightOf(1), 1e-3 * kWeight);
 }
 
 // ---- what does not change them, and what ends them
@@ -215,14 +217,14 @@ TEST(ContactForces, AreNotChangedByQueriesBetweenSteps) {
   TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(0.36), 0));
   const auto forces = forcesIn(world);
   step(world, 60);
-  const AppliedForces before = forces->on(floorOf(world));
+  const AppliedForces before = forces->forcesOn(floorOf(world));
   ASSERT_FALSE(isNothing(before));
   IgnoredResults nothing;
   world.world->contactTest(&floorOf(world), nothing);
   world.world->contactTest(&body.body->body(), nothing);
   world.world->contactPairTest(&floorOf(world), &body.body->body(), nothing);
-  EXPECT_EQ(forces->on(floorOf(world)).total().force, before.total().force);
-  EXPECT_EQ(forces->on(floorOf(world)).total().torque, before.total().torque);
+  EXPECT_EQ(forces->forcesOn(floorOf(world)).total().force, before.total().force);
+  EXPECT_EQ(forces->forcesOn(floorOf(world)).total().torque, before.total().torque);
 }
 
 TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
@@ -233,11 +235,11 @@ TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
   step(*balls.world, 1);
   ASSERT_FALSE(body.contact->contacts().empty());
   ASSERT_FALSE(balls.contacts->contacts().empty());
-  // They have grown to what there is.
+  // All arrays have grown to the size they need.
   const std::size_t before = allocationCount();
   const std::size_t told = body.contact->contacts().size() + balls.contacts->contacts().size();
-  const btScalar onB = forces->on(b, a).total().force.length();
-  const btScalar onFloor = forces->on(floorOf(*balls.world)).total().force.length();
+  const btScalar onB = forces->forcesBetween(b, a).total().force.length();
+  const btScalar onFloor = forces->forcesOn(floorOf(*balls.world)).total().force.length();
   EXPECT_EQ(allocationCount(), before);
   EXPECT_GT(told, 1U);
   EXPECT_GT(onB, 0);
@@ -254,13 +256,13 @@ TEST(ContactForces, StayWhileABodySleepsAndGoWithWhatItLiesOn) {
   for (int f = 0; f < 1200 && soft.isActive(); ++f) step(world, 1);
   ASSERT_FALSE(soft.isActive());
   step(world, 10);
-  expectNear(forces->on(table->body()).total().force, weightOf(1), 0.01 * kWeight);
-  expectNear(forces->on(soft).total().force, -weightOf(1), 0.01 * kWeight);
+  expectNear(forces->forcesOn(table->body()).total().force, weightOf(1), 0.01 * kWeight);
+  expectNear(forces->forcesOn(soft).total().force, -weightOf(1), 0.01 * kWeight);
   table.reset();
-  EXPECT_TRUE(isNothing(forces->on(soft)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(soft)));
   soft.activate();
   step(world, 1);
-  EXPECT_TRUE(isNothing(forces->on(soft)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(soft)));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Things go in any order.
+// Bodies, contacts and worlds are destroyed in any order.
 #include "contact_test.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ TEST(ContactLifetimes, ContactGoesFirstAndTheCageIsMetAgain) {
   const auto body = lying(world);
   body->contact.reset();
   step(world, 120);
-  EXPECT_GT(lowest(body->body->body()), -0.02);  // from -0.15
+  EXPECT_GT(lowest(body->body->body()), -0.02);  // the cage was at -0.15
 }
 
 TEST(ContactLifetimes, BodyGoesFirst) {
@@ -42,7 +42,8 @@ TEST(ContactLifetimes, ABodyAtTheOldAddressIsAnother) {
   for (int k = 0; k < 4; ++k) {
     const auto body = lying(world);
     body->body.reset();
-    // Without contact of its own it meets the floor by its cage, whatever is left of the other.
+    // Without surface contact of its own, the new body rests on the floor by its cage, whatever remains of the other
+    // body.
     TetMesh cage = looseCage();
     for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.52;
     const auto plain = added(world, cage);
@@ -69,14 +70,14 @@ TEST(ContactLifetimes, ContactBodyAndWorldGoInAnyOrder) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-// Destroyed from below upwards.
+// Globals are destroyed from the last to the first.
 std::vector<std::unique_ptr<DeformableBody>> bodiesAfterTheWorld;
 std::vector<std::unique_ptr<SurfaceContact>> contactsAfterTheWorld;
 std::unique_ptr<TetskinWorld> globalWorld;
 std::vector<std::unique_ptr<SurfaceContact>> contactsBeforeTheWorld;
 std::vector<std::unique_ptr<DeformableBody>> bodiesBeforeTheWorld;
 
-/// All four orders of contact, body and world at the end of a program.
+/// All four orders in which a contact, a body and the world can be destroyed at the end of a program.
 void fillGlobals() {
   globalWorld = std::make_unique<TetskinWorld>();
   for (int k = 0; k < 4; ++k) {
@@ -88,7 +89,7 @@ void fillGlobals() {
 }
 
 TEST(ContactLifetimesDeathTest, GlobalsGoInAnyOrderAtTheEndOfTheProgram) {
-  // In a process of its own, which ends as others do, by the destructors of what is static.
+  // This runs in a process of its own, which ends like any other: static objects are destroyed.
   const auto run = [] {
     fillGlobals();
     for (const auto* contacts : {&contactsBeforeTheWorld, &contactsAfterTheWorld}) {
@@ -101,7 +102,7 @@ TEST(ContactLifetimesDeathTest, GlobalsGoInAnyOrderAtTheEndOfTheProgram) {
   EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
 }
 
-/// Where it has no forces, and stays where it is.
+/// Moves a body to another world, where no forces act on it and it stays where it is.
 void move(btSoftBody& body, EmptyWorld& from, EmptyWorld& to) {
   from.deformable().removeSoftBody(&body);
   body.m_worldInfo = &to.deformable().getWorldInfo();
@@ -122,7 +123,7 @@ TEST(ContactLifetimes, ABodyTakenToAnotherWorldIsMetByItsNodesThereAndByItsSurfa
   EXPECT_TRUE(body->contact->contacts().empty());
   EXPECT_FALSE(other.contact->contacts().empty());
   move(soft, second, first);
-  // By nodes it was lifted off the floor.
+  // Contact by nodes had lifted the body off the floor.
   for (int n = 0; n < soft.m_nodes.size(); ++n) soft.m_nodes[n].m_x = lyingNodes[static_cast<std::size_t>(n)];
   step(first, 1);
   EXPECT_FALSE(body->contact->contacts().empty());
@@ -139,7 +140,7 @@ TEST(ContactLifetimes, ContactThatWasLeftBehindByItsWorldsDispatcherStartsAnewIn
   ASSERT_TRUE(made.ok()) << made.status().message;
   step(second, 10);
   EXPECT_FALSE(made.value()->contacts().empty());
-  // Its own world is not there to take it back: whoever moved it takes it out, and it is freed with its owner.
+  // The body's original world is gone and cannot take it back: whoever moved it removes it, and its owner frees it.
   second.deformable().removeSoftBody(&body->body->body());
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a body may touch, beside what stands still.
+// What a body may be in contact with, apart from what stands still.
 #include "contact_test.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -65,8 +65,8 @@ TEST(ContactPartners, AKinematicBodyCarriesWhatLiesOnIt) {
 /// Ways of moving a kinematic body in each step.
 enum class Told { World, MotionState, Both };
 
-/// A plate goes 0.5 m sideways in a second and then 0.5 m up; how far the body on it has come.
-/// steps  in which the plate moves at once, and the world makes at once
+/// How far a body is carried by a plate that moves 0.5 m sideways in one second and then 0.5 m up in another.
+/// steps  the plate moves once per so many steps, which the world makes in one call
 btVector3 carried(EmptyWorld& world, Told told, bool bySurface, int steps = 1) {
   const btVector3 start(0, 4, 0);
   btDefaultMotionState motion(placeAt(start));
@@ -98,34 +98,35 @@ btVector3 carried(EmptyWorld& world, Told told, bool bySurface, int steps = 1) {
   return centre() - before;
 }
 
-/// Bullet finds a kinematic body's velocity from where its interpolation transform was left: where that is set as well,
-/// in each step, it has none, and what lies on it is carried by where it sticks.
+/// Bullet derives a kinematic body's velocity from its previous interpolation transform: where an application sets that
+/// transform as well, in each step, the velocity is zero, and what lies on the body is carried only by sticking
+/// friction.
 TEST(ContactPartners, AKinematicBodyCarriesHoweverItIsMoved) {
   for (const Told told : {Told::World, Told::MotionState, Told::Both}) {
     for (const bool bySurface : {false, true}) {
       TetskinWorld world;
-      const btVector3 way = carried(world, told, bySurface);
-      EXPECT_NEAR(way.x(), 0.5, 0.03) << bySurface;
-      EXPECT_NEAR(way.y(), 0.5, 0.03) << bySurface;
+      const btVector3 direction = carried(world, told, bySurface);
+      EXPECT_NEAR(direction.x(), 0.5, 0.03) << bySurface;
+      EXPECT_NEAR(direction.y(), 0.5, 0.03) << bySurface;
     }
   }
 }
 
-/// Bullet puts it there in the frame's first step.
+/// Bullet moves the body to its new position in the first step of the frame.
 TEST(ContactPartners, AKinematicBodyThatIsMovedOnceAFrameCarriesInAllOfItsSteps) {
   for (const int steps : {2, 4, 8}) {
     for (const Told told : {Told::World, Told::MotionState}) {
       for (const bool bySurface : {false, true}) {
         TetskinWorld world;
-        const btVector3 way = carried(world, told, bySurface, steps);
-        EXPECT_NEAR(way.x(), 0.5, 0.03) << bySurface << steps;
-        EXPECT_NEAR(way.y(), 0.5, 0.03) << bySurface << steps;
+        const btVector3 direction = carried(world, told, bySurface, steps);
+        EXPECT_NEAR(direction.x(), 0.5, 0.03) << bySurface << steps;
+        EXPECT_NEAR(direction.y(), 0.5, 0.03) << bySurface << steps;
       }
     }
   }
 }
 
-/// Put under the body from 20 m away, in one step: at rest if it is told by both transforms.
+/// The plate is put under the body from 20 m away, in one step: it counts as being at rest if both transforms are set.
 TEST(ContactPartners, AKinematicBodyThatIsTeleportedByBothTransformsThrowsNothing) {
   TetskinWorld world;
   Obstacle plate(world, std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)), placeAt(btVector3(0, -20, 0)));
@@ -145,7 +146,7 @@ TEST(ContactPartners, AFallingBallWakesASleeper) {
   btSoftBody& soft = body.body->body();
   const btScalar threshold = soft.m_sleepingThreshold;
   for (int f = 0; f < 400 && soft.isActive(); ++f) {
-    if (f == 120) soft.m_sleepingThreshold = 1;  // nobody waits for the last of its rocking
+    if (f == 120) soft.m_sleepingThreshold = 1;  // so that the test need not wait for the last rocking motion to stop
     step(world, 1);
   }
   ASSERT_FALSE(soft.isActive());

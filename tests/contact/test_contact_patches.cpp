@@ -7,7 +7,7 @@
 namespace tetskin::test {
 namespace {
 
-/// Where the points are at rest, or where they act.
+/// The positions of the contact points at rest, or where their forces act, depending on the weights.
 std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const std::vector<btScalar>& weights,
                                       const TetMesh& cage) {
   std::vector<Eigen::Vector3d> points;
@@ -27,9 +27,9 @@ std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const std::
 double farthestFromAny(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
   double farthest = 0.0;
   for (const Eigen::Vector3d& p : from) {
-    double least = HUGE_VAL;
-    for (const Eigen::Vector3d& q : to) least = std::min(least, (p - q).norm());
-    farthest = std::max(farthest, least);
+    double minimum = HUGE_VAL;
+    for (const Eigen::Vector3d& q : to) minimum = std::min(minimum, (p - q).norm());
+    farthest = std::max(farthest, minimum);
   }
   return farthest;
 }
@@ -37,11 +37,11 @@ double farthestFromAny(const std::vector<Eigen::Vector3d>& from, const std::vect
 TEST(ContactPatches, HaveEachPlaceOfTheMeshOnce) {
   const TetMesh cage = looseCage();
   TriangleMesh mesh = ballMesh(10, 0.4);
-  const std::size_t places = mesh.vertexCount();
+  const std::size_t indices = mesh.vertexCount();
   const std::vector<Eigen::Vector3d> seam(mesh.positions.begin(), mesh.positions.begin() + 50);
-  mesh.positions.insert(mesh.positions.end(), seam.begin(), seam.end());  // as the two sides of a seam have them
+  mesh.positions.insert(mesh.positions.end(), seam.begin(), seam.end());  // duplicates, as on the two sides of a seam
   const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.0);
-  EXPECT_EQ(patches.pointCount, places);
+  EXPECT_EQ(patches.pointCount, indices);
   const auto points = pointsOf(patches, patches.weights, cage);
   EXPECT_LT(farthestFromAny(mesh.positions, points), 1e-6);
   EXPECT_LT(farthestFromAny(points, mesh.positions), 1e-6);
@@ -59,7 +59,7 @@ TEST(ContactPatches, SampleTrianglesNoFartherApartThanTheSpacing) {
   EXPECT_LT(farthestFromAny(onSides, points), 0.05);
   for (const Eigen::Vector3d& p : points) {
     const Eigen::Vector3d beyond = p.cwiseAbs() - Eigen::Vector3d(0.4, 0.3, 0.35);
-    EXPECT_NEAR(beyond.maxCoeff(), 0.0, 1e-6);  // on the surface
+    EXPECT_NEAR(beyond.maxCoeff(), 0.0, 1e-6);  // the points are on the surface
   }
 }
 

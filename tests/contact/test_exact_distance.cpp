@@ -12,19 +12,19 @@ namespace {
 
 using test::pointsWithin;
 
-/// The distance is what the point must be moved by, against the normal, to lie on the surface.
+/// The distance is how far the point must be moved against the normal to lie on the surface.
 void expectSurfaceAtDistance(const btCollisionShape& shape) {
   for (const btVector3& point : pointsWithin(2, 500)) {
-    const ShapeDistance at = ExactShape::of(shape)->distance(point);
+    const ShapeDistance at = ExactShape::exactShape(shape)->distance(point);
     EXPECT_NEAR(at.normal.length(), 1, 1e-5);
-    EXPECT_NEAR(ExactShape::of(shape)->distance(point - at.distance * at.normal).distance, 0, 1e-5);
+    EXPECT_NEAR(ExactShape::exactShape(shape)->distance(point - at.distance * at.normal).distance, 0, 1e-5);
   }
 }
 
-/// Bullet's own, which rounds edges and corners by the margin.
+/// Compares with Bullet's own distance, which rounds edges and corners by the margin.
 void expectBulletsDistance(const btConvexShape& shape) {
   for (const btVector3& point : pointsWithin(2, 300)) {
-    const ShapeDistance at = ExactShape::of(shape)->distance(point);
+    const ShapeDistance at = ExactShape::exactShape(shape)->distance(point);
     if (at.distance < btScalar(0.01)) continue;
     btGjkEpaSolver2::sResults results;
     const btScalar bullets = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
@@ -70,8 +70,8 @@ TEST(ExactDistance, OfACylinderAlongEachAxisIsBullets) {
 TEST(ExactDistance, OfAPlaneIsAlongItsNormal) {
   const btVector3 normal = btVector3(1, 2, 3).normalized();
   const btStaticPlaneShape plane(normal, btScalar(0.5));
-  EXPECT_NEAR(ExactShape::of(plane)->distance(3 * normal).distance, 2.5, 1e-6);
-  EXPECT_NEAR(ExactShape::of(plane)->distance(-normal).distance, -1.5, 1e-6);
+  EXPECT_NEAR(ExactShape::exactShape(plane)->distance(3 * normal).distance, 2.5, 1e-6);
+  EXPECT_NEAR(ExactShape::exactShape(plane)->distance(-normal).distance, -1.5, 1e-6);
   expectSurfaceAtDistance(plane);
 }
 
@@ -83,17 +83,17 @@ TEST(ExactDistance, HasANormalAtCentresAndOnFacesEdgesAndCorners) {
        {static_cast<const btCollisionShape*>(&box), static_cast<const btCollisionShape*>(&sphere),
         static_cast<const btCollisionShape*>(&capsule)}) {
     for (const btVector3& point : {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(1, 1, 0), btVector3(-1, 1, -1)}) {
-      EXPECT_NEAR(ExactShape::of(*shape)->distance(point).normal.length(), 1, 1e-5);
+      EXPECT_NEAR(ExactShape::exactShape(*shape)->distance(point).normal.length(), 1, 1e-5);
     }
   }
-  EXPECT_EQ(ExactShape::of(box)->distance(btVector3(1, 1, 1)).distance, 0);
+  EXPECT_EQ(ExactShape::exactShape(box)->distance(btVector3(1, 1, 1)).distance, 0);
 }
 
 TEST(ExactDistance, IsKnownForShapesWithFormulas) {
   const btCylinderShape oval(btVector3(1, 1, 2));
-  EXPECT_FALSE(ExactShape::of(oval));
-  EXPECT_FALSE(ExactShape::of(btConeShape(1, 1)));
-  EXPECT_TRUE(ExactShape::of(btSphereShape(1)));
+  EXPECT_FALSE(ExactShape::exactShape(oval));
+  EXPECT_FALSE(ExactShape::exactShape(btConeShape(1, 1)));
+  EXPECT_TRUE(ExactShape::exactShape(btSphereShape(1)));
 }
 
 }  // namespace

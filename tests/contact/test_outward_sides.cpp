@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which side of terrain and of mirrored meshes is outside: by the distances that a probe tells, and by what falls on
-// it.
+// Which side of terrain and of mirrored meshes is outside: tested by the distances that a probe reports, and by what
+// falls on it.
 #include "contact_test.h"
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
@@ -15,10 +15,10 @@
 namespace tetskin::test {
 namespace {
 
-constexpr int kSide = 12;  // samples of terrain
+constexpr int kSide = 12;  // samples along a side of the terrain
 const char* const kAxes = "XYZ";
 
-/// All ways in which Bullet cuts the squares of terrain in two.
+/// All the ways in which Bullet divides the squares of terrain into triangles.
 enum class Cut { Plain, QuadEdgesFlipped, Diamonds, Zigzag };
 constexpr Cut kCuts[] = {Cut::Plain, Cut::QuadEdgesFlipped, Cut::Diamonds, Cut::Zigzag};
 
@@ -50,7 +50,7 @@ void forAllTerrain(const std::function<void(int upAxis, Cut cut, bool windingFli
   }
 }
 
-/// How far a point is above the triangle that it is over or under.
+/// The height of a point above the triangle that is over or under it.
 class HeightOver : public btTriangleCallback {
  public:
   HeightOver(const btVector3& point, int upAxis) : point_(point), up_(upAxis) {}
@@ -107,7 +107,7 @@ TEST(OutwardSides, OfTerrainAreThoseOfItsUpAxisHoweverItIsCutAndWound) {
   });
 }
 
-/// A ball of triangles that look outwards.
+/// A ball of triangles that face outwards.
 std::unique_ptr<btTriangleMesh> bulletsBall(int rings, double radius) {
   const TriangleMesh ball = ballMesh(rings, radius);
   auto mesh = std::make_unique<btTriangleMesh>();
@@ -117,7 +117,7 @@ std::unique_ptr<btTriangleMesh> bulletsBall(int rings, double radius) {
   return mesh;
 }
 
-/// The eight ways to mirror.
+/// The eight ways to mirror a shape.
 std::vector<btVector3> mirrors() {
   std::vector<btVector3> all;
   for (int k = 0; k < 8; ++k) all.emplace_back(k & 1 ? -1 : 1, k & 2 ? -1 : 1, k & 4 ? -1 : 1);
@@ -127,8 +127,8 @@ std::vector<btVector3> mirrors() {
 void expectOutwards(const btConcaveShape& ball, btScalar radius) {
   MeshProbe probe;
   probe.take(ball, btScalar(0.2));
-  for (const btVector3& way : pointsWithin(1, 30)) {
-    const btVector3 direction = way.normalized();
+  for (const btVector3& towards : pointsWithin(1, 30)) {
+    const btVector3 direction = towards.normalized();
     const ShapeDistance outside = asked(probe, (radius + btScalar(0.1)) * direction, btScalar(0.2));
     const ShapeDistance inside = asked(probe, (radius - btScalar(0.1)) * direction, btScalar(0.2));
     EXPECT_NEAR(outside.distance, 0.1, 0.03);
@@ -147,7 +147,7 @@ TEST(OutwardSides, OfMeshesAreMirroredWithThem) {
     btBvhTriangleMeshShape child(lent.get(), true);
     btScaledBvhTriangleMeshShape scaled(&child, btScalar(0.8) * mirror);
     expectOutwards(scaled, btScalar(0.8));
-    // Mirrored twice, and once more.
+    // A mirrored shape contains a child that is itself mirrored.
     child.setLocalScaling(btVector3(1, -1, 1));
     expectOutwards(scaled, btScalar(0.8));
     btGImpactMeshShape pieces(packed.get());
@@ -157,37 +157,38 @@ TEST(OutwardSides, OfMeshesAreMirroredWithThem) {
   }
 }
 
-/// Something flat, 4 above the floor of the world or more, and what falls on it.
+/// Something flat, at least 4 above the floor of the world, on which a body falls.
 struct Landing {
   std::function<std::unique_ptr<btConcaveShape>()> make;
   int upAxis = 1;
 };
 
-/// How far above the shape's plane through its origin the lowest of a body comes to be; by nodes, or by its surface.
+/// The height at which the body's lowest point comes to rest above the plane through the shape's origin; by nodes, or
+/// by the body's surface.
 double restsAbove(const Landing& landing, bool bySurface) {
   TetskinWorld world;
   btVector3 up(0, 0, 0);
   up[landing.upAxis] = 1;
   world.deformable().setGravity(btScalar(-10) * up);
-  const btVector3 place(0, 30, 0);
-  Obstacle obstacle(world, landing.make(), placeAt(place));
-  TouchingBody body(world, ballMesh(16, 0.35), place + btScalar(0.55) * up);
+  const btVector3 position(0, 30, 0);
+  Obstacle obstacle(world, landing.make(), placeAt(position));
+  TouchingBody body(world, ballMesh(16, 0.35), position + btScalar(0.55) * up);
   if (!bySurface) body.contact.reset();
   step(world, 45);
-  if (bySurface) return body.gap([&](const Eigen::Vector3d& p) { return (p - toEigen(place)).dot(toEigen(up)); });
-  double least = HUGE_VAL;
+  if (bySurface) return body.gap([&](const Eigen::Vector3d& p) { return (p - toEigen(position)).dot(toEigen(up)); });
+  double minimum = HUGE_VAL;
   const btSoftBody& soft = body.body->body();
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
-    least = std::min<double>(least, (soft.m_nodes[n].m_x - place).dot(up));
+    minimum = std::min<double>(minimum, (soft.m_nodes[n].m_x - position).dot(up));
   }
-  return least;
+  return minimum;
 }
 
-void expectHeld(const Landing& landing) {
+void expectPinned(const Landing& landing) {
   EXPECT_NEAR(restsAbove(landing, true), 0.002, 0.01);
   const double byNodes = restsAbove(landing, false);
   EXPECT_GT(byNodes, 0);
-  EXPECT_LT(byNodes, 0.1);  // Bullet's margins, of both
+  EXPECT_LT(byNodes, 0.1);  // the margins of both in Bullet
 }
 
 TEST(OutwardSides, TerrainOfAnyUpAxisHoldsWhatFallsOnIt) {
@@ -195,13 +196,13 @@ TEST(OutwardSides, TerrainOfAnyUpAxisHoldsWhatFallsOnIt) {
   for (int upAxis = 0; upAxis < 3; ++upAxis) {
     for (const bool windingFlipped : {false, true}) {
       SCOPED_TRACE(std::string(1, kAxes[upAxis]) + (windingFlipped ? " up, winding flipped" : " up"));
-      expectHeld({[&] { return terrain(flat, upAxis, Cut::Diamonds, windingFlipped); }, upAxis});
+      expectPinned({[&] { return terrain(flat, upAxis, Cut::Diamonds, windingFlipped); }, upAxis});
     }
   }
 }
 
 TEST(OutwardSides, MirroredMeshesHoldWhatFallsOnThem) {
-  // A slab, as it has an outside above and below; its top is at 0.
+  // A slab, because it has an outside above and below; its top is at 0.
   const auto mesh = std::make_unique<btTriangleMesh>();
   const TriangleMesh slab = boxMesh(Eigen::Vector3d(3, 1, 3));
   for (const auto& t : slab.triangles) {
@@ -211,9 +212,9 @@ TEST(OutwardSides, MirroredMeshesHoldWhatFallsOnThem) {
   btBvhTriangleMeshShape child(mesh.get(), true);
   for (const btVector3& mirror : {btVector3(-1, 1, 1), btVector3(1, 1, -1), btVector3(-1, 1, -1)}) {
     SCOPED_TRACE(testing::Message() << mirror.x() << ' ' << mirror.z());
-    expectHeld({[&] { return std::make_unique<btScaledBvhTriangleMeshShape>(&child, mirror); }});
+    expectPinned({[&] { return std::make_unique<btScaledBvhTriangleMeshShape>(&child, mirror); }});
     const auto own = std::make_unique<btTriangleMesh>(*mesh);
-    expectHeld({[&] {
+    expectPinned({[&] {
       auto shape = std::make_unique<btBvhTriangleMeshShape>(own.get(), true);
       shape->setLocalScaling(mirror);
       return shape;

@@ -10,17 +10,17 @@
 namespace tetskin::test {
 namespace {
 
-/// Unsigned, by all triangles.
+/// Unsigned distance to a mesh, by testing all triangles.
 double bruteDistance(const TriangleMesh& mesh, const btVector3& point) {
-  double least = HUGE_VAL;
+  double minimum = HUGE_VAL;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d p = toEigen(point);
-    least = std::min(least, (closestPointOnTriangle(p, cornersOf(mesh, t)).point - p).norm());
+    minimum = std::min(minimum, (closestPointOnTriangle(p, cornersOf(mesh, t)).point - p).norm());
   }
-  return least;
+  return minimum;
 }
 
-/// Of a convex mesh.
+/// Whether a point is inside a convex mesh.
 bool isInside(const TriangleMesh& mesh, const btVector3& point) {
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
@@ -29,7 +29,7 @@ bool isInside(const TriangleMesh& mesh, const btVector3& point) {
   return true;
 }
 
-/// As a search asks: of a ball first, then of a smaller one in it around the point.
+/// Asks as a search does: first for a ball, then for a smaller ball in it around the point.
 ShapeDistance asked(ShapeProbe& probe, const btVector3& point, btScalar reach) {
   const NodePath path{point, point};
   if (!probe.enter({point + btVector3(btScalar(0.05), 0, 0), btScalar(0.1)}, reach)) return {};
@@ -53,7 +53,7 @@ TEST(HullProbe, FindsTheDistanceOfAllTriangles) {
       continue;
     }
     ++near;
-    EXPECT_NEAR(std::abs(static_cast<double>(found.distance)), brute, 4e-4);  // Bullet rounds a hull to a grid
+    EXPECT_NEAR(std::abs(static_cast<double>(found.distance)), brute, 4e-4);  // Bullet rounds hulls to a grid
     if (brute > 4e-4) {
       EXPECT_EQ(found.distance > 0, !isInside(ball, point));
     }
@@ -109,7 +109,7 @@ TEST(ConvexProbe, FindsTheDistanceOfAHullsFacesOnBothSides) {
     const ShapeDistance exact = asked(faces, point, 2), found = asked(gjk, point, 2);
     EXPECT_NEAR(found.distance, exact.distance, 5e-3);
     if (exact.distance > btScalar(0.02)) {
-      EXPECT_GT(found.normal.dot(exact.normal), 0.95);  // Bullet's are off by ten degrees near an edge
+      EXPECT_GT(found.normal.dot(exact.normal), 0.95);  // Bullet's normals are off by ten degrees near an edge
     }
   }
 }
@@ -132,7 +132,7 @@ TEST(MeshProbe, FindsTheDistanceOfAllTrianglesAndTheSide) {
       continue;
     }
     EXPECT_NEAR(std::abs(static_cast<double>(found.distance)), brute, 1e-4);
-    // The ball's winding is outwards.
+    // The ball's triangles face outwards.
     ++(found.distance > 0 ? outside : inside);
     if (brute > 4e-4) {
       EXPECT_EQ(found.distance > 0, !isInside(ball, point));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What wakes a sleeping body, and what does not: by nodes, by the surface, and on other soft bodies.
+// What wakes a sleeping body, and what does not: contact by nodes, by the surface, and with other soft bodies.
 #include "contact_test.h"
 #include "soft_fixtures.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 enum class By { Nodes, Surface };
 
-/// Frames until all sleep; fails where one does not.
+/// Steps until all bodies sleep; fails if one does not.
 void letSleep(EmptyWorld& world, const std::vector<btSoftBody*>& bodies, int frames = 900) {
   const auto anyAwake = [&] {
     return std::any_of(bodies.begin(), bodies.end(), [](const btSoftBody* body) { return body->isActive(); });
@@ -27,7 +27,7 @@ void letSleep(EmptyWorld& world, const std::vector<btSoftBody*>& bodies, int fra
   for (const btSoftBody* body : bodies) thresholds.push_back(body->m_sleepingThreshold);
   for (int f = 0; f < frames && anyAwake(); ++f) {
     for (btSoftBody* body : bodies) {
-      if (f == 90) body->m_sleepingThreshold = 1;  // nobody waits for the last of their rocking
+      if (f == 90) body->m_sleepingThreshold = 1;  // so that the test need not wait for the last rocking motion to stop
     }
     step(world, 1);
   }
@@ -44,9 +44,9 @@ void makeKinematic(btRigidBody& body) {
 }
 
 void moveTo(btRigidBody& body, const btVector3& at) {
-  btTransform place = body.getWorldTransform();
-  place.setOrigin(at);
-  body.setWorldTransform(place);
+  btTransform position = body.getWorldTransform();
+  position.setOrigin(at);
+  body.setWorldTransform(position);
 }
 
 /// A body asleep on a platform high above the floor.
@@ -65,7 +65,7 @@ class Sleepers : public testing::TestWithParam<By> {
   }
   btSoftBody& soft() { return body->body->body(); }
   btRigidBody& rigid() { return platform->body(); }
-  /// Of the surface over the platform.
+  /// The height of the surface above the platform.
   double gap() { return body->height() - static_cast<double>(rigid().getWorldTransform().getOrigin().y()) - 1; }
 
   TetskinWorld world;
@@ -208,7 +208,7 @@ TEST_P(Sleepers, FollowTheHookThatTheyAreAnchoredTo) {
   EXPECT_GT(centreOf(soft()).y(), before + btScalar(0.4));
 }
 
-/// Bodies that are put to sleep as they are added: a saved state, or a scene.
+/// Bodies that are put to sleep as they are added, as in a saved state or a scene.
 TEST_P(Sleepers, SleepOnWhereTheyWereAddedAsleep) {
   const std::vector<Eigen::Vector3d> before = body->surface();
   TouchingBody added(world, ballMesh(12, 0.35), btVector3(10, btScalar(0.36), 0));
@@ -235,7 +235,7 @@ TEST_P(Sleepers, FallAsleepFarFromTheOrigin) {
 INSTANTIATE_TEST_SUITE_P(By, Sleepers, testing::Values(By::Nodes, By::Surface),
                          [](const auto& by) { return by.param == By::Nodes ? "Nodes" : "Surface"; });
 
-/// Two plates, one on the other, and the lower one on a platform.
+/// Two plates, one on the other; the lower one lies on a platform.
 struct SoftPile {
   explicit SoftPile(const Eigen::Vector3d& at = {0, 0, 0})
       : platform(*world, std::make_unique<btBoxShape>(btVector3(2, 1, 2)), placeAt(toBullet(at) + btVector3(0, 4, 0))) {
@@ -247,7 +247,7 @@ struct SoftPile {
       TetMesh cage = plate().cage;
       for (Eigen::Vector3d& p : cage.nodes) p += at + Eigen::Vector3d(-0.5, 5.01 + 0.125 * k, -0.5);
       bodies.push_back(added(*world, cage, options));
-      EXPECT_TRUE(contacts->include(bodies.back()->body(), plate().shape).ok());
+      EXPECT_TRUE(contacts->add(bodies.back()->body(), plate().shape).ok());
     }
   }
   void sleep() { letSleep(*world, {&bodies[0]->body(), &bodies[1]->body()}); }

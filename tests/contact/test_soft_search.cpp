@@ -13,29 +13,30 @@ namespace {
 
 using namespace contact_detail;
 
-/// Two balls, one of them squeezed, in no world's step.
+/// Two balls, one of them squeezed, not stepped by any world.
 class SoftSearch : public testing::Test {
  protected:
   std::unique_ptr<ContactBody> include(const Eigen::Vector3d& offset, double squeeze = 1.0) {
-    bodies_.push_back(makeSoftBody(ball().at(offset), info_).value());
+    bodies_.push_back(createSoftBody(ball().at(offset), info_).value());
     btSoftBody& body = *bodies_.back();
     for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_x.setX(body.m_nodes[n].m_x.x() * squeeze);
-    auto of = std::make_unique<ContactBody>(body, ball().shape, false, static_cast<int>(bodies_.size()));
-    of->read();
-    return of;
+    auto solved = std::make_unique<ContactBody>(body, ball().shape, false, static_cast<int>(bodies_.size()));
+    solved->read();
+    return solved;
   }
 
   btSoftBodyWorldInfo info_;
   std::vector<std::unique_ptr<btSoftBody>> bodies_;
 };
 
-/// Samples of the first in tets of the second, by testing all pairs; those that are inside by more than `margin`.
+/// Samples of the first body in tets of the second, found by testing all pairs, and only those that are inside by more
+/// than `margin`.
 std::set<int> insideByBruteForce(const ContactBody& first, const ContactBody& second, double margin) {
   std::set<int> inside;
-  const ShapeData &of = first.data(), &in = second.data();
-  for (const SampleRun& run : of.runs) {
+  const ShapeData &shapeData = first.data(), &in = second.data();
+  for (const SampleRun& run : shapeData.runs) {
     for (int s = run.first; s < run.last; ++s) {
-      const btVector3 p = of.samples[s].position([&](int node) { return first.positions[node]; });
+      const btVector3 p = shapeData.samples[s].position([&](int node) { return first.positions[node]; });
       for (const Tet& tet : in.tets) {
         TetCorners corners;
         for (int k = 0; k < 4; ++k) corners[k] = toEigen(second.positions[tet[k]]);
@@ -57,12 +58,12 @@ TEST_F(SoftSearch, FindsTheSamplesThatTestingAllPairsFinds) {
     PairMemory memory;
     PairSearch search;
     std::vector<Touch> touches;
-    search.find(*first, *second, ball().shape->data().grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
+    search.find(*first, *second, dataOf(*ball().shape).grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
                 touches);
     const std::set<int> wanted = insideByBruteForce(*first, *second, 1e-4);
     ASSERT_GT(wanted.size(), 10u);
     std::size_t found = 0;
-    memory.sides.beginStep();  // what has been found is now of the step before
+    memory.sides.beginStep();  // what has been found now counts as found in the previous step
     for (const int s : wanted) found += memory.sides.find(s, btVector3(0, 0, 0), 10) ? 1 : 0;
     EXPECT_EQ(found, wanted.size()) << squeeze;
   }
@@ -73,7 +74,7 @@ TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
   PairMemory memory;
   PairSearch search;
   std::vector<Touch> touches;
-  search.find(*first, *second, ball().shape->data().grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
+  search.find(*first, *second, dataOf(*ball().shape).grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
               touches);
   ASSERT_FALSE(touches.empty());
   const auto deep = std::min_element(touches.begin(), touches.end(),
@@ -88,7 +89,7 @@ TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
   candidates.find(*first, *second, btScalar(0.1));
   EXPECT_TRUE(candidates.hold());
   for (const auto& body : bodies_) body->translate(btVector3(5, 0, 0));
-  for (ContactBody* of : {first.get(), second.get()}) of->read();
+  for (ContactBody* body : {first.get(), second.get()}) body->read();
   candidates.advance(*first, *second);
   EXPECT_TRUE(candidates.hold()) << "both have moved by as much";
   bodies_[1]->m_nodes[7].m_x += btVector3(0, btScalar(0.2), 0);
@@ -97,11 +98,10 @@ TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
   EXPECT_FALSE(candidates.hold()) << "a node has gone farther than the slack";
 }
 
-/// A ball that sinks into another, turns and is squeezed by little in each step, so that most candidates are passed
-/// over.
+/// A ball that sinks into another, turns and is squeezed slightly in each step, so that most candidates are skipped.
 TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.8, 0.2, 0.1));
-  const btScalar cube = ball().shape->data().grid.spacing();
+  const btScalar cube = dataOf(*ball().shape).grid.spacing();
   PairMemory memory;
   PairSearch search;
   std::size_t found = 0;
@@ -112,7 +112,7 @@ TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
       x = quatRotate(turn, x) + btVector3(step < 60 ? btScalar(-0.004) : btScalar(0.002), 0, 0) * btScalar(step % 3);
       x.setY(x.y() * btScalar(0.9995));
     }
-    for (ContactBody* of : {first.get(), second.get()}) of->read();
+    for (ContactBody* body : {first.get(), second.get()}) body->read();
     PairMemory fromNothing = memory;
     fromNothing.candidates = {};
     std::vector<Touch> touches, wanted;
@@ -152,16 +152,16 @@ TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (std::size_t a = 0; a < boxes.size(); ++a) {
       for (std::size_t b = a; b < boxes.size(); ++b) {
-        if (boxes[a].meets(boxes[b])) all.emplace_back(a, b);
+        if (boxes[a].collides(boxes[b])) all.emplace_back(a, b);
       }
     }
-    EXPECT_EQ(pairsOfBoxesThatMeet(boxes), all);
+    EXPECT_EQ(overlappingBoxPairs(boxes), all);
   }
-  EXPECT_TRUE(pairsOfBoxesThatMeet({}).empty());
+  EXPECT_TRUE(overlappingBoxPairs({}).empty());
 }
 
 TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {
-  const DistanceGrid& grid = plate().shape->data().grid;
+  const DistanceGrid& grid = dataOf(*plate().shape).grid;
   const btScalar top = btScalar(0.1 + Plate::kHalfThickness);
   ContactSides sides;
   for (btScalar depth = btScalar(-0.02); depth < btScalar(0.1); depth += btScalar(0.01)) {
@@ -179,7 +179,7 @@ TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {
 }
 
 TEST(ContactSides, ASampleSeenLateHasComeFromBehind) {
-  const DistanceGrid& grid = plate().shape->data().grid;
+  const DistanceGrid& grid = dataOf(*plate().shape).grid;
   const btVector3 rest(btScalar(0.5), btScalar(0.075), btScalar(0.5)), motion(0, btScalar(-0.12), 0);
   GridDistance nearest;
   ASSERT_TRUE(grid.at(rest, nearest));
@@ -192,7 +192,7 @@ TEST(ContactSides, ASampleSeenLateHasComeFromBehind) {
 }
 
 TEST(ContactSides, ASampleThatGoesAroundAnEdgeIsFree) {
-  const DistanceGrid& grid = plate().shape->data().grid;
+  const DistanceGrid& grid = dataOf(*plate().shape).grid;
   ContactSide top;
   top.point = btVector3(btScalar(0.5), btScalar(0.16), btScalar(0.5));
   const btVector3 rest(btScalar(0.5), btScalar(0.18), btScalar(0.5));

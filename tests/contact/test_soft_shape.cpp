@@ -21,7 +21,7 @@ std::vector<int> all(const TriangleMesh& mesh) {
 
 TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
   const Ball& model = ball();
-  const DistanceGrid& grid = model.shape->data().grid;
+  const DistanceGrid& grid = dataOf(*model.shape).grid;
   const Eigen::Vector3d centre(0.5, 0.5, 0.5);
   const TriangleBvh tree(model.mesh);
   const WindingTree solid(model.mesh);
@@ -31,14 +31,14 @@ TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
     const double distance = std::sqrt(tree.nearest(p).squaredDistance);
     const double exact = solid.windingNumber(p) > kInside ? -distance : distance;
     EXPECT_NEAR(at.distance, exact, 0.25 * grid.spacing());
-    if (std::abs(exact) > 0.2) continue;  // at the centre it has no direction
+    if (std::abs(exact) > 0.2) continue;  // at the centre there is no direction
     EXPECT_GT(toEigen(at.gradient).dot((p - centre).normalized()), 0.9);
   }
 }
 
 TEST(DistanceGrid, KnowsNothingBeyondItsBox) {
   GridDistance at;
-  const DistanceGrid& grid = ball().shape->data().grid;
+  const DistanceGrid& grid = dataOf(*ball().shape).grid;
   EXPECT_FALSE(grid.at(btVector3(10, 0, 0), at));
   EXPECT_FALSE(grid.at(btVector3(0, -10, 0), at));
   EXPECT_FALSE(grid.at(btVector3(0, 0, std::numeric_limits<btScalar>::quiet_NaN()), at));
@@ -63,7 +63,7 @@ TEST(SurfaceSamples, KeepTipsAndLeaveNeighboursOut) {
 }
 
 TEST(ContactShape, CarriesEachSampleInItsTet) {
-  const ShapeData& data = ball().shape->data();
+  const ShapeData& data = dataOf(*ball().shape);
   std::size_t count = 0;
   for (const SampleRun& run : data.runs) {
     for (int s = run.first; s < run.last; ++s, ++count) {
@@ -72,7 +72,7 @@ TEST(ContactShape, CarriesEachSampleInItsTet) {
       EXPECT_EQ(sample.nodes, data.tets[run.tet]);
       const btVector3 p = sample.position([&](int node) { return data.nodes[node]; });
       btScalar sum = 0;
-      for (const btScalar weight : sample.clamped) {
+      for (const btScalar weight : sample.clampedWeights) {
         sum += weight;
         EXPECT_GE(weight, 0);
       }
@@ -85,13 +85,13 @@ TEST(ContactShape, CarriesEachSampleInItsTet) {
 
 TEST(ContactShape, FilledPartsHoldAllThatIsInside) {
   const Ball& model = ball();
-  const ShapeData& data = model.shape->data();
+  const ShapeData& data = dataOf(*model.shape);
   for (const Eigen::Vector3d& p : randomPoints(2000, around(model.cage, 1.0), 6)) {
     if ((p - Eigen::Vector3d(0.5, 0.5, 0.5)).norm() > Ball::kRadius) continue;
     for (std::size_t t = 0; t < data.tets.size(); ++t) {
       const Eigen::Vector4d w = BarycentricMap(cornersOf(model.cage, model.cage.tets[t]))(p);
       if (w.minCoeff() < 0.0) continue;
-      for (int k = 0; k < 4; ++k) EXPECT_GE(w[k], data.filled[t].least[k] - 1e-5);
+      for (int k = 0; k < 4; ++k) EXPECT_GE(w[k], data.filled[t].minimum[k] - 1e-5);
     }
   }
 }
@@ -102,25 +102,25 @@ TEST(ContactShape, LeavesOutWhatIsHiddenInOtherParts) {
   const int first = static_cast<int>(mesh.vertexCount());
   mesh.positions.insert(mesh.positions.end(), inner.positions.begin(), inner.positions.end());
   for (const auto& [a, b, c] : inner.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  const auto shape = makeContactShape(latticeCage(5, 5, 5, 0.2), mesh).value();
-  for (const btVector3& rest : shape->data().sampleRest) {
+  const auto shape = ContactShape::create(latticeCage(5, 5, 5, 0.2), mesh).value();
+  for (const btVector3& rest : dataOf(*shape).sampleRest) {
     EXPECT_GT((rest - btVector3(0.5, 0.5, 0.5)).length(), 0.35);
   }
   GridDistance at;
-  ASSERT_TRUE(shape->data().grid.at(btVector3(0.7, 0.5, 0.5), at));
+  ASSERT_TRUE(dataOf(*shape).grid.at(btVector3(0.7, 0.5, 0.5), at));
   EXPECT_NEAR(at.distance, -0.2, 0.02);
 }
 
 TEST(ContactShape, SaysWhatIsWrong) {
   const Ball& model = ball();
   const auto codeOf = [](const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {}) {
-    return makeContactShape(cage, mesh, options).status().code;
+    return ContactShape::create(cage, mesh, options).status().code;
   };
   ContactShapeOptions options;
-  options.cells = 0;
+  options.gridResolution = 0;
   EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
   options = {};
-  options.samples = 0;
+  options.sampleCount = 0;
   EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(TetMesh{}, model.mesh), StatusCode::Empty);
   EXPECT_EQ(codeOf(model.cage, TriangleMesh{}), StatusCode::Empty);
@@ -135,43 +135,43 @@ TEST(ContactShape, SaysWhatIsWrong) {
   EXPECT_EQ(codeOf(model.cage, bad), StatusCode::NonFinite);
   bad = model.mesh;
   for (auto& p : bad.positions) p.y() = 0.5;
-  EXPECT_EQ(codeOf(model.cage, bad), StatusCode::Degenerate) << "encloses nothing";
+  EXPECT_EQ(codeOf(model.cage, bad), StatusCode::Degenerate) << "encloses no volume";
   bad = model.mesh;
   for (auto& triangle : bad.triangles) std::swap(triangle[0], triangle[1]);
-  EXPECT_NE(makeContactShape(model.cage, bad).status().message.find("face inwards"), std::string::npos);
+  EXPECT_NE(ContactShape::create(model.cage, bad).status().message.find("face inwards"), std::string::npos);
 }
 
-/// A U of cubes, its legs nearer to each other than two edges.
+/// A U made of cubes, whose legs are closer to each other than two edges.
 TEST(OtherParts, AreNearButFarAlongTheBody) {
   const TetMesh block = latticeCage(3, 6, 1, 0.2);
   TetMesh cage = block;
   cage.tets.clear();
-  const auto middleOf = [&](const Tet& t) -> Eigen::Vector3d {
+  const auto centroidOf = [&](const Tet& t) -> Eigen::Vector3d {
     return (block.nodes[t[0]] + block.nodes[t[1]] + block.nodes[t[2]] + block.nodes[t[3]]) / 4.0;
   };
   for (const Tet& t : block.tets) {
-    const Eigen::Vector3d at = middleOf(t);
+    const Eigen::Vector3d at = centroidOf(t);
     if (at.y() < 0.2 || std::abs(at.x() - 0.3) > 0.1) cage.tets.push_back(t);
   }
   TriangleMesh mesh;
   mesh.positions = cage.nodes;
   mesh.triangles = boundaryFaces(cage);
-  const auto made = makeContactShape(cage, mesh);
+  const auto made = ContactShape::create(cage, mesh);
   ASSERT_TRUE(made.ok()) << made.status().message;
-  const contact_detail::ShapeData& data = made.value()->data();
+  const contact_detail::ShapeData& data = dataOf(*made.value());
   std::size_t listed = 0;
   for (std::size_t r = 0; r < data.runs.size(); ++r) {
-    const Eigen::Vector3d from = middleOf(cage.tets[static_cast<std::size_t>(data.runs[r].tet)]);
-    for (const int tet : data.otherParts[r]) {
-      const Eigen::Vector3d to = middleOf(cage.tets[static_cast<std::size_t>(tet)]);
-      EXPECT_GT(std::abs(from.x() - to.x()), 0.2);  // the other leg
+    const Eigen::Vector3d from = centroidOf(cage.tets[static_cast<std::size_t>(data.runs[r].tet)]);
+    for (const int tet : data.otherComponents[r]) {
+      const Eigen::Vector3d to = centroidOf(cage.tets[static_cast<std::size_t>(tet)]);
+      EXPECT_GT(std::abs(from.x() - to.x()), 0.2);  // in the other leg
       EXPECT_GT(from.y() + to.y(), 0.4);
       ++listed;
     }
-    // What is not listed is of the same leg, or far, or near the bottom.
-    const std::set<int> others(data.otherParts[r].begin(), data.otherParts[r].end());
+    // What is not listed is in the same leg, or far away, or near the bottom.
+    const std::set<int> others(data.otherComponents[r].begin(), data.otherComponents[r].end());
     for (std::size_t t = 0; t < cage.tets.size(); ++t) {
-      const Eigen::Vector3d to = middleOf(cage.tets[t]);
+      const Eigen::Vector3d to = centroidOf(cage.tets[t]);
       const bool near = (to - from).norm() < 1.9 * static_cast<double>(data.edge);
       if (near && std::abs(to.x() - from.x()) > 0.2 && std::min(from.y(), to.y()) > 0.8) {
         EXPECT_EQ(others.count(static_cast<int>(t)), 1u);

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kAllowedGap = 0.003 * kBodySize;
 
-/// Distance from a body with an exact shape.
+/// A function that gives a point's distance from a body with an exact shape.
 auto distanceFrom(Obstacle& obstacle) {
   return [&obstacle](const Eigen::Vector3d& p) {
     const btVector3 local = obstacle.body().getWorldTransform().inverse() * toBullet(p);
-    return ExactShape::of(obstacle.shape())->distance(local).distance;
+    return ExactShape::exactShape(obstacle.shape())->distance(local).distance;
   };
 }
 
@@ -23,7 +23,7 @@ TEST(SurfaceContact, RestsOnTheFloorAsDrawn) {
   TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(0.4), 0));
   step(world, 150);
   EXPECT_NEAR(body.height(), 0.0, kAllowedGap);
-  EXPECT_LT(lowest(body.body->body()), -0.02);  // the cage is where the surface is not
+  EXPECT_LT(lowest(body.body->body()), -0.02);  // the cage reaches below the floor, the surface does not
 }
 
 TEST(SurfaceContact, RestsOnAnEdgeASphereAndAPole) {
@@ -37,7 +37,8 @@ TEST(SurfaceContact, RestsOnAnEdgeASphereAndAPole) {
     const btScalar top = kind == 2 ? btScalar(0.03) : btScalar(1);
     Obstacle obstacle(world, std::move(shape),
                       placeAt(btVector3(0, 2, 0), kind == 0 ? turned : btQuaternion(0, 0, 0, 1)));
-    // A lattice cube whose ball is denser than the pole is thick; balanced, as all is symmetric enough.
+    // A lattice cube holds a ball that is wider than the pole is thick; it stays balanced because all is symmetric
+    // enough.
     TouchingBody body(world, ballMesh(48, 0.35), btVector3(0, 2 + top + btScalar(0.36), 0));
     double worst = HUGE_VAL;
     for (int f = 0; f < 40; ++f) {
@@ -81,7 +82,7 @@ TEST(SurfaceContact, ThinAndSharpObstaclesDoNotCutInAtFifteenSizesASecond) {
       world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
       worst = std::min(worst, body.gap(distanceFrom(obstacle)));
     }
-    EXPECT_LT(worst, 0.01) << kind;  // it was met
+    EXPECT_LT(worst, 0.01) << kind;  // the two were in contact
     EXPECT_GT(worst, -0.005 * kBodySize) << kind;
   }
 }
@@ -107,22 +108,22 @@ TEST(SurfaceContact, FallsAsleepWhereItLies) {
   btSoftBody& soft = body.body->body();
   std::vector<btVector3> before;
   for (int f = 0; f < 400 && soft.isActive(); ++f) {
-    if (f == 120) soft.m_sleepingThreshold = 1;  // nobody waits for the last of its rocking
+    if (f == 120) soft.m_sleepingThreshold = 1;  // so that the test need not wait for the last rocking motion to stop
     before.clear();
     for (int n = 0; n < soft.m_nodes.size(); ++n) before.push_back(soft.m_nodes[n].m_x);
     step(world, 1);
   }
   ASSERT_FALSE(soft.isActive());
   step(world, 2);
-  double most = 0.0;
+  double maximum = 0.0;
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
-    most = std::max<double>(most, (soft.m_nodes[n].m_x - before[static_cast<std::size_t>(n)]).length());
+    maximum = std::max<double>(maximum, (soft.m_nodes[n].m_x - before[static_cast<std::size_t>(n)]).length());
   }
-  EXPECT_LT(most, 0.0002 * kBodySize);
+  EXPECT_LT(maximum, 0.0002 * kBodySize);
   EXPECT_NEAR(body.height(), 0.0, kAllowedGap);
 }
 
-/// Kinetic, elastic and of gravity.
+/// The sum of kinetic, elastic and gravitational energy.
 double energyOf(EmptyWorld& world, const btSoftBody& body) {
   double energy = kineticEnergyOf(body) + elasticEnergyIn(world);
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -147,12 +148,12 @@ TEST(SurfaceContact, GainsNoEnergyInALanding) {
   btSoftBody& soft = body.body->body();
   soft.setVelocity(btVector3(0, -2, 0));
   const double impact = 0.5 * 4.0;
-  double least = energyOf(world, soft), risen = 0.0;
+  double minimum = energyOf(world, soft), risen = 0.0;
   for (int k = 0; k < 480; ++k) {
     world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
     const double energy = energyOf(world, soft);
-    least = std::min(least, energy);
-    risen = std::max(risen, energy - least);
+    minimum = std::min(minimum, energy);
+    risen = std::max(risen, energy - minimum);
   }
   EXPECT_LT(risen, 0.01 * impact);
 }
@@ -189,14 +190,14 @@ TEST(SurfaceContact, RestsOnConvexHullsMeshesHeightFieldsAndChildrenOfCompounds)
       shape = std::move(field);
     } else {
       auto compound = std::make_unique<btCompoundShape>();
-      // A compound in a compound, which Bullet's own algorithm places wrongly where both are turned.
+      // A compound in a compound, which Bullet's own algorithm puts in the wrong position where both are turned.
       compound->addChildShape(placeAt(btVector3(0, btScalar(0.25), 0), btQuaternion(btVector3(0, 1, 0), 1)), &inner);
       shape = std::move(compound);
     }
     Obstacle obstacle(world, std::move(shape), placeAt(btVector3(0, 3, 0)));
     btVector3 low, high;
     obstacle.body().getAabb(low, high);
-    // Hulls and meshes as they are drawn, without Bullet's margin; height fields are centred.
+    // Hulls and meshes count as drawn, without Bullet's margin; height fields are centred.
     const double top = kind == 2 ? 3.0 - 0.5 : 4.0;
     TouchingBody body(world, ballMesh(24, 0.35), btVector3(btScalar(0.1), btScalar(top + 0.4), btScalar(0.05)));
     step(world, 120);
@@ -222,7 +223,7 @@ TEST(SurfaceContact, FindsTheChildrenOfACompoundByItsTreeAsAllOfThemOneByOne) {
     Scene(btBoxShape& stone, bool withTree)
         : floor(world, paving(stone, withTree), placeAt(btVector3(0, 3, 0), btQuaternion(btVector3(1, 12, 1), 1))),
           body(world, ballMesh(48, 0.35), btVector3(btScalar(0.2), btScalar(3.5), btScalar(0.1))) {
-      // Swept upwards, slowly and fast, and turned.
+      // The floor sweeps upwards, first slowly and then fast, and turns.
       floor.body().setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
       floor.body().setActivationState(DISABLE_DEACTIVATION);
     }
@@ -236,7 +237,7 @@ TEST(SurfaceContact, FindsTheChildrenOfACompoundByItsTreeAsAllOfThemOneByOne) {
     for (Scene* scene : {&byTree, &oneByOne}) {
       btRigidBody& floor = scene->floor.body();
       auto& compound = static_cast<btCompoundShape&>(*floor.getCollisionShape());
-      // Indices of others change by that.
+      // Removing a child changes the indices of others.
       if (k % 10 == 9) compound.removeChildShapeByIndex(k * 7);
       const btScalar turn = 1 + btScalar(0.003) * k;
       floor.setWorldTransform(
@@ -273,11 +274,11 @@ TEST(SurfaceContact, CountsGroupsMasksFlagsAndIgnoredBodies) {
 }
 
 TEST(SurfaceContact, HoldsByFrictionWhatWouldSlideWithout) {
-  for (const bool rough : {true, false}) {
+  for (const bool highFriction : {true, false}) {
     TetskinWorld world;
     const btQuaternion slope(btVector3(0, 0, 1), btScalar(-0.2));
     Obstacle ramp(world, std::make_unique<btBoxShape>(btVector3(6, 1, 6)), placeAt(btVector3(0, 2, 0), slope));
-    ramp.body().setFriction(rough ? 2 : 0);
+    ramp.body().setFriction(highFriction ? 2 : 0);
     SurfaceContactOptions options;
     options.sampleSpacing = 0.1;
     TouchingBody body(world, boxMesh(Eigen::Vector3d(0.35, 0.2, 0.35)), btVector3(0, btScalar(3.35), 0), options);
@@ -285,7 +286,7 @@ TEST(SurfaceContact, HoldsByFrictionWhatWouldSlideWithout) {
     const btScalar x = body.body->body().m_nodes[0].m_x.x();
     step(world, 60);
     const btScalar slid = body.body->body().m_nodes[0].m_x.x() - x;
-    if (rough) {
+    if (highFriction) {
       EXPECT_LT(slid, 0.01);
     } else {
       EXPECT_GT(slid, 0.5);
@@ -298,7 +299,7 @@ TEST(SurfaceContact, OfACoarseMeshNeedsSamples) {
     TetskinWorld world;
     Obstacle pole(world, std::make_unique<btCapsuleShapeZ>(btScalar(0.03), 2), placeAt(btVector3(0, 3, 0)));
     SurfaceContactOptions options;
-    options.sampleSpacing = sampled ? 0.03 : 0.0;
+    if (sampled) options.sampleSpacing = 0.03;
     TouchingBody body(world, boxMesh(Eigen::Vector3d(0.35, 0.35, 0.35)), btVector3(0, btScalar(3.45), 0), options);
     EXPECT_EQ(body.contact->sampleCount() > 8, sampled);
     step(world, 20);
@@ -325,7 +326,7 @@ TEST(SurfaceContact, TellsItsContacts) {
     EXPECT_NEAR(at.point.y(), 0.002, 0.002);
     sum += at.impulse.y();
   }
-  // A mass of 1 for a 240th of a second.
+  // The impulse of the weight of a mass of 1 over 1/240 s.
   EXPECT_NEAR(sum, 10.0 / 240, 0.3 * 10.0 / 240);
 }
 
@@ -386,7 +387,7 @@ TEST(SurfaceContact, RefusesWhatDoesNotBelongTogether) {
                           const SurfaceContactOptions& options) {
     return SurfaceContact::add(in, soft, *body.binding, mesh, options).status().code;
   };
-  EXPECT_EQ(codeOf(world.deformable(), body.mesh, {}), StatusCode::InvalidOption);  // it has contact already
+  EXPECT_EQ(codeOf(world.deformable(), body.mesh, {}), StatusCode::InvalidOption);  // the body already has contact
   body.contact.reset();
   EXPECT_EQ(codeOf(other.deformable(), body.mesh, {}), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(world.deformable(), ballMesh(9, 0.35), {}), StatusCode::SizeMismatch);
@@ -405,7 +406,7 @@ TEST(SurfaceContact, RefusesBodiesMadeByOthers) {
   TetskinWorld world;
   const TetMesh cage = looseCage();
   const TriangleMesh mesh = ballMesh(8, 0.35);
-  const auto binding = SoftBodyBinding::make(cage, mesh).value();
+  const auto binding = SoftBodyBinding::create(cage, mesh).value();
   std::vector<btVector3> nodes;
   for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(toBullet(p));
   btSoftBody soft(&world.deformable().getWorldInfo(), static_cast<int>(nodes.size()), nodes.data(), nullptr);
@@ -416,12 +417,12 @@ TEST(SurfaceContact, RefusesBodiesMadeByOthers) {
 
 TEST(SurfaceContact, IsRefusedInAWorldWithAnotherSolver) {
   EmptyWorld world;
-  const Result<std::unique_ptr<btSoftBody>> made = makeSoftBody(looseCage(), world.deformable().getWorldInfo());
+  const Result<std::unique_ptr<btSoftBody>> made = createSoftBody(looseCage(), world.deformable().getWorldInfo());
   btSoftBody& soft = *made.value();
   world.deformable().addSoftBody(&soft);
   const TriangleMesh mesh = ballMesh(8, 0.35);
   const Status status =
-      SurfaceContact::add(world.deformable(), soft, *SoftBodyBinding::make(looseCage(), mesh).value(), mesh).status();
+      SurfaceContact::add(world.deformable(), soft, *SoftBodyBinding::create(looseCage(), mesh).value(), mesh).status();
   EXPECT_EQ(status.code, StatusCode::InvalidOption);
   EXPECT_NE(status.message.find("DeformableSolver"), std::string::npos) << status.message;
   world.deformable().removeSoftBody(&soft);

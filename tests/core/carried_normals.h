@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// For tests of normals: meshes with known ones, and skins that carry them.
+// For tests of normals: meshes with known normals, and skins that carry them.
 #pragma once
 
 #include "support/odd_meshes.h"
@@ -27,7 +27,7 @@ inline double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A sphere with exact normals, and tangents along its circles of latitude.
+/// A sphere with exact normals, and with tangents along its circles of latitude.
 inline TriangleMesh authoredSphere(int rings, double radius) {
   TriangleMesh mesh = sphere(rings, radius, kCentre);
   for (const Eigen::Vector3d& p : mesh.positions) {
@@ -40,7 +40,7 @@ inline TriangleMesh authoredSphere(int rings, double radius) {
   return mesh;
 }
 
-/// A unit cube whose faces share no vertices, each corner with its face's normal if `authored`.
+/// A unit cube whose faces share no vertices; if `authored`, each corner has its face's normal.
 inline TriangleMesh box(bool authored) {
   TriangleMesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ inline TriangleMesh box(bool authored) {
   return mesh;
 }
 
-/// A skin with normals, moved by whatever moves its cage.
+/// A skin with normals, which moves with its cage.
 template <class Scalar>
 class Carried {
  public:
@@ -76,10 +76,10 @@ class Carried {
     EXPECT_TRUE(bound.ok()) << bound.status().message;
     fit = bound.value();
   }
-  void move(const std::vector<Eigen::Vector3d>& places) {
+  void move(const std::vector<Eigen::Vector3d>& positions) {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
-    for (const Eigen::Vector3d& p : places) nodes.push_back(p.cast<Scalar>());
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    for (const Eigen::Vector3d& p : positions) nodes.push_back(p.cast<Scalar>());
+    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
   }
   Eigen::Vector3d normal(std::size_t v) const {
     return Eigen::Map<const Eigen::Vector3f>(skin.normals()[v]).template cast<double>();

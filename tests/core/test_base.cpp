@@ -32,15 +32,16 @@ TEST(PackLists, HoldEveryValueOfTheirKeyInTheOrderOfTheVisits) {
 }
 
 TEST(Hash, TellsNeighbouringWordsApartAndNotTheSignOfZero) {
-  // As coordinates of a grid are: the last bits of a table's place must depend on the first bits of a word, too.
+  // The words are like the coordinates of a grid: the last bits of the index in a table must depend on a word's first
+  // bits, too.
   for (const int shift : {0, 32, 48, 52}) {
-    std::set<std::uint32_t> places;
+    std::set<std::uint32_t> indices;
     for (std::uint64_t word = 0; word < 4096; ++word) {
       Hash hash;
       hash.add(word << shift);
-      places.insert(hash.mixed() & 0xFFFFu);
+      indices.insert(hash.mixed() & 0xFFFFu);
     }
-    EXPECT_GT(places.size(), 3500u) << shift;
+    EXPECT_GT(indices.size(), 3500u) << shift;
   }
   Hash plus, minus;
   plus.add(0.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The hierarchy finds what testing all items finds, and is the same with every standard library.
+// The hierarchy finds what testing all items finds, and it is the same with every standard library.
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ const Box3 kAround(Vector3d(-1, -1, -1), Vector3d(2, 2, 2));
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Boxes, and a hierarchy fitted to them.
+/// Boxes and a hierarchy fitted to them.
 struct BoxTree {
   std::vector<Box> items, nodes;
   Bvh bvh;
@@ -44,7 +44,7 @@ struct BoxTree {
   }
 };
 
-/// Of an integer lattice: many are equal along each axis.
+/// Centroids on an integer lattice: along each axis, many are equal.
 Centroids latticePoints(int side) {
   Centroids points;
   for (int x = 0; x < side; ++x) {
@@ -55,7 +55,7 @@ Centroids latticePoints(int side) {
   return points;
 }
 
-/// Leaf by leaf, by full sorts.
+/// Appends the items leaf by leaf, found by full sorts.
 void appendSorted(const Centroids& centroids, std::vector<int> items, std::size_t leafSize, std::vector<int>& leaves) {
   if (items.size() <= leafSize) {
     leaves.insert(leaves.end(), items.begin(), items.end());
@@ -120,7 +120,7 @@ TEST(Bvh, IsThatOfFullSorts) {
 TEST(Bvh, OfBoxesIsSplitAlongTheBoxAroundThem) {
   std::vector<Box> boxes(8);
   for (int i = 0; i < 8; ++i) {
-    const Vector3d low(i % 4, -20.0 - i, 0), high(i % 4, 20.0 + i, 1);  // long along y, where all have one centre
+    const Vector3d low(i % 4, -20.0 - i, 0), high(i % 4, 20.0 + i, 1);  // long along y, where all have the same centre
     boxes[static_cast<std::size_t>(i)].extend(low.data(), high.data());
   }
   EXPECT_EQ(Bvh(boxes, numbersUpTo(8), 2).items(), numbersUpTo(8));
@@ -196,10 +196,10 @@ TEST(Bvh, WhatIsNotANumberExtendsNoBox) {
   const auto count = [&](int, double&) { ++visited; };
   tree.bvh.visitNear(tree.nodes, Vector3d(0, 0, 0), 1.0, count);
   visitPairs(
-      tree.bvh, tree.bvh, [&](int a, int b) { return tree.nodes[size_t(a)].meets(tree.nodes[size_t(b)]); },
+      tree.bvh, tree.bvh, [&](int a, int b) { return tree.nodes[size_t(a)].collides(tree.nodes[size_t(b)]); },
       [&](const Bvh::Node&, const Bvh::Node&) { ++visited; });
   EXPECT_EQ(visited, 0);
-  // A ray takes an empty box for one that is everywhere; its items are for the visitor to judge.
+  // To a ray, an empty box seems to be everywhere; the visitor must test its items.
   tree.bvh.visitAlong(tree.nodes, Vector3d(-1, 0.5, 0.5), Vector3d(3, 0, 0), 1.0, count);
   EXPECT_LE(visited, 100);
 }
@@ -247,7 +247,7 @@ struct Segment {
   Vector3d start, direction;
 };
 
-/// Also along the axes, within planes of a lattice's boxes.
+/// Segments, some of them along the axes and within the planes of a lattice's boxes.
 std::vector<Segment> someSegments() {
   std::vector<Segment> segments;
   const std::vector<Vector3d> from = randomPoints(300, kAround, 13), to = randomPoints(300, kAround, 14);
@@ -269,15 +269,16 @@ TEST(Bvh, ShowsASegmentAllBoxesThatItMeetsOnce) {
                           [&](int index, double&) { ++shown[static_cast<std::size_t>(tree.bvh.item(index))]; });
       const Vector3d inverse = s.direction.cwiseInverse();
       for (std::size_t i = 0; i < shown.size(); ++i) {
-        const bool meets = tree.items[i].entry(s.start.data(), inverse.data(), 1.0) <= 1.0;
+        const bool collides = tree.items[i].entry(s.start.data(), inverse.data(), 1.0) <= 1.0;
         EXPECT_LE(shown[i], 1);
-        EXPECT_TRUE(shown[i] == 1 || !meets);
+        EXPECT_TRUE(shown[i] == 1 || !collides);
       }
     }
   }
 }
 
-/// What made cages of few tets slow: every triangle of a tet sends out segments, and each was tested against all.
+/// This had made cages of few tets slow: every triangle of a tet sends out segments, and each was tested against all
+/// triangles.
 TEST(Bvh, ShowsASegmentFewTriangles) {
   for (const int rings : {50, 100, 200}) {
     const TriangleMesh mesh = sphere(rings, 1.0, Vector3d::Zero());
@@ -331,13 +332,13 @@ TEST(Bvh, FindsThePairsOfTwoTreesThatTestingAllFinds) {
     const BoxTree b(moved, 0.04, 2);
     std::multiset<std::pair<int, int>> found, expected;
     const auto meet = [&](int i, int j) {
-      return a.nodes[static_cast<std::size_t>(i)].meets(b.nodes[static_cast<std::size_t>(j)]);
+      return a.nodes[static_cast<std::size_t>(i)].collides(b.nodes[static_cast<std::size_t>(j)]);
     };
     visitPairs(a.bvh, b.bvh, meet, [&](const Bvh::Node& left, const Bvh::Node& right) {
       for (int i = left.first; i < left.last; ++i) {
         for (int j = right.first; j < right.last; ++j) {
           const int first = a.bvh.item(i), second = b.bvh.item(j);
-          if (a.items[static_cast<std::size_t>(first)].meets(b.items[static_cast<std::size_t>(second)])) {
+          if (a.items[static_cast<std::size_t>(first)].collides(b.items[static_cast<std::size_t>(second)])) {
             found.emplace(first, second);
           }
         }
@@ -345,7 +346,7 @@ TEST(Bvh, FindsThePairsOfTwoTreesThatTestingAllFinds) {
     });
     for (std::size_t i = 0; i < a.items.size(); ++i) {
       for (std::size_t j = 0; j < b.items.size(); ++j) {
-        if (a.items[i].meets(b.items[j])) expected.emplace(i, j);
+        if (a.items[i].collides(b.items[j])) expected.emplace(i, j);
       }
     }
     EXPECT_EQ(found, expected);
@@ -365,14 +366,14 @@ TEST(TriangleBvh, FindsTheNearestPointAsTestingAllTrianglesDoes) {
     for (const auto& t : mesh.triangles) {
       squared.push_back((p - closestPointOnTriangle(p, cornersOf(mesh, t)).point).squaredNorm());
     }
-    const double least = *std::min_element(squared.begin(), squared.end());
+    const double minimum = *std::min_element(squared.begin(), squared.end());
     const NearestPoint found = tree.nearest(p);
-    EXPECT_EQ(found.squaredDistance, least);
-    EXPECT_NEAR((found.point - p).squaredNorm(), least, 1e-12);
-    EXPECT_EQ(tree.nearest(p, least).triangle, -1) << "nothing is nearer than the nearest";
+    EXPECT_EQ(found.squaredDistance, minimum);
+    EXPECT_NEAR((found.point - p).squaredNorm(), minimum, 1e-12);
+    EXPECT_EQ(tree.nearest(p, minimum).triangle, -1) << "nothing is nearer than the nearest";
     guess = tree.nearest(p, guess);
-    EXPECT_EQ(guess.squaredDistance, least) << "whatever the guess";
-    for (const NearestPoint& n : {found, guess}) EXPECT_EQ(squared[static_cast<std::size_t>(n.triangle)], least);
+    EXPECT_EQ(guess.squaredDistance, minimum) << "whatever the guess";
+    for (const NearestPoint& n : {found, guess}) EXPECT_EQ(squared[static_cast<std::size_t>(n.triangle)], minimum);
   }
 }
 

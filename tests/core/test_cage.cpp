@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <limits>
@@ -18,41 +19,41 @@ using test::platesOfCopies;
 using test::TwoPlates;
 
 void expectFault(const Cage& cage, StatusCode code, const std::string& words) {
-  const Status status = cage.check();
+  const Status status = checkKnowledge(cage);
   EXPECT_STREQ(toString(status.code), toString(code)) << status.message;
   EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
 }
 
 TEST(Cage, OfAMeshOfTetsNothingElseIsKnown) {
   const Cage cage = test::latticeCage(2, 1, 1);
-  EXPECT_TRUE(cage.check().ok());
+  EXPECT_TRUE(checkKnowledge(cage).ok());
   EXPECT_TRUE(cage.checkMesh(test::sphere(4, 1.0, Vector3d::Zero())).ok());
   EXPECT_TRUE(cage.stiffnessScale().empty());
-  EXPECT_FALSE(cage.split());
-  EXPECT_EQ(cage.meshHash, 0u);
+  EXPECT_FALSE(cage.hasDuplicates());
+  EXPECT_FALSE(cage.meshHash);
 }
 
 TEST(Cage, WhatIsKnownOfItIsInOrder) {
-  const Status status = platesOfCopies().cage.check();
+  const Status status = checkKnowledge(platesOfCopies().cage);
   EXPECT_TRUE(status.ok()) << status.message;
 }
 
 TEST(Cage, CheckFindsArraysOfWrongCounts) {
   const Cage good = platesOfCopies().cage;
   const StatusCode code = StatusCode::SizeMismatch;
-  const std::string tets = std::to_string(good.tetCount()), nodes = std::to_string(good.nodeCount());
+  const std::string tets = std::to_string(good.mesh.tetCount()), nodes = std::to_string(good.mesh.nodeCount());
   Cage cage = good;
-  cage.fill.pop_back();
-  expectFault(cage, code, "fill for " + tets + " tets");
-  (cage = good).factor.push_back(1.0);
-  expectFault(cage, code, "factor for " + tets + " tets");
+  cage.volumeFraction.pop_back();
+  expectFault(cage, code, "volumeFraction for " + tets + " tets");
+  (cage = good).stiffnessFactor.push_back(1.0);
+  expectFault(cage, code, "stiffnessFactor for " + tets + " tets");
   (cage = good).masses.pop_back();
   expectFault(cage, code, "masses for " + nodes + " nodes");
-  (cage = good).parts.pop_back();
-  expectFault(cage, code, "parts for " + tets + " tets");
-  (cage = good).latticeTets.push_back(0);
-  expectFault(cage, code, "latticeTets for " + tets + " tets");
-  (cage = good).fineFill.pop_back();
+  (cage = good).component.pop_back();
+  expectFault(cage, code, "component for " + tets + " tets");
+  (cage = good).sourceTet.push_back(0);
+  expectFault(cage, code, "sourceTet for " + tets + " tets");
+  (cage = good).fineVolumeFraction.pop_back();
   expectFault(cage, code, "small tets");
 }
 
@@ -62,22 +63,22 @@ TEST(Cage, CheckFindsValuesThatMakeNoSense) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
   Cage cage;
   for (const double bad : {-0.1, 1.0001, kNan, kInfinite}) {
-    (cage = good).fill[5] = bad;
-    expectFault(cage, code, "fill[5] must be from 0 to 1");
+    (cage = good).volumeFraction[5] = bad;
+    expectFault(cage, code, "volumeFraction[5] must be from 0 to 1");
   }
   for (const double bad : {-1.0, 0.0, kNan, kInfinite}) {
-    (cage = good).factor[2] = bad;
-    expectFault(cage, code, "factor[2] must be above 0");
+    (cage = good).stiffnessFactor[2] = bad;
+    expectFault(cage, code, "stiffnessFactor[2] must be above 0");
     (cage = good).masses[3] = bad;
     expectFault(cage, code, "masses[3] must be above 0");
   }
-  (cage = good).parts[1] = -1;
-  expectFault(cage, code, "parts[1] must be 0 or more");
-  (cage = good).latticeTets[4] = -7;
-  expectFault(cage, code, "latticeTets[4] must be 0 or more");
-  for (const int bad : {-1, static_cast<int>(good.tetCount())}) {
+  (cage = good).component[1] = -1;
+  expectFault(cage, code, "component[1] must be 0 or more");
+  (cage = good).sourceTet[4] = -7;
+  expectFault(cage, code, "sourceTet[4] must be 0 or more");
+  for (const int bad : {-1, static_cast<int>(good.mesh.tetCount())}) {
     (cage = good).vertexTets[9] = bad;
-    expectFault(cage, StatusCode::IndexOutOfRange, "names tet " + std::to_string(bad) + " for vertex 9");
+    expectFault(cage, StatusCode::IndexOutOfRange, "assigns tet " + std::to_string(bad) + " to vertex 9");
   }
 }
 
@@ -88,17 +89,18 @@ TEST(Cage, CheckMeshKnowsTheMeshByItsCountAndPlaces) {
   longer.positions.push_back(Vector3d::Zero());
   Status status = plates.cage.checkMesh(longer);
   EXPECT_EQ(status.code, StatusCode::CageMismatch);
-  EXPECT_NE(status.message.find("364 vertices, and this one has 365; build a cage"), std::string::npos)
+  EXPECT_NE(status.message.find("364 vertices, but this one has 365; build a cage"), std::string::npos)
       << status.message;
   moved.positions[17].y() += 1e-15;
   status = plates.cage.checkMesh(moved);
   EXPECT_EQ(status.code, StatusCode::CageMismatch);
-  EXPECT_NE(status.message.find("other places, or in another order; build"), std::string::npos) << status.message;
+  EXPECT_NE(status.message.find("other vertex positions, or another order of vertices; build"), std::string::npos)
+      << status.message;
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
   EXPECT_TRUE(plates.cage.checkMesh(turned).ok());
 
   Cage unknowing = plates.cage;
-  unknowing.meshHash = 0;
+  unknowing.meshHash.reset();
   EXPECT_TRUE(unknowing.checkMesh(moved).ok());
   unknowing.vertexTets.clear();
   EXPECT_TRUE(unknowing.checkMesh(longer).ok());
@@ -106,30 +108,33 @@ TEST(Cage, CheckMeshKnowsTheMeshByItsCountAndPlaces) {
 
 TEST(Cage, StiffnessIsFactorTimesFillButNeverNextToNothing) {
   Cage cage = test::latticeCage(1, 1, 1);
-  cage.factor = {1, 2, 3, 4, 5, 6};
-  EXPECT_EQ(cage.stiffnessScale(), cage.factor);
-  cage.fill = {1.0, 0.5, 0.25, kLeastFill, 0.5 * kLeastFill, 0.0};
-  EXPECT_EQ(cage.stiffnessScale(), (std::vector<double>{1, 1, 0.75, 4 * kLeastFill, 5 * kLeastFill, 6 * kLeastFill}));
-  cage.factor.clear();
-  EXPECT_EQ(cage.stiffnessScale(), (std::vector<double>{1, 0.5, 0.25, kLeastFill, kLeastFill, kLeastFill}));
+  cage.stiffnessFactor = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(cage.stiffnessScale(), cage.stiffnessFactor);
+  cage.volumeFraction = {1.0, 0.5, 0.25, Limits::kMinVolumeFraction, 0.5 * Limits::kMinVolumeFraction, 0.0};
+  EXPECT_EQ(cage.stiffnessScale(),
+            (std::vector<double>{1, 1, 0.75, 4 * Limits::kMinVolumeFraction, 5 * Limits::kMinVolumeFraction,
+                                 6 * Limits::kMinVolumeFraction}));
+  cage.stiffnessFactor.clear();
+  EXPECT_EQ(cage.stiffnessScale(), (std::vector<double>{1, 0.5, 0.25, Limits::kMinVolumeFraction,
+                                                        Limits::kMinVolumeFraction, Limits::kMinVolumeFraction}));
 }
 
 TEST(Cage, ScalesMassesAsVolumes) {
   Cage cage = platesOfCopies().cage;
   const Cage before = cage;
   cage.scaleBy(2.0);
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    EXPECT_EQ(cage.nodes[n], 2.0 * before.nodes[n]);
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
+    EXPECT_EQ(cage.mesh.nodes[n], 2.0 * before.mesh.nodes[n]);
     EXPECT_EQ(cage.masses[n], 8.0 * before.masses[n]);
   }
-  EXPECT_EQ(cage.fill, before.fill);
-  EXPECT_NEAR(totalVolume(cage), 8.0 * totalVolume(before), 1e-9);
+  EXPECT_EQ(cage.volumeFraction, before.volumeFraction);
+  EXPECT_NEAR(totalVolume(cage.mesh), 8.0 * totalVolume(before.mesh), 1e-9);
 }
 
 TEST(Cage, IsSplitWhereALatticeTetHasTwoCopies) {
-  EXPECT_TRUE(platesOfCopies().cage.split());
-  EXPECT_TRUE(platesOfCopies(1.0).cage.split());
-  EXPECT_FALSE(platesOfCopies(4.0).cage.split());
+  EXPECT_TRUE(platesOfCopies().cage.hasDuplicates());
+  EXPECT_TRUE(platesOfCopies(1.0).cage.hasDuplicates());
+  EXPECT_FALSE(platesOfCopies(4.0).cage.hasDuplicates());
 }
 
 TEST(PositionsHash, DependsOnEveryPositionAndTheirOrder) {
@@ -149,18 +154,19 @@ TEST(PositionsHash, DependsOnEveryPositionAndTheirOrder) {
 }
 
 double distanceIn(const Cage& cage, int tet, const Vector3d& point) {
-  return barycentricDistance(BarycentricMap(cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]))(point));
+  return barycentricDistance(
+      BarycentricMap(cornersOf(cage.mesh, cage.mesh.tets[static_cast<std::size_t>(tet)]))(point));
 }
 
 double smallestDistance(const Cage& cage, const Vector3d& point) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+  for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
     smallest = std::min(smallest, distanceIn(cage, static_cast<int>(t), point));
   }
   return smallest;
 }
 
-/// A point at random on each triangle.
+/// A random point on each triangle.
 std::vector<Vector3d> pointsOn(const TriangleMesh& mesh, unsigned seed) {
   std::mt19937 random(seed);
   std::exponential_distribution<double> number(1.0);
@@ -172,19 +178,19 @@ std::vector<Vector3d> pointsOn(const TriangleMesh& mesh, unsigned seed) {
   return points;
 }
 
-/// A sphere in a lattice with the tets in the middle left out, and its map.
+/// A sphere in a lattice whose middle tets are left out, and the map from its vertices to tets.
 struct HollowCage {
   Cage cage;
   TriangleMesh mesh = test::sphere(24, 1.6, Vector3d::Constant(2.0));
 
   HollowCage() {
     const TetMesh full = test::jittered(test::bodyCentredCage(8, 8, 8, 0.5), 0.08, 3);
-    cage.nodes = full.nodes;
+    cage.mesh.nodes = full.nodes;
     for (const Tet& tet : full.tets) {
       const TetCorners p = cornersOf(full, tet);
-      if (((p[0] + p[1] + p[2] + p[3]) / 4.0 - Vector3d::Constant(2.0)).norm() > 1.0) cage.tets.push_back(tet);
+      if (((p[0] + p[1] + p[2] + p[3]) / 4.0 - Vector3d::Constant(2.0)).norm() > 1.0) cage.mesh.tets.push_back(tet);
     }
-    for (const VertexBinding& binding : embed(cage, viewOf(mesh.positions)).value().bindings()) {
+    for (const VertexBinding& binding : embed(cage.mesh, viewOf(mesh.positions)).value().bindings()) {
       cage.vertexTets.push_back(binding.tet);
     }
   }
@@ -218,7 +224,7 @@ TEST(CageLocator, FindsItsWayAcrossLargeTriangles) {
   TriangleMesh mesh;
   mesh.positions = {{0.1, 0.1, 0.2}, {0.9, 0.15, 0.3}, {0.4, 0.85, 0.9}};
   for (int k = 0; k < 200; ++k) mesh.triangles.push_back({0, 1, 2});
-  for (const VertexBinding& binding : embed(cage, viewOf(mesh.positions)).value().bindings()) {
+  for (const VertexBinding& binding : embed(cage.mesh, viewOf(mesh.positions)).value().bindings()) {
     cage.vertexTets.push_back(binding.tet);
   }
   const CageLocator locator(cage);
@@ -244,7 +250,7 @@ TEST(CageLocator, WithoutAMapGoesByThePlaceAlone) {
   }
 }
 
-/// Every point of a plate is found in a tet of its own copy.
+/// Expects every point of a plate to be found in a tet of that plate's own copy.
 void expectOwnCopies(const TwoPlates& plates) {
   const CageLocator locator(plates.cage);
   const auto points = pointsOn(plates.mesh, 5);
@@ -252,8 +258,8 @@ void expectOwnCopies(const TwoPlates& plates) {
     const bool upper = plates.upper(static_cast<std::size_t>(plates.mesh.triangles[t][0]));
     const int tet = locator.locate(points[t], plates.mesh.triangles[t]);
     EXPECT_LE(distanceIn(plates.cage, tet, points[t]), 1e-12);
-    const auto lattice = static_cast<std::size_t>(plates.cage.latticeTets[static_cast<std::size_t>(tet)]);
-    const bool copied = std::count(plates.cage.latticeTets.begin(), plates.cage.latticeTets.end(), lattice) > 1;
+    const auto lattice = static_cast<std::size_t>(plates.cage.sourceTet[static_cast<std::size_t>(tet)]);
+    const bool copied = std::count(plates.cage.sourceTet.begin(), plates.cage.sourceTet.end(), lattice) > 1;
     EXPECT_EQ(static_cast<std::size_t>(tet) >= plates.latticeTets, upper && copied) << "triangle " << t;
     EXPECT_EQ(plates.cage.locate(points[t], plates.mesh.triangles[t]), tet);
   }
@@ -285,9 +291,9 @@ TEST(CageLocator, PointsBesideAPlateStayWithIt) {
 TEST(CageLocator, PassesFlatTets) {
   TwoPlates plates = platesOfCopies();
   Cage& cage = plates.cage;
-  const Tet whole = cage.tets[static_cast<std::size_t>(cage.vertexTets[0])];
-  cage.vertexTets[0] = static_cast<int>(cage.tetCount());
-  cage.tets.push_back({whole[0], whole[1], whole[2], whole[2]});
+  const Tet whole = cage.mesh.tets[static_cast<std::size_t>(cage.vertexTets[0])];
+  cage.vertexTets[0] = static_cast<int>(cage.mesh.tetCount());
+  cage.mesh.tets.push_back({whole[0], whole[1], whole[2], whole[2]});
   const int tet = CageLocator(cage).locate(plates.mesh.positions[0], {0, 0, 0});
   EXPECT_LE(distanceIn(cage, tet, plates.mesh.positions[0]), 0.0);
   EXPECT_LT(static_cast<std::size_t>(tet), plates.latticeTets);

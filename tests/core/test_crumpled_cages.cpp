@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Cages that no longer look like themselves: the surface stays with the nodes, and normals stay normals.
+// Heavily distorted cages: the surface stays with the nodes, and normals keep unit length.
 #include "support/carried_points.h"
 #include "support/odd_meshes.h"
 
@@ -22,7 +22,7 @@ using test::Points;
 
 struct Crumpling {
   const char* name;
-  Points (*apply)(Points nodes, double size);  ///< size: of the rest cage
+  Points (*apply)(Points nodes, double size);  ///< size  of the rest cage
 };
 
 Points permuted(Points nodes, double) {
@@ -87,11 +87,11 @@ std::vector<Case> cases() {
 
 class Crumpled : public testing::TestWithParam<Case> {
  protected:
-  /// Lattices of each kind and a thin one, of the case's size.
+  /// Lattices of each kind and a thin one, in the case's size.
   static std::vector<TetMesh> cages() {
     std::vector<TetMesh> all;
     for (const test::LatticeKind& kind : test::latticeKinds()) {
-      // The unit has little to do with the lattice: two of them in the other ones.
+      // The unit has little to do with the lattice: for units other than 1, two lattices are enough.
       if (GetParam().size == 1.0 || kind.name == "Mirrored" || kind.name == "BodyCentredJittered") {
         all.push_back(kind.make(4));
       }
@@ -117,7 +117,7 @@ class Crumpled : public testing::TestWithParam<Case> {
 
   template <class Scalar>
   static void expectTheSurfaceStaysWithTheNodes(const TetMesh& cage) {
-    const double edge = 0.2 * GetParam().size;  // shorter than most
+    const double edge = 0.2 * GetParam().size;  // shorter than most edges
     CarriedPoints<Scalar> points(cage, vertices());
     ASSERT_GT(points.fit.inside, 30u);
     ASSERT_GT(points.fit.outside, 50u);
@@ -125,7 +125,7 @@ class Crumpled : public testing::TestWithParam<Case> {
     points.move(nodes);
     ASSERT_TRUE(points.finite);
     const Box3 box = boundingBox(nodes);
-    // Weights of vertices outside are of either sign and up to some units.
+    // The weights of vertices outside have either sign and magnitudes of up to a few units.
     const double rounding = 32 * std::numeric_limits<Scalar>::epsilon() * boundingBox(nodes).sizes().maxCoeff() +
                             8 * std::numeric_limits<Scalar>::epsilon() * box.max().cwiseAbs().maxCoeff();
     const Points linear = points.linear(), quadratic = points.quadratic();
@@ -166,11 +166,11 @@ class Crumpled : public testing::TestWithParam<Case> {
     ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
     std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
     for (const Eigen::Vector3d& p : GetParam().crumpling.apply(cage.nodes, size)) nodes.push_back(p.cast<Scalar>());
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
     ASSERT_EQ(skin.normals().size(), mesh.vertexCount());
     for (const PointView<const float>& directions : {skin.normals(), skin.tangents()}) {
       for (std::size_t v = 0; v < directions.size(); ++v) {
-        // NaN is not near.
+        // A NaN fails this comparison.
         EXPECT_NEAR(Eigen::Map<const Eigen::Vector3f>(directions[v]).norm(), 1.0f, 1e-5f) << "vertex " << v;
       }
     }

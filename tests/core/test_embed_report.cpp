@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an embedding reports, of good input and of bad.
+// What an embedding reports, for good and for bad input.
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
@@ -24,10 +24,10 @@ TEST(EmbedReport, ReportNamesTheWorstVertex) {
   const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_EQ(report.inside, 1u);
   EXPECT_EQ(report.outside, 3u);
-  EXPECT_EQ(report.worstVertex, 2u);
-  EXPECT_DOUBLE_EQ(report.worstDistance, 2.0);
-  EXPECT_EQ(report.worstPosition, vertices[2]);
-  EXPECT_GE(report.worstBarycentric, 4.0);
+  EXPECT_EQ(report.maxDistanceVertex, 2u);
+  EXPECT_DOUBLE_EQ(report.maxDistance, 2.0);
+  EXPECT_EQ(report.maxDistancePosition, vertices[2]);
+  EXPECT_GE(report.maxBarycentricDistance, 4.0);
   EXPECT_GT(report.milliseconds, 0.0);
   EXPECT_FALSE(report.unitsDiffer());
   EXPECT_NE(report.describe().find("vertex 2 at (0.5, 0.5, -2)"), std::string::npos) << report.describe();
@@ -49,11 +49,11 @@ TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
     Embedding embedding;
     const Fit refused = embedInto(cage, viewOf(vertices), {rule, 1.0}, embedding);
     EXPECT_EQ(refused.status.code, StatusCode::OutsideCage);
-    for (const char* mentions : {"vertex 2", "(0.5, 0.5, -1.25)", "1.25 outside", "than the 1 allowed"}) {
+    for (const char* mentions : {"vertex 2", "(0.5, 0.5, -1.25)", "1.25 outside", "than the maximum of 1"}) {
       EXPECT_NE(refused.status.message.find(mentions), std::string::npos) << refused.status.message;
     }
-    EXPECT_EQ(refused.worstVertex, 2u);
-    EXPECT_EQ(refused.worstPosition, vertices[2]);
+    EXPECT_EQ(refused.maxDistanceVertex, 2u);
+    EXPECT_EQ(refused.maxDistancePosition, vertices[2]);
     EXPECT_EQ(refused.unbound, 4u);
     EXPECT_EQ(refused.inside + refused.outside, 0u);
     EXPECT_TRUE(embedding.empty());
@@ -61,7 +61,7 @@ TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
     EXPECT_TRUE(accepted.ok()) << accepted.status.message;
     EXPECT_EQ(accepted.outside, 3u);
     EXPECT_EQ(accepted.unbound, 0u);
-    // None at all outside.
+    // A limit of 0 allows no vertex outside.
     EXPECT_TRUE(embedInto(cage, viewOf(Points{vertices[0]}), {rule, 0.0}, embedding).ok());
     EXPECT_EQ(embedInto(cage, viewOf(vertices), {rule, 0.0}, embedding).status.code, StatusCode::OutsideCage);
   }
@@ -82,14 +82,14 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
   const Points metres = test::randomPoints(200, kUnitBox, 26);
   Embedding embedding;
   EXPECT_FALSE(embedInto(cage, viewOf(metres), {}, embedding).unitsDiffer());
-  EXPECT_EQ(embedInto(cage, viewOf(metres), {}, embedding).unitsFault(), "");
+  EXPECT_EQ(embedInto(cage, viewOf(metres), {}, embedding).unitsMessage(), "");
   for (const double scale : {1e-3, 0.0254, 39.37, 1e3}) {
     const Points others = test::scaledAndMoved(metres, scale, Eigen::Vector3d::Zero());
     const Fit report = embedInto(cage, viewOf(others), {}, embedding);
     EXPECT_TRUE(report.ok());
     EXPECT_TRUE(report.unitsDiffer()) << scale;
-    EXPECT_NE(report.unitsFault().find("different units"), std::string::npos);
-    EXPECT_NE(report.describe().find(report.unitsFault()), std::string::npos);
+    EXPECT_NE(report.unitsMessage().find("different units"), std::string::npos);
+    EXPECT_NE(report.describe().find(report.unitsMessage()), std::string::npos);
   }
 }
 
@@ -105,11 +105,11 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
 TEST(EmbedReport, NamesTheLargestWeight) {
   const TetMesh cage = test::singleTet();
   Embedding embedding;
-  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).largestWeight, 1.0);
-  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).largestWeight, 1.0);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).maxWeight, 1.0);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).maxWeight, 1.0);
   const Fit report = embedInto(cage, viewOf(Points{{-2.0, -3.0, 0.0}}), {}, embedding);
-  EXPECT_EQ(report.largestWeight, 6.0);
-  EXPECT_EQ(report.rescued, 0u);  // there is no other tet
+  EXPECT_EQ(report.maxWeight, 6.0);
+  EXPECT_EQ(report.reassignedByWeight, 0u);  // there is no other tet
   EXPECT_NE(report.describe().find("largest weight 6"), std::string::npos) << report.describe();
 }
 
@@ -183,8 +183,8 @@ TEST(EmbedReport, VerticesComputedToLieOnAFaceAreInside) {
         const Fit report = embedInto(cage, viewOf(onBoundary(cage)), {rule, 0.0}, embedding);
         EXPECT_TRUE(report.ok()) << kind.name << ": " << report.status.message;
         EXPECT_EQ(report.outside, 0u) << kind.name;
-        EXPECT_EQ(report.worstDistance, 0.0);
-        EXPECT_LT(report.worstBarycentric, 1e-9);
+        EXPECT_EQ(report.maxDistance, 0.0);
+        EXPECT_LT(report.maxBarycentricDistance, 1e-9);
       }
     }
   }

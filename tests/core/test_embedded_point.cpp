@@ -6,7 +6,7 @@
 #include "support/two_plates.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/embedded_point.h>
+#include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 const Vector3d kCentre = Vector3d::Constant(0.5);
 
-/// By node index, of an array in double.
+/// Looks up vectors by node index, in an array of doubles.
 template <class Scalar>
 auto vectorsIn(const Points& vectors) {
   return [&vectors](int node) -> Eigen::Matrix<Scalar, 3, 1> {
@@ -28,7 +28,7 @@ auto vectorsIn(const Points& vectors) {
   };
 }
 
-/// Vertices in and around a cage that is jittered, so that nothing is symmetric.
+/// Vertices in and around a cage that is jittered so that nothing is symmetric.
 template <class Scalar>
 class EmbeddedPoints : public testing::Test {
  protected:
@@ -75,7 +75,7 @@ TYPED_TEST(EmbeddedPoints, MoveByTheGradientsOfTheirPositions) {
   const auto positions = vectorsIn<TypeParam>(this->cage.nodes);
   for (std::size_t v = 0; v < this->vertexCount(); v += 5) {
     const EmbeddedPoint<TypeParam> point = this->at(v);
-    Vector3d velocity = Vector3d::Zero();  // the sum of what each node's own does, found by moving it
+    Vector3d velocity = Vector3d::Zero();  // the sum of each node's contribution, found by moving that node
     double reach = 0.0;
     for (std::size_t n = 0; n < this->cage.nodeCount(); ++n) {
       Points moved = this->cage.nodes;
@@ -97,14 +97,15 @@ TYPED_TEST(EmbeddedPoints, ClampToTheClosestPointOfTheirTet) {
     Vector3d closest = Vector3d::Zero();
     double sum = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {
-      EXPECT_GE(point.clamped[k], 0) << v;
-      sum += static_cast<double>(point.clamped[k]);
-      closest += static_cast<double>(point.clamped[k]) * this->cage.nodes[static_cast<std::size_t>(point.nodes[k])];
+      EXPECT_GE(point.clampedWeights[k], 0) << v;
+      sum += static_cast<double>(point.clampedWeights[k]);
+      closest +=
+          static_cast<double>(point.clampedWeights[k]) * this->cage.nodes[static_cast<std::size_t>(point.nodes[k])];
     }
     EXPECT_NEAR(sum, 1.0, 1e-6) << v;
     const Vector3d beyond = this->vertices[v] - closest;
     EXPECT_LT(beyond.norm(), point.inside ? 1e-6 : 2.0) << v;
-    // Of a convex body: nothing of it is nearer if none of its corners lies on the vertex's side of the closest point.
+    // The tet is convex: no part of it is nearer if none of its corners is on the vertex's side of the closest point.
     for (const int n : point.nodes) {
       EXPECT_LT(beyond.dot(this->cage.nodes[static_cast<std::size_t>(n)] - closest), 1e-6) << v;
     }
@@ -133,7 +134,7 @@ TYPED_TEST(EmbeddedPoints, ShareImpulsesOutByMomentum) {
       linear += momentum;
       angular += this->cage.nodes[n].cross(momentum);
       work += 0.5 * mass * (velocities[n].squaredNorm() - before.squaredNorm());
-      where += static_cast<double>(point.clamped[k++]) * this->cage.nodes[n];
+      where += static_cast<double>(point.clampedWeights[k++]) * this->cage.nodes[n];
     });
     EXPECT_LT((linear - impulse).norm(), 1e-6) << v;
     EXPECT_LT((angular - where.cross(impulse)).norm(), 1e-6) << v;
@@ -152,7 +153,7 @@ TYPED_TEST(EmbeddedPoints, PushNoNodeThatIsPinned) {
   std::size_t pushed = 0;
   const Eigen::Matrix<TypeParam, 3, 1> impulse(1, 2, 3);
   point.applyImpulse(impulse, inverseMassOf, [&](int node, const Eigen::Matrix<TypeParam, 3, 1>& change) {
-    EXPECT_EQ(change.norm() == 0, pinned(node) || point.clamped[pushed] == 0);
+    EXPECT_EQ(change.norm() == 0, pinned(node) || point.clampedWeights[pushed] == 0);
     ++pushed;
   });
   EXPECT_EQ(pushed, 4u);
@@ -171,11 +172,12 @@ TEST(EmbeddedPointsInFloat, KeepTheirDigitsFarFromTheOrigin) {
     const EmbeddedPoint<float> point = embedding.at<float>(v);
     const Vector3d exact = embedding.at(v).position(vectorsIn<double>(nodes));
     const Vector3d position = point.position(vectorsIn<float>(nodes)).cast<double>();
-    const Vector3d sum = point.velocity(vectorsIn<float>(nodes)).cast<double>();  // without the differences
+    // The plain weighted sum, without taking differences.
+    const Vector3d sum = point.velocity(vectorsIn<float>(nodes)).cast<double>();
     worst = std::max(worst, (position - exact).norm());
     worstOfSums = std::max(worstOfSums, (sum - exact).norm());
   }
-  EXPECT_LT(worst, 5e-4);  // float's spacing there
+  EXPECT_LT(worst, 5e-4);  // the spacing of floats at this distance
   EXPECT_GT(worstOfSums, 2.0 * worst);
 }
 
@@ -188,7 +190,7 @@ TEST(EmbeddingAt, IsByVertexWhateverTheOrderOfTheSkin) {
     options.order = order;
     MeshSkin<double> skin;
     ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
-    ASSERT_EQ(skin.update(viewOf(nodes)), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(viewOf(nodes)), StatusCode::Ok);
     const Embedding& embedding = skin.binding()->embedding();
     ASSERT_GT(embedding.insideCount(), 0u);
     ASSERT_LT(embedding.insideCount(), mesh.vertexCount());
@@ -208,8 +210,8 @@ TEST(EmbeddingAt, KnowsWhichCopyOfATetCarriesAVertex) {
   for (std::size_t v = 0; v < plates.mesh.vertexCount(); ++v) {
     const EmbeddedPoint<double> point = embedding.at(v);
     EXPECT_EQ(point.tet, plates.cage.vertexTets[v]) << v;
-    EXPECT_EQ(point.nodes, plates.cage.tets[static_cast<std::size_t>(point.tet)]) << v;
-    const Vector3d position = point.position(vectorsIn<double>(plates.cage.nodes));
+    EXPECT_EQ(point.nodes, plates.cage.mesh.tets[static_cast<std::size_t>(point.tet)]) << v;
+    const Vector3d position = point.position(vectorsIn<double>(plates.cage.mesh.nodes));
     EXPECT_LT((position - plates.mesh.positions[v]).norm(), 1e-6) << v;
     upper += static_cast<std::size_t>(point.tet) >= plates.latticeTets;
   }
@@ -224,8 +226,8 @@ TEST(EmbeddingAt, OfALoadedEmbeddingIsThatOfTheSavedOne) {
   const Embedding loaded = Embedding::load(bytes.data(), bytes.size(), cage).value();
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const EmbeddedPoint<double> a = made.at(v), b = loaded.at(v);
-    EXPECT_EQ(std::tie(a.nodes, a.weights, a.clamped, a.tet, a.inside),
-              std::tie(b.nodes, b.weights, b.clamped, b.tet, b.inside));
+    EXPECT_EQ(std::tie(a.nodes, a.weights, a.clampedWeights, a.tet, a.inside),
+              std::tie(b.nodes, b.weights, b.clampedWeights, b.tet, b.inside));
   }
 }
 

@@ -53,18 +53,18 @@ TEST(Embedding, RunsListEverySlotOnceInAscendingOrder) {
   const Points vertices = test::randomPoints(777, around(cage, 1.2), 28);
   Embedding embedding;
   const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
-  const auto& runs = embedding.data().runs;
+  const auto& runs = dataOf(embedding).runs;
   ASSERT_GT(runs.size(), 1u);
   EXPECT_EQ(runs.front().firstSlot, 0u);
   EXPECT_EQ(runs.back().firstSlot, 777u);
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
     EXPECT_LT(runs[r].firstSlot, runs[r + 1].firstSlot);
-    if (r + 1 != embedding.data().insideRunCount) {
+    if (r + 1 != dataOf(embedding).insideRunCount) {
       EXPECT_LT(runs[r].tet, runs[r + 1].tet);
     }
     for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(runs[r].nodes[k], cage.tets[runs[r].tet][k]);
   }
-  EXPECT_EQ(runs[embedding.data().insideRunCount].firstSlot, embedding.insideCount());
+  EXPECT_EQ(runs[dataOf(embedding).insideRunCount].firstSlot, embedding.insideCount());
   std::vector<std::uint32_t> order = embedding.slotVertices();
   std::sort(order.begin(), order.end());
   for (std::uint32_t v = 0; v < order.size(); ++v) EXPECT_EQ(order[v], v);
@@ -92,7 +92,7 @@ TEST(Embedding, ClosestWeightsAreThoseOfTheClosestPoint) {
     const TetCorners p = cornersOf(cage, cage.tets[bindings[v].tet]);
     Eigen::Vector3d closest = p[3];
     for (int k = 0; k < 3; ++k) {
-      const double c = embedding.data().closestWeights[static_cast<std::size_t>(k)][slot - embedding.insideCount()];
+      const double c = dataOf(embedding).closestWeights[static_cast<std::size_t>(k)][slot - embedding.insideCount()];
       EXPECT_GE(c, 0.0);
       closest += c * (p[k] - p[3]);
     }

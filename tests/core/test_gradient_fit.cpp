@@ -22,7 +22,7 @@ Eigen::Matrix3d gradientOf(const GradientStencil& stencil, const std::vector<Eig
   return f;
 }
 
-/// Every stencil of the cage is of this kind, and gives the gradient of these maps to rounding.
+/// Expects every stencil of the cage to be of this kind, and to give the gradient of these maps to rounding.
 void expectExact(const TetMesh& cage, Kind kind, double secondDerivatives, double tolerance = 1e-12) {
   CageNeighbours neighbours(cage);
   const test::SmoothMap map = test::quadraticMap(61, secondDerivatives);
@@ -39,24 +39,24 @@ TEST(GradientFit, IsExactForQuadraticMapsOnEveryLattice) {
     SCOPED_TRACE(kind.name);
     expectExact(kind.make(3), Kind::Full, 0.5);
   }
-  // Two cubes across are enough: three nodes in a row.
+  // Two cubes across are enough, as they give three nodes in a row.
   expectExact(test::latticeCage(2, 2, 2, 0.5), Kind::Full, 0.5);
 }
 
-/// A trunk of two cubes, from which two branches go on at the same place.
+/// A trunk of two cubes, from which two branches continue at the same position.
 TEST(GradientFit, StencilsDoNotReachAcrossCopies) {
   Cage cage = test::latticeCage(6, 2, 2);
-  const std::size_t trunkNodes = cage.nodeCount();
+  const std::size_t trunkNodes = cage.mesh.nodeCount();
   const std::vector<int> copyOf = test::appendCopies(cage, 2.0);
-  cage.latticeTets.resize(cage.tetCount());
+  cage.sourceTet.resize(cage.mesh.tetCount());
   for (std::size_t t = 0; t < copyOf.size(); ++t) {
-    cage.latticeTets[t] = cage.latticeTets[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
+    cage.sourceTet[t] = cage.sourceTet[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
   }
   // Each branch moves by a map of its own.
-  const auto branchOf = [&](std::uint32_t n) { return n >= trunkNodes ? 2 : cage.nodes[n].x() > 2.0 ? 1 : 0; };
+  const auto branchOf = [&](std::uint32_t n) { return n >= trunkNodes ? 2 : cage.mesh.nodes[n].x() > 2.0 ? 1 : 0; };
   std::size_t withoutCopies = 0;
-  CageNeighbours neighbours(cage, cage.latticeTets), blind(cage);
-  for (std::uint32_t n = 0; n < cage.nodeCount(); ++n) {
+  CageNeighbours neighbours(cage.mesh, cage.sourceTet), blind(cage.mesh);
+  for (std::uint32_t n = 0; n < cage.mesh.nodeCount(); ++n) {
     const auto reaches = [&](const GradientStencil& stencil, int branch) {
       return std::any_of(stencil.nodes.begin(), stencil.nodes.end(),
                          [&](std::uint32_t other) { return branchOf(other) == branch; });
@@ -98,20 +98,20 @@ TEST(GradientFit, TakesTheMeanOfTheTetsWhereTheNodesLieInAPlane) {
   TetMesh sliver = test::singleTet();
   sliver.nodes[3] = {0.3, 0.3, 1e-4};
   expectExact(sliver, Kind::Plain, 0.0, 1e-10);
-  // Two of different volume: the weights are theirs.
+  // The two tets have different volumes, which are their weights.
   TetMesh two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-2, 0, 0}, {0.3, 0.3, 1e-4}}, {{0, 1, 2, 4}, {0, 2, 3, 4}}};
   expectExact(two, Kind::Plain, 0.0, 1e-10);
 }
 
 TEST(GradientFit, PassesByANodeAtTheVeryPlaceOfTheFirst) {
-  // A crack: half of the tets around the middle node have a twin of it.
+  // A crack: half of the tets around the middle node use a twin of it.
   TetMesh cage = test::latticeCage(4, 4, 4);
-  const int middle = 2 + 5 * (2 + 5 * 2), twin = static_cast<int>(cage.nodeCount());
-  cage.nodes.push_back(cage.nodes[middle]);
+  const int centroid = 2 + 5 * (2 + 5 * 2), twin = static_cast<int>(cage.nodeCount());
+  cage.nodes.push_back(cage.nodes[centroid]);
   for (Tet& tet : cage.tets) {
     double x = 0.0;
     for (const int n : tet) x += 0.25 * cage.nodes[n].x();
-    if (x > 2.0) std::replace(tet.begin(), tet.end(), middle, twin);
+    if (x > 2.0) std::replace(tet.begin(), tet.end(), centroid, twin);
   }
   expectExact(cage, Kind::Full, 0.2);
 }
@@ -124,7 +124,7 @@ TEST(GradientFit, FlatTetsDoNotTieTogetherWhatIsFarApart) {
     for (int& n : tet) n += 4;
     cage.tets.push_back(tet);
   }
-  cage.tets.push_back({0, 1, 5, 6});  // in a line
+  cage.tets.push_back({0, 1, 5, 6});  // the nodes lie in a line
   for (const std::uint32_t n : {0u, 1u}) {
     const GradientStencil stencil = CageNeighbours(cage).stencilOf(n);
     EXPECT_EQ(stencil.nodes.size(), 4u);

@@ -40,7 +40,7 @@ TEST_F(InstructionSets, EachHasAName) {
   EXPECT_STREQ(toString(InstructionSet::Avx512), "AVX-512");
 }
 
-/// Everything that an instruction set may do differently, for a surface with vertices inside and outside.
+/// Everything that may differ between instruction sets, for a surface with vertices inside and outside.
 template <class Scalar, class Out>
 struct Results {
   std::vector<VertexBinding> bindings;
@@ -69,7 +69,7 @@ struct Results {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
     const test::SmoothMap twist = test::smoothMaps(Eigen::Vector3d::Constant(0.5))[0];
     for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(twist.at(p).template cast<Scalar>());
-    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
     bindings = skin.binding()->embedding().bindings();
     bounds = skin.bounds();
   }
@@ -80,7 +80,7 @@ double farthest(const Points& a, const Points& b) {
   double longest = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     const double length = static_cast<double>((a[k] - b[k]).norm());
-    longest = length <= longest ? longest : length;  // NaN is the longest
+    longest = length <= longest ? longest : length;  // NaN counts as the largest
   }
   return longest;
 }
@@ -107,7 +107,7 @@ void expectAgreement(InstructionSet set) {
   }
 }
 
-/// What the processor lacks is skipped, and so not passed over in silence.
+/// Instruction sets that the processor lacks are reported as skipped, not silently omitted.
 class Kernels : public InstructionSets, public testing::WithParamInterface<InstructionSet> {};
 
 TEST_P(Kernels, ChooseTheSameTetsAndAgreeOnPositionsAndNormals) {
@@ -128,7 +128,8 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets, Kernels,
                            return name;
                          });
 
-/// Lanes of a vector belong to different vertices: a count that is no multiple of their number leaves some over.
+/// The lanes of a vector belong to different vertices: a count that is no multiple of the number of lanes leaves some
+/// unused.
 TEST_F(InstructionSets, WriteAsManyPointsAsThereAre) {
   const TetMesh cage = test::singleTet();
   const auto vertices = test::randomPoints(40, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.3)}, 83);

@@ -11,7 +11,7 @@
 namespace tetskin {
 namespace {
 
-/// Both precisions of nodes and of output.
+/// Both precisions of nodes, combined with both precisions of output.
 template <class Types>
 class LinearSkinning : public testing::Test {
  public:
@@ -44,7 +44,7 @@ class LinearSkinning : public testing::Test {
     return surface;
   }
 
-  /// A few roundings of the coarser of the two types, for values up to about `size`.
+  /// A few rounding errors of the coarser of the two types, for values up to about `size`.
   static double tolerance(double size) {
     const double epsilon =
         std::max<double>(std::numeric_limits<NodeScalar>::epsilon(), std::numeric_limits<OutScalar>::epsilon());
@@ -116,7 +116,7 @@ TYPED_TEST(LinearSkinning, IsNoWorseThanTwiceTheNodesRoundingFarFromTheOrigin) {
     nodeRounding = std::max(nodeRounding, error.cwiseAbs().maxCoeff());
   }
   nodeRounding = std::max(nodeRounding, 0.25 * 1e5 * std::numeric_limits<Scalar>::epsilon());
-  // Local output, so that only the nodes' rounding is left, and not that of the output type.
+  // The output is local, so that only the rounding of the nodes is left and not that of the output type.
   const Eigen::Matrix<Scalar, 3, 1> origin = offset.cast<Scalar>();
   const auto surface = this->skin(farNodes, origin);
   const auto bindings = this->embedding.bindings();
@@ -188,7 +188,7 @@ TYPED_TEST(LinearSkinning, SortedOrderIsThatOfTheSlots) {
   const Box3 expectedBounds = this->bounds;
   PackedNodes<typename TestFixture::NodeScalar> packed(nodes.size());
   ASSERT_EQ(packed.pack(viewOf(nodes)), nodes.size());
-  // Side by side, and with room between: two ways of writing. Nothing behind the last point is touched.
+  // Points side by side and points with gaps are written in different ways. Nothing beyond the last point is written.
   for (const std::size_t step : {1, 2}) {
     using Point = Eigen::Matrix<Out, 3, 1>;
     const std::size_t count = this->embedding.vertexCount();
@@ -228,7 +228,7 @@ TEST(PackedNodes, ReadsAnyStrideAndNamesTheFirstNodeThatIsNotFinite) {
   }
 }
 
-/// It reads four numbers at a time: the fourth may be anything, and that of the last may not even be there.
+/// It reads four numbers at a time: the fourth may be anything, and behind the last node it may not even exist.
 TEST(PackedNodes, TakeNothingFromBehindAPosition) {
   for (const std::size_t count : {1u, 2u, 3u, 4u, 7u}) {
     for (const std::size_t stride : {3u, 4u, 5u}) {

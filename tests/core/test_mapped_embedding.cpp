@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Embedding by the map of a cage, `Cage::vertexTets`.
+// Embedding by a cage's own map, `Cage::vertexTets`.
 #include "support/odd_meshes.h"
 #include "support/two_plates.h"
 
@@ -19,11 +19,11 @@ using test::platesOfCopies;
 using test::TwoPlates;
 
 void expectRefused(const Cage& cage, const TriangleMesh& mesh, StatusCode code,
-                   std::initializer_list<std::string> parts) {
+                   std::initializer_list<std::string> components) {
   EmbedReport report;
   const Result<Embedding> made = embed(cage, mesh, {}, &report);
   EXPECT_STREQ(toString(made.status().code), toString(code)) << made.status().message;
-  for (const std::string& part : parts) {
+  for (const std::string& part : components) {
     EXPECT_NE(made.status().message.find(part), std::string::npos) << made.status().message;
   }
   EXPECT_EQ(report.unbound, mesh.vertexCount());
@@ -36,11 +36,11 @@ TEST(MappedEmbedding, BelievesTheMapWhereThePlaceWouldChooseTheOtherCopy) {
   const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
   ASSERT_TRUE(made.ok()) << made.status().message;
   const auto mapped = made.value().bindings();
-  const auto placed = embed(plates.cage, viewOf(plates.mesh.positions)).value().bindings();
+  const auto placed = embed(plates.cage.mesh, viewOf(plates.mesh.positions)).value().bindings();
   for (std::size_t v = 0; v < mapped.size(); ++v) {
     EXPECT_EQ(mapped[v].tet, plates.cage.vertexTets[v]);
     EXPECT_TRUE(mapped[v].inside);
-    EXPECT_EQ(mapped[v].weights, placed[v].weights);  // the copies are at one place
+    EXPECT_EQ(mapped[v].weights, placed[v].weights);  // the copies are at the same position
     EXPECT_LT(static_cast<std::size_t>(placed[v].tet), plates.latticeTets);
   }
 }
@@ -50,7 +50,7 @@ TEST(MappedEmbedding, ReportsWhatASearchWould) {
   EmbedReport mapped, placed;
   EmbedOptions options;
   ASSERT_TRUE(embed(plates.cage, plates.mesh, options, &mapped).ok());
-  ASSERT_TRUE(embed(plates.cage, viewOf(plates.mesh.positions), options, &placed).ok());
+  ASSERT_TRUE(embed(plates.cage.mesh, viewOf(plates.mesh.positions), options, &placed).ok());
   const std::size_t vertices = plates.mesh.vertexCount();
   EXPECT_EQ(mapped.vertexCount, vertices);
   EXPECT_EQ(mapped.inside, vertices);
@@ -59,16 +59,16 @@ TEST(MappedEmbedding, ReportsWhatASearchWould) {
   EXPECT_EQ(mapped.mapped, vertices);
   EXPECT_EQ(mapped.overlapping, 0u);
   EXPECT_EQ(mapped.candidates, 0u);
-  EXPECT_EQ(mapped.worstDistance, 0.0);
+  EXPECT_EQ(mapped.maxDistance, 0.0);
   EXPECT_EQ(mapped.restErrorMax, placed.restErrorMax);
-  EXPECT_EQ(mapped.largestWeight, placed.largestWeight);
+  EXPECT_EQ(mapped.maxWeight, placed.maxWeight);
   EXPECT_EQ(mapped.meshBox.max(), placed.meshBox.max());
   EXPECT_EQ(mapped.cageBox.min(), placed.cageBox.min());
   EXPECT_FALSE(mapped.unitsDiffer());
   EXPECT_EQ(mapped.describe().find("only a Cage with its map"), std::string::npos) << mapped.describe();
 
   EXPECT_EQ(placed.mapped, 0u);
-  EXPECT_GT(placed.overlapping, vertices / 2);  // the others are on faces
+  EXPECT_GT(placed.overlapping, vertices / 2);  // the other vertices are on faces
   EXPECT_NE(placed.describe().find("only a Cage with its map"), std::string::npos) << placed.describe();
 }
 
@@ -78,12 +78,12 @@ TEST(MappedEmbedding, CountsCoincidentVerticesAndFlatTets) {
   plates.mesh.positions.insert(plates.mesh.positions.end(), once.positions.begin(), once.positions.end());
   std::vector<int>& map = plates.cage.vertexTets;
   map.insert(map.end(), map.begin(), map.begin() + static_cast<std::ptrdiff_t>(once.vertexCount()));
-  plates.cage.meshHash = 0;
+  plates.cage.meshHash.reset();
   Cage bare = plates.cage;
-  bare.tets.push_back({0, 1, 2, 2});
-  for (auto* array : {&bare.fill, &bare.factor, &bare.masses}) array->clear();
-  for (auto* array : {&bare.parts, &bare.latticeTets}) array->clear();
-  bare.fineFill.clear();
+  bare.mesh.tets.push_back({0, 1, 2, 2});
+  for (auto* array : {&bare.volumeFraction, &bare.stiffnessFactor, &bare.masses}) array->clear();
+  for (auto* array : {&bare.component, &bare.sourceTet}) array->clear();
+  bare.fineVolumeFraction.clear();
   EmbedReport report;
   const Result<Embedding> made = embed(bare, plates.mesh, {}, &report);
   ASSERT_TRUE(made.ok()) << made.status().message;
@@ -101,9 +101,9 @@ TEST(MappedEmbedding, OnlyThePlateWhoseCopyMovesMoves) {
   for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
     SkinOptions options;
     options.interpolation = interpolation;
-    auto binding = SkinBinding<double>::make(plates.cage, plates.mesh, options);
+    auto binding = SkinBinding<double>::create(plates.cage, plates.mesh, options);
     ASSERT_TRUE(binding.ok()) << binding.status().message;
-    std::vector<Vector3d> nodes = plates.cage.nodes;
+    std::vector<Vector3d> nodes = plates.cage.mesh.nodes;
     for (std::size_t n = nodes.size() / 2; n < nodes.size(); ++n) nodes[n] += Vector3d(0, 3, 1);
     MeshSkin<double> skin;
     ASSERT_TRUE(skin.bind(std::move(binding).value(), viewOf(std::as_const(nodes))).ok());
@@ -117,7 +117,7 @@ TEST(MappedEmbedding, OnlyThePlateWhoseCopyMovesMoves) {
 TEST(MappedEmbedding, TakesAMeshRoundedToFloat) {
   TwoPlates plates = platesOfCopies();
   const Vector3d far(1000, -500, 200);
-  for (Vector3d& p : plates.cage.nodes) p += far;
+  for (Vector3d& p : plates.cage.mesh.nodes) p += far;
   for (Vector3d& p : plates.mesh.positions) p = (p + far).cast<float>().cast<double>();
   EmbedReport report;
   const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
@@ -125,26 +125,26 @@ TEST(MappedEmbedding, TakesAMeshRoundedToFloat) {
   const auto bindings = made.value().bindings();
   for (std::size_t v = 0; v < bindings.size(); ++v) EXPECT_EQ(bindings[v].tet, plates.cage.vertexTets[v]);
   EXPECT_EQ(report.inside + report.outside, plates.mesh.vertexCount());
-  EXPECT_LT(report.worstDistance, 1e-4);
+  EXPECT_LT(report.maxDistance, 1e-4);
 }
 
 TEST(MappedEmbedding, ReportsTheVertexThatRoundingPutFarthestOut) {
   TwoPlates plates = platesOfCopies();
   const int tet = plates.cage.vertexTets[4];
-  const Tet& corners = plates.cage.tets[static_cast<std::size_t>(tet)];
-  const auto& nodes = plates.cage.nodes;
-  const Vector3d middle = (nodes[corners[0]] + nodes[corners[1]] + nodes[corners[2]]) / 3.0;
-  const Vector3d outwards = (middle - nodes[corners[3]]).normalized();
-  plates.mesh.positions[4] = middle + 1e-4 * outwards;
+  const Tet& corners = plates.cage.mesh.tets[static_cast<std::size_t>(tet)];
+  const auto& nodes = plates.cage.mesh.nodes;
+  const Vector3d centroid = (nodes[corners[0]] + nodes[corners[1]] + nodes[corners[2]]) / 3.0;
+  const Vector3d outwards = (centroid - nodes[corners[3]]).normalized();
+  plates.mesh.positions[4] = centroid + 1e-4 * outwards;
   EmbedReport report;
   const Result<Embedding> made = embed(plates.cage, plates.mesh, {}, &report);
   ASSERT_TRUE(made.ok()) << made.status().message;
   EXPECT_EQ(report.outside, 1u);
-  EXPECT_EQ(report.worstVertex, 4u);
-  EXPECT_EQ(report.worstPosition, plates.mesh.positions[4]);
-  EXPECT_GT(report.worstDistance, 1e-5);
-  EXPECT_LE(report.worstDistance, 1e-4);
-  EXPECT_GT(report.worstBarycentric, 0.0);
+  EXPECT_EQ(report.maxDistanceVertex, 4u);
+  EXPECT_EQ(report.maxDistancePosition, plates.mesh.positions[4]);
+  EXPECT_GT(report.maxDistance, 1e-5);
+  EXPECT_LE(report.maxDistance, 1e-4);
+  EXPECT_GT(report.maxBarycentricDistance, 0.0);
   EXPECT_EQ(made.value().bindings()[4].tet, tet);
   EXPECT_FALSE(made.value().bindings()[4].inside);
 
@@ -168,25 +168,25 @@ TEST(MappedEmbedding, RefusesAnotherMesh) {
   other = plates.mesh;
   other.positions.push_back(other.positions[0]);
   expectRefused(plates.cage, other, StatusCode::CageMismatch,
-                {"of 364 vertices, and the mesh has 365", "build a cage for this mesh"});
+                {"has 364 vertices, but the mesh has 365", "build a cage for this mesh"});
 }
 
 TEST(MappedEmbedding, RefusesAMapThatNamesAFlatTet) {
   TwoPlates plates = platesOfCopies();
-  Tet& tet = plates.cage.tets[static_cast<std::size_t>(plates.cage.vertexTets[0])];
+  Tet& tet = plates.cage.mesh.tets[static_cast<std::size_t>(plates.cage.vertexTets[0])];
   tet[3] = tet[2];
-  expectRefused(plates.cage, plates.mesh, StatusCode::Degenerate, {"for vertex 0, which is flat", "build"});
+  expectRefused(plates.cage, plates.mesh, StatusCode::Degenerate, {"to vertex 0, which is flat", "build"});
 }
 
 TEST(MappedEmbedding, RefusesCagesThatAreNotInOrder) {
   TwoPlates plates = platesOfCopies();
-  plates.cage.fill.pop_back();
-  expectRefused(plates.cage, plates.mesh, StatusCode::SizeMismatch, {"fill"});
+  plates.cage.volumeFraction.pop_back();
+  expectRefused(plates.cage, plates.mesh, StatusCode::SizeMismatch, {"volumeFraction"});
   plates = platesOfCopies();
   plates.cage.vertexTets[3] = 1000;
-  expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {"names tet 1000 for vertex 3"});
+  expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {"assigns tet 1000 to vertex 3"});
   plates = platesOfCopies();
-  plates.cage.tets[0][0] = -1;
+  plates.cage.mesh.tets[0][0] = -1;
   expectRefused(plates.cage, plates.mesh, StatusCode::IndexOutOfRange, {});
   plates = platesOfCopies();
   plates.mesh.positions[8].x() = std::numeric_limits<double>::quiet_NaN();
@@ -196,7 +196,7 @@ TEST(MappedEmbedding, RefusesCagesThatAreNotInOrder) {
 TEST(MappedEmbedding, IsTheSameAfterReversingTets) {
   TwoPlates plates = platesOfCopies();
   const auto before = embed(plates.cage, plates.mesh).value().bindings();
-  for (Tet& tet : plates.cage.tets) std::swap(tet[2], tet[3]);
+  for (Tet& tet : plates.cage.mesh.tets) std::swap(tet[2], tet[3]);
   const auto after = embed(plates.cage, plates.mesh).value().bindings();
   for (std::size_t v = 0; v < before.size(); ++v) {
     EXPECT_EQ(after[v].tet, before[v].tet);
@@ -207,8 +207,8 @@ TEST(MappedEmbedding, IsTheSameAfterReversingTets) {
 TEST(MappedEmbedding, IsSavedAndLoaded) {
   const TwoPlates plates = platesOfCopies();
   const Embedding made = embed(plates.cage, plates.mesh).value();
-  const std::vector<unsigned char> bytes = made.save(plates.cage);
-  const Result<Embedding> loaded = Embedding::load(bytes.data(), bytes.size(), plates.cage);
+  const std::vector<unsigned char> bytes = made.save(plates.cage.mesh);
+  const Result<Embedding> loaded = Embedding::load(bytes.data(), bytes.size(), plates.cage.mesh);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message;
   const auto before = made.bindings(), after = loaded.value().bindings();
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(after[v].tet, before[v].tet);

@@ -33,7 +33,7 @@ class MeshSkins : public testing::Test {
     return options;
   }
   static PointView<const float> view(const Nodes& nodes) { return viewOf(nodes); }
-  void update(MeshSkin<float>& skin, const Nodes& nodes) { ASSERT_EQ(skin.update(view(nodes)), UpdateStatus::Updated); }
+  void update(MeshSkin<float>& skin, const Nodes& nodes) { ASSERT_EQ(skin.update(view(nodes)), StatusCode::Ok); }
   static Eigen::Vector3f at(PointView<const float> points, std::size_t v) {
     return Eigen::Map<const Eigen::Vector3f>(points[v]);
   }
@@ -64,16 +64,16 @@ TEST_F(MeshSkins, NothingIsMadeThatIsNotAskedFor) {
   EXPECT_TRUE(skin.normals().empty());
   EXPECT_TRUE(skin.tangents().empty());
   EXPECT_TRUE(skin.bounds().isEmpty());
-  EXPECT_FALSE(skin.binding()->parts().quadratic);
-  EXPECT_FALSE(skin.binding()->parts().normals);
-  EXPECT_FALSE(skin.binding()->parts().tangents);
-  EXPECT_FALSE(skin.binding()->parts().recomputed);
+  EXPECT_FALSE(dataOf(*skin.binding()).quadratic);
+  EXPECT_FALSE(dataOf(*skin.binding()).normals);
+  EXPECT_FALSE(dataOf(*skin.binding()).tangents);
+  EXPECT_FALSE(dataOf(*skin.binding()).recomputed);
   ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Recomputed)).ok());
-  EXPECT_FALSE(skin.binding()->parts().normals);
+  EXPECT_FALSE(dataOf(*skin.binding()).normals);
   EXPECT_TRUE(skin.tangents().empty());
   mesh.tangents.clear();
   ASSERT_TRUE(skin.bind(cage, mesh, everything(Normals::Transformed)).ok());
-  EXPECT_FALSE(skin.binding()->parts().tangents);
+  EXPECT_FALSE(dataOf(*skin.binding()).tangents);
   EXPECT_TRUE(skin.tangents().empty());
 }
 
@@ -104,7 +104,7 @@ TEST_F(MeshSkins, WriteIntoTheCallersInterleavedBuffer) {
     float position[3];
     float normal[3];
     float between;
-    float tangent[4];  // the sign is the caller's
+    float tangent[4];  // the caller provides the sign
   };
   const Vertex untouched{1, {}, {}, 2, {0, 0, 0, 3}};
   for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
@@ -152,7 +152,7 @@ TEST_F(MeshSkins, WriteDoublesFromFloatNodesAndTheOtherWayRound) {
   for (const Eigen::Vector3f& p : twisted) nodes.push_back(p.cast<double>());
   update(own, twisted);
   update(single, twisted);
-  ASSERT_EQ(twice.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+  ASSERT_EQ(twice.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     EXPECT_LT((doubles[v] - at(own.positions(), v).cast<double>()).norm(), 1e-6);
     EXPECT_LT((doubles[v] - floats[v].cast<double>()).norm(), 1e-6);
@@ -204,13 +204,13 @@ TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
       before.push_back(at(skin.normals(), v));
     }
     using Limits = std::numeric_limits<float>;
-    // Finite coordinates so large that weighted sums or normals would not be finite are no better.
+    // Finite coordinates that are so large that weighted sums or normals overflow are refused as well.
     for (const float bad : {Limits::quiet_NaN(), -Limits::infinity(), 1.1e18f, -Limits::max()}) {
       Nodes broken = rest;
       broken[70].z() = bad;
       broken[90].x() = bad;
-      EXPECT_EQ(skin.update(view(broken)), UpdateStatus::NonFinite);
-      EXPECT_EQ(skin.firstBadNode(), 70u);
+      EXPECT_EQ(skin.update(view(broken)), StatusCode::NonFinite);
+      EXPECT_EQ(skin.firstNonFiniteNode(), 70u);
       for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
         EXPECT_EQ(at(skin.positions(), v), before[2 * v]);
         EXPECT_EQ(at(skin.normals(), v), before[2 * v + 1]);
@@ -223,7 +223,7 @@ TEST_F(MeshSkins, ANodeThatIsNotFiniteOrTooFarChangesNothing) {
 
 TEST_F(MeshSkins, ShareABinding) {
   const SkinOptions options = everything(Normals::Transformed);
-  const MeshSkin<float>::Binding binding = SkinBinding<float>::make(cage, mesh, options).value();
+  const MeshSkin<float>::Binding binding = SkinBinding<float>::create(cage, mesh, options).value();
   ASSERT_TRUE(binding);
   EXPECT_GT(binding->quadraticReport().edges, 0u);
   MeshSkin<float> one, other;
@@ -241,18 +241,18 @@ TEST_F(MeshSkins, ShareABinding) {
 
 TEST_F(MeshSkins, LeaveOutWhatTheyAreToldTo) {
   const MeshSkin<float>::Binding binding =
-      SkinBinding<float>::make(cage, mesh, everything(Normals::Transformed)).value();
+      SkinBinding<float>::create(cage, mesh, everything(Normals::Transformed)).value();
   MeshSkin<float> linear, expected, without;
   ASSERT_TRUE(expected.bind(cage, mesh).ok());
   update(expected, twisted);
   InstanceOptions options;
-  options.leaveOutQuadratic = true;
+  options.disableQuadratic = true;
   ASSERT_TRUE(linear.bind(binding, view(twisted), options).ok());
   EXPECT_FALSE(linear.normals().empty());
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
     EXPECT_EQ(at(linear.positions(), v), at(expected.positions(), v));
   options = {};
-  options.leaveOutNormals = true;
+  options.disableNormals = true;
   ASSERT_TRUE(without.bind(binding, view(twisted), options).ok());
   EXPECT_TRUE(without.normals().empty());
   EXPECT_TRUE(without.tangents().empty());
@@ -260,7 +260,7 @@ TEST_F(MeshSkins, LeaveOutWhatTheyAreToldTo) {
 }
 
 TEST_F(MeshSkins, RefuseInstanceOptionsThatDoNotFitTheBinding) {
-  MeshSkin<float>::Binding binding = SkinBinding<float>::make(cage, mesh, {}).value();
+  MeshSkin<float>::Binding binding = SkinBinding<float>::create(cage, mesh, {}).value();
   MeshSkin<float> skin;
   const auto refuses = [&](const InstanceOptions& options, StatusCode code, const char* mentions) {
     const Status status = skin.bind(binding, view(rest), options);
@@ -279,7 +279,7 @@ TEST_F(MeshSkins, RefuseInstanceOptionsThatDoNotFitTheBinding) {
   options.tangentTarget = viewOf(tooFew);
   refuses(options, StatusCode::SizeMismatch, "target for tangents");
   binding = nullptr;
-  refuses({}, StatusCode::Empty, "no embedding");
+  refuses({}, StatusCode::Empty, "embedding is empty");
 }
 
 TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
@@ -302,7 +302,7 @@ TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
     refuses(options, StatusCode::InvalidOption, "hardEdgeDegrees");
     EmbedReport report;
     report.candidates = 7;
-    EXPECT_FALSE(SkinBinding<float>::make(cage, mesh, options, &report).ok());
+    EXPECT_FALSE(SkinBinding<float>::create(cage, mesh, options, &report).ok());
     EXPECT_EQ(report.candidates, 0u) << "nothing is even begun";
     EXPECT_EQ(report.unbound, mesh.vertexCount());
   }
@@ -313,7 +313,7 @@ TEST_F(MeshSkins, RefuseOptionsThatMakeNoSenseBeforeAnythingIsEmbedded) {
 }
 
 TEST_F(MeshSkins, RefusedAfterEmbeddingAreNotBound) {
-  for (Eigen::Vector3d& p : cage.nodes) p *= 1e20;  // more than the nodes of a body may be
+  for (Eigen::Vector3d& p : cage.nodes) p *= 1e20;  // larger than the nodes of a body may be
   for (Eigen::Vector3d& p : mesh.positions) p *= 1e20;
   MeshSkin<float> skin;
   const Result<EmbedReport> report = skin.bind(cage, mesh);
@@ -331,21 +331,21 @@ TEST_F(MeshSkins, RefuseNodesThatDoNotFitTheBinding) {
   nodes.resize(100);
   EXPECT_EQ(skin.bind(binding, view(nodes)).code, StatusCode::SizeMismatch);
   EXPECT_EQ(skin.binding(), binding);
-  update(skin, twisted);  // and goes on as before
+  update(skin, twisted);  // the skin then works as before
 }
 
 TEST_F(MeshSkins, SayWhyThereIsNoUpdate) {
   MeshSkin<float> skin;
-  EXPECT_EQ(skin.update(view(rest)), UpdateStatus::Unbound);
-  EXPECT_EQ(skin.update(KeptSteps<float>(), 0.5f), UpdateStatus::Unbound);
+  EXPECT_EQ(skin.update(view(rest)), StatusCode::Unbound);
+  EXPECT_EQ(skin.update(StepHistory<float>(), 0.5f), StatusCode::Unbound);
   EXPECT_EQ(skin.nodeCount(), 0u);
   EXPECT_EQ(skin.binding(), nullptr);
   ASSERT_TRUE(skin.bind(cage, mesh).ok());
   const Eigen::Vector3f before = at(skin.positions(), 9);
   Nodes fewer = twisted;
   fewer.pop_back();
-  EXPECT_EQ(skin.update(view(fewer)), UpdateStatus::TopologyChanged);
-  EXPECT_EQ(skin.update(KeptSteps<float>(), 0.5f), UpdateStatus::TopologyChanged);
+  EXPECT_EQ(skin.update(view(fewer)), StatusCode::TopologyChanged);
+  EXPECT_EQ(skin.update(StepHistory<float>(), 0.5f), StatusCode::TopologyChanged);
   EXPECT_EQ(at(skin.positions(), 9), before);
   MeshSkin<float> moved = std::move(skin);
   EXPECT_FALSE(skin.bound());  // NOLINT: what is left of it

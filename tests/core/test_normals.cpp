@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Normals, NormalsOnLattices, testing::ValuesIn(test::lat
 
 TEST_P(NormalsOnLattices, TransformedByTheQuadraticSurfaceAreSixTimesCloser) {
   const TetMesh cage = GetParam().make(12);
-  // The second sphere pokes through the sides of the cage.
+  // The second sphere sticks out of the sides of the cage.
   for (const double radius : {0.47, 0.52}) {
     const TriangleMesh mesh = authoredSphere(24, radius);
     Carried<float> linear(cage, mesh, Normals::Transformed, Interpolation::Linear);
@@ -46,7 +46,7 @@ TEST_P(NormalsOnLattices, TransformedByTheQuadraticSurfaceAreSixTimesCloser) {
   }
 }
 
-/// What affine maps do to both kinds of normals is known: the cofactor matrix, of either sign.
+/// For affine maps the result is known for both kinds of normals: the cofactor matrix, of either sign.
 TEST_P(NormalsOnLattices, RecomputedOnesEqualTransformedOnesOnAffineMaps) {
   const TetMesh cage = GetParam().make(4);
   const TriangleMesh mesh = test::sphere(16, 0.52, kCentre);
@@ -60,7 +60,7 @@ TEST_P(NormalsOnLattices, RecomputedOnesEqualTransformedOnesOnAffineMaps) {
       const test::SmoothMap map = test::affineMap(seed);
       const Eigen::Matrix3d cofactor = cofactors(map.gradient(kCentre));
       mirrored += map.gradient(kCentre).determinant() < 0.0;
-      // An error of the map's gradient turns a normal by up to this many times as much.
+      // An error in the map's gradient turns a normal by up to this factor times that error.
       const double condition = map.gradient(kCentre).squaredNorm() / cofactor.jacobiSvd().singularValues()[2];
       transformed.move(map(cage.nodes));
       inDouble.move(map(cage.nodes));
@@ -73,7 +73,7 @@ TEST_P(NormalsOnLattices, RecomputedOnesEqualTransformedOnesOnAffineMaps) {
       }
     }
   }
-  EXPECT_GT(mirrored, 0);  // among them are maps that turn the cage inside out
+  EXPECT_GT(mirrored, 0);  // some of the maps turn the cage inside out
 }
 
 TEST(Transformed, TangentsStayInTheSurface) {
@@ -115,7 +115,7 @@ TEST(Transformed, SeamsWithEqualNormalsGetIdenticalBits) {
   }
 }
 
-/// Two cages, of which one collapses to a point: its normals stay what they were.
+/// Two cages, one of which collapses to a point: the normals of that one keep their last values.
 template <class Scalar>
 void expectCollapsedKeepsTheLastGoodNormal(Normals normals, Interpolation interpolation) {
   TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
@@ -153,7 +153,7 @@ void expectCollapsedKeepsTheLastGoodNormal(Normals normals, Interpolation interp
     turned = std::max(turned, angle(carried.normal(v), before[v]));
     EXPECT_EQ(carried.normal(v + count), before[v + count]) << "vertex " << v;
   }
-  EXPECT_GT(turned, 10.0);  // the other half went on
+  EXPECT_GT(turned, 10.0);  // the other half kept moving
   carried.move(good);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_EQ(carried.normal(v), before[v]);
 }
@@ -170,7 +170,7 @@ TEST(CollapsedNeighbourhood, KeepsTheLastGoodNormal) {
 TEST(NormalsOfAnyScale, NeedNoUnit) {
   const TriangleMesh mesh = authoredSphere(12, 0.45);
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-  // Powers of two, so that all vertices keep their tets and weights.
+  // The factors are powers of two, so that all vertices keep their tets and weights.
   for (const double scale : {0x1p-40, 0x1p-10, 0x1p10, 0x1p40}) {
     TriangleMesh scaled = mesh;
     TetMesh scaledCage = cage;
@@ -189,11 +189,11 @@ TEST(NormalsOfAnyScale, NeedNoUnit) {
   }
 }
 
-/// Squares of such areas are beyond a float.
+/// The squares of such areas exceed the range of a float.
 TEST(NormalsOfAnyScale, AreNeverNaNWhenAreasOverflow) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const TriangleMesh mesh = authoredSphere(12, 0.52);
-  // In space, and near each plane, where only one coordinate of an area overflows.
+  // Nodes far away in all three coordinates, and near each plane, where only one coordinate of an area overflows.
   for (const Eigen::Vector3d& reach :
        {Eigen::Vector3d(1e10, 1e10, 1e10), Eigen::Vector3d(1e18, 1e18, 1e18), Eigen::Vector3d(1, 1e18, 1e18),
         Eigen::Vector3d(1e18, 1, 1e18), Eigen::Vector3d(1e18, 1e18, 1)}) {
@@ -212,7 +212,7 @@ TEST(NormalsOfAnyScale, AreNeverNaNWhenAreasOverflow) {
 
 TEST(RestNormals, AreTheAuthoredOnesOrElseThoseOfTheTriangles) {
   TriangleMesh mesh = test::sphere(10, 1.0, Eigen::Vector3d::Zero());
-  mesh.positions.push_back({5, 5, 5});  // in no triangle
+  mesh.positions.push_back({5, 5, 5});  // belongs to no triangle
   std::vector<Eigen::Vector3d> normals = restNormals(mesh);
   for (std::size_t v = 0; v + 1 < mesh.vertexCount(); ++v) EXPECT_LT(angle(normals[v], mesh.positions[v]), 10.0);
   EXPECT_EQ(normals.back(), Eigen::Vector3d::UnitY());
@@ -223,7 +223,7 @@ TEST(RestNormals, AreTheAuthoredOnesOrElseThoseOfTheTriangles) {
   EXPECT_LT(angle(normals[3], mesh.positions[3]), 10.0);
 }
 
-/// Coincident vertices are one for this purpose, also the ones that no triangle of their own adds to.
+/// Coincident vertices count as one for this purpose, including those to which none of their own triangles contributes.
 TEST(RestNormals, AreSmoothAcrossSeams) {
   const TriangleMesh mesh = box(false);
   const std::vector<Eigen::Vector3d> normals = restNormals(mesh);

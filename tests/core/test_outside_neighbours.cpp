@@ -18,7 +18,7 @@ using Points = std::vector<Eigen::Vector3d>;
 constexpr double kCube = 0.25;
 constexpr double kGapFrom = 1.0, kGapTo = 1.2;
 
-/// Two legs, x in [0, 1] and [1.2, 2.2], y in [0, 4], z in [0, 0.5]; above 3.5 joined, or else not at all.
+/// Two legs, x in [0, 1] and [1.2, 2.2], y in [0, 4], z in [0, 0.5]; above y = 3.5 they may be joined.
 TetMesh legs(bool joined) {
   TetMesh cage = test::latticeCage(9, 16, 2, kCube);
   for (Eigen::Vector3d& p : cage.nodes) {
@@ -54,7 +54,7 @@ TriangleMesh sheet(const std::vector<double>& xs) {
   return mesh;
 }
 
-/// Pokes out of the left leg: the last two columns are nearer to the right one.
+/// A sheet that sticks out of the left leg: its last two columns are closer to the right leg.
 TriangleMesh pokingOut() {
   return sheet({0.5, 0.7, 0.9, 1.12, 1.17});
 }
@@ -72,15 +72,15 @@ TEST(OutsideNeighbours, VerticesThatPokeTowardsAnotherPartStayWithTheirOwn) {
     const TriangleMesh mesh = pokingOut();
     Embedding embedding;
     const Fit alone = embedInto(cage, viewOf(mesh.positions), {}, embedding);
-    EXPECT_EQ(inRightLeg(cage, embedding), 20u);  // without triangles: the nearest
-    EXPECT_EQ(alone.keptWithNeighbours, 0u);
+    EXPECT_EQ(inRightLeg(cage, embedding), 20u);  // without triangles, each vertex is bound to the nearest tet
+    EXPECT_EQ(alone.reassignedByConnectivity, 0u);
     const Fit report = embedInto(cage, mesh, {}, embedding);
     EXPECT_EQ(inRightLeg(cage, embedding), 0u) << joined;
-    EXPECT_EQ(report.keptWithNeighbours, 20u);
+    EXPECT_EQ(report.reassignedByConnectivity, 20u);
     EXPECT_EQ(report.outside, 20u);
-    EXPECT_NEAR(report.worstDistance, 0.08, 1e-12);  // from the cage, not from their own part
+    EXPECT_NEAR(report.maxDistance, 0.08, 1e-12);  // distance from the cage, not from the vertex's own leg
 
-    // The other leg takes a step.
+    // The right leg moves by 1 along z.
     Points nodes = cage.nodes;
     for (Eigen::Vector3d& p : nodes) {
       if (p.x() > 1.1 && p.y() < 3.4) p += Eigen::Vector3d(0, 0, 1);
@@ -95,11 +95,12 @@ TEST(OutsideNeighbours, VerticesThatPokeTowardsAnotherPartStayWithTheirOwn) {
 
 TEST(OutsideNeighbours, OtherVerticesAreBoundAsIfAlone) {
   const TetMesh cage = legs(true);
-  const TriangleMesh mesh = test::sphere(24, 0.56, {0.5, 2.0, 0.25});  // pokes out on all sides, hardly to the right
+  // Sticks out on all sides, but hardly to the right.
+  const TriangleMesh mesh = test::sphere(24, 0.56, {0.5, 2.0, 0.25});
   Embedding embedding;
   const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_GT(report.outside, 100u);
-  EXPECT_EQ(report.keptWithNeighbours, 0u);
+  EXPECT_EQ(report.reassignedByConnectivity, 0u);
   const auto brute = test::bruteForce(cage, mesh.positions, OutsideRule::Nearest);
   const auto bindings = embedding.bindings();
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_EQ(bindings[v].tet, brute[v].tet);
@@ -113,8 +114,8 @@ TEST(OutsideNeighbours, ANearestTetThatIsMuchNearerThanTheirOwnIsTaken) {
   Embedding embedding;
   const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.outside, 2u);
-  EXPECT_EQ(report.keptWithNeighbours, 0u);
-  EXPECT_EQ(inRightLeg(cage, embedding), 1u);  // vertex 2, more than a leg away from its own
+  EXPECT_EQ(report.reassignedByConnectivity, 0u);
+  EXPECT_EQ(inRightLeg(cage, embedding), 1u);  // vertex 2, more than a leg's width away from its own leg
 }
 
 TEST(OutsideNeighbours, APieceWithNoVertexInsideStaysWhereItIsNearest) {
@@ -122,7 +123,7 @@ TEST(OutsideNeighbours, APieceWithNoVertexInsideStaysWhereItIsNearest) {
   const TriangleMesh mesh = sheet({1.12, 1.17});
   Embedding embedding;
   const Fit report = embedInto(cage, mesh, {}, embedding);
-  EXPECT_EQ(report.keptWithNeighbours, 0u);
+  EXPECT_EQ(report.reassignedByConnectivity, 0u);
   EXPECT_EQ(inRightLeg(cage, embedding), mesh.vertexCount());
 }
 
@@ -131,14 +132,14 @@ TEST(OutsideNeighbours, TheBarycentricRuleIsLeftPure) {
   const TriangleMesh mesh = pokingOut();
   Embedding embedding;
   const Fit report = embedInto(cage, mesh, {OutsideRule::Barycentric}, embedding);
-  EXPECT_EQ(report.keptWithNeighbours, 0u);
+  EXPECT_EQ(report.reassignedByConnectivity, 0u);
   EXPECT_EQ(inRightLeg(cage, embedding), 20u);
   const auto brute = test::bruteForce(cage, mesh.positions, OutsideRule::Barycentric);
   const auto bindings = embedding.bindings();
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_EQ(bindings[v].tet, brute[v].tet);
 }
 
-/// Every triangle with vertices of its own: they are connected by their positions.
+/// Every triangle has vertices of its own, which are connected by their positions.
 TEST(OutsideNeighbours, SeamsChangeTogether) {
   const TetMesh cage = legs(true);
   const TriangleMesh whole = pokingOut();

@@ -15,7 +15,7 @@ using Points = std::vector<Eigen::Vector3f>;
 
 class PreviousPositions : public testing::Test {
  protected:
-  /// The cage's nodes, moved by `step` and sheared a little.
+  /// The cage's nodes, moved by `step` and slightly sheared.
   Points nodesAt(int step) const {
     Points nodes;
     for (const Eigen::Vector3d& p : cage.nodes) {
@@ -25,7 +25,7 @@ class PreviousPositions : public testing::Test {
   }
   void update(int step) {
     const Points nodes = nodesAt(step);
-    ASSERT_EQ(skin.update(viewOf(nodes)), UpdateStatus::Updated);
+    ASSERT_EQ(skin.update(viewOf(nodes)), StatusCode::Ok);
   }
   static Points copyOf(PointView<const float> view) {
     Points points;
@@ -66,7 +66,7 @@ TEST_F(PreviousPositions, DoNotChangeTheCurrentOnes) {
   for (int step = 1; step < 4; ++step) {
     update(step);
     const Points nodes = nodesAt(step);
-    ASSERT_EQ(plain.update(viewOf(nodes)), UpdateStatus::Updated);
+    ASSERT_EQ(plain.update(viewOf(nodes)), StatusCode::Ok);
     EXPECT_EQ(copyOf(skin.positions()), copyOf(plain.positions()));
   }
 }
@@ -76,11 +76,11 @@ TEST_F(PreviousPositions, AreTheCurrentOnesWhileHeld) {
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
   update(1);
   update(2);
-  skin.hold();
-  const Points held = copyOf(skin.positions());
-  EXPECT_EQ(copyOf(skin.previousPositions()), held);
+  skin.clearMotion();
+  const Points pinned = copyOf(skin.positions());
+  EXPECT_EQ(copyOf(skin.previousPositions()), pinned);
   update(3);
-  EXPECT_EQ(copyOf(skin.previousPositions()), held);
+  EXPECT_EQ(copyOf(skin.previousPositions()), pinned);
 }
 
 TEST_F(PreviousPositions, AreTheCurrentOnesAfterAFailedUpdate) {
@@ -90,8 +90,8 @@ TEST_F(PreviousPositions, AreTheCurrentOnesAfterAFailedUpdate) {
   const Points good = copyOf(skin.positions());
   Points nodes = nodesAt(2);
   nodes[7].y() = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::NonFinite);
-  EXPECT_EQ(skin.firstBadNode(), 7u);
+  EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::NonFinite);
+  EXPECT_EQ(skin.firstNonFiniteNode(), 7u);
   EXPECT_EQ(copyOf(skin.positions()), good);
   EXPECT_EQ(copyOf(skin.previousPositions()), good);
   update(2);
@@ -106,12 +106,12 @@ TEST_F(PreviousPositions, CostNothingWhenNotAskedFor) {
     EXPECT_TRUE(made.bind(cage, mesh, options).ok());
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
     const Points nodes = nodesAt(1);
-    EXPECT_EQ(made.update(viewOf(nodes)), UpdateStatus::Updated);
+    EXPECT_EQ(made.update(viewOf(nodes)), StatusCode::Ok);
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
     return test::allocatedBytes() - before;
   };
   EXPECT_EQ(bytesOf(true) - bytesOf(false), 12 * mesh.vertexCount());
-  EXPECT_TRUE(skin.previousPositions().empty());  // unbound
+  EXPECT_TRUE(skin.previousPositions().empty());  // there are none while unbound
 }
 
 TEST_F(PreviousPositions, UpdatesAllocateNothing) {
@@ -119,7 +119,7 @@ TEST_F(PreviousPositions, UpdatesAllocateNothing) {
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
   const Points nodes = nodesAt(1);
   const std::size_t before = test::allocationCount();
-  ASSERT_EQ(skin.update(viewOf(nodes)), UpdateStatus::Updated);
+  ASSERT_EQ(skin.update(viewOf(nodes)), StatusCode::Ok);
   EXPECT_EQ(test::allocationCount(), before);
 }
 

@@ -20,7 +20,7 @@ class QuadraticPoints : public testing::Test {
  protected:
   static constexpr double kRounding = sizeof(Scalar) == 4 ? 3e-6 : 5e-15;
 
-  /// Of all vertices, one by one.
+  /// The positions of all vertices, computed one by one.
   Points oneByOne(const CarriedPoints<Scalar>& carried, const Points& nodes) const {
     const NodePositions<Scalar> positionOf = [&](int node) -> Eigen::Matrix<Scalar, 3, 1> {
       return nodes[static_cast<std::size_t>(node)].cast<Scalar>();
@@ -52,7 +52,7 @@ TYPED_TEST(QuadraticPoints, AreWhereQuadraticSkinningDrawsAllVertices) {
 }
 
 TYPED_TEST(QuadraticPoints, AreBoundedAsTheirSurfaceIs) {
-  const Points nodes = randomPoints(this->cage.nodeCount(), around(this->cage, 3.0), 11);  // crumpled
+  const Points nodes = randomPoints(this->cage.nodeCount(), around(this->cage, 3.0), 11);  // a crumpled cage
   this->all.move(nodes);
   EXPECT_LT(distances(this->oneByOne(this->all, nodes), this->all.quadratic()).longest, 20 * this->kRounding);
 }

@@ -30,19 +30,19 @@ std::vector<int> allTets(const TetMesh& cage) {
   return tets;
 }
 
-/// What holds on every lattice, jittered or not.
+/// These properties hold on every lattice, jittered or not.
 class OnLattices : public testing::TestWithParam<test::LatticeKind> {};
 INSTANTIATE_TEST_SUITE_P(Quadratic, OnLattices, testing::ValuesIn(test::latticeKinds()),
                          [](const auto& test) { return test.param.name; });
 
-/// tolerance  in sizes of the cage, which is about 1, for maps that send it to at most four times that
+/// tolerance  relative to the size of the cage, which is about 1, for maps that send it to at most four times that
 template <class Scalar>
 void expectAffineMapsExact(const TetMesh& cage, double tolerance) {
   CarriedPoints<Scalar> points(cage, pointsAround(800, 51));
   EXPECT_GT(points.fit.outside, 100u);
   EXPECT_GT(points.fit.inside, 100u);
   for (unsigned seed = 0; seed <= 8; ++seed) {
-    // The first is rest itself.
+    // The first one is the rest position itself.
     const test::SmoothMap map = test::affineMap(seed);
     const auto moved = [&](const Points& p) { return seed == 0 ? p : map(p); };
     points.move(moved(cage.nodes));
@@ -57,7 +57,7 @@ TEST_P(OnLattices, AffineMapsAreExactInsideAndOutside) {
   expectAffineMapsExact<double>(cage, 1e-12);
 }
 
-/// The vertices themselves, not only the points that their weights in float stand for.
+/// Compares with the vertices themselves, not only with the points that their weights in float stand for.
 TEST_P(OnLattices, RestIsReproducedInFloat) {
   const TetMesh cage = GetParam().make(4);
   const Points vertices = pointsAround(800, 52);
@@ -70,7 +70,7 @@ TEST_P(OnLattices, QuadraticMapsAreExactInsideUpToTheBoundary) {
   const TetMesh cage = GetParam().make(4);
   const std::vector<int> boundary = test::boundaryTets(cage);
   ASSERT_LT(boundary.size(), cage.tetCount());
-  const std::vector<int> tets = allTets(cage);  // those in the interior and those on the boundary
+  const std::vector<int> tets = allTets(cage);  // interior and boundary tets
   const Points vertices = test::pointsIn(cage, tets, 53);
   CarriedPoints<double> points(cage, vertices, tets);
   CarriedPoints<float> rounded(cage, vertices, tets);
@@ -87,7 +87,7 @@ TEST_P(OnLattices, QuadraticMapsAreExactInsideUpToTheBoundary) {
   }
 }
 
-/// D. James's own form of it: x(v) = sum_i b_i (x_i + F_i (v - X_i) / 2).
+/// The formula as D. James gives it: x(v) = sum_i b_i (x_i + F_i (v - X_i) / 2).
 TEST_P(OnLattices, EdgeFormIsTheDirectFormula) {
   const TetMesh cage = GetParam().make(3);
   const Points vertices = test::pointsIn(cage, allTets(cage), 54);
@@ -123,7 +123,7 @@ TEST_P(OnLattices, EdgeFormIsTheDirectFormula) {
   }
 }
 
-/// The same point bound to the tets on both sides.
+/// The largest difference between two surfaces whose points are the same but bound to the tets on either side.
 template <class Scalar>
 double worstJump(const TetMesh& cage) {
   Points vertices;
@@ -160,7 +160,7 @@ TEST_P(OnLattices, SurfaceIsContinuousAcrossFaces) {
   EXPECT_LT(worstJump<double>(cage), 4e-7);  // weights are float
 }
 
-/// Root mean square errors of both surfaces, by map, of points in some of a cage's tets.
+/// By map: the root mean square errors of the linear and the quadratic surface, for points in some of a cage's tets.
 struct Errors {
   std::vector<double> linear, quadratic;
 };
@@ -187,7 +187,7 @@ TEST_P(OnLattices, ErrorsFallWithTheCubeOfTheSpacingOnTheBoundaryToo) {
   for (const std::vector<Errors>& levels : {everywhere, onBoundary}) {
     for (std::size_t map = 0; map < levels[0].linear.size(); ++map) {
       EXPECT_GT(std::log2(levels[0].quadratic[map] / levels[3].quadratic[map]) / 3.0, 2.7) << "map " << map;
-      for (std::size_t level = 0; level < 3; ++level) {  // one alone depends on the points more
+      for (std::size_t level = 0; level < 3; ++level) {  // a single refinement depends more on the choice of points
         EXPECT_GT(std::log2(levels[level].quadratic[map] / levels[level + 1].quadratic[map]), 2.4)
             << "map " << map << ", refinement " << level;
       }
@@ -196,7 +196,7 @@ TEST_P(OnLattices, ErrorsFallWithTheCubeOfTheSpacingOnTheBoundaryToo) {
   }
 }
 
-/// Everywhere and seen from outside: the surface that a user looks at.
+/// The errors are measured everywhere on the surface that a user looks at.
 TEST_P(OnLattices, SurfaceIsManyTimesCloserThanTheLinearOne) {
   const TetMesh cage = GetParam().make(8);
   const Points vertices = test::sphere(20, 0.47, Eigen::Vector3d::Constant(0.5)).positions;
@@ -212,7 +212,7 @@ TEST_P(OnLattices, SurfaceIsManyTimesCloserThanTheLinearOne) {
   }
 }
 
-/// Points up to half a cell outside: still better than extrapolating the linear map.
+/// Points up to half a cell outside are still better than with extrapolation of the linear map.
 TEST_P(OnLattices, VerticesOutsideGainToo) {
   const TetMesh cage = GetParam().make(8);
   const Points vertices = test::sphere(20, 0.75, Eigen::Vector3d::Constant(0.5)).positions;
@@ -232,14 +232,15 @@ TEST_P(OnLattices, VerticesOutsideGainToo) {
   }
 }
 
-/// To first order from the closest point: the raw products would grow with the square of the distance.
+/// Outside, the map is continued to first order from the closest point: the raw products would grow with the square of
+/// the distance.
 TEST(QuadraticOutside, ContinuesTheMapToFirstOrderFromTheClosestPoint) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const Eigen::Vector3d face(0.51, 1.0, 0.43), step(0.0, 0.05, 0.0);
   const Points line{face, face + step, face + 2 * step, face + 3 * step};
   CarriedPoints<double> points(cage, line,
                                std::vector<std::int32_t>(4, CarriedPoints<double>(cage, line).bindings[1].tet));
-  // fromTets takes them for vertices inside; as they are found, three are outside.
+  // Binding from tets treats these vertices as inside; a search finds three of them outside.
   CarriedPoints<double> found(cage, line);
   ASSERT_EQ(found.fit.outside, 3u);
   const test::SmoothMap map = test::quadraticMap(3, 0.3);
@@ -250,7 +251,7 @@ TEST(QuadraticOutside, ContinuesTheMapToFirstOrderFromTheClosestPoint) {
   EXPECT_LT((x[3] - x[2] - (x[1] - x[0])).norm(), 1e-6);
   EXPECT_LT((x[1] - x[0] - map.gradient(face) * step).norm(), 2e-3 * step.norm());
   const Points raw = points.quadratic();
-  EXPECT_GT((raw[3] - 2 * raw[2] + raw[1]).norm(), 1e-4);  // it bends
+  EXPECT_GT((raw[3] - 2 * raw[2] + raw[1]).norm(), 1e-4);  // the raw line bends
 }
 
 TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
@@ -269,7 +270,8 @@ TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
   }
 }
 
-/// Offsets across the layer that are not all alike almost tell second derivatives apart: they must not be trusted.
+/// Where the offsets across the layer are not all alike, they almost determine second derivatives: the fit must not
+/// trust these.
 TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
   for (const double jitter : {0.1, 0.25}) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -300,14 +302,14 @@ TEST(QuadraticReport, CountsNodesEdgesAndNeighbours) {
   mesh.positions = {{0.1, 0.2, 0.3}};
   BindingOptions options;
   options.interpolation = Interpolation::Quadratic;
-  const QuadraticReport report = SkinBinding<double>::make(cage, mesh, options).value()->quadraticReport();
+  const QuadraticReport report = SkinBinding<double>::create(cage, mesh, options).value()->quadraticReport();
   EXPECT_EQ(report.nodes, 4u);
-  EXPECT_EQ(report.thinNodes, 4u);
+  EXPECT_EQ(report.underdeterminedNodes, 4u);
   EXPECT_EQ(report.edges, 6u);
   EXPECT_EQ(report.meanNeighbours, 3.0);
   EXPECT_GT(report.milliseconds, 0.0);
-  EXPECT_NE(report.describe().find("4 nodes in thin places"), std::string::npos) << report.describe();
-  // One vertex in a large cage: four nodes, not all of them.
+  EXPECT_NE(report.describe().find("4 nodes in thin regions"), std::string::npos) << report.describe();
+  // One vertex in a large cage needs four nodes, not all of them.
   CarriedPoints<double> one(test::latticeCage(6, 6, 6, 0.2), {{0.51, 0.52, 0.53}});
   EXPECT_EQ(one.stencils.gradientCount(), 4u);
   EXPECT_EQ(one.stencils.edgeCount(), 6u);
@@ -335,7 +337,7 @@ TEST_P(OnLattices, NoiseOfTheNodesIsHardlyMagnified) {
   EXPECT_GT(std::sqrt(linear), 1.0 * kDeviation);
 }
 
-/// Both precisions of nodes and of output.
+/// Both precisions of nodes, combined with both precisions of output.
 template <class Types>
 class QuadraticOutput : public testing::Test {};
 using Precisions = testing::Types<std::pair<float, float>, std::pair<float, double>, std::pair<double, float>,
@@ -353,7 +355,7 @@ TYPED_TEST(QuadraticOutput, IsTheSameInEveryOrderAndStride) {
   const std::size_t count = points.embedding.vertexCount();
   const Eigen::Matrix<Scalar, 3, 1> origin(Scalar(0.5), Scalar(-2), Scalar(1));
   const auto skin = [&](VertexOrder order, std::size_t step, Box3& bounds) {
-    // Nothing between the points nor behind the last one is touched.
+    // Nothing between the points or beyond the last one is written.
     std::vector<Point> out(step * count + 20, Point::Constant(-77));
     const SkinOutput<Scalar, Out> output{{out.front().data(), count, step * sizeof(Point)}, order, origin};
     skinQuadratic(points.embedding, points.stencils, points.edges, points.nodes, output, &bounds);

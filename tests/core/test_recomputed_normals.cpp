@@ -57,7 +57,7 @@ TEST(RecomputedNormals, WithoutAuthoredNormalsTheCornersOfABoxAreSmooth) {
     const TriangleMesh mesh = box(authored);
     Carried<float> carried(cage, mesh, Normals::Recomputed, Interpolation::Linear, hardEdgeDegrees);
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-      const Eigen::Vector3d corner = mesh.positions[v] - kCentre;  // one or two triangles of each face meet here
+      const Eigen::Vector3d corner = mesh.positions[v] - kCentre;  // one or two triangles of each face have this corner
       EXPECT_LT(angle(carried.normal(v), corner), 36.0);
       EXPECT_GT((carried.normal(v).cwiseProduct(corner)).minCoeff(), 0.1);
       for (std::size_t w = 0; w < v; ++w) {
@@ -69,8 +69,8 @@ TEST(RecomputedNormals, WithoutAuthoredNormalsTheCornersOfABoxAreSmooth) {
   }
 }
 
-/// Every triangle with vertices of its own, as in an STL file; normals of one position differ by a little, and every
-/// fourth is of this length.
+/// Every triangle has vertices of its own, as in an STL file; normals at the same position differ slightly, and every
+/// fourth has this length.
 void expectSmoothSeams(float length) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const TriangleMesh whole = authoredSphere(12, 0.52);
@@ -78,7 +78,7 @@ void expectSmoothSeams(float length) {
   for (const auto& t : whole.triangles) {
     for (const int v : t) {
       cut.positions.push_back(whole.positions[v]);
-      // A degree or so off, as if from a coarse file.
+      // The normals are off by about a degree, as in a coarse file.
       const float off = 0.01f * static_cast<float>(cut.normals.size() % 3);
       const float size = cut.normals.size() % 4 == 0 ? length : 1.0f;
       cut.normals.push_back(size * (whole.normals[v] + off * Eigen::Vector3f::UnitX()).normalized());
@@ -88,7 +88,7 @@ void expectSmoothSeams(float length) {
   }
   const test::SmoothMap waves = test::smoothMaps(kCentre)[3];
   Carried<float> expected(cage, whole, Normals::Recomputed), carried(cage, cut, Normals::Recomputed);
-  EXPECT_EQ(carried.skin.binding()->parts().recomputed->groupCount(), whole.vertexCount());
+  EXPECT_EQ(dataOf(*carried.skin.binding()).recomputed->groupCount(), whole.vertexCount());
   expected.move(waves(cage.nodes));
   carried.move(waves(cage.nodes));
   for (std::size_t t = 0; t < whole.triangleCount(); ++t) {
@@ -110,12 +110,13 @@ TEST(RecomputedNormals, SeamsAreSmoothWhereRestNormalsAreNotOfUnitLengthOrAbsent
   }
 }
 
-/// Triangles between random vertices: edges of one, two and many of them, turned either way, some twice, some without
-/// area, and vertices of none.
+/// Triangles between random vertices: their edges belong to one, two or many of them, with either orientation; some
+/// triangles occur twice, some have no area, and some vertices belong to none.
 TriangleMesh randomSoup(std::size_t vertexCount, std::size_t triangleCount, unsigned seed) {
   TriangleMesh mesh;
   mesh.positions = test::randomPoints(vertexCount, {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)}, seed);
-  for (std::size_t v = 0; v < vertexCount / 5; ++v) mesh.positions.push_back(mesh.positions[2 * v]);  // seams
+  // Duplicates, as at seams.
+  for (std::size_t v = 0; v < vertexCount / 5; ++v) mesh.positions.push_back(mesh.positions[2 * v]);
   std::mt19937 random(seed);
   const auto any = [&] { return static_cast<int>(random() % (mesh.vertexCount() - 1)); };
   for (std::size_t t = 0; t < triangleCount; ++t) mesh.triangles.push_back({any(), any(), any()});
@@ -176,7 +177,7 @@ TEST(NormalTopology, HasOneClosedPathAroundEveryVertexOfAClosedSurface) {
   }
 }
 
-/// Neither costs more than its sorting: squares of such numbers would be noticed.
+/// Neither mesh costs more than sorting it: the square of such counts would be noticeable.
 TEST(NormalTopology, TakesManyTrianglesAroundOneVertex) {
   constexpr int kMany = 200000;
   TriangleMesh fan, same;
@@ -206,23 +207,23 @@ TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
   for (const double degrees : {0.0, 60.0, 3.0, 63.0, 120.0}) mesh.normals.push_back(tilted(degrees));
   const NormalTopology topology(mesh, {}, kHardEdgeDegrees);
   EXPECT_EQ(topology.groupCount(), 3u);
-  EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 2, 1, 3, 4}));
-  EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 2, 4, 5}));
+  EXPECT_EQ(topology.indices(), (std::vector<std::uint32_t>{0, 2, 1, 3, 4}));
+  EXPECT_EQ(topology.groupPositions(), (std::vector<std::uint32_t>{0, 2, 4, 5}));
   EXPECT_EQ(NormalTopology(mesh, {}, 61.0).groupCount(), 2u);
   EXPECT_EQ(NormalTopology(mesh, {}, 360.0).groupCount(), 1u);
   mesh.normals.clear();
   EXPECT_EQ(NormalTopology(mesh, {}, kHardEdgeDegrees).groupCount(), 1u);
 }
 
-/// It does not make hard edges of its own, and softens none: the others are grouped as if it were not there.
+/// Such a vertex neither creates hard edges nor softens any: the others are grouped as if it were not there.
 TEST(NormalTopology, AVertexWithoutARestNormalJoinsTheFirstGroupOfItsPosition) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   TriangleMesh mesh;
   mesh.positions.assign(5, {0.1, 0.2, 0.3});
   mesh.normals = {{0, 0, 0}, {2, 0, 0}, {nan, 1, 0}, {0, 3, 0}, {0.5f, 0, 0}};
   const NormalTopology topology(mesh, {}, kHardEdgeDegrees);
-  EXPECT_EQ(topology.places(), (std::vector<std::uint32_t>{0, 1, 2, 4, 3}));
-  EXPECT_EQ(topology.groupPlaces(), (std::vector<std::uint32_t>{0, 4, 5}));
+  EXPECT_EQ(topology.indices(), (std::vector<std::uint32_t>{0, 1, 2, 4, 3}));
+  EXPECT_EQ(topology.groupPositions(), (std::vector<std::uint32_t>{0, 4, 5}));
   mesh.normals.assign(5, {0, 0, 0});
   EXPECT_EQ(NormalTopology(mesh, {}, kHardEdgeDegrees).groupCount(), 1u);
 }

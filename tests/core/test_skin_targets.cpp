@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a skin writes into the caller's memory it never reads back: that may be mapped for writing only, and reading it
-// a hundred times slower.
+// A skin never reads back what it writes into the caller's memory: that memory may be mapped for writing only, and
+// reading it may be a hundred times slower.
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
@@ -16,7 +16,7 @@
 namespace tetskin {
 namespace {
 
-/// Between any two stages of an update the caller's memory loses what was written to it: only the last one's is left.
+/// Overwrites the caller's memory between any two stages of an update, so that only what the last stage writes is left.
 class Forgetful : public ParallelFor {
  public:
   void run(std::size_t count, Task task) override {
@@ -31,7 +31,7 @@ class Forgetful : public ParallelFor {
   int stages = 0;
 };
 
-/// Large enough that every stage is cut into several tasks, and so announces itself.
+/// The mesh is large enough that every stage is divided into several tasks and is therefore counted.
 class SkinTargets : public testing::Test {
  protected:
   SkinTargets() {
@@ -40,7 +40,7 @@ class SkinTargets : public testing::Test {
     for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(waves.at(p).cast<float>());
   }
 
-  /// Points of `stride` scalars each in the caller's memory.
+  /// Points of `stride` scalars each, in the caller's memory.
   template <class Scalar>
   PointView<Scalar> points(std::vector<float>& memory, std::size_t stride) {
     memory.assign(mesh.vertexCount() * stride * (sizeof(Scalar) / sizeof(float)), 0.0f);
@@ -63,8 +63,8 @@ class SkinTargets : public testing::Test {
     options.tangentTarget = points<float>(tangents, stride);
     options.threads = &caller;
     ASSERT_TRUE(skin.bind(own.binding(), viewOf(std::as_const(nodes)), instanceOf(options)).ok());
-    ASSERT_EQ(own.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
-    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    ASSERT_EQ(own.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
+    ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
     ASSERT_GE(caller.stages, 2);
     const bool tangentsLast = !own.tangents().empty();
     const PointView<const float> expected = tangentsLast ? own.tangents() : own.normals();

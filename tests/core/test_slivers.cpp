@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Surfaces just outside of cages with slivers on their skin, and of cages without.
+// Surfaces just outside cages with slivers at their boundary, and outside cages without slivers.
 #include "support/brute_force.h"
 #include "support/cage_surface.h"
 #include "support/carried_points.h"
@@ -28,7 +28,7 @@ double diagonalOf(const TetMesh& cage) {
   return boundingBox(cage.nodes).diagonal().norm();
 }
 
-/// A ball of diameter 2: a body-centred lattice, whose cubes' shells become spheres.
+/// A ball of diameter 2: a body-centred lattice whose cubic shells become spheres.
 TetMesh ballCage(int across) {
   TetMesh cage = test::bodyCentredCage(across, across, across, 2.0 / across);
   for (Eigen::Vector3d& p : cage.nodes) {
@@ -38,7 +38,7 @@ TetMesh ballCage(int across) {
   return cage;
 }
 
-/// A new node just above a face, joined with it.
+/// Adds a node just above a face, and a tet that joins it to the face.
 void coverWithCap(TetMesh& cage, const std::array<int, 3>& face) {
   const Eigen::Vector3d &a = cage.nodes[face[0]], &b = cage.nodes[face[1]], &c = cage.nodes[face[2]];
   const double size = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
@@ -47,7 +47,7 @@ void coverWithCap(TetMesh& cage, const std::array<int, 3>& face) {
   cage.nodes.push_back(tip);
 }
 
-/// One tet over two faces that share the edge ab, after d is moved so that all but one lie in a plane.
+/// Moves d so that all four nodes lie nearly in a plane, and covers the two faces that share the edge ab with one tet.
 void coverWithQuad(TetMesh& cage, int a, int b, int c, int d) {
   const Eigen::Vector3d &pa = cage.nodes[a], &pb = cage.nodes[b], &pc = cage.nodes[c];
   const Eigen::Vector3d normal = (pb - pa).cross(pc - pa).normalized();
@@ -56,7 +56,7 @@ void coverWithQuad(TetMesh& cage, int a, int b, int c, int d) {
   cage.tets.push_back({a, b, c, d});
 }
 
-/// `count` slivers on the skin, of both kinds by turns, which share no node; all tets positive.
+/// Adds `count` slivers at the boundary, alternately of both kinds, which share no node; all tets are positive.
 TetMesh withSlivers(TetMesh cage, int count) {
   const auto faces = boundaryFaces(cage);
   std::vector<bool> used(cage.nodeCount(), false);
@@ -72,7 +72,7 @@ TetMesh withSlivers(TetMesh cage, int count) {
       if (take({a, b, c})) coverWithCap(cage, faces[f]), ++made;
       continue;
     }
-    for (const auto& [k, l, m] : faces) {  // the face behind the edge ab
+    for (const auto& [k, l, m] : faces) {  // the face on the other side of the edge ab
       const int d = k == b && l == a ? m : l == b && m == a ? k : m == b && k == a ? l : -1;
       if (d >= 0 && take({a, b, c, d})) coverWithQuad(cage, a, b, c, d), ++made;
     }
@@ -82,7 +82,8 @@ TetMesh withSlivers(TetMesh cage, int count) {
   return cage;
 }
 
-/// Longest distance of a surface from where the boundary takes it, after each node has moved by `amount`.
+/// The longest distance between a surface and the position to which the boundary takes it, after each node has moved by
+/// `amount`.
 double strayed(const TetMesh& cage, const Points& vertices, const std::vector<std::int32_t>& tetOf, double amount) {
   test::CarriedPoints<double> carried(cage, vertices, tetOf);
   const Points nodes = test::movedAtRandom(cage.nodes, amount, 5);
@@ -101,39 +102,39 @@ TEST(Slivers, CarryNoVertexThatAnotherTetNearbyCarriesWell) {
   const double size = boundingBox(cage.nodes).sizes().maxCoeff(), distance = 0.01 * diagonalOf(cage);
   const TriangleMesh mesh = test::surfaceBeside(cage, distance);
   Embedding embedding;
-  // Rescued vertices are no farther from the cage than others.
+  // Vertices that are reassigned are no farther from the cage than others.
   const Fit report = embedInto(cage, mesh, {OutsideRule::Nearest, 1.001 * distance}, embedding);
   ASSERT_TRUE(report.ok()) << report.status.message;
   EXPECT_GT(report.outside, 0.99 * static_cast<double>(mesh.vertexCount()));
   EXPECT_LT(strayed(cage, mesh.positions, tetsOf(embedding), 0.01 * size), 0.03 * size);
-  EXPECT_GT(report.rescued, 300u);
-  EXPECT_LT(report.largestWeight, 2.0);
-  const std::string count = std::to_string(report.rescued) + " vertices outside";
+  EXPECT_GT(report.reassignedByWeight, 300u);
+  EXPECT_LT(report.maxWeight, 2.0);
+  const std::string count = std::to_string(report.reassignedByWeight) + " vertices outside";
   EXPECT_NE(report.describe().find(count), std::string::npos) << report.describe();
 }
 
 TEST(Slivers, AreAvoidedAsTestingAllPairsWould) {
   const TetMesh cage = withSlivers(ballCage(4), 12);
   Points vertices;
-  for (const double share : {-0.01, 1e-5, 0.003, 0.01, 0.1, 2.0}) {
-    const Points layer = test::surfaceBeside(cage, share * diagonalOf(cage), 1).positions;
+  for (const double fraction : {-0.01, 1e-5, 0.003, 0.01, 0.1, 2.0}) {
+    const Points layer = test::surfaceBeside(cage, fraction * diagonalOf(cage), 1).positions;
     vertices.insert(vertices.end(), layer.begin(), layer.end());
   }
   Embedding embedding;
   const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   const auto expected = test::bruteForce(cage, vertices, OutsideRule::Nearest);
   const auto bindings = embedding.bindings();
-  std::size_t rescued = 0;
+  std::size_t reassigned = 0;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     EXPECT_EQ(bindings[v].tet, expected[v].tet) << "vertex " << v;
     EXPECT_EQ(bindings[v].inside, expected[v].inside) << "vertex " << v;
-    rescued += expected[v].rescued();
+    reassigned += expected[v].reassigned();
   }
-  EXPECT_EQ(report.rescued, rescued);
-  EXPECT_GT(rescued, 500u);
+  EXPECT_EQ(report.reassignedByWeight, reassigned);
+  EXPECT_GT(reassigned, 500u);
 }
 
-/// Surfaces 1 % outside of cages without slivers: as well carried as by the nearest tets alone.
+/// Surfaces 1 % outside of cages without slivers are carried as well as by the nearest tets alone.
 TEST(Slivers, MakeNoDifferenceWhereThereAreNone) {
   std::vector<TetMesh> cages{ballCage(4), test::thinLayerCage(0.125), test::latticeCage(2, 9, 2, 0.25),
                              test::singleTet()};
@@ -154,7 +155,7 @@ TEST(Slivers, MakeNoDifferenceWhereThereAreNone) {
   }
 }
 
-/// Two plates at z in [-depth, 0] and [0.1, 0.6], the first with a skin of slivers.
+/// Two plates at z in [-depth, 0] and [0.1, 0.6], the first with a layer of slivers at its boundary.
 TetMesh plates(double depth) {
   TetMesh cage = test::latticeCage(4, 4, 2, 0.25);
   TetMesh upper = cage;
@@ -169,7 +170,7 @@ TetMesh plates(double depth) {
   return cage;
 }
 
-/// A sheet above the lower plate whose columns of vertices are at these heights, one next to the other.
+/// A sheet above the lower plate, with columns of vertices side by side at these heights.
 TriangleMesh sheetAt(const std::vector<double>& heights) {
   TriangleMesh mesh;
   constexpr int kRows = 7;
@@ -194,30 +195,31 @@ std::size_t inUpperPlate(const TetMesh& cage, const Embedding& embedding) {
 }
 
 TEST(Slivers, ARescueStaysWithTheNeighbours) {
-  const TetMesh cage = plates(0.03);  // carries vertices above it well, but the upper plate does it better
+  // The lower plate carries the vertices above it well, but the upper plate does so better.
+  const TetMesh cage = plates(0.03);
   for (const TriangleMesh& mesh : {sheetAt({-0.02, -0.01, 0.04, 0.04}), sheetAt({2e-5, 2e-5, 0.04, 0.04})}) {
     Embedding embedding;
     const Fit alone = embedInto(cage, viewOf(mesh.positions), {}, embedding);
-    EXPECT_EQ(alone.rescued, 14u);
+    EXPECT_EQ(alone.reassignedByWeight, 14u);
     EXPECT_GT(inUpperPlate(cage, embedding), 7u);
     const Fit report = embedInto(cage, mesh, {}, embedding);
-    EXPECT_EQ(report.rescued, 14u);
+    EXPECT_EQ(report.reassignedByWeight, 14u);
     EXPECT_EQ(inUpperPlate(cage, embedding), 0u);
-    EXPECT_GT(report.keptWithNeighbours, 7u);
+    EXPECT_GT(report.reassignedByConnectivity, 7u);
   }
 }
 
 TEST(Slivers, NoVertexIsKeptWithItsNeighboursByOne) {
   const TetMesh cage = plates(0.5);
-  // The last two columns are nearer to the upper plate; the lower one's skin is too thin for them.
+  // The last two columns are closer to the upper plate; the layer of slivers on the lower one is too thin for them.
   const TriangleMesh mesh = sheetAt({-0.2, -0.1, 0.06, 0.07});
   Embedding embedding;
-  EXPECT_EQ(embedInto(cage, viewOf(mesh.positions), {}, embedding).rescued, 0u);
+  EXPECT_EQ(embedInto(cage, viewOf(mesh.positions), {}, embedding).reassignedByWeight, 0u);
   EXPECT_EQ(inUpperPlate(cage, embedding), 14u);
   const Fit report = embedInto(cage, mesh, {}, embedding);
-  EXPECT_EQ(report.keptWithNeighbours, 14u);
+  EXPECT_EQ(report.reassignedByConnectivity, 14u);
   EXPECT_EQ(inUpperPlate(cage, embedding), 0u);
-  EXPECT_LT(report.largestWeight, kLargestWeight);
+  EXPECT_LT(report.maxWeight, kMaxWeight);
 }
 
 TEST(Slivers, AVertexStaysWithAnotherPartWhereItsOwnIsAllSlivers) {
@@ -230,8 +232,8 @@ TEST(Slivers, AVertexStaysWithAnotherPartWhereItsOwnIsAllSlivers) {
   Embedding embedding;
   const Fit report = embedInto(cage, mesh, {}, embedding);
   EXPECT_EQ(report.inside, 14u);
-  EXPECT_EQ(report.keptWithNeighbours, 0u);
-  EXPECT_LT(report.largestWeight, kLargestWeight);
+  EXPECT_EQ(report.reassignedByConnectivity, 0u);
+  EXPECT_LT(report.maxWeight, kMaxWeight);
 }
 
 }  // namespace

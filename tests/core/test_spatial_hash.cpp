@@ -118,7 +118,7 @@ TEST(SpatialHash, SmallBoxVisitsFewPoints) {
   const SpatialHash hash = hashOf(points, 0.05);
   const std::size_t visited =
       query(hash, Box3(Eigen::Vector3d::Constant(0.41), Eigen::Vector3d::Constant(0.44))).visited;
-  EXPECT_LT(visited, 40u);  // one cell holds 2.5 points on average; the rest are collisions
+  EXPECT_LT(visited, 40u);  // a cell holds 2.5 points on average; the rest are hash collisions
 }
 
 TEST(SpatialHash, BoxOfManyRowsVisitsEveryPointOnce) {

@@ -14,7 +14,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Points in, on and about a tet: mixtures of its corners, a few in the last bits beyond a face.
+/// Points in, on and near a tet: mixtures of its corners, some of which are beyond a face only by the last bits.
 Points pointsAbout(const TetCorners& p, unsigned seed) {
   Points points(p.begin(), p.end());
   for (const Eigen::Vector3d& w : test::randomPoints(400, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, seed)) {
@@ -28,7 +28,7 @@ Points pointsAbout(const TetCorners& p, unsigned seed) {
   return points;
 }
 
-/// Regular, needle, sliver, wedge: tets of size about 1, the worst just above kFlatTet.
+/// Regular tets, needles, slivers and wedges of size about 1, the worst of them just above kFlatTet.
 std::vector<TetCorners> oddTets() {
   return {{Eigen::Vector3d{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
           {Eigen::Vector3d{0, 0, 0}, {1e-4, 0, 0}, {0, 1e-4, 0}, {0.3, 0.4, 1}},
@@ -51,7 +51,7 @@ std::set<std::uint32_t> selected(const TetFilter& filter, const SpatialHash& has
   return points;
 }
 
-/// With the kernels of each instruction set.
+/// Runs with the kernels of each instruction set.
 class TetFilters : public testing::TestWithParam<InstructionSet> {
  protected:
   TetFilters() { setInstructionSet(GetParam()); }
@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(All, TetFilters, testing::ValuesIn(availableInstruction
   return name;
 });
 
-/// Every point that the double decision puts in the tet passes; and, within a box of the tet's own, few others.
+/// Every point that the test in double precision puts in the tet passes; within a box of the tet's own size, few others
+/// do.
 void expectNothingLost(const TetCorners& p, const Box3& frame) {
   if (isFlat(p)) return;
   const Points points = pointsAbout(p, 51);
@@ -80,7 +81,7 @@ void expectNothingLost(const TetCorners& p, const Box3& frame) {
   }
 }
 
-/// Every point nearer than its limit passes.
+/// Every point closer than its limit passes.
 void expectNoneNearLost(const TetCorners& p, const Box3& frame, double reach) {
   if (isFlat(p)) return;
   const Points points = pointsAbout(p, 52);

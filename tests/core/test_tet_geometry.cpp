@@ -31,7 +31,7 @@ TEST(TetGeometry, MeanEdgeIsThatOfTheTetsWithAVolume) {
   mesh.nodes.insert(mesh.nodes.end(), {{7, 0, 0}, {0, 9, 0}, {7, 9, 0}});
   mesh.tets.push_back({0, 4, 5, 6});  // flat
   EXPECT_DOUBLE_EQ(meanEdge(mesh), (1.0 + std::sqrt(2.0)) / 2.0);
-  mesh.tets.push_back({0, 1, 2, 3});  // counts once more
+  mesh.tets.push_back({0, 1, 2, 3});  // a duplicate counts again
   mesh.nodes.emplace_back(0, 0, 3);
   mesh.tets.push_back({0, 1, 2, 7});
   EXPECT_DOUBLE_EQ(meanEdge(mesh), (2 * (3 + 3 * std::sqrt(2.0)) + 5 + std::sqrt(2.0) + 2 * std::sqrt(10.0)) / 18);
@@ -62,7 +62,7 @@ TEST(TetGeometry, WeightsAtNodesAreUnitVectors) {
 
 TEST(TetGeometry, BarycentricDistanceIsDistanceOverAltitude) {
   const Eigen::Vector4d b = BarycentricMap(kUnit)(Eigen::Vector3d(0.2, 0.2, -0.3));
-  EXPECT_DOUBLE_EQ(barycentricDistance(b), 0.3);  // 0.3 below the face opposite to a node of altitude 1
+  EXPECT_DOUBLE_EQ(barycentricDistance(b), 0.3);  // 0.3 below the face opposite a node of altitude 1
   EXPECT_LT(barycentricDistance(BarycentricMap(kUnit)(Eigen::Vector3d(0.2, 0.2, 0.2))), 0.0);
 }
 
@@ -102,7 +102,7 @@ TEST(TetGeometry, DistanceIsZeroInsideAndOnTheSurface) {
 }
 
 TEST(ClosestPointInTet, IsAPointOfTheTetFromHoweverFar) {
-  // Found by fuzzing: from so far away, nothing was left of a face but a division of zero by zero.
+  // Found by fuzzing: from so far away, a face reduced to a division of zero by zero.
   const TetCorners p = {Eigen::Vector3d(2e-12, 1.5e-12, 1.75e-12), Eigen::Vector3d(1.5e-12, 1.5e-12, 2e-12),
                         Eigen::Vector3d(0.0, 3.75e-12, 3.5e-12), Eigen::Vector3d::Zero()};
   const BarycentricMap map(p);

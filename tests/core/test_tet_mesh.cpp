@@ -3,8 +3,9 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/mesh.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <algorithm>
 #include <limits>
@@ -25,7 +26,7 @@ TEST(TetMesh, LatticeIsClean) {
   const TetMeshReport report = checkTetMesh(mesh);
   EXPECT_TRUE(report.clean()) << report.describe();
   EXPECT_TRUE(report.describe().empty());
-  EXPECT_TRUE(usable(mesh, report).ok());
+  EXPECT_TRUE(validate(mesh, report).ok());
   EXPECT_NEAR(signedTotal(mesh), 3 * 4 * 5 * 0.125, 1e-12);
   EXPECT_NEAR(totalVolume(mesh), 3 * 4 * 5 * 0.125, 1e-12);
 }
@@ -64,28 +65,28 @@ TEST(TetMesh, ReportsNonFiniteNodes) {
   const TetMeshReport report = checkTetMesh(mesh);
   EXPECT_EQ(report.nonFiniteNodes.count, 1u);
   EXPECT_EQ(report.nonFiniteNodes.first, 2u);
-  EXPECT_EQ(usable(mesh, report).code, StatusCode::NonFinite);
+  EXPECT_EQ(validate(mesh, report).code, StatusCode::NonFinite);
 }
 
 TEST(TetMesh, RefusesMoreTetsThanItsIndicesCanNumber) {
-  EXPECT_TRUE(checkTetCounts(kMostTets, kMostTets).ok());
-  const Status nodes = checkTetCounts(kMostTets + 1, 1);
+  EXPECT_TRUE(checkTetCounts(Limits::kMaxTets, Limits::kMaxTets).ok());
+  const Status nodes = checkTetCounts(Limits::kMaxTets + 1, 1);
   EXPECT_EQ(nodes.code, StatusCode::TooLarge);
   EXPECT_NE(nodes.message.find("134217728 nodes"), std::string::npos) << nodes.message;
-  const Status tets = checkTetCounts(4, kMostTets + 1);
+  const Status tets = checkTetCounts(4, Limits::kMaxTets + 1);
   EXPECT_EQ(tets.code, StatusCode::TooLarge);
   EXPECT_NE(tets.message.find("134217728 tets"), std::string::npos) << tets.message;
 }
 
 TEST(TetMesh, UsableRefusesWhatCannotBeEmbeddedIn) {
   TetMesh mesh;
-  EXPECT_EQ(usable(mesh, checkTetMesh(mesh)).code, StatusCode::Empty);
+  EXPECT_EQ(validate(mesh, checkTetMesh(mesh)).code, StatusCode::Empty);
   mesh = test::singleTet();
   mesh.tets[0][3] = 4;
-  EXPECT_EQ(usable(mesh, checkTetMesh(mesh)).code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(validate(mesh, checkTetMesh(mesh)).code, StatusCode::IndexOutOfRange);
   mesh = test::singleTet();
   mesh.nodes[3].z() = 0.0;
-  const Status flat = usable(mesh, checkTetMesh(mesh));
+  const Status flat = validate(mesh, checkTetMesh(mesh));
   EXPECT_EQ(flat.code, StatusCode::Degenerate);
   EXPECT_NE(flat.message.find("flat; "), std::string::npos) << flat.message;
 }
@@ -95,7 +96,7 @@ TEST(TetMesh, UsableAcceptsSurvivableFaults) {
   mesh.tets.push_back({0, 1, 2, 3});
   mesh.nodes.emplace_back(1, 2, 3);
   std::swap(mesh.tets[0][0], mesh.tets[0][1]);
-  EXPECT_TRUE(usable(mesh, checkTetMesh(mesh)).ok());
+  EXPECT_TRUE(validate(mesh, checkTetMesh(mesh)).ok());
 }
 
 TEST(TetMesh, CheckForUseDecidesAsTheFullCheckDoes) {
@@ -105,11 +106,11 @@ TEST(TetMesh, CheckForUseDecidesAsTheFullCheckDoes) {
   for (Tet& t : meshes[3].tets) t[3] = t[0];
   meshes[4].tets.push_back(meshes[4].tets[0]);
   for (const TetMesh& mesh : meshes) {
-    const Status quick = usable(mesh, checkForUse(mesh)), full = usable(mesh, checkTetMesh(mesh));
+    const Status quick = validate(mesh, inspectForUse(mesh)), full = validate(mesh, checkTetMesh(mesh));
     EXPECT_EQ(quick.code, full.code);
     EXPECT_EQ(quick.message, full.message);
   }
-  EXPECT_EQ(checkForUse(meshes[4]).duplicateTets.count, 0u);
+  EXPECT_EQ(inspectForUse(meshes[4]).duplicateTets.count, 0u);
 }
 
 TEST(TetMesh, RepairReorientsNegativeTetsAndReportsThem) {
@@ -172,7 +173,7 @@ TEST(TetMesh, BoundaryOfALatticeIsClosedAndFacesOutwards) {
     EXPECT_EQ(count, 1);
     EXPECT_EQ((directed.count({edge.second, edge.first})), 1u);
   }
-  EXPECT_NEAR(volume, 3 * 2 * 4, 1e-12);  // the divergence theorem: positive only if the faces look outwards
+  EXPECT_NEAR(volume, 3 * 2 * 4, 1e-12);  // by the divergence theorem: positive only if the faces look outwards
 }
 
 TEST(TetMesh, BoundaryOfOneTetIsItsFourFaces) {

@@ -22,14 +22,14 @@ const Box3 kUnitBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
 
 using test::around;
 
-/// Embeds under one rule and compares every vertex with brute force: the tet, the side, the weights, the extremes.
+/// Embeds under one rule and compares every vertex with brute force: the tet, the side, the weights and the extremes.
 EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, OutsideRule rule) {
   Embedding embedding;
   Fit report = embedInto(cage, viewOf(vertices), {rule}, embedding);
   EXPECT_TRUE(report.ok()) << report.status.message;
   const auto bindings = embedding.bindings();
   const auto expected = test::bruteForce(cage, vertices, rule);
-  std::size_t inside = 0, rescued = 0;
+  std::size_t inside = 0, reassigned = 0;
   double worstDistance = 0.0, largestWeight = 1.0;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     EXPECT_EQ(bindings[v].tet, expected[v].tet) << "vertex " << v;
@@ -38,7 +38,7 @@ EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, Outsid
     const Eigen::Vector4d b = BarycentricMap(cornersOf(cage, cage.tets[expected[v].tet]))(vertices[v]);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(bindings[v].weights[k], static_cast<float>(b[k])) << "vertex " << v;
     inside += expected[v].inside;
-    rescued += expected[v].rescued();
+    reassigned += expected[v].reassigned();
     if (expected[v].inside) continue;
     worstDistance = std::max(worstDistance, expected[v].distance);
     largestWeight = std::max(largestWeight, expected[v].weight);
@@ -46,13 +46,13 @@ EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, Outsid
   EXPECT_EQ(report.inside, inside);
   EXPECT_EQ(report.outside, vertices.size() - inside);
   EXPECT_EQ(report.unbound, 0u);
-  EXPECT_EQ(report.rescued, rescued);
-  EXPECT_EQ(report.worstDistance, worstDistance);
-  EXPECT_EQ(report.largestWeight, largestWeight);
+  EXPECT_EQ(report.reassignedByWeight, reassigned);
+  EXPECT_EQ(report.maxDistance, worstDistance);
+  EXPECT_EQ(report.maxWeight, largestWeight);
   return report;
 }
 
-/// A quarter of what is compared with brute force where sanitizers make that ten times as slow.
+/// A quarter of what is compared with brute force where sanitizers make that ten times slower.
 constexpr std::size_t manageable(std::size_t count) {
 #ifdef __SANITIZE_ADDRESS__
   return count / 4;
@@ -65,12 +65,12 @@ double candidatesPerVertex(const EmbedReport& report) {
   return static_cast<double>(report.candidates) / static_cast<double>(report.vertexCount);
 }
 
-/// Both rules; at most so many tested tets a vertex.
+/// Compares under both rules, with a limit on the number of tets tested per vertex.
 void expectBruteForceUnderBothRules(const TetMesh& cage, const Points& vertices,
-                                    double mostCandidates = std::numeric_limits<double>::infinity()) {
+                                    double maxCandidates = std::numeric_limits<double>::infinity()) {
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
     const EmbedReport report = expectBruteForce(cage, vertices, rule);
-    EXPECT_LE(candidatesPerVertex(report), mostCandidates) << "rule " << static_cast<int>(rule);
+    EXPECT_LE(candidatesPerVertex(report), maxCandidates) << "rule " << static_cast<int>(rule);
   }
 }
 
@@ -97,7 +97,7 @@ TEST(Embed, MatchesBruteForceInACageThatOverlapsItself) {
   expectBruteForceUnderBothRules(cage, vertices);
   Embedding embedding;
   const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
-  // Both lattices are unit cubes; what they share is about half of each.
+  // Both lattices are unit cubes; about half of each overlaps the other.
   EXPECT_GT(report.overlapping, report.vertexCount / 4);
   EXPECT_LT(report.overlapping, report.inside);
 }
@@ -128,7 +128,7 @@ TEST(Embed, MatchesBruteForceAtTheDragonsSize) {
   const Fit report = embedInto(cage, viewOf(mesh.positions), {}, embedding);
   EXPECT_GT(report.outside, 100u);
   EXPECT_LT(candidatesPerVertex(report), 60.0);
-  Points sample;  // brute force of all would take a minute
+  Points sample;  // brute force for all vertices would take a minute
   const std::size_t step = mesh.vertexCount() / manageable(2300);
   for (std::size_t v = 0; v < mesh.vertexCount(); v += step) sample.push_back(mesh.positions[v]);
   expectBruteForceUnderBothRules(cage, sample);
@@ -139,12 +139,12 @@ TEST(Embed, MatchesBruteForceWithClusteredVertices) {
   Points vertices = test::randomPoints(1500, {Eigen::Vector3d::Constant(0.51), Eigen::Vector3d::Constant(0.513)}, 4);
   const Points spread = test::randomPoints(100, around(cage, 1.1), 5);
   vertices.insert(vertices.end(), spread.begin(), spread.end());
-  // All tets whose boxes hold the cluster test it, no others.
+  // All tets whose boxes contain the cluster test it, and no other tets do.
   expectBruteForceUnderBothRules(cage, vertices, 60);
 }
 
 TEST(Embed, MatchesBruteForceInAGradedCage) {
-  const TetMesh cage = test::gradedCage();  // 6,000 tets, sizes 1 to 300
+  const TetMesh cage = test::gradedCage();  // 6,000 tets, their sizes in a ratio of 1 to 300
   Points vertices = test::randomPoints(manageable(700), around(cage, 1.2), 6);
   const Points fine =
       test::randomPoints(manageable(700), {Eigen::Vector3d::Constant(-0.002), Eigen::Vector3d::Constant(0.03)}, 7);
@@ -180,7 +180,7 @@ TEST(Embed, AFewFarVerticesCostNextToNothing) {
   Points vertices = test::randomPoints(20000, around(cage, 0.99), 10);
   Embedding embedding;
   const std::size_t without = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
-  vertices.emplace_back(1250, 0, 0);  // 10,000 tet sizes
+  vertices.emplace_back(1250, 0, 0);  // 10,000 tet sizes away
   vertices.emplace_back(0, -1250, 3);
   const std::size_t with = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
   EXPECT_LT(with, without + without / 10);
@@ -249,7 +249,7 @@ TEST(Embed, ScaleChangesNoDecision) {
 }
 
 TEST(Embed, MatchesBruteForceWithFloatVerticesFarFromTheOrigin) {
-  // At 1,000 sizes a float still resolves the mesh: its step is 6e-5.
+  // At a distance of 1,000 times the cage's size, floats still resolve the mesh: their spacing is 6e-5.
   TetMesh cage = test::latticeCage(5, 5, 5, 0.2);
   cage.nodes = test::scaledAndMoved(cage.nodes, 1.0, Eigen::Vector3d::Constant(1000.0));
   std::vector<Eigen::Vector3f> vertices;
@@ -298,7 +298,7 @@ TEST(Embed, SearchStaysLinearWhenTheCageIsFinerThanTheMesh) {
 }
 
 TEST(Embed, NearestRuleKeepsVerticesOnAThinLayer) {
-  // The barycentric distance is distance over altitude: it favours the big tets below the layer.
+  // The barycentric distance is a distance divided by an altitude: it favours the big tets below the layer.
   const TetMesh cage = test::thinLayerCage(0.02);
   Points vertices;
   for (const Eigen::Vector3d& p : test::randomPoints(400, kUnitBox, 17)) vertices.emplace_back(p.x(), 0.57, p.z());

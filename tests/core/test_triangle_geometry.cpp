@@ -18,14 +18,14 @@ Vector3d pointOf(const ClosestPoint& closest, const TriangleCorners& t) {
   return closest.weights[0] * t[0] + closest.weights[1] * t[1] + closest.weights[2] * t[2];
 }
 
-/// Distance to the nearest of many points of the triangle.
+/// Distance to the nearest of many sampled points of the triangle.
 double sampledDistance(const Vector3d& p, const TriangleCorners& t) {
   constexpr int kDivisions = 200;
-  double least = HUGE_VAL;
+  double minimum = HUGE_VAL;
   forEachSample(kDivisions, [&](int i, int j, int k) {
-    least = std::min(least, ((i * t[0] + j * t[1] + k * t[2]) / kDivisions - p).norm());
+    minimum = std::min(minimum, ((i * t[0] + j * t[1] + k * t[2]) / kDivisions - p).norm());
   });
-  return least;
+  return minimum;
 }
 
 TEST(ClosestPointOnTriangle, CoversItsSevenRegions) {
@@ -73,7 +73,7 @@ TEST(TriangleSamples, AreNoFartherApartThanTheSpacing) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}};
   EXPECT_EQ(edgeDivisions(mesh, {0, 1, 2}, 3.0), 1.0);
-  EXPECT_EQ(edgeDivisions(mesh, {0, 1, 2}, 0.5), 5.0);  // of 2.24
+  EXPECT_EQ(edgeDivisions(mesh, {0, 1, 2}, 0.5), 5.0);  // the longest edge is 2.24
   int count = 0;
   forEachSample(5, [&](int i, int j, int k) {
     EXPECT_EQ(i + j + k, 5);

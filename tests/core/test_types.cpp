@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/types.h>
 
 #include <limits>
 #include <memory>
 #include <set>
+#include <stdexcept>
 
 namespace tetskin {
 namespace {
 
 TEST(StatusCode, EveryCodeHasItsOwnName) {
   std::set<std::string> names;
-  constexpr int kCodes = static_cast<int>(StatusCode::TooLarge) + 1;
+  constexpr int kCodes = static_cast<int>(StatusCode::Enclosed) + 1;
   for (int c = 0; c < kCodes; ++c) names.insert(toString(static_cast<StatusCode>(c)));
   EXPECT_EQ(names.size(), static_cast<std::size_t>(kCodes));
   EXPECT_EQ(names.count("unknown status"), 0u);
@@ -28,11 +30,43 @@ TEST(Result, DoesNotConvertToItsValue) {
   EXPECT_TRUE(make().ok());
 }
 
-TEST(Result, OfAFailureHasAnEmptyValueAndKeepsTheMessage) {
-  const auto fail = [] { return Result<int*>(Status{StatusCode::Empty, "nothing there"}); };
-  EXPECT_EQ(fail().value(), nullptr);
-  EXPECT_FALSE(fail().ok());
-  EXPECT_EQ(fail().status().message, "nothing there");
+TEST(Result, OfAFailureKeepsTheMessage) {
+  const Result<int*> failed(Status{StatusCode::Empty, "nothing there"});
+  EXPECT_FALSE(failed.ok());
+  EXPECT_EQ(failed.status().code, StatusCode::Empty);
+  EXPECT_EQ(failed.status().message, "nothing there");
+}
+
+/// The message of the error with which the call stops; empty if it does not stop.
+template <class Call>
+std::string stoppedBy(Call&& call) {
+  try {
+    call();
+  } catch (const std::logic_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Result, ValueOfAFailureStopsWithTheMessage) {
+  Result<std::vector<int>> failed(Status{StatusCode::Empty, "nothing there"});
+  const Result<std::vector<int>>& constant = failed;
+  EXPECT_EQ(stoppedBy([&] { (void)failed.value(); }), "nothing there");
+  EXPECT_EQ(stoppedBy([&] { (void)constant.value(); }), "nothing there");
+  EXPECT_EQ(stoppedBy([&] { (void)std::move(failed).value(); }), "nothing there");
+}
+
+TEST(Result, CannotBeMadeOfAStatusThatIsOk) {
+  EXPECT_NE(stoppedBy([] { (void)Result<int>(Status{}); }), "");
+}
+
+TEST(Result, HoldsValuesThatCannotBeMadeOfNothing) {
+  struct Number {
+    explicit Number(int n) : value(n) {}
+    int value;
+  };
+  EXPECT_EQ(Result<Number>(Number(7)).value().value, 7);
+  EXPECT_FALSE(Result<Number>(Status{StatusCode::Empty, "none"}).ok());
 }
 
 TEST(Result, HoldsMoveOnlyValues) {
@@ -84,26 +118,26 @@ TEST(PointView, BoundingBoxOfNothingIsEmpty) {
 
 TEST(TriangleMesh, CheckNamesTheFirstFault) {
   TriangleMesh mesh;
-  EXPECT_EQ(checkTriangleMesh(mesh).code, StatusCode::Empty);
+  EXPECT_EQ(validate(mesh).code, StatusCode::Empty);
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  EXPECT_TRUE(checkTriangleMesh(mesh).ok());
+  EXPECT_TRUE(validate(mesh).ok());
   mesh.triangles.push_back({0, 1, 3});
-  const Status outOfRange = checkTriangleMesh(mesh);
+  const Status outOfRange = validate(mesh);
   EXPECT_EQ(outOfRange.code, StatusCode::IndexOutOfRange);
   EXPECT_NE(outOfRange.message.find("triangle 1"), std::string::npos);
   mesh.positions[1].x() = std::numeric_limits<double>::quiet_NaN();
-  const Status notFinite = checkTriangleMesh(mesh);
+  const Status notFinite = validate(mesh);
   EXPECT_EQ(notFinite.code, StatusCode::NonFinite);
   EXPECT_NE(notFinite.message.find("vertex 1"), std::string::npos);
 }
 
 TEST(CheckTriangleCounts, RefusesMoreThanItsIndicesCanNumber) {
-  EXPECT_TRUE(checkTriangleCounts(2147483647, kMostTriangles).ok());
+  EXPECT_TRUE(checkTriangleCounts(2147483647, Limits::kMaxTriangles).ok());
   const Status vertices = checkTriangleCounts(2147483648, 1);
   EXPECT_EQ(vertices.code, StatusCode::TooLarge);
   EXPECT_NE(vertices.message.find("2147483648 vertices, more than the 2147483647"), std::string::npos);
-  const Status triangles = checkTriangleCounts(3, kMostTriangles + 1);
+  const Status triangles = checkTriangleCounts(3, Limits::kMaxTriangles + 1);
   EXPECT_EQ(triangles.code, StatusCode::TooLarge);
   EXPECT_NE(triangles.message.find("477218589 triangles, more than the 477218588"), std::string::npos);
 }

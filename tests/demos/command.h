@@ -18,7 +18,7 @@ struct CommandResult {
   std::string err;  ///< standard error
 };
 
-/// A folder of the running test's own, removed with this object.
+/// A folder for the running test, removed with this object.
 class CommandFolder {
  public:
   CommandFolder();
@@ -39,7 +39,7 @@ class CommandFolder {
   std::filesystem::path folder_;
 };
 
-/// Exit status 2, and one line that names what is wrong.
+/// Expects exit status 2 and one line that names what is wrong.
 void expectRefused(const CommandResult& result, const std::string& word);
 
 /// Vertex positions of an OBJ file.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Runs of tetskin_deform.
+// Runs tetskin_deform.
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
-#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,10 @@ namespace tetskin::test {
 using Map = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
 struct Error {
-  double rms = 0.0, max = 0.0;  ///< in box diagonals
+  double rms = 0.0, max = 0.0;  ///< relative to the box's diagonal
 };
 
-/// Distances of two surfaces, over the diagonal of the first one's box.
+/// Distances between two surfaces, relative to the diagonal of the first one's bounding box.
 inline Error distances(const std::vector<Eigen::Vector3d>& exact, const std::vector<std::array<double, 3>>& surface,
                        double diagonal) {
   Error error;
@@ -41,32 +41,32 @@ inline Error distances(const std::vector<Eigen::Vector3d>& exact, const std::vec
 
 class DeformRun : public testing::Test {
  protected:
-  /// m.obj, the serpent, and rest.vtk, its cage.
+  /// Writes m.obj, the serpent, and rest.vtk, its cage.
   void makeModel(std::size_t triangles = 6000, std::size_t tets = 3000) {
     mesh = scenes::makeSerpent({triangles});
     CageOptions options;
     options.targetTets = tets;
-    cage = buildCage(mesh, options).value();
-    ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
+    cage = createCage(mesh, options).value().mesh;
+    ASSERT_TRUE(ObjLayout::create(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
     ASSERT_TRUE(saveTetMesh(cage, folder.path("rest.vtk")).ok());
   }
 
-  /// The cage as a map moves it.
+  /// Writes the cage as a map moves it.
   void writeDeformed(const Map& map, const std::string& name = "now.vtk") const {
     TetMesh moved = cage;
     for (Eigen::Vector3d& p : moved.nodes) p = map(p);
     ASSERT_TRUE(saveTetMesh(moved, folder.path(name)).ok());
   }
 
-  /// The usual files, and other options, whose values replace those of the same name.
+  /// The usual files and further options, whose values replace those of the same name.
   static std::vector<std::string> with(const std::vector<std::string>& others) {
     std::vector<std::string> arguments{"--mesh", "m.obj", "--cage", "rest.vtk", "--deformed", "now.vtk", "-o", "o.obj"};
     for (std::size_t k = 0; k < others.size(); ++k) {
-      const auto place = std::find(arguments.begin(), arguments.end(), others[k]);
-      if (place == arguments.end()) {
+      const auto entry = std::find(arguments.begin(), arguments.end(), others[k]);
+      if (entry == arguments.end()) {
         arguments.push_back(others[k]);
       } else {
-        place[1] = others[++k];
+        entry[1] = others[++k];
       }
     }
     return arguments;
@@ -91,14 +91,14 @@ class DeformRun : public testing::Test {
     EXPECT_LE(quadratic.max, linear.max);
   }
 
-  /// Where the maps of a bend, a twist, ... have their origin.
+  /// The origin of the maps: bend, twist and so on.
   Eigen::Vector3d centre() const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& p : cage.nodes) sum += p;
     return sum / static_cast<double>(cage.nodeCount());
   }
 
-  /// Exit status 2, one line on standard error that mentions the words, nothing written.
+  /// Expects exit status 2, one line on standard error that mentions the words, and no files written.
   void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const CommandResult result = folder.run(TETSKIN_DEFORM, arguments);
     SCOPED_TRACE(testing::PrintToString(arguments));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// tetskin_drop as its tests run it, and small models for it.
+// Runs tetskin_drop for its tests, and has small models for it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace tetskin::test {
 
-/// A box as an OBJ with quads, texture coordinates, groups and a comment, around the origin.
+/// A box around the origin, as an OBJ with quads, texture coordinates, groups and a comment.
 inline std::string boxObj(double half = 0.4, const char* firstX = nullptr) {
   std::string text = "# a box\nmtllib box.mtl\n";
   for (int k = 0; k < 8; ++k) {
@@ -25,7 +25,7 @@ inline std::string boxObj(double half = 0.4, const char* firstX = nullptr) {
   return text;
 }
 
-/// One cube of edge 1 around the origin as six tets.
+/// One cube of edge 1 around the origin, as six tets.
 inline std::string cubeVtk() {
   std::string text = "# vtk DataFile Version 2.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
   for (int k = 0; k < 8; ++k) {
@@ -39,7 +39,7 @@ class DropRun : public testing::Test {
  protected:
   CommandResult drop(std::vector<std::string> arguments) const { return folder.run(TETSKIN_DROP, arguments); }
 
-  /// Exit status 2, one line on standard error that mentions the words, nothing written.
+  /// Expects exit status 2, one line on standard error that mentions the words, and no files written.
   void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const CommandResult result = drop(arguments);
     for (const std::string& word : words) test::expectRefused(result, word);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Runs of tetskin_error_vs_time, and what its report says.
+// Runs tetskin_error_vs_time, and reads its report.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,9 +17,9 @@ namespace tetskin::test {
 
 class ErrorVsTimeRun : public testing::Test {
  protected:
-  /// Where no Python has matplotlib: plots take seconds.
+  /// Runs as if no Python had matplotlib, because plots take seconds.
   CommandResult run(const std::vector<std::string>& arguments) const { return runWith("raise ImportError", arguments); }
-  /// With a matplotlib of the test's own in place of the real one.
+  /// Runs with the test's own matplotlib in place of the real one.
   CommandResult runWith(const std::string& matplotlib, std::vector<std::string> arguments,
                         const std::string& program = TETSKIN_ERROR_VS_TIME) const {
     std::filesystem::create_directories(folder.path("python"));
@@ -27,12 +27,12 @@ class ErrorVsTimeRun : public testing::Test {
     arguments.insert(arguments.begin(), {"PYTHONPATH=" + folder.path("python"), program});
     return folder.run("env", arguments);
   }
-  /// The small scene of the tests below, with Bullet's explicit forces.
+  /// Options for the small scene of the tests below, with Bullet's explicit forces.
   std::vector<std::string> small(const std::string& scene, const std::vector<std::string>& more = {},
                                  const std::string& out = "out") const {
     std::vector<std::string> all = {
-        "--quick",     "--quiet", "--scene",  scene, "--tets", "300,900", "--reference-tets", "2700",
-        "--triangles", "2000",    "--frames", "6",   "--out",  out,       "--force",          "bullet"};
+        "--quick",     "--quiet", "--scenes", scene, "--tets", "300,900", "--reference-tets", "2700",
+        "--triangles", "2000",    "--frames", "6",   "--out",  out,       "--elasticity",     "bullet"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -45,7 +45,7 @@ inline const nlohmann::json& sceneOf(const nlohmann::json& json, const std::stri
                        [&](const auto& scene) { return scene.at("scene") == name; });
 }
 
-/// The rows of one kind, coarsest first.
+/// The rows of one kind, from the coarsest to the finest.
 inline std::vector<nlohmann::json> rowsOf(const nlohmann::json& scene, const std::string& interpolation,
                                           const std::string& material = "same") {
   std::vector<nlohmann::json> rows;
@@ -60,10 +60,10 @@ inline double number(const nlohmann::json& row, const char* key) {
   return row.at(key).get<double>();
 }
 
-inline double overall(const nlohmann::json& scene, const std::string& interpolation, const char* of) {
+inline double overall(const nlohmann::json& scene, const std::string& interpolation, const char* name) {
   for (const auto& order : scene.at("orders")) {
     if (order.at("interpolation") == interpolation && order.at("material") == "same") {
-      return order.at("overall").at(of).get<double>();
+      return order.at("overall").at(name).get<double>();
     }
   }
   return 0.0;

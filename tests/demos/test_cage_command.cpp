@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 
@@ -51,9 +51,9 @@ TEST_F(CageCommand, WritesWhatIsKnownOfTheCage) {
   const Result<Cage> read = loadCage(folder.path("c.vtk"));
   ASSERT_TRUE(read.ok()) << read.status().message;
   const scenes::Model built = scenes::loadModel(model);
-  EXPECT_EQ(read.value().nodes, built.cage.nodes);
+  EXPECT_EQ(read.value().mesh.nodes, built.cage.mesh.nodes);
   EXPECT_EQ(read.value().vertexTets, built.cage.vertexTets);
-  EXPECT_EQ(read.value().fill, built.cage.fill);
+  EXPECT_EQ(read.value().volumeFraction, built.cage.volumeFraction);
   EXPECT_EQ(read.value().masses, built.cage.masses);
   EXPECT_EQ(read.value().meshHash, built.cage.meshHash);
   EXPECT_TRUE(read.value().checkMesh(built.mesh).ok());
@@ -83,7 +83,8 @@ TEST_F(CageCommand, AWholeCageIsOfUseToOtherMeshesInIt) {
 
 TEST_F(CageCommand, WritesEveryTetFormat) {
   for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
-    ASSERT_EQ(cage({"--triangles", "2000", "--tets", "300", "--whole", "-o", name, "--quiet"}).status, 0);
+    ASSERT_EQ(cage({"--triangles", "2000", "--tets", "300", "--no-duplicate-elements", "-o", name, "--quiet"}).status,
+              0);
     EXPECT_TRUE(loadTetMesh(folder.path(name)).ok()) << name;
   }
 }
@@ -97,7 +98,7 @@ TEST_F(CageCommand, LooseCagesHaveMoreVolumeAndOneShapeOfTet) {
   for (const std::string name : {"fit", "loose"}) {
     std::vector<std::string> arguments{"--triangles", "8000",  "--tets", "3000",
                                        "-o",          "c.vtk", "--json", name + ".json"};
-    if (name == "loose") arguments.emplace_back("--loose");
+    if (name == "loose") arguments.emplace_back("--no-fit");
     ASSERT_EQ(cage(arguments).status, 0);
   }
   const auto fit = folder.json("fit.json"), loose = folder.json("loose.json");

@@ -25,10 +25,10 @@ TEST(Crowd, SleepersStayAsleepAndInPlaceWhileTheOthersFall) {
   options.triangles = 2000;
   options.tets = 100;
   const scenes::Model model = scenes::loadModel(options);
-  const scenes::Placement place = scenes::placementOf(boundingBox(model.cage.nodes));
+  const scenes::Placement position = scenes::placementOf(boundingBox(model.cage.mesh.nodes));
   scenes::SceneOptions scene;
   scene.bodies = 21;
-  const auto crowd = scenes::sceneNamed("crowd").make(place.toWorld(model.cage), scene);
+  const auto crowd = scenes::sceneNamed("crowd").make(position.toWorld(model.cage), scene);
   EXPECT_EQ(scenes::asleepCount(*crowd), 0u);
   scenes::setAsleep(*crowd, true);
   EXPECT_EQ(scenes::asleepCount(*crowd), 21 - scenes::awakeAmong(21));
@@ -56,7 +56,8 @@ class CrowdCommand : public testing::Test {
 };
 
 TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
-  const CommandResult result = crowd({"--bodies", "40", "--triangles", "4000", "--frames", "3", "--json", "c.json"});
+  const CommandResult result =
+      crowd({"--bodies", "40", "--triangles", "4000", "--repetitions", "3", "--json", "c.json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("c.json");
   EXPECT_EQ(json["bodies"], 40);
@@ -76,18 +77,18 @@ TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
   const auto count = [&](const char* row, const char* key) { return rows.at(row).at(key).get<int>(); };
   EXPECT_EQ(count("all awake, every substep", "updates"), 160);
   EXPECT_EQ(count("all awake, every substep", "bodies_updated"), 40);
-  EXPECT_EQ(count("all awake, once a step", "updates"), 40);
+  EXPECT_EQ(count("all awake, once per frame", "updates"), 40);
   EXPECT_EQ(count("sleeping bodies skipped", "bodies_updated"), 4);
   EXPECT_EQ(count("hidden skins skipped", "bodies_updated"), 4);
   EXPECT_EQ(count("no substep, no update", "bodies_updated"), 0);
-  EXPECT_EQ(count("awake bodies alone", "bodies"), 4);
-  EXPECT_EQ(count("one binding for all", "bodies"), 40);
+  EXPECT_EQ(count("only awake bodies", "bodies"), 4);
+  EXPECT_EQ(count("one shared binding", "bodies"), 40);
   for (const char* name : {"normals recomputed", "normals transformed", "normals none", "quadratic", "linear",
                            "bounds on", "bounds off", "mesh order", "sorted order", "previous positions on"}) {
     EXPECT_EQ(count(name, "bodies_updated"), 4) << name;
   }
   if (scenes::heapBytes() > 0) {
-    EXPECT_LT(2 * count("one binding for all", "bytes"), count("a binding each", "bytes"));
+    EXPECT_LT(2 * count("one shared binding", "bytes"), count("one binding per body", "bytes"));
     EXPECT_LT(count("normals none", "bytes"), count("normals transformed", "bytes"));
     EXPECT_LT(count("linear", "bytes"), count("quadratic", "bytes"));
     EXPECT_LT(count("previous positions off", "bytes"), count("previous positions on", "bytes"));
@@ -98,8 +99,8 @@ TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
   folder.write("box.obj",
                "v 0 0 0\nv 900 0 0\nv 900 400 0\nv 0 400 0\nv 0 0 300\nv 900 0 300\nv 900 400 300\nv 0 400 300\n"
                "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const CommandResult result =
-      crowd({"--mesh", "box.obj", "--tets", "60", "--bodies", "1", "--frames", "1", "--json", "c.json", "--quiet"});
+  const CommandResult result = crowd(
+      {"--mesh", "box.obj", "--tets", "60", "--bodies", "1", "--repetitions", "1", "--json", "c.json", "--quiet"});
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(result.out.empty()) << result.out;
   EXPECT_TRUE(result.err.empty()) << result.err;
@@ -110,8 +111,8 @@ TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
 TEST_F(CrowdCommand, RefusesBadInput) {
   expectRefused(crowd({"--mesh", "nowhere.obj"}), "nowhere.obj");
   expectRefused(crowd({"--bodies", "0"}), "--bodies");
-  expectRefused(crowd({"--frames", "none"}), "--frames");
-  expectRefused(crowd({"--bodies", "2", "--triangles", "2000", "--frames", "1", "--json", "no/where.json"}),
+  expectRefused(crowd({"--repetitions", "none"}), "--repetitions");
+  expectRefused(crowd({"--bodies", "2", "--triangles", "2000", "--repetitions", "1", "--json", "no/where.json"}),
                 "no/where.json");
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
-#include <tetskin/io/tet_files.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +43,7 @@ TEST_F(Deform, QuadraticIsExactForQuadraticMapsInALattice) {
   cage = test::latticeCage(5, 5, 5);
   mesh = test::sphere(20, 2.3, Vector3d::Constant(2.5));
   ASSERT_TRUE(saveTetMesh(cage, folder.path("rest.vtk")).ok());
-  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
+  ASSERT_TRUE(ObjLayout::create(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
   const Map quadratic = [](const Vector3d& p) -> Vector3d {
     return p + 0.05 * Vector3d(p.y() * p.z() - p.x() * p.x(), p.x() * p.y(), p.z() * p.z() + 2.0 * p.x() * p.z());
   };
@@ -52,7 +51,7 @@ TEST_F(Deform, QuadraticIsExactForQuadraticMapsInALattice) {
   EXPECT_GT(errorOf(quadratic, "linear").max, 1e-3);
 }
 
-/// The maps of the design's table, about a centre c.
+/// The maps in the design's table, about a centre c.
 Map twistAbout(const Vector3d& c) {
   return [c](const Vector3d& p) -> Vector3d {
     return c + Eigen::AngleAxisd(1.5 * (p - c).x(), Vector3d::UnitX()) * (p - c);
@@ -79,7 +78,7 @@ Map wavesAbout(const Vector3d& c) {
   };
 }
 
-/// The gains that are asked for on the dragon, here on the model and the cage that the demos start from.
+/// The gains required on the dragon, tested with the model and the cage that the demos start from.
 TEST_F(Deform, QuadraticGainsOnTheDefaultModelAsOnTheDragon) {
   makeModel(60000, 3000);
   const Vector3d c = centre();
@@ -89,8 +88,8 @@ TEST_F(Deform, QuadraticGainsOnTheDefaultModelAsOnTheDragon) {
   expectGain(wavesAbout(c), 5.5);
 }
 
-/// Gains depend on the cage, and every mesh gets its own: this one's are the lowest of four sizes tried, 8.6 and 5.4
-/// under the first and the last map, and so below those above.
+/// Gains depend on the cage, and every mesh gets its own. For this one they are the lowest of four sizes tried, 8.6 and
+/// 5.4 under the first and the last map, and therefore below those above.
 TEST_F(Deform, QuadraticGainsOnACoarserModelToo) {
   makeModel(6000, 3000);
   const Vector3d c = centre();
@@ -100,7 +99,8 @@ TEST_F(Deform, QuadraticGainsOnACoarserModelToo) {
   expectGain(wavesAbout(c), 4.5);
 }
 
-/// Two tets on either side of a triangle, the second of them inside out, and a triangle that sticks out of the first.
+/// Two tets on either side of a triangle, the second of them inside out, and a triangle that sticks out of the first
+/// tet.
 void writeTwoTets(const CommandFolder& folder) {
   TetMesh cage;
   cage.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -122,10 +122,10 @@ TEST_F(Deform, DumpsTetAndWeightsOfEveryVertex) {
 TEST_F(Deform, DumpAgreesWithTheGeometryOfTheCage) {
   makeModel(6000, 300);
   std::vector<Tet>& tets = cage.tets;
-  for (std::size_t t = 0; t < tets.size(); t += 3) std::swap(tets[t][0], tets[t][1]);  // some inside out
+  for (std::size_t t = 0; t < tets.size(); t += 3) std::swap(tets[t][0], tets[t][1]);  // some tets are inside out
   ASSERT_TRUE(saveTetMesh(cage, folder.path("rest.vtk")).ok());
-  for (Vector3d& p : mesh.positions) p *= 1.05;  // some outside
-  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
+  for (Vector3d& p : mesh.positions) p *= 1.05;  // some vertices are outside
+  ASSERT_TRUE(ObjLayout::create(mesh).writeTo(folder.path("m.obj"), viewOf(std::as_const(mesh.positions))).ok());
   writeDeformed(still);
   ASSERT_EQ(deform({"--dump-embedding", "e.csv", "--json", "s.json"}).status, 0);
   std::istringstream lines(folder.read("e.csv"));
@@ -174,7 +174,8 @@ TEST_F(Deform, WritesNormalsOfTheDeformedSurface) {
     ASSERT_EQ(out.normals.size(), mesh.vertexCount()) << normals;
     EXPECT_EQ(out.texcoords, mesh.texcoords);
     EXPECT_EQ(out.triangles, mesh.triangles);
-    const TriangleMesh rest = loadMesh(folder.path("m.obj")).value();  // without normals: those of its triangles
+    // Without normals, so that those of its triangles are used.
+    const TriangleMesh rest = loadMesh(folder.path("m.obj")).value();
     const std::vector<Vector3d> restDirections = restNormals(rest);
     double off = 0.0;
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -204,9 +205,10 @@ TEST_F(Deform, ReadsEveryTetFormatAndAnyMeshFormat) {
     ASSERT_TRUE(saveTetMesh(cage, folder.path("now" + extension)).ok());
     EXPECT_EQ(deform({"--deformed", "now" + extension}).status, 0);
   }
-  std::ostringstream off;  // of vertices of the mesh, which are in the cage
+  std::ostringstream off;  // vertices of the mesh, which are in the cage
   off << "OFF\n3 1 0\n";
-  for (const std::size_t part : {0, 1, 2}) off << mesh.positions[part * mesh.vertexCount() / 3].transpose() << "\n";
+  for (const std::size_t component : {0, 1, 2})
+    off << mesh.positions[component * mesh.vertexCount() / 3].transpose() << "\n";
   folder.write("m.off", off.str() + "3 0 1 2\n");
   writeDeformed(still);
   const CommandResult result = deform({"--mesh", "m.off", "-o", "off.obj"});

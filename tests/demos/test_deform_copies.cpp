@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
-#include <tetskin/io/tet_files.h>
 
 #include <sstream>
 
@@ -20,12 +19,12 @@ using test::CommandResult;
 
 class DeformCopies : public test::DeformRun {};
 
-/// m.obj, two plates, and rest.vtk, their cage of copies.
+/// Writes m.obj, two plates, and rest.vtk, their cage of duplicate elements.
 test::TwoPlates writePlates(const CommandFolder& folder) {
   test::TwoPlates plates = test::platesOfCopies();
-  const ObjLayout layout = ObjLayout::fromMesh(plates.mesh);
+  const ObjLayout layout = ObjLayout::create(plates.mesh);
   EXPECT_TRUE(layout.writeTo(folder.path("m.obj"), viewOf(std::as_const(plates.mesh.positions))).ok());
-  // As the tools will read it.
+  // The mesh as the tools will read it.
   plates.mesh = loadMesh(folder.path("m.obj")).value();
   plates.cage.meshHash = positionsHash(plates.mesh.positions);
   EXPECT_TRUE(saveCage(plates.cage, folder.path("rest.vtk")).ok());
@@ -34,9 +33,9 @@ test::TwoPlates writePlates(const CommandFolder& folder) {
 
 TEST_F(DeformCopies, OnlyThePlateWhoseCopyOfTheTetsMovesMoves) {
   const test::TwoPlates plates = writePlates(folder);
-  TetMesh moved = plates.cage;
+  TetMesh moved = plates.cage.mesh;
   for (std::size_t n = moved.nodeCount() / 2; n < moved.nodeCount(); ++n) moved.nodes[n] += Vector3d(0.5, 2, -1);
-  for (const std::string now : {"now.vtk", "now.msh", "now.ele"}) {  // without a map
+  for (const std::string now : {"now.vtk", "now.msh", "now.ele"}) {  // files without a map
     ASSERT_TRUE(saveTetMesh(moved, folder.path(now)).ok());
     for (const char* interpolation : {"linear", "quadratic"}) {
       const CommandResult result = deform({"--deformed", now, "--interpolation", interpolation});
@@ -44,8 +43,8 @@ TEST_F(DeformCopies, OnlyThePlateWhoseCopyOfTheTetsMovesMoves) {
       const auto written = test::objPositions(folder.read("o.obj"));
       ASSERT_EQ(written.size(), plates.mesh.vertexCount());
       for (std::size_t v = 0; v < written.size(); ++v) {
-        const Vector3d way = Vector3d(written[v].data()) - plates.mesh.positions[v];
-        EXPECT_LT((way - (plates.upper(v) ? Vector3d(0.5, 2, -1) : Vector3d(0, 0, 0))).norm(), 1e-5) << v;
+        const Vector3d direction = Vector3d(written[v].data()) - plates.mesh.positions[v];
+        EXPECT_LT((direction - (plates.upper(v) ? Vector3d(0.5, 2, -1) : Vector3d(0, 0, 0))).norm(), 1e-5) << v;
       }
     }
   }
@@ -67,9 +66,9 @@ TEST_F(DeformCopies, DumpsTheTetsOfTheMap) {
 
 TEST_F(DeformCopies, TakesADeformedCageWithItsTetsInAnotherOrder) {
   test::TwoPlates plates = writePlates(folder);
-  std::reverse(plates.cage.tets.begin(), plates.cage.tets.end());
-  for (Tet& tet : plates.cage.tets) std::swap(tet[0], tet[3]);
-  ASSERT_TRUE(saveTetMesh(plates.cage, folder.path("now.vtk")).ok());
+  std::reverse(plates.cage.mesh.tets.begin(), plates.cage.mesh.tets.end());
+  for (Tet& tet : plates.cage.mesh.tets) std::swap(tet[0], tet[3]);
+  ASSERT_TRUE(saveTetMesh(plates.cage.mesh, folder.path("now.vtk")).ok());
   const CommandResult result = deform();
   ASSERT_EQ(result.status, 0) << result.err;
   const auto written = test::objPositions(folder.read("o.obj"));
@@ -80,7 +79,7 @@ TEST_F(DeformCopies, TakesADeformedCageWithItsTetsInAnotherOrder) {
 
 TEST_F(DeformCopies, RefusesADeformedCageWithItsNodesInAnotherOrder) {
   test::TwoPlates plates = writePlates(folder);
-  TetMesh other = plates.cage;
+  TetMesh other = plates.cage.mesh;
   const int upper = static_cast<int>(other.nodeCount() / 2);
   std::swap(other.nodes[0], other.nodes[static_cast<std::size_t>(upper) + 1]);
   for (Tet& tet : other.tets) {
@@ -95,7 +94,7 @@ TEST_F(DeformCopies, RefusesTheCageOfAnotherMesh) {
   const test::TwoPlates plates = writePlates(folder);
   TriangleMesh other = plates.mesh;
   other.positions[5].x() += 0.001;
-  const ObjLayout layout = ObjLayout::fromMesh(other);
+  const ObjLayout layout = ObjLayout::create(other);
   ASSERT_TRUE(layout.writeTo(folder.path("other.obj"), viewOf(std::as_const(other.positions))).ok());
   expectRefused(with({"--mesh", "other.obj", "--deformed", "rest.vtk"}),
                 {"rest.vtk is not a cage of other.obj", "build a cage for this one with tetskin_cage"});

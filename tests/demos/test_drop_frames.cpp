@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The folder of frames: what is in it, what it takes, what of it is told before.
+// The folder of frames: its contents, its size, and what is announced before it is written.
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <filesystem>
 
@@ -64,13 +64,13 @@ TEST_F(DropFrames, SaysHowMuchItWritesBeforeItDoes) {
   const CommandResult result =
       drop({"--mesh", "box.obj", "--tets", "3000", "--frames", "60", "--every", "30", "--write-cage", "--out", "o"});
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::size_t place = result.out.find("writing 2 frames, about ");
-  ASSERT_NE(place, std::string::npos) << result.out;
-  EXPECT_LT(place, result.out.find("simulating"));
+  const std::size_t index = result.out.find("writing 2 frames, about ");
+  ASSERT_NE(index, std::string::npos) << result.out;
+  EXPECT_LT(index, result.out.find("simulating"));
   const double written =
       static_cast<double>(folder.read("o/frame_0000.obj").size() + folder.read("o/cage_0000.vtk").size() +
                           folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size());
-  EXPECT_NEAR(std::stod(result.out.substr(place + 24)), 1e-3 * written, 1.0 + 0.1e-3 * written) << result.out;
+  EXPECT_NEAR(std::stod(result.out.substr(index + 24)), 1e-3 * written, 1.0 + 0.1e-3 * written) << result.out;
   EXPECT_NE(result.out.find("kB, to o\n"), std::string::npos) << result.out;
 }
 

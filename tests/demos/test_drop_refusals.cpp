@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bad input gets one line that names it, and writes nothing.
+// Bad input produces one line that names it, and no files.
 #include <gtest/gtest.h>
 
 #include "drop_run.h"
@@ -21,8 +21,8 @@ TEST_F(DropRefuses, ContactsThatAReducedBodyDoesNotHave) {
 }
 
 TEST_F(DropRefuses, ContactsThatABodyOfBulletsForcesDoesNotHave) {
-  test::expectRefused(drop({"--force", "bullet", "--contact", "surface", "--out", "o"}), "--contact surface");
-  test::expectRefused(drop({"--force", "bullet", "--self-contact", "on", "--out", "o"}), "--self-contact on");
+  test::expectRefused(drop({"--elasticity", "bullet", "--contact", "surface", "--out", "o"}), "--contact surface");
+  test::expectRefused(drop({"--elasticity", "bullet", "--self-contact", "on", "--out", "o"}), "--self-contact on");
   EXPECT_FALSE(folder.exists("o"));
 }
 
@@ -101,8 +101,8 @@ TEST_F(DropRefuses, ASummaryThatCannotBeWritten) {
 }
 
 TEST_F(DropRefuses, VibrationsOfABodyThatHasNone) {
-  expectRefused({"--modes", "5"}, {"--modes is for --body reduced"});
-  expectRefused({"--fine-tets", "5000"}, {"--fine-tets is for --body reduced"});
+  expectRefused({"--modes", "5"}, {"--modes needs --body reduced"});
+  expectRefused({"--fine-tets", "5000"}, {"--fine-tets needs --body reduced"});
 }
 
 TEST_F(DropRefuses, MoreTetsThanACageCanHave) {

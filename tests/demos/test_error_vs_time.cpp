@@ -43,7 +43,7 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
     EXPECT_GT(number(scene, "reference_error"), 0.0);
     EXPECT_EQ(rowsOf(scene, "reference").size(), 2u);
     for (const auto& row : rowsOf(scene, "quadratic")) {
-      // The two references are of one body: their motions differ by far less than coarse cages do.
+      // Both references simulate the same body: their motions differ by far less than those of coarse cages do.
       EXPECT_NEAR(number(row, "error_against_bullet_rms"), number(row, "error_total_rms"),
                   0.3 * number(row, "error_total_rms") + 1e-3)
           << name;
@@ -75,8 +75,8 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
       EXPECT_GT(number(row, "memory_bytes"), 0.0);
     }
   }
-  // In the drop, contacts move single nodes: no smooth motion, and nothing for quadratic skinning to gain. Nor is there
-  // in cages that fuse parts which the reference does not.
+  // In the drop, contacts move single nodes: the motion is not smooth, so quadratic skinning gains nothing. Nor does it
+  // gain in cages that fuse components which the reference keeps apart.
   for (const char* name : {"sag", "twist"}) {
     const auto linear = rowsOf(sceneOf(json, name), "linear", "calibrated");
     const auto quadratic = rowsOf(sceneOf(json, name), "quadratic", "calibrated");
@@ -88,11 +88,11 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
 }
 
 TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
-  const CommandResult result = run({"--quick", "--scene", "sag", "--tets", "1000", "--cages", "all", "--out", "out"});
+  const CommandResult result = run({"--quick", "--scenes", "sag", "--tets", "1000", "--cages", "all", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
   EXPECT_LT(number(json.at("reference"), "stiffness_factor"), 1.0);
-  EXPECT_NE(result.out.find(", calibrated (stiffness times 0."), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(", calibrated (stiffness scaled by 0."), std::string::npos) << result.out;
   const auto& scene = json.at("scenes").at(0);
   const auto row = [&](const char* kind) {
     const auto rows = rowsOf(scene, "linear", kind);
@@ -114,10 +114,10 @@ TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
   EXPECT_LT(number(row("calibrated"), "error_total_rms"), 0.6 * number(row("same_calibrated"), "error_total_rms"));
 }
 
-/// Of cages that fuse the prongs, no softening makes prongs.
+/// In a cage that fuses the prongs, no reduction of stiffness separates them.
 TEST_F(ErrorVsTime, SplitCagesHaveTheProngsThatOthersFuse) {
   const CommandResult result =
-      run({"--quick", "--quiet", "--model", "slotted_beam", "--scene", "sag", "--tets", "3000", "--cages",
+      run({"--quick", "--quiet", "--model", "slotted_beam", "--scenes", "sag", "--tets", "3000", "--cages",
            "calibrated,same_calibrated", "--interpolation", "linear", "--frames", "36", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
@@ -147,7 +147,7 @@ TEST_F(ErrorVsTime, KeepsWhatItMeasuredOfEachKindOfCages) {
     EXPECT_EQ(same[k].at("material"), "same");
     EXPECT_EQ(filled[k].at("material"), "filled");
     EXPECT_NE(same[k].at("error_total_rms"), filled[k].at("error_total_rms"));
-    EXPECT_EQ(same[k].at("simulation_ms"), again[k].at("simulation_ms"));  // to the bit: not measured again
+    EXPECT_EQ(same[k].at("simulation_ms"), again[k].at("simulation_ms"));  // equal to the bit: not measured again
   }
 }
 
@@ -196,8 +196,8 @@ TEST_F(ErrorVsTime, ComparesWithBothReferencesUnlessBulletsForcesAreAsked) {
   ASSERT_EQ(references.size(), 2u);
   EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(0).at("integrator"), "tetskin");
   EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(1).at("integrator"), "explicit");
-  expectRefused(run({"--implicit", "--quick"}), "--force bullet");
-  expectRefused(run({"--force", "havok"}), "--force");
+  expectRefused(run({"--implicit", "--quick"}), "--elasticity bullet");
+  expectRefused(run({"--elasticity", "havok"}), "--elasticity");
 }
 
 TEST_F(ErrorVsTime, ImplicitRowsStandBesideTheOthers) {
@@ -215,7 +215,7 @@ TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
   folder.write("box.obj",
                "v 0 0 0\nv 400 0 0\nv 400 900 0\nv 0 900 0\nv 0 0 300\nv 400 0 300\nv 400 900 300\nv 0 900 300\n"
                "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const CommandResult result = run({"--quick", "--quiet", "--scene", "exact", "--mesh", "box.obj", "--tets", "300",
+  const CommandResult result = run({"--quick", "--quiet", "--scenes", "exact", "--mesh", "box.obj", "--tets", "300",
                                     "--reference-tets", "900", "--frames", "6", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
@@ -226,7 +226,7 @@ TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
 
 TEST_F(ErrorVsTime, RefusesBadInput) {
   expectRefused(run({"--mesh", "nowhere.obj"}), "nowhere.obj");
-  for (const scenes::SceneEntry& entry : scenes::sceneTable()) expectRefused(run({"--scene", "fly"}), entry.name);
+  for (const scenes::SceneEntry& entry : scenes::sceneTable()) expectRefused(run({"--scenes", "fly"}), entry.name);
   expectRefused(run({"--tets", "0"}), "--tets");
   expectRefused(run({"--tets", "3000", "--reference-tets", "3000"}), "reference");
   expectRefused(run({"--target-error", "-1"}), "--target-error");

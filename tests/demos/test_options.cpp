@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the programs' command lines have in common: each is asked.
+// What the programs' command lines have in common, tested for each program.
 #include <LinearMath/btScalar.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cctype>
 #include <filesystem>
+#include <map>
+#include <sstream>
+#include <utility>
 
 #include "command.h"
 
@@ -18,7 +23,7 @@ using test::expectRefused;
 
 using Arguments = std::vector<std::string>;
 
-/// A program, and the arguments that it cannot do without.
+/// A program and its required arguments.
 struct Program {
   std::string path;
   Arguments required = {};
@@ -38,7 +43,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 class Options : public testing::Test {
  protected:
-  /// Exit status 2, and one short line with the word; nothing is written.
+  /// Expects exit status 2, one short line that contains the word, and no files written.
   void expectRefusal(const Program& program, const Arguments& arguments, const std::string& word) const {
     Arguments all = program.required;
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -87,9 +92,10 @@ TEST_F(Options, NumbersThatMakeNoSenseAreRefused) {
     expectNone(program, "--tets", noCounts);
     expectNone(program, "--triangles", noCounts);
   }
-  for (const Program& program : {kDrop, kTwist, kCrowd, kErrorVsTime}) expectNone(program, "--frames", noCounts);
+  for (const Program& program : {kDrop, kTwist, kErrorVsTime}) expectNone(program, "--frames", noCounts);
   for (const Program& program : {kDrop, kTwist}) expectNone(program, "--every", noCounts);
   expectNone(kCrowd, "--bodies", noCounts);
+  expectNone(kCrowd, "--repetitions", noCounts);
   for (const char* option : {"--reference-tets", "--show-tets"}) expectNone(kErrorVsTime, option, noCounts);
 
   const Arguments noLengths = {"nan", "-nan", "inf", "-inf", "1e999", "-1", "-0.001", "far", ""};
@@ -174,7 +180,91 @@ TEST_F(Options, HelpOfEveryProgramListsTheSharedOnes) {
   }
 }
 
-// The examples themselves run in the tests of the pages.
+/// An option as shown by --help.
+struct ShownOption {
+  std::string name, syntax, description;
+};
+
+/// The options in a program's --help: their names are indented by at least two blanks, and their descriptions start at
+/// column 30, some of them on separate lines.
+std::vector<ShownOption> shownOptions(const std::string& help) {
+  constexpr std::size_t kColumn = 30;
+  std::vector<ShownOption> options;
+  std::istringstream lines(help.substr(0, help.find("\nExamples:")));
+  for (std::string line; std::getline(lines, line);) {
+    const auto add = [&](const std::string& text) {
+      std::string& description = options.back().description;
+      description += (description.empty() ? "" : " ") + text;
+    };
+    if (line.compare(0, 3, "  -") == 0) {
+      const bool both = line.size() > kColumn && line[kColumn - 1] == ' ' && std::isupper(line[kColumn]);
+      const std::string syntax = both ? line.substr(0, line.find_last_not_of(' ', kColumn - 1) + 1) : line;
+      const std::size_t begin = syntax.find("--");
+      options.push_back({syntax.substr(begin, syntax.find_first_of(" ;", begin) - begin), syntax, ""});
+      if (both) add(line.substr(kColumn));
+    } else if (!options.empty() && line.compare(0, kColumn, std::string(kColumn, ' ')) == 0) {
+      add(line.substr(kColumn));
+    }
+  }
+  return options;
+}
+
+/// The description without the note in parentheses on how this program uses the option.
+std::string withoutNote(const std::string& description) {
+  const std::size_t note = description.rfind(" (");
+  return note != std::string::npos && description.back() == ')' ? description.substr(0, note) : description;
+}
+
+TEST_F(Options, OneOfSeveralProgramsHasTheSameDescriptionAndPlaceInAll) {
+  std::map<std::string, std::string> descriptions;
+  std::map<std::string, int> programs;
+  // The program, by the names of two options in this order.
+  std::map<std::pair<std::string, std::string>, std::string> order;
+  for (const std::string path : kAllPrograms) {
+    const std::vector<ShownOption> options = shownOptions(folder.run(path, {"--help"}).out);
+    ASSERT_GT(options.size(), 4u) << path;
+    for (std::size_t k = 0; k < options.size(); ++k) {
+      const std::string text = withoutNote(options[k].description);
+      EXPECT_FALSE(text.empty() || text.back() == '.') << path << " " << options[k].name << ": " << text;
+      EXPECT_FALSE(contains(text, "default")) << path << " " << options[k].name << ": defaults are in brackets";
+      EXPECT_EQ(descriptions.emplace(options[k].name, text).first->second, text) << path << " " << options[k].name;
+      ++programs[options[k].name];
+      for (std::size_t j = 0; j < k; ++j) {
+        order[{options[j].name, options[k].name}] = path;
+        const auto other = order.find({options[k].name, options[j].name});
+        EXPECT_TRUE(other == order.end())
+            << options[j].name << " before " << options[k].name << " in " << path << ", but not in " << other->second;
+      }
+    }
+  }
+  for (const char* shared :
+       {"--mesh", "--tets", "--triangles", "--frames", "--out", "--every", "--json", "--quiet", "--elasticity",
+        "--contact", "--self-contact", "--only", "--hash", "--markdown", "--view"}) {
+    EXPECT_GT(programs[shared], 1) << shared;
+  }
+}
+
+TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
+  const std::array<const char*, 3> renamed[] = {{TETSKIN_DROP, "--force", "--elasticity"},
+                                                {TETSKIN_STRESS, "--force", "--elasticity"},
+                                                {TETSKIN_CONTACT, "--force", "--elasticity"},
+                                                {TETSKIN_ERROR_VS_TIME, "--force", "--elasticity"},
+                                                {TETSKIN_ERROR_VS_TIME, "--scene", "--scenes"},
+                                                {TETSKIN_CROWD, "--frames", "--repetitions"},
+                                                {TETSKIN_GAPS, "--bodies", "--shapes"},
+                                                {TETSKIN_DRAG, "--stiffness", "--spring-stiffness"},
+                                                {TETSKIN_DRAG, "--whole", "--no-duplicate-elements"},
+                                                {TETSKIN_CAGE, "--loose", "--no-fit"}};
+  for (const auto& [path, before, now] : renamed) {
+    for (const char* end : {"", "=3"}) {
+      expectRefused(folder.run(path, {std::string(before) + end}),
+                    std::string(before) + ": this option is now called " + now + "\n");
+    }
+  }
+  expectRefused(folder.run(TETSKIN_STRESS, {"--frames", "3"}), "--frames");  // this program never had this option
+}
+
+// The tests of the pages run the examples themselves.
 TEST_F(Options, HelpOfEveryProgramEndsWithExamplesAndExitStatuses) {
   for (const std::string path : kAllPrograms) {
     const CommandResult result = folder.run(path, {"--help"});
@@ -184,7 +274,7 @@ TEST_F(Options, HelpOfEveryProgramEndsWithExamplesAndExitStatuses) {
     const std::size_t end = result.out.find("\nExamples:\n  " + name);
     ASSERT_NE(end, std::string::npos) << result.out;
     EXPECT_LT(result.out.rfind("  --"), end) << "options behind the examples: " << result.out;
-    for (const char* status : {"\nExit status:\n  0  done\n", "\n  2  wrong arguments"}) {
+    for (const char* status : {"\nExit status:\n  0  done\n", "\n  2  invalid arguments"}) {
       EXPECT_TRUE(contains(result.out.substr(end), status)) << result.out;
     }
     const bool neverFails = path == TETSKIN_DEFORM || path == TETSKIN_BENCH;

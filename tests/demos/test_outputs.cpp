@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the programs write, and that nothing is lost by it: files are told apart by what they are, not by their names.
+// The files that the programs write, and that they overwrite no other: files are identified by what they are, not by
+// their names.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -45,7 +46,7 @@ class Outputs : public testing::Test {
 };
 
 TEST_F(Outputs, AreNotWhatIsRead) {
-  expectRefused(cage({"-o", "c.vtk", "--json", "box.obj"}), "--json box.obj: would overwrite what is read by --mesh");
+  expectRefused(cage({"-o", "c.vtk", "--json", "box.obj"}), "--json box.obj: would overwrite the input of --mesh");
   expectRefused(deform({"-o", "box.obj"}), "--output box.obj");
   expectRefused(deform({"-o", "now.obj", "--dump-embedding", "cube.vtk"}), "--cage cube.vtk");
   expectRefused(drop({"--mesh", "box.obj", "--view", "box.obj"}), "--view box.obj");
@@ -63,7 +64,7 @@ TEST_F(Outputs, AreNotWhatIsReadByAnyOtherName) {
     expectRefused(cage({"-o", "c.vtk", "--json", name}), "--json " + name);
   }
   expectRefused(cage({"-o", "c.vtk", "--json", folder.path("box.obj")}), "would overwrite");
-  folder.write("c.json.part", boxObj());  // what c.json is called until it is whole
+  folder.write("c.json.part", boxObj());  // the name of c.json until it is complete
   expectRefused(folder.run(TETSKIN_CAGE, {"--mesh", "c.json.part", "-o", "c.vtk", "--json", "c.json"}), "c.json.part");
 }
 
@@ -79,9 +80,9 @@ TEST_F(Outputs, AreNotTwiceTheSame) {
   expectRefused(cage({"-o", "c.vtk", "--json", "c.vtk"}), "--json c.vtk");
   expectRefused(deform({"-o", "now.obj", "--json", "x", "--dump-embedding", "./x"}), "would overwrite");
   expectRefused(drop({"--view", "x", "--json", "x"}), "would overwrite");
-  expectRefused(drop({"--view", "out/drop/summary.json"}), "would overwrite what --view writes");
+  expectRefused(drop({"--view", "out/drop/summary.json"}), "would overwrite the output of --view");
   expectRefused(drop({"--json", "out/drop/view.html"}), "out/drop/view.html");
-  fs::create_symlink("x", folder.path("to_x"));  // where nothing is yet
+  fs::create_symlink("x", folder.path("to_x"));  // points to a file that does not exist yet
   expectRefused(drop({"--view", "x", "--json", "to_x"}), "would overwrite");
   EXPECT_FALSE(folder.exists("out"));
 }
@@ -111,12 +112,12 @@ TEST_F(Outputs, AreLookedAtBeforeAnythingIsRead) {
   for (const std::string program : {TETSKIN_CAGE, TETSKIN_DEFORM}) {
     Arguments arguments = {"--mesh", "none.obj", "-o", "now.stl"};
     if (program == TETSKIN_DEFORM) arguments.insert(arguments.end(), {"--cage", "none.vtk", "--deformed", "none.vtk"});
-    expectRefused(folder.run(program, arguments), "now.stl: is of a format that is not written");
+    expectRefused(folder.run(program, arguments), "now.stl: unsupported output format");
     arguments[3] = program == TETSKIN_DEFORM ? "no/where.obj" : "no/where.vtk";
     expectRefused(folder.run(program, arguments), "no/where");
   }
   expectRefused(drop({"--mesh", "none.obj", "--json", "no/where.json"}), "no/where.json");
-  expectRefused(drop({"--mesh", "none.obj", "--out", "box.obj/o"}), "box.obj/o: cannot be made a folder");
+  expectRefused(drop({"--mesh", "none.obj", "--out", "box.obj/o"}), "box.obj/o: cannot be created");
   EXPECT_EQ(drop({"--mesh", "box.obj", "--out", "o", "--json", "o/s.json", "--no-view"}).status, 0)
       << "made by the run";
 }

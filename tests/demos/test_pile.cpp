@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include "drop_run.h"
 
@@ -23,13 +23,39 @@ TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   EXPECT_GT(json["iterations_per_step"], 1.0);
   EXPECT_GT(json["passes_per_step"], 0.1);
   EXPECT_EQ(json["steps_unconverged"], 0);
-  EXPECT_GT(json["deepest_contact_at_end"], -0.05);  // of coarse bodies that still move
+  EXPECT_GT(json["deepest_contact_at_end"], -0.05);  // coarse bodies that still move
+  EXPECT_LE(json["deepest_vertex"], json["deepest_vertex_at_end"]);
+  EXPECT_LT(json["deepest_vertex_at_end"], 0.0);
+  EXPECT_GT(json["deepest_vertex_at_end"], -0.05);
+  EXPECT_GT(json["vertices_inside_at_end"], 0);
+  EXPECT_NE(result.out.find("  time  contacts  deepest vertex  vertices inside  deepest contact"), std::string::npos)
+      << result.out;
+  for (const char* row :
+       {"\n  0.00  ", "\n  1.00  ", "\n  2.00  ", "\n  3.00  ", "\n  deepest vertex  ", "ms per frame\n"}) {
+    EXPECT_NE(result.out.find(row), std::string::npos) << row << result.out;
+  }
   const TriangleMesh first = loadMesh(folder.path("out/pile/frame_0000.obj")).value();
   const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0180.obj")).value();
   ASSERT_EQ(first.vertexCount(), last.vertexCount());
   EXPECT_LT(boundingBox(last.positions).max().y(), 0.8 * boundingBox(first.positions).max().y());
   EXPECT_GT(boundingBox(last.positions).min().y(), -0.05);
   EXPECT_TRUE(loadMesh(folder.path("out/pile/obstacles.obj")).ok());
+}
+
+TEST(Pile, MeasuresTheDeepestVertexAsOftenAsIsAskedFor) {
+  const CommandFolder folder;
+  const auto deepest = [&](const char* every) {
+    const CommandResult result =
+        folder.run(TETSKIN_PILE, {"--bodies", "3", "--tets", "100", "--triangles", "3000", "--frames", "110", "--every",
+                                  "109", "--depth-every", every});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return folder.json("out/pile/summary.json");
+  };
+  const auto always = deepest("1"), seldom = deepest("1000");
+  EXPECT_LE(always["deepest_vertex"], seldom["deepest_vertex"]);
+  EXPECT_LT(always["deepest_vertex"], 0.0);
+  EXPECT_EQ(always["deepest_vertex_at_end"], seldom["deepest_vertex_at_end"]);
+  EXPECT_GT(always["deepest_vertex_frame"], 60);  // the bodies fall for a second
 }
 
 TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Parts that a cage keeps apart come apart when they are pulled, about as far as those of the body itself.
+// Fingers that a cage keeps apart come apart when they are pulled, about as far as those of the body itself.
 #include <gtest/gtest.h>
 
 #include <tetskin/bullet/deformable_body.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/elastic/calibration.h>
 
@@ -18,7 +18,7 @@
 
 #include "scenes/hand.h"
 #include "scenes/world.h"
-#include "support/part_models.h"
+#include "support/component_models.h"
 
 namespace tetskin::scenes {
 namespace {
@@ -30,7 +30,7 @@ using Tips = std::vector<std::vector<int>>;
 Tips tipsOf(const TriangleMesh& mesh, const TetMesh& tets, const std::vector<VertexBinding>& bindings) {
   constexpr double kTip = 0.06;
   const test::Plane plane = handPlane();
-  const std::vector<int> fingerOf = test::partsBeyond(tets, plane);
+  const std::vector<int> fingerOf = test::componentsBeyond(tets, plane);
   std::map<int, double> reach;
   const auto fingerAt = [&](std::size_t v) { return fingerOf[bindings[v].tet]; };
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -51,51 +51,53 @@ Tips tipsOf(const TriangleMesh& mesh, const TetMesh& tets, const std::vector<Ver
   return sorted;
 }
 
-/// A hand held at its wrist, two of whose fingers are pulled at their tips.
+/// A hand pinned at its wrist, with two of its fingers pulled at their tips.
 class PulledHand {
  public:
   PulledHand(const Cage& cage, const TriangleMesh& mesh)
       : cage_(cage), bindings_(embed(cage, mesh).value().bindings()), world_(Force::Elastic, btVector3(0, 0, 0)) {
-    constexpr double kHeld = 0.15;
+    constexpr double kPinned = 0.15;
     double lowest = std::numeric_limits<double>::infinity();
     for (const Vector3d& p : mesh.positions) lowest = std::min(lowest, p.y());
     SoftBodyOptions options;
     options.youngsModulus = 2000.0;
     options.density = 1.0;
-    options.damping = 0.3;
+    options.stiffnessDamping = 0.3;
     options.solverTolerance = 1e-6;
     options.maxIterations = 1000;
-    options.pinned = [=](const Vector3d& p) { return p.y() < lowest + kHeld; };
+    options.pinned = [=](const Vector3d& p) { return p.y() < lowest + kPinned; };
     body_ = &world_.add(cage, options);
   }
 
-  /// How much farther apart they come to lie.
+  /// The increase of the distance between two tips.
   double partBy(const std::vector<int>& one, const std::vector<int>& other) {
     constexpr double kPull = 0.005, kStep = 1.0 / 60;
     constexpr int kSteps = 180;
-    const Vector3d way = placeOf(other) - placeOf(one);
+    const Vector3d direction = positionOf(other) - positionOf(one);
     for (int k = 0; k < kSteps; ++k) {
-      pull(one, -kPull * kStep * way.normalized());
-      pull(other, kPull * kStep * way.normalized());
+      pull(one, -kPull * kStep * direction.normalized());
+      pull(other, kPull * kStep * direction.normalized());
       world_.step(kStep);
     }
-    return (placeOf(other) - placeOf(one)).norm() - way.norm();
+    return (positionOf(other) - positionOf(one)).norm() - direction.norm();
   }
 
  private:
-  btSoftBody::Node& node(int vertex, int corner) { return body_->m_nodes[cage_.tets[bindings_[vertex].tet][corner]]; }
+  btSoftBody::Node& node(int vertex, int corner) {
+    return body_->m_nodes[cage_.mesh.tets[bindings_[vertex].tet][corner]];
+  }
 
   void pull(const std::vector<int>& tip, const Vector3d& impulse) {
     for (const int v : tip) {
       for (int k = 0; k < 4; ++k) {
-        const double share = node(v, k).m_im * bindings_[v].weights[k] / static_cast<double>(tip.size());
-        node(v, k).m_v +=
-            btVector3(btScalar(share * impulse.x()), btScalar(share * impulse.y()), btScalar(share * impulse.z()));
+        const double fraction = node(v, k).m_im * bindings_[v].weights[k] / static_cast<double>(tip.size());
+        node(v, k).m_v += btVector3(btScalar(fraction * impulse.x()), btScalar(fraction * impulse.y()),
+                                    btScalar(fraction * impulse.z()));
       }
     }
   }
 
-  Vector3d placeOf(const std::vector<int>& tip) {
+  Vector3d positionOf(const std::vector<int>& tip) {
     Vector3d sum = Vector3d::Zero();
     for (const int v : tip) {
       for (int k = 0; k < 4; ++k) {
@@ -115,19 +117,20 @@ class PulledHand {
 Cage calibratedCage(const TriangleMesh& mesh, bool split) {
   CageOptions options;
   options.targetTets = 3000;
-  options.split = split;
-  Cage cage = buildCage(mesh, options).value();
+  options.duplicateElements = split;
+  Cage cage = createCage(mesh, options).value();
   EXPECT_TRUE(calibrate(cage).ok());
   return cage;
 }
 
-/// The reference: tets that fill the hand and share nothing but the palm, softened as such tets are too stiff as well.
+/// The reference: tets that fill the hand and share only the palm, with reduced stiffness because such tets are too
+/// stiff as well.
 TEST(PulledFingers, ComeApartAsThoseOfTheBodyDo) {
   const TriangleMesh mesh = makeHand(20000);
   Cage reference(makeHandTets(kMinHandTets));
   ASSERT_TRUE(calibrate(reference).ok());
   const Cage split = calibratedCage(mesh, true), whole = calibratedCage(mesh, false);
-  const Tips tips = tipsOf(mesh, reference, embed(reference, mesh).value().bindings());
+  const Tips tips = tipsOf(mesh, reference.mesh, embed(reference, mesh).value().bindings());
   ASSERT_EQ(tips.size(), 5u);
   for (std::size_t k = 0; k + 1 < tips.size(); ++k) {
     const double wanted = PulledHand(reference, mesh).partBy(tips[k], tips[k + 1]);

@@ -35,7 +35,7 @@ TEST(Advice, TheFrontHoldsWhatNothingBeatsInTimeAndError) {
                            rowWith("quadratic", 0.02, 9, 0.01), rowWith("bullet", 0.1, 0.1, 0.001)};
   rows.push_back(rows[1]);
   rows.back().totalMs = 0.5;
-  rows.back().finite = 0.0;  // exploded: no choice
+  rows.back().finite = 0.0;  // exploded, so it is not a choice
   report::markPareto(rows);
   std::vector<bool> front;
   for (const Row& row : rows) front.push_back(row.pareto);
@@ -53,11 +53,11 @@ TEST(Advice, SaysWhetherAReducedBodyGainsOverCagesThatCostNoMore) {
   std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0), rowWith("linear", 0.1, 1, 0.1),
                            rowWith("linear", 0.05, 5, 0.02)};
   EXPECT_EQ(report::reductionAdvice(rows), "");
-  rows.push_back(reducedWith(20, 6, 0.03));  // a cage is better and faster
-  EXPECT_EQ(report::reductionAdvice(rows).find("Take embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"),
-            0u);
-  rows.push_back(reducedWith(5, 1.5, 0.04));  // the cage of its time is worse
-  EXPECT_EQ(report::reductionAdvice(rows).find("Take a reduced body: 5 modes"), 0u) << report::reductionAdvice(rows);
+  rows.push_back(reducedWith(20, 6, 0.03));  // a cage is better and faster than this
+  EXPECT_EQ(
+      report::reductionAdvice(rows).find("Use an embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"), 0u);
+  rows.push_back(reducedWith(5, 1.5, 0.04));  // the cage that takes as long is worse
+  EXPECT_EQ(report::reductionAdvice(rows).find("Use a reduced body: 5 modes"), 0u) << report::reductionAdvice(rows);
   rows.push_back(reducedWith(1, 0.1, 0.5));  // nothing else is as fast
   EXPECT_NE(report::reductionAdvice(rows).find("no cage is as fast"), std::string::npos);
 }
@@ -74,7 +74,7 @@ TEST(Advice, SaysUpToWhichDeformationLinearModesServe) {
 }
 
 TEST(Advice, FindsOrderAndTheReferencesOwnError) {
-  // Errors against a truth fall as 3 edge^2; the reference is such a cage, too.
+  // Errors relative to the exact solution fall as 3 edge^2; the reference is such a cage, too.
   std::vector<Row> rows = {rowWith("reference", 0.01, 500, 0)};
   for (const double edge : {0.08, 0.04, 0.02}) {
     rows.push_back(rowWith("quadratic", edge, 1, 3.0 * (edge * edge - 0.01 * 0.01)));
@@ -123,8 +123,8 @@ TEST(ColouredMesh, IsPlyWithAColourAVertex) {
   const std::string ply = report::colouredPly(mesh, mesh.positions, {0.0f, 1.0f, 9.0f}, 1.0);
   EXPECT_NE(ply.find("element vertex 3\n"), std::string::npos);
   EXPECT_NE(ply.find("0 0 0 68 1 84\n1 0 0 253 231 37\n0 1 0 253 231 37\n3 0 1 2\n"), std::string::npos) << ply;
-  EXPECT_EQ(report::mostOf({}), 0.0);
-  EXPECT_EQ(report::mostOf({3.0f}), 3.0);
+  EXPECT_EQ(report::maxOf({}), 0.0);
+  EXPECT_EQ(report::maxOf({3.0f}), 3.0);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using test::rowsOf;
 
 class ReportReferences : public test::ErrorVsTimeRun {};
 
-/// A cage for a built-in model, as a user makes one.
+/// Creates a cage for a built-in model, as a user would.
 void buildReference(const CommandFolder& folder, const std::string& model, const std::string& tets,
                     const std::string& file) {
   const CommandResult result =
@@ -25,9 +25,9 @@ void buildReference(const CommandFolder& folder, const std::string& model, const
 
 TEST_F(ReportReferences, TakesTheTetsThatABuiltInModelComesWith) {
   const std::vector<std::string> arguments = {"--model",          "slotted_beam", "--triangles", "2000",
-                                              "--scene",          "sag",          "--tets",      "300",
+                                              "--scenes",         "sag",          "--tets",      "300",
                                               "--no-calibration", "--frames",     "3",           "--interpolation",
-                                              "linear",           "--force",      "bullet"};
+                                              "linear",           "--elasticity", "bullet"};
   const auto with = [&](const std::string& tets) {
     std::vector<std::string> all = arguments;
     all.insert(all.end(), {"--reference-tets", tets, "--out", "out"});
@@ -41,7 +41,7 @@ TEST_F(ReportReferences, TakesTheTetsThatABuiltInModelComesWith) {
   EXPECT_EQ(json.at("reference").at("from"), "formula");
   EXPECT_GE(json.at("reference").at("tets"), 2000);
   EXPECT_EQ(number(rowsOf(json.at("scenes").at(0), "reference").at(0), "tets"), number(json.at("reference"), "tets"));
-  // Fused cages do not approach it: none is built to estimate its error.
+  // Fused cages do not converge to it, so none is built to estimate its error.
   EXPECT_EQ(json.at("scenes").at(0).at("reference_error"), 0.0);
   EXPECT_EQ(json.at("scenes").at(0).at("rows").size(), 2u);
 
@@ -56,12 +56,12 @@ TEST_F(ReportReferences, TakesAReferenceFromAFile) {
                                               "bar",
                                               "--triangles",
                                               "4000",
-                                              "--scene",
+                                              "--scenes",
                                               "sag",
                                               "--tets",
                                               "300",
                                               "--no-calibration",
-                                              "--force",
+                                              "--elasticity",
                                               "bullet",
                                               "--frames",
                                               "3",
@@ -72,11 +72,11 @@ TEST_F(ReportReferences, TakesAReferenceFromAFile) {
                                               "--out",
                                               "out"};
   std::vector<double> errors;
-  for (const char* tets : {"1500", "2500"}) {  // the same name, another reference: nothing stored may be taken
+  for (const char* tets : {"1500", "2500"}) {  // same name but another reference: no stored result may be used
     buildReference(folder, "bar", tets, "r.vtk");
     const CommandResult result = run(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("tets of r.vtk"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("tets from r.vtk"), std::string::npos) << result.out;
     const auto json = folder.json("out/error_vs_time.json");
     EXPECT_EQ(json.at("reference").at("from"), "r.vtk");
     EXPECT_NEAR(number(json.at("reference"), "tets"), std::stod(tets), 0.1 * std::stod(tets));

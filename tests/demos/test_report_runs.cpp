@@ -30,7 +30,7 @@ TEST_F(ReportRuns, TwoRunsGiveTheSameErrors) {
 TEST_F(ReportRuns, GoesOnWhereItStopped) {
   ASSERT_EQ(run(small("sag")).status, 0);
   const auto before = folder.json("out/error_vs_time.json");
-  // As if it had been stopped before its last cage.
+  // This is the state after a run that was stopped before its last cage.
   std::filesystem::path last;
   for (const auto& file : std::filesystem::directory_iterator(folder.path("out/rows"))) {
     if (file.path().extension() != ".json") continue;
@@ -44,14 +44,14 @@ TEST_F(ReportRuns, GoesOnWhereItStopped) {
   std::size_t sameTimes = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_NEAR(number(a[k], "error_total_rms"), number(b[k], "error_total_rms"), 1e-9);
-    sameTimes += a[k].at("simulation_ms") == b[k].at("simulation_ms");  // to the bit: not measured again
+    sameTimes += a[k].at("simulation_ms") == b[k].at("simulation_ms");  // equal to the bit: not measured again
   }
   EXPECT_GE(sameTimes, a.size() - 2);
   EXPECT_LT(sameTimes, a.size());
 }
 
 TEST_F(ReportRuns, MeasuresAnewWhatAnotherBuildHasLeft) {
-  // A program of other bytes that does the same.
+  // A program with different bytes that does the same.
   std::filesystem::copy(TETSKIN_ERROR_VS_TIME, folder.path("changed"));
   std::ofstream(folder.path("changed"), std::ios::app | std::ios::binary) << "another build";
   const auto times = [&](const std::string& program) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The table of scenes, and the small things that the demos share.
+// The table of scenes, and small helpers that the demos share.
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
@@ -28,16 +28,18 @@ using scenes::Scene;
 using scenes::SceneEntry;
 using scenes::SceneOptions;
 
-/// The bar in a small cage, of kSize and at the origin.
+/// The bar in a small cage of size kSize, at the origin.
 const TetMesh& smallCage() {
-  static const TetMesh cage = [] {
-    scenes::ModelOptions options;
-    options.builtIn = scenes::BuiltIn::Bar;
-    options.triangles = 2000;
-    options.tets = 100;
-    const TetMesh made = scenes::loadModel(options).cage;
-    return scenes::placementOf(boundingBox(made.nodes)).toWorld(made);
-  }();
+  static const TetMesh cage =
+      [] {
+        scenes::ModelOptions options;
+        options.builtIn = scenes::BuiltIn::Bar;
+        options.triangles = 2000;
+        options.tets = 100;
+        const TetMesh made = scenes::loadModel(options).cage.mesh;
+        return scenes::placementOf(boundingBox(made.nodes)).toWorld(made);
+      }()
+          .mesh;
   return cage;
 }
 
@@ -47,7 +49,7 @@ std::vector<Eigen::Vector3d> nodesOf(const Scene& scene) {
   return nodes;
 }
 
-/// After some frames.
+/// The scene after some frames.
 std::unique_ptr<Scene> played(const char* name, int frames, const SceneOptions& options = {}) {
   auto scene = scenes::sceneNamed(name).make(smallCage(), options);
   for (int frame = 1; frame <= frames; ++frame) scene->step(frame);
@@ -68,7 +70,7 @@ TEST(SceneTable, AScenesBodyBeginsWhereItIsSaidToBe) {
 }
 
 TEST(SceneTable, EverySceneMakesStepsAndChecks) {
-  // Scenes whose bodies are torn apart by what is done to them, if Bullet does not survive it.
+  // Scenes that tear their bodies apart where Bullet cannot handle them.
   const std::set<std::string> violent = {"stretch", "mirror", "permute", "spin", "impact"};
   const std::map<std::string, std::size_t> several = {
       {"soft_stack", 4}, {"soft_removed", 4}, {"soft_squeezed", 3}, {"soft_pile", 10}};
@@ -145,15 +147,15 @@ TEST(SceneTable, ObstaclesDoWhatTheySay) {
   const Box3 rest = boundingBox(smallCage().nodes);
   SceneOptions options;
   options.frames = 60;
-  // Nearest after half of the three quarters of the run in which the plates move.
+  // The plates are closest halfway through the three quarters of the run in which they move.
   EXPECT_LT(boxOf(*played("flatten", 23, options)).sizes().y(), 0.3 * rest.sizes().y());
   EXPECT_LT(boxOf(*played("squeeze", 30, options)).sizes().y(), 0.7 * rest.sizes().y());
   const double untouched = boxOf(*played("land", 60, options)).center().x();
   EXPECT_GT(std::abs(boxOf(*played("mill", 60, options)).center().x() - untouched), 0.05);
-  // It lies, and then nothing is below it: a third of a second later it is on the floor.
+  // The body rests until what is below it is removed: a third of a second later it is on the floor.
   const double lying = boxOf(*played("obstacles_go", 39, options)).min().y();
   EXPECT_LT(boxOf(*played("obstacles_go", 60, options)).min().y(), lying - 0.2);
-  // It stays where it was when it was taken away, though the floor is gone for it.
+  // A body that was removed from the world stays where it was.
   const auto gone = played("body_goes", 40, options);
   const auto left = nodesOf(*gone);
   for (int frame = 41; frame <= 60; ++frame) gone->step(frame);
@@ -180,11 +182,11 @@ TEST(SceneTable, ASurfaceIsDueWhenNodesArePutElsewhere) {
     SceneOptions options;
     options.frames = 12;
     const auto scene = scenes::sceneNamed(name).make(smallCage(), options);
-    const bool spoilt = name == std::string("node_nan");
+    const bool damaged = name == std::string("node_nan");
     int due = 0;
     const auto moved = [&] {
       ++due;
-      EXPECT_EQ(scene->check().finite, !spoilt || due == 2);
+      EXPECT_EQ(scene->check().finite, !damaged || due == 2);
     };
     for (int frame = 1; frame <= options.frames; ++frame) scene->step(frame, moved);
     EXPECT_EQ(due, expected) << name;
@@ -194,9 +196,9 @@ TEST(SceneTable, ASurfaceIsDueWhenNodesArePutElsewhere) {
 TEST(SceneTable, ChecksTellWhatHasExplodedOrFallenThrough) {
   const auto scene = scenes::sceneNamed("land").make(smallCage());
   EXPECT_TRUE(scene->check().aboveFloor && scene->check().finite && !scene->check().exploded);
-  const auto with = [&](const btVector3& place) {
+  const auto with = [&](const btVector3& position) {
     scene->restore();
-    scenes::placeNode(scene->body().m_nodes[0], place);
+    scenes::placeNode(scene->body().m_nodes[0], position);
     return scene->check();
   };
   const auto floor = static_cast<btScalar>(scene->floorY);
@@ -208,10 +210,11 @@ TEST(SceneTable, ChecksTellWhatHasExplodedOrFallenThrough) {
 }
 
 TEST(Placement, LeadsToTheWorldAndBack) {
-  const scenes::Placement place = scenes::placementOf(Box3(Eigen::Vector3d(10, 20, 30), Eigen::Vector3d(14, 21, 32)));
-  EXPECT_EQ(place.toWorld({14, 20.5, 31}), Eigen::Vector3d(1, 0, 0));
+  const scenes::Placement position =
+      scenes::placementOf(Box3(Eigen::Vector3d(10, 20, 30), Eigen::Vector3d(14, 21, 32)));
+  EXPECT_EQ(position.toWorld({14, 20.5, 31}), Eigen::Vector3d(1, 0, 0));
   const Eigen::Vector3d p(1, 2, 3);
-  EXPECT_LT((place.toModel(place.toWorld(p)) - p).norm(), 1e-12);
+  EXPECT_LT((position.toModel(position.toWorld(p)) - p).norm(), 1e-12);
 }
 
 TEST(Statistics, MedianIsTheMiddleOne) {

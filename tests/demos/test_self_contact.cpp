@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// --self-contact of the programs that drop, pile and drag bodies.
+// --self-contact in the programs that drop, pile and drag bodies.
 #include <gtest/gtest.h>
 #include <tetskin/core/src/shared/mesh/winding_tree.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ using test::CommandResult;
 
 class SelfContact : public test::DropRun {
  protected:
-  /// Adds what every run here has. A sheet encloses nothing, and so has no inside to stay out of.
+  /// Runs with the options that all runs here need. A sheet encloses nothing, so it has no inside.
   CommandResult dropSheet(std::vector<std::string> more) const {
     folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n");
     more.insert(more.begin(), {"--mesh", "sheet.obj", "--tets", "60", "--frames", "2", "--out", "o", "--no-view"});
@@ -28,7 +28,8 @@ class SelfContact : public test::DropRun {
   TriangleMesh frame(const std::string& name) const { return loadMesh(folder.path(name)).value(); }
 };
 
-/// By vertex: whether what lies a thousandth of the size above it is within the surface. So are roots of horns.
+/// By vertex: whether the point above it by a thousandth of the size is inside the surface. This is also the case at
+/// the roots of horns.
 std::vector<bool> areCovered(const TriangleMesh& mesh) {
   const double above = 1e-3 * boundingBox(mesh.positions).sizes().maxCoeff();
   std::vector<Vector3d> normals(mesh.vertexCount(), Vector3d::Zero());
@@ -55,7 +56,8 @@ TEST_F(SelfContact, KeepsTheSerpentOutOfItselfInEveryFrame) {
     const std::vector<bool> now = areCovered(frame(name));
     std::size_t sunk = 0;
     for (std::size_t v = 0; v < now.size(); ++v) sunk += now[v] && !before[v];
-    EXPECT_LT(static_cast<double>(sunk), 0.005 * static_cast<double>(now.size())) << name;  // without: 6.8 %
+    // 6.8 % without self-contact.
+    EXPECT_LT(static_cast<double>(sunk), 0.005 * static_cast<double>(now.size())) << name;
   }
 }
 
@@ -67,7 +69,7 @@ TEST_F(SelfContact, IsOffWhereContactIsAtTheCageAndOnWhereItIsAskedFor) {
     const CommandResult result = drop(all);
     EXPECT_EQ(result.status, 0) << result.err;
     const std::string word = folder.json("o/summary.json")["self_contact"];
-    EXPECT_NE(result.out.find("contact with itself    " + word), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("self-contact           " + word), std::string::npos) << result.out;
     return word;
   };
   EXPECT_EQ(self({}), "on");
@@ -79,7 +81,7 @@ TEST_F(SelfContact, IsOffWhereContactIsAtTheCageAndOnWhereItIsAskedFor) {
 TEST_F(SelfContact, IsDoneWithoutWhereTheMeshIsOpenAndThatIsSaid) {
   const CommandResult result = dropSheet({});
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::string line = "No contact of the body with itself: sheet.obj: ";
+  const std::string line = "Self-contact is off: sheet.obj: ";
   EXPECT_NE(result.out.find(line), std::string::npos) << result.out;
   const auto json = folder.json("o/summary.json");
   EXPECT_EQ(json["self_contact"], "refused");

@@ -18,9 +18,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kSmall = 6000;  ///< triangles that are enough to see every part
+constexpr std::size_t kSmall = 6000;  ///< triangles that are enough to resolve every detail
 
-/// For every vertex the first vertex at the same position.
+/// By vertex: the first vertex at the same position.
 std::vector<int> welded(const TriangleMesh& mesh) {
   std::map<std::array<double, 3>, int> firsts;
   std::vector<int> weld;
@@ -40,8 +40,8 @@ std::map<std::pair<int, int>, int> directedEdges(const TriangleMesh& mesh, const
   return uses;
 }
 
-/// Number of pieces that hang together.
-int countParts(const TriangleMesh& mesh, const std::vector<int>& weld) {
+/// Number of connected components.
+int countComponents(const TriangleMesh& mesh, const std::vector<int>& weld) {
   std::vector<int> parent = weld;
   const auto root = [&](int v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
@@ -51,9 +51,9 @@ int countParts(const TriangleMesh& mesh, const std::vector<int>& weld) {
     parent[root(t[0])] = root(t[2]);
     parent[root(t[1])] = root(t[2]);
   }
-  int parts = 0;
-  for (std::size_t v = 0; v < parent.size(); ++v) parts += root(static_cast<int>(v)) == static_cast<int>(v);
-  return parts;
+  int components = 0;
+  for (std::size_t v = 0; v < parent.size(); ++v) components += root(static_cast<int>(v)) == static_cast<int>(v);
+  return components;
 }
 
 class SerpentOfSize : public testing::TestWithParam<std::size_t> {};
@@ -62,7 +62,7 @@ TEST_P(SerpentOfSize, HasTheTrianglesWishedFor) {
   const TriangleMesh mesh = makeSerpent({GetParam()});
   const double wish = static_cast<double>(GetParam());
   EXPECT_NEAR(static_cast<double>(mesh.triangleCount()), wish, 0.02 * wish);
-  EXPECT_TRUE(checkTriangleMesh(mesh).ok());
+  EXPECT_TRUE(validate(mesh).ok());
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, SerpentOfSize,
@@ -85,7 +85,7 @@ TEST(Serpent, IsClosedAndConsistentlyOrientedWhenWelded) {
                                      [](const Eigen::Vector2f& uv) { return uv.x() == 1.0f; });
     const auto vertices = static_cast<long>(mesh.vertexCount()) - seams;
     const auto euler = vertices - static_cast<long>(edges.size() / 2) + static_cast<long>(mesh.triangleCount());
-    EXPECT_EQ(euler, 2 * countParts(mesh, weld)) << "every part is a sphere";
+    EXPECT_EQ(euler, 2 * countComponents(mesh, weld)) << "every part is a sphere";
   }
 }
 
@@ -175,7 +175,7 @@ TEST(Serpent, HasStrandsThatComeCloseButDoNotTouch) {
   constexpr int kSamples = 600;
   constexpr double kFarApart = 6.0;  ///< radii along the spine
   const SerpentShape shape;
-  double closest = 1e9;  // in thicknesses
+  double closest = 1e9;  // relative to the thickness
   for (int i = 0; i < kSamples; ++i) {
     for (int j = 0; j < i; ++j) {
       const double a = (i + 0.5) / kSamples, b = (j + 0.5) / kSamples;

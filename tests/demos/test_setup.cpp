@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// demos/run on a machine that has nothing yet. Instead of apt and CMake there are programs that only write down how
-// they are called.
+// Runs demos/run as on a machine that has nothing installed yet. Stand-ins for apt and CMake only record how they are
+// called.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ class DemosRun : public testing::Test {
     std::filesystem::create_directory(folder.path("bin"));
     stub("apt-get", "");
     stub("dpkg-query", "exit 1\n");  // no package is installed
-    stub("cmake", "exit 3\n");       // ends the script
+    stub("cmake", "exit 3\n");       // stops the script
     stub("sudo", "exec \"$@\"\n");
   }
 

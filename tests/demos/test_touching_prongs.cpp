@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Contact of what a split cage keeps apart: parts of the mesh in tets that are at one place.
+// Contact between limbs that a cage keeps apart by duplicate elements: they lie in tets at the same position.
 #include <gtest/gtest.h>
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
@@ -15,8 +15,8 @@
 
 #include "scenes/slotted_beam.h"
 #include "scenes/world.h"
+#include "support/component_models.h"
 #include "support/odd_meshes.h"
-#include "support/part_models.h"
 
 namespace tetskin::scenes {
 namespace {
@@ -24,11 +24,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBall = 0.3;    ///< radius
-constexpr double kRoot = -0.4;   ///< where the slot ends, along the beam
-constexpr double kPlace = 1.0;   ///< of the ball
-constexpr double kOpened = 0.4;  ///< radians, each prong
+constexpr double kRoot = -0.4;   ///< end of the slot, along the beam
+constexpr double kPlace = 1.0;   ///< position of the ball
+constexpr double kOpened = 0.4;  ///< opening of each prong, in radians
 
-/// The beam in a split cage, and a ball.
+/// The beam in a cage with duplicate elements, and a ball.
 struct Models {
   TriangleMesh mesh = makeSlottedBeam(6000), ballMesh = test::sphere(20, kBall, Vector3d::Zero());
   Cage cage;
@@ -39,14 +39,14 @@ struct Models {
 
   Models() {
     CageOptions options;
-    options.targetTets = 2000;  // fewer would not keep the prongs apart
-    cage = buildCage(mesh, options).value();
-    EXPECT_EQ(test::countPartsBeyond(cage, test::Plane(along, 0.6 * along)), 2);
+    options.targetTets = 2000;  // with fewer, the prongs would not stay apart
+    cage = createCage(mesh, options).value();
+    EXPECT_EQ(test::countComponentsBeyond(cage.mesh, test::Plane(along, 0.6 * along)), 2);
     bindings = embed(cage, mesh).value().bindings();
-    shape = makeContactShape(cage, mesh).value();
+    shape = ContactShape::create(cage, mesh).value();
     const Vector3d centre = boundingBox(ballCage.nodes).center();
     for (Vector3d& p : ballCage.nodes) p -= centre;
-    ballShape = makeContactShape(ballCage, ballMesh).value();
+    ballShape = ContactShape::create(ballCage, ballMesh).value();
   }
 };
 
@@ -73,14 +73,14 @@ class TouchingProngs : public testing::Test {
     for (Vector3d& p : cage.nodes) p += kPlace * models().along;
     ball_ = &world_.add(cage, material(2e4));
   }
-  /// Turns each prong outwards about where the slot ends.
+  /// Turns each prong outwards about the end of the slot.
   void openProngs() {
     const Vector3d root = kRoot * models().along;
     for (std::size_t n = 0; n < sides().size(); ++n) {
       if (sides()[n] == 0.0) continue;
       const Eigen::AngleAxisd turn(sides()[n] > 0.0 ? kOpened : -kOpened, Vector3d::UnitZ());
       btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
-      node.m_x = node.m_q = toBullet(root + turn * (models().cage.nodes[n] - root));
+      node.m_x = node.m_q = toBullet(root + turn * (models().cage.mesh.nodes[n] - root));
     }
   }
   void step(int frames) {
@@ -90,11 +90,11 @@ class TouchingProngs : public testing::Test {
     const VertexBinding& b = models().bindings[vertex];
     Vector3d p = Vector3d::Zero();
     for (int k = 0; k < 4; ++k) {
-      p += static_cast<double>(b.weights[k]) * toEigen(beam_->m_nodes[models().cage.tets[b.tet][k]].m_x);
+      p += static_cast<double>(b.weights[k]) * toEigen(beam_->m_nodes[models().cage.mesh.tets[b.tet][k]].m_x);
     }
     return p;
   }
-  /// By how much the deepest vertex of the beam is inside the ball, as that is deformed.
+  /// How deep the deepest vertex of the beam is inside the deformed ball.
   double depth() const {
     double deepest = 0.0;
     for (const Tet& tet : models().ballCage.tets) {
@@ -113,35 +113,37 @@ class TouchingProngs : public testing::Test {
     return deepest;
   }
 
-  /// By node: on which side of the slot, beyond its end; 0 elsewhere.
+  /// By node: on which side of the slot it lies, beyond the slot's end; 0 elsewhere.
   static const std::vector<double>& sides() {
     static const std::vector<double> made = [] {
       const Models& m = models();
-      std::vector<double> side(m.cage.nodeCount(), 0.0);
+      std::vector<double> side(m.cage.mesh.nodeCount(), 0.0);
       for (const VertexBinding& b : m.bindings) {
         Vector3d p = Vector3d::Zero();
-        for (int k = 0; k < 4; ++k) p += static_cast<double>(b.weights[k]) * m.cage.nodes[m.cage.tets[b.tet][k]];
-        for (const int n : m.cage.tets[b.tet]) side[n] += p.dot(m.across);
+        for (int k = 0; k < 4; ++k)
+          p += static_cast<double>(b.weights[k]) * m.cage.mesh.nodes[m.cage.mesh.tets[b.tet][k]];
+        for (const int n : m.cage.mesh.tets[b.tet]) side[n] += p.dot(m.across);
       }
       for (std::size_t n = 0; n < side.size(); ++n) {
-        if ((m.cage.nodes[n] - kRoot * m.along).dot(m.along) < 0.0) side[n] = 0.0;
+        if ((m.cage.mesh.nodes[n] - kRoot * m.along).dot(m.along) < 0.0) side[n] = 0.0;
       }
       return side;
     }();
     return made;
   }
-  /// Towards each other, the faster the farther out.
+  /// Puts the prongs at rest, with velocities towards each other that grow with the distance from the slot's end.
   void restAndThrow() {
     for (std::size_t n = 0; n < sides().size(); ++n) {
       btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
-      const Vector3d& at = models().cage.nodes[n];
-      const double way = std::max(0.0, (at - kRoot * models().along).dot(models().along));
+      const Vector3d& at = models().cage.mesh.nodes[n];
+      const double direction = std::max(0.0, (at - kRoot * models().along).dot(models().along));
       const double side = sides()[n] > 0.0 ? 1.0 : sides()[n] < 0.0 ? -1.0 : 0.0;
       node.m_x = node.m_q = toBullet(at);
-      node.m_v = node.m_vn = toBullet(-3.0 * side * way * models().across);
+      node.m_v = node.m_vn = toBullet(-3.0 * side * direction * models().across);
     }
   }
-  /// Between the prongs' inner faces near their ends; 0.04 at rest, below 0 where they have passed through.
+  /// The gap between the prongs' inner faces near their ends: 0.04 at rest, below 0 where they have passed through each
+  /// other.
   double gapAtTheTips() const {
     const Models& m = models();
     double gap[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
@@ -156,11 +158,11 @@ class TouchingProngs : public testing::Test {
     return gap[1] / count[1] - gap[0] / count[0];
   }
 
-  /// Opened, and let go.
+  /// The greatest depth after the prongs were opened and released.
   double deepestWhileTheyClose() {
     constexpr int kSpells = 5, kFrames = 5;
     openProngs();
-    EXPECT_TRUE(contacts_->include(*beam_, models().shape).ok());
+    EXPECT_TRUE(contacts_->add(*beam_, models().shape).ok());
     double deepest = 0.0;
     for (int spell = 0; spell < kSpells; ++spell) {
       step(kFrames);
@@ -177,7 +179,7 @@ class TouchingProngs : public testing::Test {
 
 TEST_F(TouchingProngs, CloseAboutABall) {
   addBall();
-  ASSERT_TRUE(contacts_->include(*ball_, models().ballShape).ok());
+  ASSERT_TRUE(contacts_->add(*ball_, models().ballShape).ok());
   EXPECT_LT(deepestWhileTheyClose(), 0.2 * kBall);
   EXPECT_FALSE(contacts_->contacts().empty());
 }
@@ -187,32 +189,32 @@ TEST_F(TouchingProngs, PassThroughABallThatWasNotIncluded) {
   EXPECT_GT(deepestWhileTheyClose(), 0.4 * kBall);
 }
 
-/// The prongs are 0.04 apart.
+/// The prongs are 0.04 apart at rest.
 TEST_F(TouchingProngs, MeetEachOther) {
   double crossed[2];
-  for (const bool meets : {false, true}) {
-    if (meets) {
-      ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
+  for (const bool collides : {false, true}) {
+    if (collides) {
+      ASSERT_TRUE(contacts_->add(*beam_, models().shape, true).ok());
     }
     restAndThrow();
-    double least = HUGE_VAL;
+    double minimum = HUGE_VAL;
     for (int k = 0; k < 40; ++k) {
       step(1);
-      least = std::min(least, gapAtTheTips());
+      minimum = std::min(minimum, gapAtTheTips());
     }
-    crossed[meets] = -least;
+    crossed[collides] = -minimum;
   }
   EXPECT_GT(crossed[false], 0.25);
   EXPECT_LT(crossed[true], 0.12);
 }
 
-/// Though each is, all along, in copies of the other's tets.
+/// They do not touch although each of them lies, all along, in duplicates of the other's tets.
 TEST_F(TouchingProngs, DoNotTouchEachOtherAtRest) {
-  ASSERT_TRUE(contacts_->include(*beam_, models().shape, true).ok());
+  ASSERT_TRUE(contacts_->add(*beam_, models().shape, true).ok());
   step(10);
   EXPECT_TRUE(contacts_->contacts().empty());
   for (int n = 0; n < beam_->m_nodes.size(); ++n) {
-    EXPECT_LT((toEigen(beam_->m_nodes[n].m_x) - models().cage.nodes[static_cast<std::size_t>(n)]).norm(), 1e-4);
+    EXPECT_LT((toEigen(beam_->m_nodes[n].m_x) - models().cage.mesh.nodes[static_cast<std::size_t>(n)]).norm(), 1e-4);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +24,13 @@ constexpr double kPi = 3.14159265358979323846;
 TEST(Bar, IsAClosedTubeOfTheTrianglesWishedFor) {
   for (const std::size_t wish : {2000, 8000, 60000}) {
     const TriangleMesh bar = scenes::makeBar(wish);
-    ASSERT_TRUE(checkTriangleMesh(bar).ok());
+    ASSERT_TRUE(validate(bar).ok());
     EXPECT_NEAR(static_cast<double>(bar.triangleCount()), static_cast<double>(wish), 0.02 * static_cast<double>(wish));
     EXPECT_EQ(bar.normals.size(), bar.vertexCount());
     const Vector3d sides = boundingBox(bar.positions).sizes();
     EXPECT_NEAR(sides.x(), 4.0, 1e-9);
     EXPECT_LT(sides.y(), 1.1);
-    double volume = 0.0;  // by the triangles' tets to the origin: positive if they face outwards
+    double volume = 0.0;  // sum over the triangles' tets with the origin: positive if the triangles face outwards
     for (const auto& t : bar.triangles) {
       volume += bar.positions[t[0]].dot(bar.positions[t[1]].cross(bar.positions[t[2]])) / 6.0;
     }
@@ -71,8 +71,8 @@ class TwistCommand : public testing::Test {
   CommandFolder folder;
 };
 
-/// Angle about the x axis, in degrees, from one surface to another, of the vertices [0, count) of a slice across it;
-/// nothing that a slice's bending or drifting would change.
+/// Angle about the x axis, in degrees, by which the vertices [0, count) of a slice across it have turned from one
+/// surface to another; bending or drifting of the slice does not change it.
 double turnOf(const TriangleMesh& rest, const TriangleMesh& now, std::size_t count, double from, double to) {
   std::vector<std::complex<double>> before, after;
   for (std::size_t v = 0; v < count; ++v) {
@@ -80,12 +80,12 @@ double turnOf(const TriangleMesh& rest, const TriangleMesh& now, std::size_t cou
     before.emplace_back(rest.positions[v].y(), rest.positions[v].z());
     after.emplace_back(now.positions[v].y(), now.positions[v].z());
   }
-  std::complex<double> middle = 0.0, middleNow = 0.0, sum = 0.0;
+  std::complex<double> centroid = 0.0, currentCentroid = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < before.size(); ++k) {
-    middle += before[k] / static_cast<double>(before.size());
-    middleNow += after[k] / static_cast<double>(before.size());
+    centroid += before[k] / static_cast<double>(before.size());
+    currentCentroid += after[k] / static_cast<double>(before.size());
   }
-  for (std::size_t k = 0; k < before.size(); ++k) sum += (after[k] - middleNow) * std::conj(before[k] - middle);
+  for (std::size_t k = 0; k < before.size(); ++k) sum += (after[k] - currentCentroid) * std::conj(before[k] - centroid);
   return std::arg(sum) * 180.0 / kPi;
 }
 
@@ -110,8 +110,8 @@ TEST_F(TwistCommand, TurnsOneEndAFullTurnHoldsItAndLetsItGo) {
   for (const int frame : {60, 120, 140, 230}) EXPECT_NEAR(turned(frame, -2.0, -1.8), 0.0, 5.0) << frame;
   EXPECT_NEAR(std::abs(turned(60, 1.8, 2.0)), 180.0, 8.0);
   EXPECT_NEAR(turned(140, 1.8, 2.0), 0.0, 8.0);
-  EXPECT_NEAR(std::abs(turned(140, -0.1, 0.1)), 180.0, 40.0);  // it has not slipped through itself
-  EXPECT_GT(std::abs(turned(230, 1.8, 2.0)), 20.0);            // on its way back
+  EXPECT_NEAR(std::abs(turned(140, -0.1, 0.1)), 180.0, 40.0);  // the bar has not passed through itself
+  EXPECT_GT(std::abs(turned(230, 1.8, 2.0)), 20.0);            // the bar turns back
   EXPECT_LT(std::abs(turned(230, -0.1, 0.1)), 110.0);
 }
 
@@ -177,7 +177,7 @@ TEST_F(TwistCommand, TakesAMeshAnywhereAndOfAnySize) {
   const auto written = test::objPositions(frame);
   ASSERT_EQ(written.size(), 72u);
   EXPECT_NEAR(written[35][2], 6200.0, 1e-2);
-  EXPECT_NEAR(written[71][2], 6200.0, 1e-2);  // beside it, not in its line
+  EXPECT_NEAR(written[71][2], 6200.0, 1e-2);  // next to the bar, not in line with it
   EXPECT_EQ(folder.json("o/summary.json")["vertices"], 36);
 }
 
@@ -202,7 +202,7 @@ TEST_F(TwistCommand, RefusesBadInput) {
   expectRefused({"--triangles", "2000", "--tets", "100", "--frames", "2", "--out", "file/o"}, "file/o");
 }
 
-/// An OBJ file's vertices times a factor.
+/// An OBJ file with its vertices multiplied by a factor.
 std::string scaled(const std::string& obj, double factor) {
   std::string text;
   std::istringstream lines(obj);

@@ -19,13 +19,13 @@ std::vector<Eigen::Vector3d> shifted(std::vector<Eigen::Vector3d> points, double
   return points;
 }
 
-/// A page of a serpent that rises by `step` a frame.
+/// A page of a serpent that rises by `step` per frame.
 ViewPage risingPage(const ModelOptions& options, int frames, double step, const std::string& title = "title") {
   const Model model = loadModel(options);
   const Embedding embedding = embed(model.cage, model.mesh).value();
   ViewPage page(title, {"a fact"}, Interpolation::Linear);
   page.addBody({page.addModel(model.cage, model.mesh, embedding), "", ""});
-  for (int k = 0; k < frames; ++k) page.keep({{shifted(model.cage.nodes, step * k)}, {}});
+  for (int k = 0; k < frames; ++k) page.keep({{shifted(model.cage.mesh.nodes, step * k)}, {}});
   return page;
 }
 
@@ -37,7 +37,7 @@ ModelOptions smallSerpent() {
 }
 
 TEST(ViewData, IsBase64OfLittleEndianNumbers) {
-  // RFC 4648, section 10.
+  // The values are those of RFC 4648, section 10.
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -49,7 +49,7 @@ TEST(ViewData, IsBase64OfLittleEndianNumbers) {
 }
 
 TEST(ViewFrames, KeepsAllWhileTheyFitThenEverySecondAndSoOn) {
-  constexpr std::size_t kNodes = 100, kRoom = 64;  // moments of 600 bytes
+  constexpr std::size_t kNodes = 100, kRoom = 64;  // each moment takes 600 bytes
   ViewFrames frames(kRoom * 6 * kNodes);
   const auto at = [](double x) { return ViewMoment{{std::vector<Eigen::Vector3d>(kNodes, {x, 0, 0})}, {}}; };
   for (std::size_t k = 0; k < kRoom; ++k) frames.keep(at(static_cast<double>(k)));
@@ -103,7 +103,7 @@ TEST(ViewPage, HoldsASurfaceByItsVertices) {
 
 TEST(ViewPage, GrowsByTheNodesOfAFrameAndNoFurtherThanItsRoom) {
   const auto bytes = [](int frames) { return risingPage(smallSerpent(), frames, 0.01).html().size(); };
-  const auto nodes = static_cast<double>(loadModel(smallSerpent()).cage.nodeCount());
+  const auto nodes = static_cast<double>(loadModel(smallSerpent()).cage.mesh.nodeCount());
   EXPECT_NEAR(static_cast<double>(bytes(120) - bytes(20)), 100 * 6 * nodes * 4 / 3, 50);
 }
 
@@ -126,7 +126,7 @@ TEST(View, IsWrittenByDropUnlessItIsLeftOut) {
   EXPECT_FALSE(folder.exists("o/view.html"));
   const CommandResult result = drop({"--every", "4"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("See it in a browser: o/view.html"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("in a browser (o/view.html, "), std::string::npos) << result.out;
   EXPECT_NE(folder.read("o/view.html").find("\"moments\":5"), std::string::npos) << "whatever --every leaves out";
   ASSERT_EQ(drop({"--view", "elsewhere.html", "--quiet"}).status, 0);
   EXPECT_TRUE(folder.exists("elsewhere.html"));
@@ -145,7 +145,7 @@ TEST(View, IsEntitledByTheNameOfTheMeshAloneAndSaysWhatTouches) {
     return folder.read("o/view.html");
   };
   EXPECT_NE(pageOf("surface").find("\"title\":\"tet.obj\""), std::string::npos);
-  EXPECT_NE(pageOf("surface").find("\"contact at the surface, and with itself\""), std::string::npos);
+  EXPECT_NE(pageOf("surface").find("\"contact at the surface, self-contact\""), std::string::npos);
   EXPECT_NE(pageOf("cage").find("\"contact at the cage's nodes\""), std::string::npos);
 }
 
@@ -175,7 +175,7 @@ TEST(View, ShowsACoarseCageBesideTheReference) {
       "--frames",    "4",     "--cages", "same",    "--no-reduction",   "--show-tets",
       "200",         "--out", "o",       "--view",  "view.html"};
   std::vector<std::string> arguments = quick;
-  arguments.insert(arguments.end(), {"--scene", "exact,sag"});
+  arguments.insert(arguments.end(), {"--scenes", "exact,sag"});
   const CommandResult result = folder.run(TETSKIN_ERROR_VS_TIME, arguments);
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string page = folder.read("view.html");
@@ -184,7 +184,7 @@ TEST(View, ShowsACoarseCageBesideTheReference) {
   EXPECT_NE(page.find("\"moments\":5"), std::string::npos);
 
   arguments = quick;
-  arguments.insert(arguments.end(), {"--scene", "exact"});
+  arguments.insert(arguments.end(), {"--scenes", "exact"});
   test::expectRefused(folder.run(TETSKIN_ERROR_VS_TIME, arguments), "--view");
 }
 

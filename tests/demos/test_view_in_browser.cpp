@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Pages as a browser shows them: a probe is appended to a page, and leaves in its document what it has found.
+// Pages as a browser shows them: a probe is appended to a page, and writes its results into the page's document.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ std::string withProbe(const CommandFolder& folder, const std::string& page) {
   return text.insert(text.rfind("</body>"), probe);
 }
 
-/// What the probe found. Drawn without a graphics card; a page that never ends is ended.
+/// The results of the probe. Pages are drawn without a graphics card; one that does not end is stopped.
 nlohmann::json seenIn(const CommandFolder& folder, const std::string& page, const std::string& windowSize) {
   const std::string probed = folder.write("probed.html", withProbe(folder, page));
   const CommandResult result = folder.run(
@@ -38,7 +38,7 @@ nlohmann::json seenIn(const CommandFolder& folder, const std::string& page, cons
   return nlohmann::json::parse(result.out.substr(at + begin.size(), end - at - begin.size()));
 }
 
-/// Largest distance of what the page shows to a frame, over the frame's largest side.
+/// Largest distance between what the page shows and a frame, relative to the frame's largest side.
 double distance(const nlohmann::json& shown, const std::vector<std::array<double, 3>>& frame) {
   const auto numbers = shown.get<std::vector<double>>();
   EXPECT_EQ(numbers.size(), 3 * frame.size());
@@ -52,7 +52,7 @@ double distance(const nlohmann::json& shown, const std::vector<std::array<double
   return farthest / box.sizes().maxCoeff();
 }
 
-/// And the two kinds of surface differ by more than that.
+/// The tolerance for equality; the two kinds of surface differ by more than that.
 constexpr double kSame = 1e-3;
 
 TEST(ViewInBrowser, PlaysWhatTheFramesHaveWithEitherSkin) {

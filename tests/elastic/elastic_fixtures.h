@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies for the tests of elasticity, and the same matrix by another way.
+// Bodies for the tests of elasticity, and their matrix computed in an independent way.
 #pragma once
 
 #include <gtest/gtest.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/kernels/instruction_set.h>
-#include <tetskin/core/tet_mesh.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
@@ -38,7 +38,7 @@ void onEachInstructionSet(Visit&& visit) {
   setInstructionSet(before);
 }
 
-/// From -1 to 1, the same on every standard library.
+/// Random numbers from -1 to 1, the same with every standard library.
 class Random {
  public:
   explicit Random(unsigned seed) : generator_(seed) {}
@@ -72,7 +72,7 @@ inline Points scattered(Points points, double amount, unsigned seed) {
   return points;
 }
 
-/// The velocities of a rigid motion at a point: of a translation, and of a turn about another point.
+/// The velocities at a point of the six rigid motions: translations along the axes, and rotations about a point.
 inline Eigen::Matrix<double, 3, 6> rigidVelocityAt(const Eigen::Vector3d& point, const Eigen::Vector3d& about) {
   Eigen::Matrix<double, 3, 6> velocity;
   for (int k = 0; k < 3; ++k) {
@@ -82,7 +82,7 @@ inline Eigen::Matrix<double, 3, 6> rigidVelocityAt(const Eigen::Vector3d& point,
   return velocity;
 }
 
-/// The masses of these motions: what they times an impulse at a point are to it.
+/// The mass matrix of these motions: times their rates, it gives the impulses on them.
 inline Eigen::Matrix<double, 6, 6> rigidMass(const Points& nodes, const std::vector<double>& masses,
                                              const Eigen::Vector3d& about) {
   Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
@@ -93,7 +93,7 @@ inline Eigen::Matrix<double, 6, 6> rigidMass(const Points& nodes, const std::vec
   return sum;
 }
 
-/// Of another stiffness and another Poisson's ratio in every tet.
+/// A different stiffness and a different Poisson's ratio in every tet.
 inline std::vector<Lame> variedMaterial(std::size_t tets) {
   Random random(31);
   std::vector<Lame> material(tets);
@@ -104,7 +104,7 @@ inline std::vector<Lame> variedMaterial(std::size_t tets) {
   return material;
 }
 
-/// A deformed body with its matrix, as the library puts them together.
+/// A deformed body with its matrix, as the library assembles it.
 template <class S>
 struct AssembledBody {
   explicit AssembledBody(const TetMesh& rest, double amount = 0.1, double alphaOfMatrix = 0.3)
@@ -130,12 +130,12 @@ struct AssembledBody {
       for (int k = 0; k < 3; ++k)
         points[4 * matrix.slotOf(n) + static_cast<std::size_t>(k)] = static_cast<S>(nodes[n][k]);
     }
-    // More than once, as rotations are turned along a few steps at a time.
+    // This is repeated because each call advances the rotations by only a few iterations.
     for (int k = 0; k < 3; ++k) tets.forces(points.data(), forces.data(), threads);
     matrix.assemble(tets.cornersForMatrix(static_cast<S>(alpha), threads), threads);
   }
 
-  /// M + alpha K, three rows a node, by polar decompositions.
+  /// M + alpha K, with three rows per node, by polar decompositions.
   Eigen::MatrixXd dense() const {
     const auto size = static_cast<Eigen::Index>(3 * nodes.size());
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
@@ -155,7 +155,7 @@ struct AssembledBody {
     for (std::size_t i = 0; i < 3 * nodes.size(); ++i)
       wide[wideIndex(i)] = static_cast<S>(v[static_cast<Eigen::Index>(i)]);
   }
-  /// Four scalars a slot, of which the last means nothing.
+  /// Four scalars per slot, the last of which has no meaning.
   std::vector<S> toPoints(const Eigen::VectorXd& v) const {
     std::vector<S> points(4 * matrix.slotCount(), S(0));
     for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -189,7 +189,7 @@ struct AssembledBody {
       rest.col(k) = cage.nodes[cage.tets[t][k + 1]] - cage.nodes[cage.tets[t][0]];
       now.col(k) = nodes[cage.tets[t][k + 1]] - nodes[cage.tets[t][0]];
     }
-    const Eigen::Matrix3d gradients = rest.inverse();  // rows: of the weights of nodes 1, 2 and 3
+    const Eigen::Matrix3d gradients = rest.inverse();  // rows: gradients of the weights of nodes 1, 2 and 3
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(now * gradients, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
     ASSERT_GT(turn.determinant(), 0.0) << "the reference is for tets that are not inside out";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies that move, for the tests of ElasticBody.
+// Moving bodies, for the tests of ElasticBody.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ inline ElasticOptions soft() {
 
 template <class S>
 ElasticBody<S> made(const TetMesh& cage, const ElasticOptions& options) {
-  Result<ElasticBody<S>> body = ElasticBody<S>::make(cage, options);
+  Result<ElasticBody<S>> body = ElasticBody<S>::create(cage, options);
   EXPECT_TRUE(body.ok()) << body.status().message;
   return std::move(body).value();
 }
@@ -48,7 +48,7 @@ void fill(PointView<S> view, const Points& points) {
   }
 }
 
-/// A quarter of each tet's, for a density of 1.
+/// Node masses for a density of 1: a quarter of the mass of each tet.
 inline std::vector<double> lumped(const TetMesh& cage) {
   std::vector<double> masses(cage.nodeCount(), 0.0);
   for (const Tet& tet : cage.tets) {
@@ -57,34 +57,34 @@ inline std::vector<double> lumped(const TetMesh& cage) {
   return masses;
 }
 
-/// Of a tet, over that at rest; below 0 inside out.
+/// The least ratio of a tet's volume to its volume at rest; below 0 if a tet is inside out.
 inline double smallestVolume(const TetMesh& cage, const Points& nodes) {
   const TetMesh now{nodes, cage.tets};
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     const double ratio = signedVolume(cornersOf(now, cage.tets[t])) / signedVolume(cornersOf(cage, cage.tets[t]));
     if (std::isnan(ratio)) return -kInfinity;
-    least = std::min(least, ratio);
+    minimum = std::min(minimum, ratio);
   }
-  return least;
+  return minimum;
 }
 
-/// Infinite if something is not finite.
+/// The largest speed of a node; infinite if a velocity is not finite.
 template <class S>
 double fastest(ElasticBody<S>& body) {
-  double most = 0.0;
+  double maximum = 0.0;
   for (const Eigen::Vector3d& v : pointsOf(body.velocities())) {
     if (!v.allFinite()) return kInfinity;
-    most = std::max(most, v.norm());
+    maximum = std::max(maximum, v.norm());
   }
-  return most;
+  return maximum;
 }
 
-/// The nodes at x = 0, of a bar along x.
+/// Pins the nodes at x = 0 of a bar along x.
 template <class S>
-void holdTheEnd(ElasticBody<S>& body, const TetMesh& cage) {
+void pinTheEnd(ElasticBody<S>& body, const TetMesh& cage) {
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    if (cage.nodes[n].x() == 0.0) body.hold(n);
+    if (cage.nodes[n].x() == 0.0) body.setPinned(n);
   }
 }
 

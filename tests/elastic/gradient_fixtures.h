@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Systems of equations for the tests of the conjugate gradient.
+// Systems of equations for the tests of the conjugate gradient method.
 #pragma once
 
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
@@ -31,7 +31,7 @@ Eigen::VectorXd solutionOf(const AssembledBody<S>& body) {
   return body.fromWide(body.matrix.solution());
 }
 
-/// As the protocol wants it: a start, and the residual that it leaves.
+/// Sets what the solver expects: a start, and the residual that it leaves.
 template <class S>
 void begin(AssembledBody<S>& body, const Eigen::MatrixXd& a, const Eigen::VectorXd& b, const Eigen::VectorXd& start) {
   body.toWide(start, body.matrix.solution());
@@ -46,7 +46,7 @@ inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).norm() / b.norm();
 }
 
-/// For a tolerance of 1e-10 in the norm of the preconditioner.
+/// Allowed error for a tolerance of 1e-10 in the norm of the preconditioner.
 constexpr double kClose = 1e-8;
 
 }  // namespace tetskin::test

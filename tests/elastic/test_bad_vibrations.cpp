@@ -19,21 +19,21 @@ const TetMesh& box() {
 
 VibrationOptions few(int modes = 4) {
   VibrationOptions options;
-  options.modes = modes;
+  options.modeCount = modes;
   return options;
 }
 
 void expectError(const TetMesh& tets, const VibrationOptions& options, StatusCode code, const char* says) {
-  const Result<VibrationModes> modes = vibrationModes(tets, options);
+  const Result<VibrationModes> modes = computeVibrationModes(tets, options);
   ASSERT_FALSE(modes.ok()) << says;
   EXPECT_EQ(modes.status().code, code) << modes.status().message;
   EXPECT_NE(modes.status().message.find(says), std::string::npos) << modes.status().message;
 }
 
 TEST(BadVibrations, FewerNodesThanModes) {
-  expectError(box(), few(37), StatusCode::InvalidOption, "more than the 36 nodes");
-  EXPECT_TRUE(vibrationModes(box(), few(36)).ok());
-  expectError(box(), few(0), StatusCode::InvalidOption, "one mode");
+  expectError(box(), few(37), StatusCode::InvalidOption, "more than the 36 free nodes");
+  EXPECT_TRUE(computeVibrationModes(box(), few(36)).ok());
+  expectError(box(), few(0), StatusCode::InvalidOption, "number of modes");
 }
 
 TEST(BadVibrations, PartsThatNothingHoldsTogether) {
@@ -44,7 +44,7 @@ TEST(BadVibrations, PartsThatNothingHoldsTogether) {
     for (int& node : tet) node += shift;
     two.tets.push_back(tet);
   }
-  expectError(two, few(), StatusCode::Degenerate, "2 parts");
+  expectError(two, few(), StatusCode::Degenerate, "2 components");
 }
 
 TEST(BadVibrations, PartsThatHangTogetherByAnEdge) {
@@ -71,7 +71,7 @@ TEST(BadVibrations, PinnedNodes) {
   expectError(box(), options, StatusCode::InvalidOption, "all nodes are pinned");
   options.pinned = {0, 36};
   expectError(box(), options, StatusCode::IndexOutOfRange, "36");
-  options.pinned = {0, 1};  // it turns about them
+  options.pinned = {0, 1};  // the body can turn about them
   expectError(box(), options, StatusCode::Degenerate, "too few nodes are pinned");
 }
 
@@ -94,7 +94,7 @@ class SavedModes : public testing::Test {
   SavedModes() {
     VibrationOptions options = few();
     options.pinned = {0, 1, 4, 12};
-    modes_ = vibrationModes(box(), options).value();
+    modes_ = computeVibrationModes(box(), options).value();
     bytes_ = modes_.save(box());
   }
   Status load(const std::vector<unsigned char>& bytes, const TetMesh& tets = box()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The matrix of a body, times vectors and in sweeps, beside the same one put together densely.
+// The matrix of a body, in products with vectors and in sweeps, compared with the same matrix assembled densely.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -32,7 +32,7 @@ class BlockMatrixOf : public testing::Test {
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(BlockMatrixOf, Scalars);
 
-/// One column after the other.
+/// The matrix as a dense one, found column by column.
 template <class S>
 Eigen::MatrixXd columnsOf(const AssembledBody<S>& body) {
   const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
@@ -57,18 +57,18 @@ TYPED_TEST(BlockMatrixOf, IsThatOfThePaperAndSymmetric) {
 
 TYPED_TEST(BlockMatrixOf, MeetsATranslationWithTheMassesAlone) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage(), 0.1, 1e3);  // stiff: stiffness would be seen
+    AssembledBody<TypeParam> body(smallCage(), 0.1, 1e3);  // so stiff that an effect of the stiffness would be noticed
     body.hold(4);
     body.assemble();
     const Vector3d shift(1, -2, 0.5);
     const VectorXd image = body.times(shift.replicate(static_cast<Eigen::Index>(body.nodes.size()), 1));
-    double most = 0.0;
+    double maximum = 0.0;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
-      most = std::max(most, (image.segment<3>(static_cast<Eigen::Index>(3 * n)) - body.masses[n] * shift).norm());
+      maximum = std::max(maximum, (image.segment<3>(static_cast<Eigen::Index>(3 * n)) - body.masses[n] * shift).norm());
     }
     const double stiffness = body.dense().cwiseAbs().maxCoeff();
     ASSERT_GT(stiffness, 1e3);
-    EXPECT_LT(most, 20.0 * this->kEpsilon * stiffness);
+    EXPECT_LT(maximum, 20.0 * this->kEpsilon * stiffness);
   });
 }
 
@@ -108,7 +108,7 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(smallCage());
     BlockMatrix<TypeParam>& matrix = body.matrix;
-    // The lower triangle of blocks by the order of slots, which is that of colours.
+    // The lower triangle of blocks in the order of slots, which is the order of colours.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     Eigen::MatrixXd dense = body.dense(), lower = Eigen::MatrixXd::Zero(size, size), diagonal = lower;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
@@ -128,11 +128,11 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
 }
 
 TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
-  const TetMesh cage = test::latticeCage(12, 12, 12);  // several tasks of one colour
+  const TetMesh cage = test::latticeCage(12, 12, 12);  // several tasks for one colour
   const AssembledBody<TypeParam> fresh(cage);
   const VectorXd x = test::Random(36).vector(3 * cage.nodeCount());
   const auto everything = [&](ParallelFor* threads) {
-    AssembledBody<TypeParam> body = fresh;  // with rotations that have not been turned along
+    AssembledBody<TypeParam> body = fresh;  // its rotations have not been updated
     BlockMatrix<TypeParam>& matrix = body.matrix;
     body.assemble(threads);
     VectorXd results = body.times(x, threads);
@@ -156,7 +156,7 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
   for (const int count : {1, 2, 3}) {
     test::ShuffledThreads threads(count);
     EXPECT_EQ(everything(&threads), expected);
-    EXPECT_GT(threads.mostTasks, 8u);
+    EXPECT_GT(threads.maxTasks, 8u);
     EXPECT_GT(threads.runs, 20) << "colours have tasks to share out";
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where the blocks of a matrix lie, and of which tets' corners each is summed.
+// Where the blocks of a matrix lie, and from which corners of tets each is summed.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -20,7 +20,7 @@ using elastic_detail::BlockMatrix;
 using elastic_detail::BlockPattern;
 using kernels::kGroup;
 
-/// The cages of the tests of the pattern: one of them with nodes that no tet names.
+/// The cages for the tests of the pattern; one of them has nodes that no tet uses.
 std::vector<TetMesh> patternCages() {
   std::vector<TetMesh> cages{test::singleTet(), test::latticeCage(3, 2, 1), test::bodyCentredCage(3, 3, 2),
                              test::latticeCage(12, 12, 12)};
@@ -33,7 +33,7 @@ BlockPattern patternOf(const TetMesh& cage) {
       .pattern();
 }
 
-/// By slot, -1 where there is none.
+/// By slot: its node, -1 where there is none.
 std::vector<int> nodesOf(const BlockPattern& pattern) {
   std::vector<int> nodes(pattern.slotCount(), -1);
   for (std::size_t n = 0; n < pattern.slotOf.size(); ++n) nodes[pattern.slotOf[n]] = static_cast<int>(n);
@@ -82,7 +82,7 @@ TEST(BlockPattern, NeighboursAreThereOnceFromEachSideAndNeverOfOneColour) {
         const bool isLower = e < pattern.starts[2 * chunk + 1];
         for (std::size_t lane = 0; lane < kGroup; ++lane) {
           const std::size_t own = kGroup * chunk + lane, other = pattern.neighbours[kGroup * e + lane];
-          if (other == own) continue;  // filled up
+          if (other == own) continue;  // padding
           ASSERT_GE(nodes[own], 0);
           ASSERT_GE(nodes[other], 0);
           const std::size_t otherColour = colours[other / kGroup];

@@ -26,7 +26,7 @@ std::vector<double> variedScale(const TetMesh& mesh) {
   return scale;
 }
 
-/// Tet by tet.
+/// The stiffness matrix, summed tet by tet.
 MatrixXd denseStiffness(const TetMesh& mesh, const std::vector<double>& scale) {
   const auto size = static_cast<Eigen::Index>(3 * mesh.nodeCount());
   MatrixXd matrix = MatrixXd::Zero(size, size);
@@ -73,7 +73,7 @@ TEST(BlockRows, MultiplyAnyNumberOfFields) {
   const std::vector<double> scale = variedScale(mesh);
   const BlockRows rows(mesh, kPoisson, scale);
   const MatrixXd dense = denseStiffness(mesh, scale);
-  for (const int count : {1, 3, 6, 13}) {  // alone, and in registers together
+  for (const int count : {1, 3, 6, 13}) {  // alone, and together in registers
     const Fields fields = Fields::Random(dense.rows(), count);
     Fields product = fields;
     rows.multiply(fields, product);

@@ -27,7 +27,7 @@ TetMesh smallCage() {
 
 constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * (kDamping + kSeconds);
 
-/// The body of a reference, with velocities.
+/// Dynamics for a reference body, with velocities.
 template <class S>
 BodyDynamics<S> dynamicsOf(const AssembledBody<S>& body, const VectorXd& velocities) {
   BodyDynamics<S> dynamics(elastic_detail::restTets(body.cage), body.nodes.size());
@@ -54,7 +54,7 @@ TYPED_TEST_SUITE(BodyDynamicsOf, Scalars);
 TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatDeviatesFromIt) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
-    // With a drift so fast that the rounding of its stiffness would be seen.
+    // The drift is so fast that rounding errors in its stiffness forces would be noticed.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     const VectorXd v = test::Random(51).vector(3 * body.nodes.size()) + VectorXd::Constant(size, 100.0);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
@@ -94,10 +94,10 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
   AssembledBody<TypeParam> body(smallCage(), 0.0, kAlpha);
   for (test::Lame& lame : body.material) lame = {1e6, 1e6};
   const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
-  for (const bool held : {false, true}) {
-    if (held) body.hold(3);
+  for (const bool pinned : {false, true}) {
+    if (pinned) body.hold(3);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
-    EXPECT_EQ(dynamics.anyHeld(), held);
+    EXPECT_EQ(dynamics.anyPinned(), pinned);
     dynamics.predict(kSeconds, nullptr);
     dynamics.start(kSeconds, nullptr);
     double deviation = 0.0;
@@ -122,7 +122,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, 1e-3 * test::Random(51).vector(3 * body.nodes.size()));
     dynamics.prepare(kSeconds, nullptr);
-    dynamics.predict(kSeconds, nullptr);  // the matrix is the one before: it has hardly turned
+    dynamics.predict(kSeconds, nullptr);  // the matrix is the previous one: it has hardly turned
     dynamics.start(kSeconds, nullptr);
     VectorXd right(static_cast<Eigen::Index>(3 * body.nodes.size()));
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
@@ -132,7 +132,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     }
     const VectorXd x = test::Random(52).vector(3 * body.nodes.size());
     body.toWide(x, dynamics.matrix().solution());
-    dynamics.startAgain(nullptr);
+    dynamics.restart(nullptr);
     const VectorXd image = body.dense() * x;
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - (right - image)).norm(),
               10.0 * this->kEpsilon * (right.norm() + image.norm()));
@@ -146,7 +146,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
 
 TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChangesNothingElse) {
   AssembledBody<TypeParam> body(smallCage());
-  for (const double speed : {0.0, 1.0, 20.0}) {  // the last beyond a turn of 90 degrees in the step
+  for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step
     const VectorXd v = speed * test::Random(51).vector(3 * body.nodes.size());
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
@@ -167,7 +167,7 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
     }
     EXPECT_LT(push.norm(), 200.0 * (1.0 + speed) * this->kEpsilon);
     EXPECT_LT(turn.norm(), 200.0 * (1.0 + speed) * this->kEpsilon);
-    // A rigid motion more, of the body as it has been moved, changes nothing.
+    // An additional rigid motion of the moved body changes nothing.
     VectorXd more = free;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       Vector3d moved = body.nodes[n];
@@ -180,7 +180,7 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
   }
 }
 
-/// Whether a change of the body is seen by its matrix at the next `prepare`.
+/// Whether the matrix takes account of a change of the body at the next `prepare`.
 template <class Change>
 bool changesTheMatrix(Change&& change) {
   AssembledBody<double> body(smallCage(), 0.0, kAlpha);
@@ -222,7 +222,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
   EXPECT_TRUE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 3.0); }));
 }
 
-/// One tet apart from a thousand that stay: the mean turn is small.
+/// One tet that turns, besides a thousand that do not: the mean turn is small.
 struct SingleTetBesideMany {
   explicit SingleTetBesideMany(double stiffness)
       : cage(withTet()), dynamics(elastic_detail::restTets(cage), cage.nodeCount()) {
@@ -234,7 +234,7 @@ struct SingleTetBesideMany {
     }
   }
 
-  /// Whether the matrix is made anew for a step in which the single tet has been turned, about an oblique axis.
+  /// Whether the matrix is reassembled for a step in which the single tet has been turned about an oblique axis.
   bool isMadeAnewFor(double degrees) {
     const std::vector<double> before = block();
     for (std::size_t n = cage.nodeCount() - 4; n < cage.nodeCount(); ++n) {
@@ -257,7 +257,7 @@ struct SingleTetBesideMany {
   std::vector<double> block() {
     double d[6];
     dynamics.predict(kSeconds, nullptr);
-    dynamics.matrix().diagonal(cage.nodeCount() - 2, d);  // of the single tet, unlike along all axes
+    dynamics.matrix().diagonal(cage.nodeCount() - 2, d);  // block of the single tet, different along all axes
     return std::vector<double>(d, d + 6);
   }
 
@@ -282,7 +282,7 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
     dynamics.setMass(n, static_cast<TypeParam>(n + 1));
     dynamics.velocity(n)[0] = 5;
   }
-  EXPECT_FALSE(dynamics.anyHeld());
+  EXPECT_FALSE(dynamics.anyPinned());
   dynamics.predict(kSeconds, nullptr);
   dynamics.start(kSeconds, nullptr);
   EXPECT_EQ(dynamics.velocity(0)[0], TypeParam(5));
@@ -296,14 +296,14 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
     EXPECT_EQ(dynamics.times(points.data())[dynamics.matrix().wideOf(n)], static_cast<TypeParam>(2 * (n + 1)));
   }
   dynamics.setMass(1, 0);
-  EXPECT_TRUE(dynamics.anyHeld());
+  EXPECT_TRUE(dynamics.anyPinned());
   dynamics.setMass(1, 0);
   dynamics.setMass(1, 4);
-  EXPECT_FALSE(dynamics.anyHeld());
+  EXPECT_FALSE(dynamics.anyPinned());
 }
 
 /// The cage twice, with no node in common.
-TetMesh twoParts(TetMesh cage) {
+TetMesh twoComponents(TetMesh cage) {
   const std::vector<Tet> tets = cage.tets;
   const int first = static_cast<int>(cage.nodeCount());
   for (int n = 0; n < first; ++n) cage.nodes.push_back(cage.nodes[static_cast<std::size_t>(n)] + Vector3d(5, 1, 0));
@@ -312,12 +312,12 @@ TetMesh twoParts(TetMesh cage) {
 }
 
 TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAreTaken) {
-  AssembledBody<TypeParam> body(twoParts(smallCage()));
-  body.hold(3);  // of the first part
+  AssembledBody<TypeParam> body(twoComponents(smallCage()));
+  body.hold(3);  // belongs to the first component
   const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
   dynamics.predict(kSeconds, nullptr);
-  ASSERT_EQ(dynamics.partCount(), 2u);
+  ASSERT_EQ(dynamics.componentCount(), 2u);
   AlignedVector<TypeParam> motions[BodyDynamics<TypeParam>::kRigidMotions];
   const std::size_t half = body.nodes.size() / 2;
   Points moved = body.nodes;
@@ -330,8 +330,8 @@ TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAre
   }
   centroid /= mass;
   int found = 0;
-  for (std::size_t part = 0; part < 2; ++part) {
-    if (!dynamics.rigidMotions(part, motions)) {
+  for (std::size_t component = 0; component < 2; ++component) {
+    if (!dynamics.rigidMotions(component, motions)) {
       EXPECT_TRUE(motions[0].empty()) << "nothing is written";
       continue;
     }
@@ -350,18 +350,18 @@ TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAre
 }
 
 TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
-  for (const std::vector<std::size_t>& held : std::vector<std::vector<std::size_t>>{{}, {3}, {3, 6}, {0, 3, 6, 9}}) {
+  for (const std::vector<std::size_t>& pinned : std::vector<std::vector<std::size_t>>{{}, {3}, {3, 6}, {0, 3, 6, 9}}) {
     AssembledBody<TypeParam> body(smallCage());
-    for (const std::size_t n : held) body.hold(n);
+    for (const std::size_t n : pinned) body.hold(n);
     const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
     dynamics.predict(kSeconds, nullptr);
     VectorXd some = test::Random(53).vector(3 * body.nodes.size());
-    for (const std::size_t n : held) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
+    for (const std::size_t n : pinned) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
     body.toWide(some, dynamics.matrix().solution());
-    dynamics.keepRigidPart();
+    dynamics.keepRigidComponent();
     const VectorXd kept = body.fromWide(dynamics.matrix().solution());
-    const Vector3d about = held.empty() ? Vector3d::Zero().eval() : body.nodes[held[0]];
+    const Vector3d about = pinned.empty() ? Vector3d::Zero().eval() : body.nodes[pinned[0]];
     Vector3d momentum = Vector3d::Zero(), spin = Vector3d::Zero();
     double strain = 0.0;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
@@ -376,29 +376,29 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
     }
     const double tolerance = 500.0 * this->kEpsilon;
     EXPECT_LT(strain, tolerance);
-    if (held.empty()) {
+    if (pinned.empty()) {
       EXPECT_LT(momentum.norm(), tolerance);
     }
-    if (held.size() < 2) {
+    if (pinned.size() < 2) {
       EXPECT_LT(spin.norm(), tolerance);
     }
-    if (held.size() == 2) {
+    if (pinned.size() == 2) {
       EXPECT_LT(std::abs(spin.dot(body.nodes[6] - about)), tolerance);
     }
-    if (held.size() > 2) {
+    if (pinned.size() > 2) {
       EXPECT_EQ(kept, still) << "nothing of it is free";
     }
-    if (held.size() < 3) {
+    if (pinned.size() < 3) {
       EXPECT_GT(kept.norm(), 0.01);
     }
     body.toWide(kept, dynamics.matrix().solution());
-    dynamics.keepRigidPart();
+    dynamics.keepRigidComponent();
     EXPECT_LT((body.fromWide(dynamics.matrix().solution()) - kept).norm(), tolerance) << "it is rigid";
   }
 }
 
 TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
-  const AssembledBody<TypeParam> body(twoParts(smallCage()));
+  const AssembledBody<TypeParam> body(twoComponents(smallCage()));
   const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
   dynamics.predict(kSeconds, nullptr);
@@ -413,7 +413,7 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
                                                   {direction.x(), direction.y(), direction.z()});
     EXPECT_NEAR(found, expected, 500.0 * this->kEpsilon * expected);
   }
-  BodyDynamics<TypeParam> masses({}, 5);  // of nodes that nothing connects
+  BodyDynamics<TypeParam> masses({}, 5);  // nodes that no tet connects
   masses.setMass(2, 1);
   masses.predict(kSeconds, nullptr);
   EXPECT_EQ(masses.rigidCompliance(2, {1, 2, 3}, {1, 0, 0}), 0.0);

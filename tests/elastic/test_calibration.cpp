@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/uniform_refinement.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
@@ -10,8 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/component_models.h"
 #include "support/odd_meshes.h"
-#include "support/part_models.h"
 
 namespace tetskin {
 namespace {
@@ -22,7 +23,7 @@ using elastic_detail::RestBody;
 
 constexpr double kPoisson = 0.3;
 
-/// A beam four times as long as wide, `cubes` across.
+/// A beam four times as long as it is wide, with `cubes` cubes across.
 TetMesh beam(int cubes) {
   return test::latticeCage(4 * cubes, cubes, cubes, 0.5 / cubes);
 }
@@ -45,21 +46,21 @@ TEST(ElasticModes, AreTheSoftestOfADenseSolver) {
   for (int k = 0; k < 4; ++k) {
     const VectorXd mode = modes.col(k);
     EXPECT_NEAR(mode.dot(body.masses.cwiseProduct(mode)), 1.0, 1e-9);
-    EXPECT_NEAR(mode.dot(dense * mode) / all.eigenvalues()[6 + k], 1.0, 1e-3) << k;  // after six rigid motions
+    EXPECT_NEAR(mode.dot(dense * mode) / all.eigenvalues()[6 + k], 1.0, 1e-3) << k;  // follows six rigid motions
   }
 }
 
-/// The factor of a cage; 0 if it was refused.
+/// The stiffness factor of a cage; 0 if the cage was refused.
 double factorOf(Cage cage) {
   const Result<CalibrationReport> report = calibrate(cage);
-  return report.ok() ? report.value().factor : 0.0;
+  return report.ok() ? report.value().stiffnessFactor : 0.0;
 }
 
 TEST(RefinedBodies, SolveAsADirectSolverDoes) {
   const Cage cage = beam(1);
   const elastic_detail::RefinedBodies bodies(cage, kPoisson, 2);
   ASSERT_EQ(bodies.levelCount(), 3u);
-  const TetMesh mesh = refineUniformly(refineUniformly(cage).mesh).mesh;
+  const TetMesh mesh = refineUniformly(refineUniformly(cage.mesh).mesh).mesh;
   const RestBody finest(mesh, kPoisson, ones(mesh), bodies.masses(2));
   elastic_detail::Fields loads(finest.masses.size(), 2);
   for (Eigen::Index k = 0; k < loads.rows(); ++k) {
@@ -73,29 +74,29 @@ TEST(RefinedBodies, SolveAsADirectSolverDoes) {
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(loads.col(k).dot(found.col(k)) / loads.col(k).dot(right.col(k)), 1.0, 1e-3);
 }
 
-/// One layer of cubes of which the lower half is filled: a beam half as high bends eight times as far as a full one,
-/// and its share of the stiffness says no more than twice.
+/// One layer of cubes whose lower half is filled: a beam of half the height bends eight times as far as a full one, but
+/// its volume fraction alone accounts for no more than a factor of two.
 TEST(Calibration, SeesTheFill) {
   Cage half = test::latticeCage(8, 1, 1);
-  half.fill.assign(half.tetCount(), 0.5);
+  half.volumeFraction.assign(half.mesh.tetCount(), 0.5);
   const double blind = factorOf(half);
-  const TetMesh fine = refineUniformly(refineUniformly(half).mesh).mesh;
+  const TetMesh fine = refineUniformly(refineUniformly(half.mesh).mesh).mesh;
   for (const Tet& tet : fine.tets) {
     double height = 0.0;
     for (const int n : tet) height += 0.25 * fine.nodes[n].y();
-    half.fineFill.push_back(height < 0.5 ? 255 : 0);
+    half.fineVolumeFraction.push_back(height < 0.5 ? 255 : 0);
   }
-  ASSERT_EQ(half.fineFill.size(), kFineTets * half.tetCount());
+  ASSERT_EQ(half.fineVolumeFraction.size(), kFineTets * half.mesh.tetCount());
   EXPECT_LT(factorOf(half), 0.6 * blind);
 }
 
-/// A jaw of few tets, whose prongs lie nearer to each other than these.
+/// A jaw of few tets, whose prongs are closer to each other than the size of a tet.
 Cage splitJaw() {
   CageOptions options;
   options.targetTets = 300;
-  Cage cage = buildCage(test::jaw(0.12).mesh, options).value();
-  EXPECT_TRUE(cage.split());
-  EXPECT_FALSE(cage.fill.empty());
+  Cage cage = createCage(test::jaw(0.12).mesh, options).value();
+  EXPECT_TRUE(cage.hasDuplicates());
+  EXPECT_FALSE(cage.volumeFraction.empty());
   return cage;
 }
 
@@ -104,47 +105,48 @@ TEST(Calibration, OfASplitCageSetsItsFactorAndNothingElse) {
   Cage cage = before;
   const Result<CalibrationReport> report = calibrate(cage);
   ASSERT_TRUE(report.ok());
-  EXPECT_EQ(cage.factor, std::vector<double>(cage.tetCount(), report.value().factor));
-  EXPECT_GT(report.value().factor, 0.05);
-  EXPECT_LT(report.value().factor, 0.95);
+  EXPECT_EQ(cage.stiffnessFactor, std::vector<double>(cage.mesh.tetCount(), report.value().stiffnessFactor));
+  EXPECT_GT(report.value().stiffnessFactor, 0.05);
+  EXPECT_LT(report.value().stiffnessFactor, 0.95);
   EXPECT_EQ(report.value().skippedModes, 0);
-  EXPECT_TRUE(cage.check().ok());
-  EXPECT_EQ(cage.nodes, before.nodes);
-  EXPECT_EQ(cage.tets, before.tets);
+  EXPECT_TRUE(checkKnowledge(cage).ok());
+  EXPECT_EQ(cage.mesh.nodes, before.mesh.nodes);
+  EXPECT_EQ(cage.mesh.tets, before.mesh.tets);
   EXPECT_EQ(cage.vertexTets, before.vertexTets);
-  EXPECT_EQ(cage.fill, before.fill);
-  EXPECT_EQ(cage.fineFill, before.fineFill);
+  EXPECT_EQ(cage.volumeFraction, before.volumeFraction);
+  EXPECT_EQ(cage.fineVolumeFraction, before.fineVolumeFraction);
   EXPECT_EQ(cage.masses, before.masses);
-  EXPECT_EQ(cage.parts, before.parts);
-  EXPECT_EQ(cage.latticeTets, before.latticeTets);
+  EXPECT_EQ(cage.component, before.component);
+  EXPECT_EQ(cage.sourceTet, before.sourceTet);
   EXPECT_EQ(cage.meshHash, before.meshHash);
 }
 
 TEST(Calibration, StartsFromScratchWhateverTheFactorsWere) {
   Cage fresh = splitJaw(), used = fresh;
-  for (std::size_t t = 0; t < used.tetCount(); ++t) used.factor.push_back(0.01 + static_cast<double>(t % 5));
+  for (std::size_t t = 0; t < used.mesh.tetCount(); ++t)
+    used.stiffnessFactor.push_back(0.01 + static_cast<double>(t % 5));
   ASSERT_TRUE(calibrate(fresh).ok());
   ASSERT_TRUE(calibrate(used).ok());
-  EXPECT_EQ(used.factor, fresh.factor);
-  ASSERT_TRUE(calibrate(used).ok());  // and again
-  EXPECT_EQ(used.factor, fresh.factor);
+  EXPECT_EQ(used.stiffnessFactor, fresh.stiffnessFactor);
+  ASSERT_TRUE(calibrate(used).ok());  // once more
+  EXPECT_EQ(used.stiffnessFactor, fresh.stiffnessFactor);
 }
 
-/// A beam with tets that hang on it by so many nodes.
+/// A beam with additional tets that share this many nodes with it.
 Cage beamWithScraps(int sharedNodes) {
   Cage cage = test::latticeCage(4, 2, 2, 0.5);
-  const std::vector<std::array<int, 3>> faces = boundaryFaces(cage);
+  const std::vector<std::array<int, 3>> faces = boundaryFaces(cage.mesh);
   for (std::size_t k = 0; k < 6; ++k) {
     const std::array<int, 3>& face = faces[5 * k];
-    const Vector3d a = cage.nodes[face[0]], b = cage.nodes[face[1]], c = cage.nodes[face[2]];
+    const Vector3d a = cage.mesh.nodes[face[0]], b = cage.mesh.nodes[face[1]], c = cage.mesh.nodes[face[2]];
     const Vector3d up = 0.5 * (b - a).cross(c - a).normalized();
-    Tet scrap = {face[0], face[1], face[2], static_cast<int>(cage.nodeCount())};
-    cage.nodes.push_back((a + b + c) / 3.0 + up);
+    Tet scrap = {face[0], face[1], face[2], static_cast<int>(cage.mesh.nodeCount())};
+    cage.mesh.nodes.push_back((a + b + c) / 3.0 + up);
     for (int corner = sharedNodes; corner < 3; ++corner) {
-      scrap[corner] = static_cast<int>(cage.nodeCount());
-      cage.nodes.push_back(cage.nodes[face[corner]] + 0.5 * up);
+      scrap[corner] = static_cast<int>(cage.mesh.nodeCount());
+      cage.mesh.nodes.push_back(cage.mesh.nodes[face[corner]] + 0.5 * up);
     }
-    cage.tets.push_back(scrap);
+    cage.mesh.tets.push_back(scrap);
   }
   return cage;
 }
@@ -153,23 +155,23 @@ TEST(Calibration, SurvivesWhatHangsLoosely) {
   for (const int sharedNodes : {1, 2, 3}) {
     for (const double fill : {1.0, 0.01, 0.0}) {
       Cage cage = beamWithScraps(sharedNodes);
-      cage.fill.assign(cage.tetCount(), 1.0);
-      std::fill(cage.fill.end() - 6, cage.fill.end(), fill);
+      cage.volumeFraction.assign(cage.mesh.tetCount(), 1.0);
+      std::fill(cage.volumeFraction.end() - 6, cage.volumeFraction.end(), fill);
       const Result<CalibrationReport> result = calibrate(cage);
-      if (!result.ok()) {  // of a hinge, the stiffness may have no factors
+      if (!result.ok()) {  // with a hinge, the stiffness matrix may have no factorization
         EXPECT_LT(sharedNodes, 3);
         EXPECT_EQ(result.status().code, StatusCode::Degenerate);
-        EXPECT_TRUE(cage.factor.empty());
+        EXPECT_TRUE(cage.stiffnessFactor.empty());
         continue;
       }
       const CalibrationReport& report = result.value();
-      EXPECT_GT(report.factor, 0.0) << sharedNodes << " " << fill;
-      EXPECT_LE(report.factor, 1.0);
+      EXPECT_GT(report.stiffnessFactor, 0.0) << sharedNodes << " " << fill;
+      EXPECT_LE(report.stiffnessFactor, 1.0);
       EXPECT_GE(report.skippedModes, 0);
-      EXPECT_LE(report.skippedModes, CalibrationOptions().modes);
-      EXPECT_TRUE(std::isfinite(report.left) && report.left >= 0.0) << report.left;
+      EXPECT_LE(report.skippedModes, CalibrationOptions().modeCount);
+      EXPECT_TRUE(std::isfinite(report.remainingError) && report.remainingError >= 0.0) << report.remainingError;
       for (const double response : report.responses) EXPECT_TRUE(std::isfinite(response));
-      EXPECT_TRUE(cage.check().ok());
+      EXPECT_TRUE(checkKnowledge(cage).ok());
     }
   }
 }
@@ -179,14 +181,14 @@ TEST(Calibration, GivesACoarseBeamTheSoftnessOfItsLimit) {
     Cage cage = beam(cubes);
     const Result<CalibrationReport> report = calibrate(cage);
     ASSERT_TRUE(report.ok());
-    ASSERT_EQ(cage.factor, std::vector<double>(cage.tetCount(), report.value().factor));
+    ASSERT_EQ(cage.stiffnessFactor, std::vector<double>(cage.mesh.tetCount(), report.value().stiffnessFactor));
     for (std::size_t k = 1; k < report.value().responses.size(); ++k) {
       EXPECT_GT(report.value().responses[k], report.value().responses[k - 1]) << "a finer body is softer";
     }
-    // That of its refinement is nearer to 1, and both have the same limit.
-    const double finer = factorOf(refineUniformly(cage).mesh);
+    // The factor of its refinement is closer to 1, and both have the same limit.
+    const double finer = factorOf(refineUniformly(cage.mesh).mesh);
     EXPECT_NEAR(report.value().responses[1] / finer, 1.0, 0.05) << cubes;
-    EXPECT_LT(report.value().left, 0.3);
+    EXPECT_LT(report.value().remainingError, 0.3);
   }
 }
 
@@ -207,7 +209,7 @@ TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
   for (Vector3d& p : moved.nodes) p = 1000.0 * p + Vector3d(5e3, -2e4, 1e3);
   moved.nodes.emplace_back(0, 0, 0);  // used by no tet
   std::reverse(moved.tets.begin(), moved.tets.end());
-  for (Tet& tet : moved.tets) std::swap(tet[0], tet[1]);  // negative
+  for (Tet& tet : moved.tets) std::swap(tet[0], tet[1]);  // negative tets
   EXPECT_NEAR(factorOf(moved), factorOf(cage), 2e-3);
 }
 
@@ -217,12 +219,12 @@ TEST(Calibration, RefinesNoMoreThanItMay) {
     const Result<CalibrationReport> report = calibrate(cage);
     ASSERT_TRUE(report.ok());
     EXPECT_EQ(report.value().refinements, refinements);
-    EXPECT_LE(report.value().refinedTets, kMostRefinedTets);
+    EXPECT_LE(report.value().refinedTets, Limits::kMaxRefinedTets);
   }
   Cage large = test::latticeCage(20, 20, 20);
   const CalibrationReport none = calibrate(large).value();
   EXPECT_EQ(none.refinements, 0);
-  EXPECT_EQ(none.factor, 1.0);
+  EXPECT_EQ(none.stiffnessFactor, 1.0);
   EXPECT_NE(none.describe().find("not calibrated"), std::string::npos);
 }
 
@@ -235,7 +237,7 @@ TEST(Calibration, TakesASingleTet) {
 TEST(Calibration, RefusesBadInput) {
   const auto refusal = [](Cage cage, const CalibrationOptions& options = {}) {
     const Result<CalibrationReport> report = calibrate(cage, options);
-    EXPECT_TRUE(cage.factor.empty());
+    EXPECT_TRUE(cage.stiffnessFactor.empty());
     return report.status().code;
   };
   EXPECT_EQ(refusal(TetMesh()), StatusCode::Empty);
@@ -250,7 +252,7 @@ TEST(Calibration, RefusesBadInput) {
   options.poissonRatio = 0.5;
   EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
   options = {};
-  options.modes = 0;
+  options.modeCount = 0;
   EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
 }
 

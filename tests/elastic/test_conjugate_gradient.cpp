@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient of one body that moves freely: what it finds, and when it stops.
+// The conjugate gradient method for one body that moves freely: what it finds, and when it stops.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -70,7 +70,7 @@ TEST(ConjugateGradient, ComesNearerWithEveryIteration) {
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
     solver.start({&body.matrix}, closely(), {}, nullptr);
-    // The error in the norm of the matrix is what conjugate gradients make as small as they can.
+    // The method minimizes the error in the norm of the matrix.
     double before = right.dot(a * right);
     for (int k = 1; k <= 20; ++k) {
       solver.iterate(1, nullptr);
@@ -88,11 +88,11 @@ TEST(ConjugateGradient, GoesOnWhereItStopped) {
   AssembledBody<double> body(smallCage());
   const MatrixXd a = body.dense();
   const VectorXd b = rightSide(body);
-  const auto solved = [&](std::vector<int> parts) {
+  const auto solved = [&](std::vector<int> components) {
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
     solver.start({&body.matrix}, closely(), {}, nullptr);
-    for (const int part : parts) solver.iterate(part, nullptr);
+    for (const int component : components) solver.iterate(component, nullptr);
     EXPECT_EQ(solver.iterations(), 9);
     return solutionOf(body);
   };
@@ -142,13 +142,13 @@ TEST(ConjugateGradient, StopsAtWhatIsEnough) {
   limits.iterations = 3;
   EXPECT_EQ(iterationsWith(limits), std::make_pair(3, false));
   limits = closely();
-  limits.floor = 1e3;  // more than all there is
+  limits.floor = 1e3;  // larger than any residual here
   EXPECT_EQ(iterationsWith(limits), std::make_pair(0, true));
   limits = closely();
   limits.enough = 1e6;
   EXPECT_EQ(iterationsWith(limits), std::make_pair(0, true));
 
-  // As the square of a residual, of which it is told.
+  // Here the limit is the square of a residual, as the solver reports it.
   begin(body, a, b, VectorXd::Zero(b.size()));
   Solver solver;
   solver.start({&body.matrix}, closely(), {}, nullptr);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient with nodes that are held, fixed or resisted.
+// The conjugate gradient method with nodes that are pinned, fixed or resisted.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -28,13 +28,13 @@ using test::smallCage;
 using test::solutionOf;
 using test::Solver;
 
-/// The solution of a x = b whose `fixed` components (columns of a basis) stay as they are at the start.
+/// The solution of a x = b in the span of `basisOfTheFree`; all other components stay as they are at the start.
 VectorXd solveWithin(const MatrixXd& a, const VectorXd& b, const VectorXd& start, const MatrixXd& basisOfTheFree) {
   const MatrixXd& z = basisOfTheFree;
   return start + z * (z.transpose() * a * z).ldlt().solve(z.transpose() * (b - a * start));
 }
 
-/// Columns: what is left free, from directions by node that are not.
+/// A basis of what is left free, in columns, from the fixed directions by node.
 MatrixXd freeBasis(std::size_t nodes, const std::vector<std::pair<std::size_t, Vector3d>>& fixed) {
   const auto size = static_cast<Eigen::Index>(3 * nodes);
   MatrixXd projection = MatrixXd::Identity(size, size);
@@ -76,7 +76,7 @@ TEST(ConjugateGradient, FixedDirectionsStayAsTheyWereAtTheStart) {
     const Vector3d n = Vector3d(1, -2, 2) / 3.0, m = Vector3d(2, 3, -6) / 7.0;
     const Vector3d across = n.unitOrthogonal(), rest = n.cross(across);
     body.matrix.fixAlong(2, n.data());
-    body.matrix.fixAlong(3, m.data());  // neighbours, one with the other
+    body.matrix.fixAlong(3, m.data());  // a neighbour of the other fixed node
     body.matrix.fixAllBut(9, n.data());
     body.matrix.fix(12);
     const std::vector<std::pair<std::size_t, Vector3d>> fixed{{2, n},

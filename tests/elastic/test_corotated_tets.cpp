@@ -21,7 +21,7 @@ using test::onEachInstructionSet;
 using test::Points;
 using test::turnBy;
 
-/// The tets of a cage by themselves, with nodes in slots of another order, and slots that are of no node.
+/// The tets of a cage alone, with nodes in slots of another order, and with spare slots.
 template <class S>
 class Tets {
  public:
@@ -42,7 +42,7 @@ class Tets {
   double energy(const Points& nodes, ParallelFor* threads = nullptr) {
     return tets_.energy(toSlots(nodes).data(), threads);
   }
-  /// Rotations that have come to their ends.
+  /// Iterates until the rotations have converged.
   void settle(const Points& nodes) {
     for (int k = 0; k < 10; ++k) forces(nodes);
   }
@@ -68,18 +68,18 @@ class Tets {
   CorotatedTets<S> tets_;
 };
 
-/// No multiple of eight tets, none like another.
+/// The number of tets is no multiple of eight, and no two tets are alike.
 TetMesh oddCage() {
   return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
 }
 
 double largest(const Points& vectors) {
-  double most = 0.0;
+  double maximum = 0.0;
   for (const Vector3d& v : vectors) {
     if (!v.allFinite()) return std::numeric_limits<double>::infinity();
-    most = std::max(most, v.norm());
+    maximum = std::max(maximum, v.norm());
   }
-  return most;
+  return maximum;
 }
 
 double farthest(const Points& a, const Points& b) {
@@ -124,7 +124,7 @@ TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergy) {
   });
 }
 
-/// By singular values: of the least strain that a rotation leaves.
+/// The energy by singular values: that of the least strain that a rotation leaves.
 double exactEnergy(const TetMesh& cage, const std::vector<Lame>& material, const Points& nodes) {
   double total = 0.0;
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
@@ -143,7 +143,7 @@ double exactEnergy(const TetMesh& cage, const std::vector<Lame>& material, const
   return total;
 }
 
-/// A body at rest that is turned at once is free of force, and a deformed one has the energy that it had.
+/// A body at rest that is turned at once is free of forces, and a deformed one keeps its energy.
 TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
   const TetMesh cage = oddCage();
   const std::vector<Lame> material = test::variedMaterial(cage.tetCount());
@@ -153,7 +153,7 @@ TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
   onEachInstructionSet([&] {
     for (const Vector3d& axis : axes) {
       for (const double degrees : {60.0, 90.0, 120.0, 170.0, 179.0, 179.9, 179.99, 180.0}) {
-        for (const double stretch : {1.0, 1.3, -0.7}) {  // along x; the last inside out
+        for (const double stretch : {1.0, 1.3, -0.7}) {  // along x; with the last value it is inside out
           const Matrix3d gradient = Vector3d(stretch, 1.1, 0.8).asDiagonal();
           Tets<TypeParam> tets(cage, material);
           tets.settle(test::mapped(cage.nodes, gradient, {0, 0, 0}));
@@ -180,7 +180,7 @@ TYPED_TEST(CorotatedTetsOf, FindTheRotationsOfAnyGradientFromAnyOther) {
       for (int i = 0; i < 9; ++i) gradient(i / 3, i % 3) = random();
       inverted += gradient.determinant() < 0.0;
       const Points nodes = test::mapped(cage.nodes, gradient, {0, 0, 0});
-      tets.forces(nodes);  // from the rotation of the gradient before
+      tets.forces(nodes);  // starts from the rotation of the previous gradient
       EXPECT_NEAR(tets.energy(nodes), exactEnergy(cage, material, nodes), 3e-3) << gradient;
     }
     EXPECT_GT(inverted, 100);
@@ -243,7 +243,7 @@ TYPED_TEST(CorotatedTetsOf, PushAndTurnNothingAsAWhole) {
   });
 }
 
-/// Nodes that no face of the boundary has.
+/// Nodes that are in no boundary face.
 std::vector<std::size_t> innerNodes(const TetMesh& cage) {
   std::vector<bool> outside(cage.nodeCount(), false);
   for (const auto& face : boundaryFaces(cage)) {
@@ -271,9 +271,9 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
     tets.settle(nodes);
     const Points forces = tets.forces(nodes);
     ASSERT_GT(largest(forces), 0.05);
-    double most = 0.0;
-    for (const std::size_t n : inner) most = std::max(most, forces[n].norm());
-    EXPECT_LT(most, 300.0 * this->kEpsilon);
+    double maximum = 0.0;
+    for (const std::size_t n : inner) maximum = std::max(maximum, forces[n].norm());
+    EXPECT_LT(maximum, 300.0 * this->kEpsilon);
     EXPECT_NEAR(tets.energy(nodes) / (totalVolume(cage) * density), 1.0, 30.0 * this->kEpsilon);
   });
 }
@@ -287,7 +287,7 @@ TYPED_TEST(CorotatedTetsOf, ForcesAreInProportionToTheStiffnessOfEachTet) {
     tets.settle(nodes);
     const Points forces = tets.forces(nodes);
     const double energy = tets.energy(nodes);
-    // A power of two, which rounds nothing.
+    // The factor is a power of two, which causes no rounding.
     for (std::size_t t = 0; t < material.size(); ++t)
       tets.tets().setMaterial(t, {4 * material[t].mu, 4 * material[t].lambda});
     const Points stiff = tets.forces(nodes);
@@ -295,7 +295,7 @@ TYPED_TEST(CorotatedTetsOf, ForcesAreInProportionToTheStiffnessOfEachTet) {
       EXPECT_LT((stiff[n] - 4.0 * forces[n]).norm(), 1000.0 * this->kEpsilon * largest(stiff));
     }
     EXPECT_NEAR(tets.energy(nodes) / energy, 4.0, 1000.0 * this->kEpsilon);
-    // One tet alone.
+    // Only one tet is changed.
     for (std::size_t t = 0; t < material.size(); ++t) tets.tets().setMaterial(t, material[t]);
     tets.tets().setMaterial(11, {3 * material[11].mu, material[11].lambda});
     const Points other = tets.forces(nodes);
@@ -323,7 +323,7 @@ TYPED_TEST(CorotatedTetsOf, FlatCollapsedAndMirroredTetsHaveFiniteForces) {
         EXPECT_GT(force, 0.1) << gradient;
       }
       EXPECT_TRUE(std::isfinite(tets.energy(nodes))) << gradient;
-      // And they have not spoilt anything.
+      // The rotations must still work afterwards.
       const Points rest = cage.nodes;
       tets.settle(rest);
       EXPECT_LT(largest(tets.forces(rest)), 100.0 * this->kEpsilon) << gradient;
@@ -361,8 +361,8 @@ TYPED_TEST(CorotatedTetsOf, HaveTheSameBitsOnAnyThreads) {
     EXPECT_EQ(shared.forces(nodes, &threads), forces);
     EXPECT_EQ(shared.energy(nodes, &threads), energy);
     EXPECT_EQ(shared.tets().meanTurn(), turn);
-    EXPECT_EQ(threads.runs, 3);  // corners, their sums, corners again
-    EXPECT_GT(threads.mostTasks, 5u);
+    EXPECT_EQ(threads.runs, 3);  // corners, their sums, and corners again
+    EXPECT_GT(threads.maxTasks, 5u);
   }
 }
 
@@ -377,11 +377,11 @@ TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {
       tets.settle(before);
       static_cast<void>(tets.tets().cornersForMatrix(1, nullptr));
       tets.forces(before);
-      // The angle is a root of what is rounded.
+      // The angle is a square root of rounded values.
       EXPECT_LT(tets.tets().meanTurn(), 10.0 * std::sqrt(this->kEpsilon));
-      EXPECT_LT(tets.tets().mostTurn(), 10.0 * std::sqrt(this->kEpsilon));
+      EXPECT_LT(tets.tets().maxTurn(), 10.0 * std::sqrt(this->kEpsilon));
       tets.settle(after);
-      EXPECT_NEAR(tets.tets().mostTurn() / angle, 1.0, 0.01);
+      EXPECT_NEAR(tets.tets().maxTurn() / angle, 1.0, 0.01);
       EXPECT_NEAR(tets.tets().meanTurn() / angle, 1.0, 0.03);
     }
   });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A matrix to which others add blocks of two nodes, beside the same one put together densely.
+// A matrix to which blocks of two nodes are added, compared with the same matrix assembled densely.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -23,14 +23,15 @@ using test::AssembledBody;
 using test::onEachInstructionSet;
 using test::smallCage;
 
-/// A point in a tet that resists its motion, as a contact does: sum w_i w_j H.
+/// A point in a tet that resists its motion, as a contact point does: sum w_i w_j H.
 struct PointRow {
   std::size_t tet = 0;
   std::array<double, 4> weights{};
   Matrix3d stiffness;
 };
 
-/// The first two in one tet, the third in another that may share nodes; one is stiff along its normal alone.
+/// The first two points are in one tet, the third in another one that may share nodes; one of them is stiff only along
+/// its normal.
 std::vector<PointRow> rows() {
   const Vector3d n = Vector3d(1, 2, -0.5).normalized();
   const Matrix3d along = n * n.transpose();
@@ -47,7 +48,7 @@ std::array<S, 6> blockOf(const Matrix3d& m, double factor) {
   return block;
 }
 
-/// Returns what was added; nothing where a node is held.
+/// Adds a point's resistance, and returns what was added: nothing for pinned nodes.
 template <class S>
 MatrixXd add(const PointRow& row, AssembledBody<S>& body) {
   const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
@@ -179,7 +180,7 @@ TEST(CoupledNodes, AreSolvedForByTheConjugateGradient) {
       solver.start({&body.matrix}, test::closely(), {}, nullptr);
       EXPECT_TRUE(solver.iterate(500, nullptr));
       EXPECT_LT(test::apart(test::solutionOf(body), a.ldlt().solve(b)), test::kClose * std::sqrt(stiffer));
-      // Sweeps see them: stiff rows within a tet cost hardly anything.
+      // The sweeps include these blocks: stiff rows within a tet cost hardly any iterations.
       EXPECT_LT(solver.iterations(), 80) << stiffer;
     }
   });

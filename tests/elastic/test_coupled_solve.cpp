@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient with what others add to its matrices, and over several of them.
+// The conjugate gradient method with additional terms beside its matrices, and over several matrices.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -29,7 +29,7 @@ using test::smallCage;
 using test::solutionOf;
 using test::Solver;
 
-/// A matrix of springs added to that of some bodies, of which the unknowns stand one after the other.
+/// A matrix of springs that is added to those of several bodies, whose unknowns are concatenated.
 class Springs {
  public:
   Springs(std::vector<AssembledBody<double>*> bodies, MatrixXd springs)
@@ -89,7 +89,7 @@ TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
     const auto size = static_cast<Eigen::Index>(3 * first.nodes.size());
     const auto total = size + static_cast<Eigen::Index>(3 * second.nodes.size());
     MatrixXd springs = MatrixXd::Zero(total, total);
-    for (int k = 0; k < 9; ++k) {  // from the first nodes of one to those of the other
+    for (int k = 0; k < 9; ++k) {  // from the first nodes of one body to those of the other
       const double stiffness = 5.0 + k;
       springs(k, k) += stiffness;
       springs(size + k, size + k) += stiffness;

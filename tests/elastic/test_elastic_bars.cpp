@@ -14,9 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 using test::fill;
-using test::holdTheEnd;
 using test::lumped;
 using test::made;
+using test::pinTheEnd;
 using test::Points;
 using test::pointsOf;
 using test::soft;
@@ -31,7 +31,7 @@ class ElasticBarsOf : public testing::Test {
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(ElasticBarsOf, Scalars);
 
-/// The mean displacement of the nodes at the other end.
+/// The mean displacement of the nodes at the free end.
 template <class S>
 Vector3d tipOf(ElasticBody<S>& body, const TetMesh& cage, double length) {
   Vector3d sum = Vector3d::Zero();
@@ -44,7 +44,7 @@ Vector3d tipOf(ElasticBody<S>& body, const TetMesh& cage, double length) {
   return sum / count;
 }
 
-/// Steps so long that little is left of the motion but its end.
+/// Takes steps so long that only the final state of the motion is left.
 template <class S>
 void settle(ElasticBody<S>& body, const std::array<double, 3>& acceleration, int steps) {
   for (int k = 0; k < steps; ++k) body.step(0.1, acceleration);
@@ -55,9 +55,9 @@ TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
   const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
   ElasticOptions options = soft();
   options.tolerance = 1e-4;
-  options.poissonRatio = 0.0;  // the held end may not get thinner
+  options.poissonRatio = 0.0;  // the pinned end cannot get thinner
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-  holdTheEnd(body, cage);
+  pinTheEnd(body, cage);
   settle(body, {kGravity, 0, 0}, 150);
   const double expected = options.density * kGravity * kLength * kLength / (2.0 * options.youngsModulus);
   ASSERT_GT(expected, 0.05);
@@ -68,22 +68,22 @@ TYPED_TEST(ElasticBarsOf, APulledBarIsAsLongAsTheTextbookSays) {
   constexpr double kLength = 2.0;
   const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
   const double area = 0.0625, force = 20.0;
-  // All mass is at the other end, so that gravity pulls there alone.
+  // All mass is at the free end, so that gravity pulls only there.
   ElasticOptions options = soft();
   options.tolerance = 1e-5;
   options.poissonRatio = 0.3;
   options.nodeMasses.assign(cage.nodeCount(), 1e-9);
   double sum = 0.0;
-  const std::vector<double> shares = lumped(cage);
+  const std::vector<double> fractions = lumped(cage);
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
       if (cage.nodes[n].x() != kLength) continue;
-      if (pass == 0) sum += shares[n];
-      if (pass == 1) options.nodeMasses[n] = shares[n] / sum;
+      if (pass == 0) sum += fractions[n];
+      if (pass == 1) options.nodeMasses[n] = fractions[n] / sum;
     }
   }
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-  holdTheEnd(body, cage);
+  pinTheEnd(body, cage);
   settle(body, {force, 0, 0}, 60);
   const double expected = force * kLength / (options.youngsModulus * area);
   EXPECT_NEAR(tipOf(body, cage, kLength).x() / expected, 1.0, 0.002);
@@ -96,7 +96,7 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
   options.poissonRatio = 0.0;
   options.density = 1.0;
   options.tolerance = 1e-6;
-  options.iterations = 2000;
+  options.maxIterations = 2000;
   const double weight = kHeight * kHeight, inertia = std::pow(kHeight, 4) / 12.0;
   const double gravity = 10.0;
   const double expected = weight * gravity * std::pow(kLength, 4) / (8.0 * options.youngsModulus * inertia);
@@ -104,7 +104,7 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
   for (const int across : {1, 2, 4}) {
     const TetMesh cage = test::latticeCage(8 * across, across, across, kHeight / across);
     ElasticBody<double> body = made<double>(cage, options);
-    holdTheEnd(body, cage);
+    pinTheEnd(body, cage);
     settle(body, {0, 0, -gravity}, 20);
     const double error = 1.0 + tipOf(body, cage, kLength).z() / expected;
     EXPECT_GT(error, 0.0) << "cages are too stiff";
@@ -122,12 +122,12 @@ TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
   options.poissonRatio = 0.0;
   options.tolerance = 1e-4;
   ElasticBody<double> body = made<double>(cage, options);
-  holdTheEnd(body, cage);
-  Points positions = cage.nodes;  // its softest longitudinal vibration, at its greatest
+  pinTheEnd(body, cage);
+  Points positions = cage.nodes;  // its softest longitudinal vibration, at maximum amplitude
   for (Vector3d& p : positions) p.x() += 0.01 * std::sin(0.5 * kPi * p.x() / kLength);
   fill(body.positions(), positions);
   const double period = 4.0 * kLength / std::sqrt(options.youngsModulus / options.density), dt = period / 400.0;
-  // From the first passage through rest to the third, a period.
+  // The time from the first passage through rest to the third is one period.
   std::vector<double> passages;
   double before = tipOf(body, cage, kLength).x();
   for (int k = 1; k <= 700; ++k) {
@@ -148,7 +148,7 @@ TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
   options.tolerance = 1e-8;
   const auto nodesAfter = [&](int steps) {
     ElasticBody<double> body = made<double>(cage, options);
-    holdTheEnd(body, cage);
+    pinTheEnd(body, cage);
     for (int k = 0; k < steps; ++k) body.step(kTime / steps, {0, 0, -9.8});
     return pointsOf(body.positions());
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What ElasticBody claims, at its ends: stiff and light, spinning, turned at once, held and led.
+// The claims about ElasticBody at their limits: stiff and light, spinning, turned at once, pinned and led.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
@@ -23,7 +23,7 @@ using test::Points;
 using test::pointsOf;
 using test::turnBy;
 
-/// About 1 m long, slender, and on no axis of the world.
+/// A slender bar about 1 m long, aligned with no axis of the world.
 TetMesh obliqueBar() {
   TetMesh bar = test::jittered(test::latticeCage(6, 1, 1), 0.1, 3);
   for (Vector3d& p : bar.nodes) p = turnBy(33.0, {1, 2, 3}) * (p / 6.0);
@@ -64,7 +64,7 @@ template <class S>
 class ElasticClaimsOf : public testing::Test {
  protected:
   static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-  /// Of E V, what the rounding of positions reads as.
+  /// The rounding of positions appears as this fraction of E V.
   static constexpr double kRounding = sizeof(S) == sizeof(float) ? 1e-11 : 1e-27;
 };
 using Scalars = testing::Types<float, double>;
@@ -74,7 +74,7 @@ TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftT
   struct Case {
     double youngsModulus, density, damping, rate, seconds, tolerance;
   };
-  // Each pair of values occurs.
+  // Every pair of values occurs.
   const Case cases[] = {
       {1, 2, 0, 0.1, 1.0 / 60, 5e-3},       {1, 1000, 0.02, 1, 1.0 / 240, 1e-6},
       {1e3, 2, 0.02, 10, 1.0 / 1000, 5e-3}, {1e3, 1000, 0, 1, 1.0 / 60, 1e-6},
@@ -90,20 +90,20 @@ TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftT
       ElasticOptions options;
       options.youngsModulus = c.youngsModulus;
       options.density = c.density;
-      options.damping = c.damping;
+      options.stiffnessDamping = c.damping;
       options.tolerance = c.tolerance;
-      options.iterations = c.tolerance < 1e-3 ? 2000 : 200;
+      options.maxIterations = c.tolerance < 1e-3 ? 2000 : 200;
       std::vector<double> masses = lumped(cage);
       for (double& m : masses) m *= c.density;
       ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
       spin(body, c.rate * Vector3d(1, 1, 0.3).normalized(), {0.1, -0.2, 0.05});
       const Motion before = motionOf(body, masses);
       const double chord = 1.0 / std::pow(std::cos(0.5 * c.rate * c.seconds), 2);
-      const double most = 1.02 * chord * before.kinetic + this->kRounding * c.youngsModulus * volume;
+      const double maximum = 1.02 * chord * before.kinetic + this->kRounding * c.youngsModulus * volume;
       for (int k = 0; k < 300; ++k) {
         body.step(c.seconds);
         const Motion now = motionOf(body, masses);
-        ASSERT_LT(now.kinetic + body.energy(), most + 1e-3 * this->kRounding / 1e-11 * before.kinetic)
+        ASSERT_LT(now.kinetic + body.energy(), maximum + 1e-3 * this->kRounding / 1e-11 * before.kinetic)
             << c.youngsModulus << " Pa, " << c.density << " kg/m3, " << c.rate << " rad/s, step " << k;
         ASSERT_LT((now.momentum - before.momentum).norm(), 1e-4 * before.momentum.norm());
         ASSERT_LT((now.spin - before.spin).norm(), 1e-3 * before.spin.norm());
@@ -112,7 +112,7 @@ TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftT
   }
 }
 
-/// No rigid motion in straight lines turns so fast: they swell, but keep what they must.
+/// No rigid motion along straight lines turns so fast: bodies swell, but keep what they must.
 TYPED_TEST(ElasticClaimsOf, KeepsAngularMomentumBeyondOneRadianPerStep) {
   const TetMesh cage = block();
   for (const double youngsModulus : {1e3, 1e6, 1e9}) {
@@ -145,7 +145,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyTurnedAtOnceStaysAtRest) {
           for (Vector3d& p : turned) p = turnBy(degrees, axis) * p + Vector3d(1, -1, 0.5) * (degrees < 100.0 ? 1 : -1);
           fill(body.positions(), turned);
           for (int k = 0; k < 3; ++k) body.step(1.0 / 240);
-          // What the rounding of positions is worth, in a step.
+          // The speed that the rounding of positions causes in one step.
           ASSERT_LT(fastest(body), 1e3 * this->kEpsilon * 240.0) << degrees << " about " << axis.transpose();
           fill(body.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
         }
@@ -155,7 +155,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyTurnedAtOnceStaysAtRest) {
 }
 
 TYPED_TEST(ElasticClaimsOf, ABodyOnAnAxleGoesOnTurningAtAnyStiffness) {
-  const TetMesh cage = test::latticeCage(2, 2, 2);  // about its middle, along z
+  const TetMesh cage = test::latticeCage(2, 2, 2);  // turns about its middle, along z
   for (const double youngsModulus : {1e4, 1e9}) {
     ElasticOptions options;
     options.youngsModulus = youngsModulus;
@@ -163,7 +163,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyOnAnAxleGoesOnTurningAtAnyStiffness) {
     Points v;
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
       const Vector3d arm = cage.nodes[n] - Vector3d(1, 1, 0);
-      if (arm.head<2>().norm() < 1e-9) body.hold(n);
+      if (arm.head<2>().norm() < 1e-9) body.setPinned(n);
       v.push_back(Vector3d(0, 0, 3.0).cross(arm));
     }
     fill(body.velocities(), v);
@@ -181,15 +181,15 @@ TYPED_TEST(ElasticClaimsOf, ABodyOnAnAxleGoesOnTurningAtAnyStiffness) {
   }
 }
 
-/// By three nodes, through a whole turn.
+/// The body is turned by its pinned nodes, through a full turn.
 TYPED_TEST(ElasticClaimsOf, ABodyThatIsTurnedByItsHeldNodesFollowsUnstrained) {
   const TetMesh cage = test::latticeCage(3, 1, 1);
   for (const double youngsModulus : {1e4, 1e9}) {
     ElasticOptions options;
     options.youngsModulus = youngsModulus;
-    options.damping = 0.02;
+    options.stiffnessDamping = 0.02;
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    test::holdTheEnd(body, cage);
+    test::pinTheEnd(body, cage);
     const double degrees = 3.0;
     for (int k = 1; k <= 120; ++k) {
       const auto at = [&](int step, const Vector3d& p) -> Vector3d { return turnBy(degrees * step, {0, 0, 1}) * p; };
@@ -208,7 +208,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyThatIsTurnedByItsHeldNodesFollowsUnstrained) {
   }
 }
 
-/// Each is rigid by itself.
+/// Each component moves as a rigid body of its own.
 TYPED_TEST(ElasticClaimsOf, PartsThatShareNoNodeSpinByThemselves) {
   TetMesh cage = block();
   const auto first = static_cast<int>(cage.nodeCount());
@@ -238,18 +238,19 @@ TYPED_TEST(ElasticClaimsOf, PartsThatShareNoNodeSpinByThemselves) {
 
 TYPED_TEST(ElasticClaimsOf, RefusesWhatIsTooStiffForItsMassWithTheNumber) {
   const TetMesh cage = block();
-  const double most = (sizeof(TypeParam) == sizeof(float) ? 1e12 : 1e16) * 2.0 * std::pow(totalVolume(cage), 2.0 / 3.0);
+  const double maximum =
+      (sizeof(TypeParam) == sizeof(float) ? 1e12 : 1e16) * 2.0 * std::pow(totalVolume(cage), 2.0 / 3.0);
   ElasticOptions options;
   options.density = 2.0;
-  options.youngsModulus = 0.99 * most;
-  EXPECT_TRUE(ElasticBody<TypeParam>::make(cage, options).ok());
-  options.youngsModulus = 1.01 * most;
-  const Status status = ElasticBody<TypeParam>::make(cage, options).status();
+  options.youngsModulus = 0.99 * maximum;
+  EXPECT_TRUE(ElasticBody<TypeParam>::create(cage, options).ok());
+  options.youngsModulus = 1.01 * maximum;
+  const Status status = ElasticBody<TypeParam>::create(cage, options).status();
   EXPECT_EQ(status.code, StatusCode::InvalidOption);
   EXPECT_NE(status.message.find("at most"), std::string::npos) << status.message;
-  options.youngsModulus = 0.99 * most;
-  options.damping = 1.0;
-  EXPECT_EQ(ElasticBody<TypeParam>::make(cage, options).status().code, StatusCode::InvalidOption);
+  options.youngsModulus = 0.99 * maximum;
+  options.stiffnessDamping = 1.0;
+  EXPECT_EQ(ElasticBody<TypeParam>::create(cage, options).status().code, StatusCode::InvalidOption);
 }
 
 TYPED_TEST(ElasticClaimsOf, StandsStillInAStepThatIsNone) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The diagonal blocks of a matrix, and nodes that are held, fixed or resisted in them.
+// The diagonal blocks of a matrix, and nodes whose blocks are pinned, fixed or resisted.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -56,7 +56,7 @@ Matrix3d freeInverseOf(const BlockMatrix<S>& matrix, std::size_t node) {
   return symmetric(d);
 }
 
-/// What the sweeps take for the inverse of a node's block: what they make of a residual that is 0 everywhere else.
+/// What the sweeps use as the inverse of a node's block: their result for a residual that is 0 at all other nodes.
 template <class S>
 Matrix3d inverseInUse(BlockMatrix<S>& matrix, std::size_t node) {
   Matrix3d inverse;
@@ -157,7 +157,7 @@ TYPED_TEST(FixedNodesOf, ResistsAcrossANormalUntilItIsFree) {
       const Vector3d row = column.segment<3>(static_cast<Eigen::Index>(3 * node));
       EXPECT_LT((row - expected.col(0)).norm(), 10.0 * this->kEpsilon * expected.norm());
 
-      matrix.fixAlong(node, normal);  // within the resistance
+      matrix.fixAlong(node, normal);  // together with the resistance
       EXPECT_LT((plane * expected * inverseInUse(matrix, node) - plane).norm(), 30.0 * this->kEpsilon);
 
       matrix.free();
@@ -184,7 +184,7 @@ TYPED_TEST(FixedNodesOf, AHeldNodeStaysHeld) {
     EXPECT_EQ(diagonalOf(matrix, 5), block);
     matrix.free();
     EXPECT_EQ(inverseInUse(matrix, 5), Matrix3d::Zero());
-    // Let go again, from the next assembly on.
+    // The node is free again from the next assembly on.
     body.masses[5] = 1.0;
     body.assemble();
     EXPECT_GT(inverseInUse(matrix, 5).determinant(), 0.0);

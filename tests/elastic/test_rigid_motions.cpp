@@ -14,9 +14,9 @@ using Eigen::VectorXd;
 using elastic_detail::Fields;
 using elastic_detail::RigidMotions;
 
-/// A box, and one of another kind apart from it.
-struct TwoParts {
-  TwoParts() : mesh(test::jittered(test::latticeCage(2, 1, 1), 0.1, 4)), split(mesh.nodeCount()) {
+/// A box, and a different one apart from it.
+struct TwoComponents {
+  TwoComponents() : mesh(test::jittered(test::latticeCage(2, 1, 1), 0.1, 4)), split(mesh.nodeCount()) {
     const TetMesh second = test::bodyCentredCage(2, 2, 2);
     const auto offset = static_cast<int>(split);
     for (const Vector3d& p : second.nodes) mesh.nodes.push_back(p + Vector3d(10, 0, 0));
@@ -28,12 +28,12 @@ struct TwoParts {
   bool isFirst(std::size_t node) const { return node < split; }
 
   TetMesh mesh;
-  std::size_t split;  ///< first node of the second part
+  std::size_t split;  ///< first node of the second component
   VectorXd masses;
 };
 
-/// Six of each part: velocities, and turning around the origin.
-Fields rigidMotionsOf(const TwoParts& body) {
+/// Six motions per component: translations, and rotations about the origin.
+Fields rigidMotionsOf(const TwoComponents& body) {
   Fields motions = Fields::Zero(body.rows(), 12);
   for (std::size_t n = 0; n < body.mesh.nodeCount(); ++n) {
     for (int k = 0; k < 3; ++k) {
@@ -46,7 +46,7 @@ Fields rigidMotionsOf(const TwoParts& body) {
 }
 
 TEST(RigidMotions, AreSixAPartAndMeetNoResistance) {
-  const TwoParts body;
+  const TwoComponents body;
   EXPECT_EQ(RigidMotions(body.mesh, body.masses).count(), 12);
   const elastic_detail::BlockRows stiffness(body.mesh, 0.3, std::vector<double>(body.mesh.tetCount(), 1.0));
   const Fields motions = rigidMotionsOf(body);
@@ -56,7 +56,7 @@ TEST(RigidMotions, AreSixAPartAndMeetNoResistance) {
 }
 
 TEST(RigidMotions, AreTakenOutPartByPart) {
-  const TwoParts body;
+  const TwoComponents body;
   Fields motions = rigidMotionsOf(body);
   const double size = motions.norm();
   RigidMotions(body.mesh, body.masses).removeFrom(motions);
@@ -64,7 +64,7 @@ TEST(RigidMotions, AreTakenOutPartByPart) {
 }
 
 TEST(RigidMotions, LeaveWhatIsOrthogonalToThemByMassAsItWas) {
-  const TwoParts body;
+  const TwoComponents body;
   const RigidMotions rigid(body.mesh, body.masses);
   const Fields before = Fields::Random(body.rows(), 4), motions = rigidMotionsOf(body);
   Fields deformation = before;
@@ -74,19 +74,19 @@ TEST(RigidMotions, LeaveWhatIsOrthogonalToThemByMassAsItWas) {
   Fields again = deformation;
   rigid.removeFrom(again);
   EXPECT_LT((again - deformation).norm(), 1e-12 * before.norm());
-  // What has been taken out is a rigid motion.
+  // What has been removed is a rigid motion.
   const Fields taken = before - deformation;
   const Eigen::MatrixXd found = Eigen::MatrixXd(motions).colPivHouseholderQr().solve(Eigen::MatrixXd(taken));
   EXPECT_LT((motions * found - taken).norm(), 1e-12 * before.norm());
 }
 
 TEST(RigidMotions, OfBalancedLoadsAreNotAccelerated) {
-  const TwoParts body;
+  const TwoComponents body;
   const Fields before = Fields::Random(body.rows(), 3);
   Fields loads = before, accelerations = body.masses.cwiseInverse().asDiagonal() * before;
   const RigidMotions rigid(body.mesh, body.masses);
   rigid.balance(loads);
-  // No resultant and no moment.
+  // The loads have no resultant and no moment.
   EXPECT_LT((rigidMotionsOf(body).transpose() * loads).norm(), 1e-10);
   rigid.removeFrom(accelerations);
   EXPECT_LT((body.masses.asDiagonal() * accelerations - loads).norm(), 1e-12 * before.norm());

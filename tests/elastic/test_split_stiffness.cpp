@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Cages with copies of tets, as bodies: nothing in them turns freely about a node or an edge.
+// Bodies of cages with duplicate elements: nothing in them turns freely about a node or an edge.
 #include <gtest/gtest.h>
-#include <tetskin/cage/cage_builder.h>
+#include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/src/calibration/rest_body.h>
 
+#include "support/component_models.h"
 #include "support/odd_meshes.h"
-#include "support/part_models.h"
 
 namespace tetskin {
 namespace {
@@ -15,15 +15,15 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kPoisson = 0.3;
-/// Square of a frequency, over that of the same body fused, below which something must be a hinge: it has 0.
+/// Squared frequency, relative to the same body with fused elements, below which there must be a hinge; a hinge has 0.
 constexpr double kHinge = 1e-4;
 
-/// Square of the lowest frequency but for the rigid motions, six for each part.
+/// Square of the lowest frequency after the rigid motions, six per component.
 double softest(const Cage& cage) {
-  const std::vector<double> ones(cage.tetCount(), 1.0), known = cage.stiffnessScale();
-  VectorXd masses = elastic_detail::lumpedVolumes(cage, ones);
+  const std::vector<double> ones(cage.mesh.tetCount(), 1.0), known = cage.stiffnessScale();
+  VectorXd masses = elastic_detail::lumpedVolumes(cage.mesh, ones);
   for (std::size_t n = 0; n < cage.masses.size(); ++n) masses.segment<3>(3 * n).setConstant(cage.masses[n]);
-  const elastic_detail::RestBody body(cage, kPoisson, known.empty() ? ones : known, masses);
+  const elastic_detail::RestBody body(cage.mesh, kPoisson, known.empty() ? ones : known, masses);
   const elastic_detail::DirectSolver solver(body);
   EXPECT_TRUE(solver.ok());
   const VectorXd mode = elastic_detail::softestModes(body, solver, 1).col(0);
@@ -33,37 +33,38 @@ double softest(const Cage& cage) {
 Cage built(const TriangleMesh& mesh, bool split) {
   CageOptions options;
   options.targetTets = 600;
-  options.split = split;
-  return buildCage(mesh, options).value();
+  options.duplicateElements = split;
+  return createCage(mesh, options).value();
 }
 
 TEST(SplitStiffness, SplitCagesHaveNoHinges) {
-  for (const test::PartModel& model : {test::twoPlates(0.15), test::jaw(0.12), test::claw(0.1), test::chain(2, 0.15),
-                                       test::coil(2, 0.1), test::jaw(0.03), test::crossedBoxes()}) {
+  for (const test::ComponentModel& model :
+       {test::twoPlates(0.15), test::jaw(0.12), test::claw(0.1), test::chain(2, 0.15), test::coil(2, 0.1),
+        test::jaw(0.03), test::crossedBoxes()}) {
     const double whole = softest(built(model.mesh, false)), split = softest(built(model.mesh, true));
     EXPECT_GT(split, kHinge * whole) << model.name << " " << model.gap;
   }
 }
 
-/// Two beams end to end, or joined by an edge or a node alone.
+/// Two beams end to end, or connected only by an edge or a node.
 Cage joinedBeams(int sharedNodes) {
   Cage beams = test::latticeCage(4, 1, 1);
   const Cage second = beams;
-  const auto count = static_cast<int>(second.nodeCount());
-  std::vector<int> number(second.nodeCount(), -1);
+  const auto count = static_cast<int>(second.mesh.nodeCount());
+  std::vector<int> number(second.mesh.nodeCount(), -1);
   for (int n = 0, shared = 0; n < count; ++n) {
-    const Eigen::Vector3d at = second.nodes[n] + Eigen::Vector3d(4.0, 0.0, 0.0);
+    const Eigen::Vector3d at = second.mesh.nodes[n] + Eigen::Vector3d(4.0, 0.0, 0.0);
     for (int m = 0; m < count && shared < sharedNodes; ++m) {
-      if ((beams.nodes[m] - at).norm() < 1e-9) number[n] = m, ++shared;
+      if ((beams.mesh.nodes[m] - at).norm() < 1e-9) number[n] = m, ++shared;
       if (number[n] >= 0) break;
     }
     if (number[n] >= 0) continue;
-    number[n] = static_cast<int>(beams.nodeCount());
-    beams.nodes.push_back(at);
+    number[n] = static_cast<int>(beams.mesh.nodeCount());
+    beams.mesh.nodes.push_back(at);
   }
-  for (Tet tet : second.tets) {
+  for (Tet tet : second.mesh.tets) {
     for (int& n : tet) n = number[n];
-    beams.tets.push_back(tet);
+    beams.mesh.tets.push_back(tet);
   }
   return beams;
 }

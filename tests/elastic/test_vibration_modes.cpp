@@ -3,9 +3,8 @@
 //
 // This work is based on:
 //   Stephen Timoshenko, "On the correction for shear of the differential equation for transverse vibrations of
-//   prismatic
-//     bars", Phil. Mag. 41, 1921; George Cowper, "The Shear Coefficient in Timoshenko's Beam Theory", J. Appl. Mech.
-//     33, 1966 (10 (1 + nu) / (12 + 11 nu) of a rectangle)
+//     prismatic bars", Phil. Mag. 41, 1921; George Cowper, "The Shear Coefficient in Timoshenko's Beam Theory",
+//     J. Appl. Mech. 33, 1966 (10 (1 + nu) / (12 + 11 nu) for a rectangle)
 #include <gtest/gtest.h>
 #include <support/bars.h>
 #include <tetskin/elastic/src/matrix/block_rows.h>
@@ -27,7 +26,7 @@ using test::makeBox;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Nodes at x = 0.
+/// The nodes at x = 0.
 std::vector<int> end(const TetMesh& bar) {
   std::vector<int> nodes;
   for (std::size_t n = 0; n < bar.nodeCount(); ++n) {
@@ -36,7 +35,7 @@ std::vector<int> end(const TetMesh& bar) {
   return nodes;
 }
 
-/// About 500 tets of all shapes, in a box of three different sides.
+/// About 500 tets of various shapes, in a box with three different sides.
 TetMesh makeJagged() {
   TetMesh mesh = makeBox({7, 5, 3}, Vector3d(1.7, 1.1, 0.6));
   std::mt19937 generator(5);
@@ -79,7 +78,7 @@ MatrixXd rigidMotionsOf(const TetMesh& mesh) {
 }
 
 VibrationModes modesOf(const TetMesh& mesh, const VibrationOptions& options) {
-  Result<VibrationModes> modes = vibrationModes(mesh, options);
+  Result<VibrationModes> modes = computeVibrationModes(mesh, options);
   EXPECT_TRUE(modes.ok()) << modes.status().message;
   return std::move(modes).value();
 }
@@ -90,7 +89,7 @@ void expectOrthonormal(const VibrationModes& modes) {
   EXPECT_LT((products - MatrixXd::Identity(products.rows(), products.cols())).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-/// Every cluster of eigenvalues nearer than 1e-4 spans what the dense solver's does.
+/// Every cluster of eigenvalues closer than 1e-4 spans the same space as that of the dense solver.
 void expectAsDense(const TetMesh& mesh, const VibrationModes& modes, const MatrixXd& dense, const VectorXd& values,
                    Eigen::Index skipped) {
   const VectorXd masses = massesOf(modes).cwiseSqrt();
@@ -105,22 +104,22 @@ void expectAsDense(const TetMesh& mesh, const VibrationModes& modes, const Matri
     }
     const MatrixXd span = ours.middleCols(first, last - first),
                    right = theirs.middleCols(skipped + first, last - first);
-    // The sine of the largest principal angle: what of the one is not in the other.
+    // The sine of the largest principal angle, from what one space has outside the other.
     const MatrixXd left = span - right * (right.transpose() * span);
     EXPECT_LT(Eigen::JacobiSVD<MatrixXd>(left).singularValues()[0], 1e-6) << "modes " << first << " to " << last - 1;
   }
 }
 
-/// Angular frequency of a cantilever of a square section of side 1, unit stiffness and density.
+/// Angular frequency of a cantilever with a square cross-section of side 1, unit stiffness and density.
 double timoshenko(double length, double poissonRatio, int which) {
   const double area = 1.0, inertia = 1.0 / 12.0, shear = 0.5 / (1.0 + poissonRatio);
   const double coefficient = 10.0 * (1.0 + poissonRatio) / (12.0 + 11.0 * poissonRatio);
-  // Deflection, turn, moment and force along the bar, from a clamped end to one with neither moment nor force.
+  // Deflection, rotation, moment and force along the bar, from a clamped end to one with neither moment nor force.
   const auto atEnd = [&](double omega) {
     Eigen::Matrix4d rates;
     rates << 0, 1, 0, 1 / (coefficient * shear * area), 0, 0, 1 / inertia, 0, 0, -inertia * omega * omega, 0, -1,
         -area * omega * omega, 0, 0, 0;
-    // The exponential, by its series for a small piece, and that squared ten times.
+    // The exponential: its series for a small piece, squared ten times.
     const Eigen::Matrix4d piece = rates * length / 1024.0;
     Eigen::Matrix4d sum = Eigen::Matrix4d::Identity(), term = sum;
     for (int k = 1; k < 12; ++k) sum += term = term * piece / k;
@@ -140,8 +139,8 @@ TEST(VibrationModes, OfAFreeBarHaveItsLongitudinalFrequencies) {
   const double length = 3.0;
   const TetMesh bar = makeBox({48, 4, 4}, Vector3d(length, 0.8, 0.8));
   VibrationOptions options;
-  options.poissonRatio = 0.0;  // then the sides do not move
-  options.modes = 30;
+  options.poissonRatio = 0.0;  // with this ratio, the sides do not move
+  options.modeCount = 30;
   const VibrationModes modes = modesOf(bar, options);
   const VectorXd masses = massesOf(modes);
   int found = 0;
@@ -164,7 +163,7 @@ TEST(VibrationModes, OfACantileverApproachTimoshenkosWithOrderTwo) {
   for (int size = 0; size < 3; ++size) {
     const TetMesh bar = makeBox({32 * across[size], across[size], across[size]}, Vector3d(length, 1, 1));
     VibrationOptions options;
-    options.modes = 4;
+    options.modeCount = 4;
     options.pinned = end(bar);
     const VibrationModes modes = modesOf(bar, options);
     for (int pair = 0; pair < 2; ++pair) {
@@ -186,7 +185,7 @@ TEST(VibrationModes, OfACantileverApproachTimoshenkosWithOrderTwo) {
   }
 }
 
-/// Of a free body with the default material.
+/// Compares with the dense solver's modes of a free body with the default material.
 void expectThoseOfADenseSolver(const TetMesh& mesh, const VibrationModes& modes) {
   const MatrixXd stiffness = stiffnessOf(mesh, modes.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
   const MatrixXd mass = massesOf(modes).asDiagonal();
@@ -198,7 +197,7 @@ TEST(VibrationModes, AreThoseOfADenseSolver) {
   const TetMesh mesh = makeJagged();
   ASSERT_NEAR(static_cast<double>(mesh.tetCount()), 500, 30);
   VibrationOptions options;
-  options.modes = 10;
+  options.modeCount = 10;
   const VibrationModes modes = modesOf(mesh, options);
   EXPECT_GT(modes.iterations, 0);
   expectThoseOfADenseSolver(mesh, modes);
@@ -207,7 +206,7 @@ TEST(VibrationModes, AreThoseOfADenseSolver) {
 TEST(VibrationModes, WithPinnedNodesAndStiffnessesAndMassesOfTheirOwnAreThoseOfADenseSolver) {
   const TetMesh mesh = makeJagged();
   VibrationOptions options;
-  options.modes = 10;
+  options.modeCount = 10;
   options.poissonRatio = 0.4;
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) options.stiffnessScale.push_back(0.2 + 0.8 * (t % 7) / 6.0);
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) options.nodeMasses.push_back(0.002 + 0.001 * (n % 5));
@@ -231,7 +230,7 @@ TEST(VibrationModes, WithPinnedNodesAndStiffnessesAndMassesOfTheirOwnAreThoseOfA
 TEST(VibrationModes, OfTheSmallestMeshesAreFoundAtOnce) {
   const TetMesh mesh = makeBox({1, 1, 1}, Vector3d(1, 2, 3));
   VibrationOptions options;
-  options.modes = 8;
+  options.modeCount = 8;
   const VibrationModes modes = modesOf(mesh, options);
   EXPECT_EQ(modes.iterations, 0);
   expectThoseOfADenseSolver(mesh, modes);
@@ -240,7 +239,7 @@ TEST(VibrationModes, OfTheSmallestMeshesAreFoundAtOnce) {
 TEST(VibrationModes, AreOrthonormalAndWithoutTheRigidOnesWhichAreAtZero) {
   const TetMesh mesh = makeBox({24, 3, 2}, Vector3d(12, 1.2, 1));
   VibrationOptions options;
-  options.modes = 20;
+  options.modeCount = 20;
   const VibrationModes modes = modesOf(mesh, options);
   expectOrthonormal(modes);
   const MatrixXd stiffness = stiffnessOf(mesh, options.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
@@ -254,9 +253,9 @@ TEST(VibrationModes, AreOrthonormalAndWithoutTheRigidOnesWhichAreAtZero) {
 }
 
 TEST(VibrationModes, OfARoundSectionComeInPairsThatAreBothFound) {
-  const TetMesh bar = makeBox({8, 4, 4}, Vector3d(2, 1, 1));  // the same across both ways
+  const TetMesh bar = makeBox({8, 4, 4}, Vector3d(2, 1, 1));  // the same in both directions across
   VibrationOptions options;
-  options.modes = 14;
+  options.modeCount = 14;
   const VibrationModes modes = modesOf(bar, options);
   const MatrixXd stiffness = stiffnessOf(bar, options.poissonRatio, std::vector<double>(bar.tetCount(), 1.0));
   const MatrixXd mass = massesOf(modes).asDiagonal();
@@ -272,41 +271,41 @@ TEST(VibrationModes, ScaleWithTheUnitOfLength) {
   TetMesh small = mesh;
   for (Vector3d& node : small.nodes) node *= 1e-3;
   VibrationOptions options;
-  options.modes = 6;
-  const VibrationModes of = modesOf(mesh, options), ofSmall = modesOf(small, options);
-  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(ofSmall.eigenvalues[k] / (1e6 * of.eigenvalues[k]), 1.0, 1e-9);
-  EXPECT_NEAR(of.frequencies(400.0, 4.0)[2], 10.0 * std::sqrt(of.eigenvalues[2]), 1e-12);
+  options.modeCount = 6;
+  const VibrationModes modes = modesOf(mesh, options), ofSmall = modesOf(small, options);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(ofSmall.eigenvalues[k] / (1e6 * modes.eigenvalues[k]), 1.0, 1e-9);
+  EXPECT_NEAR(modes.frequencies(400.0, 4.0)[2], 10.0 * std::sqrt(modes.eigenvalues[2]), 1e-12);
 }
 
 TEST(VibrationModes, TellTheirProgress) {
-  std::vector<double> shares;
+  std::vector<double> fractions;
   VibrationOptions options;
-  options.modes = 5;
-  options.progress = [&](double share) { shares.push_back(share); };
+  options.modeCount = 5;
+  options.progress = [&](double fraction) { fractions.push_back(fraction); };
   (void)modesOf(makeJagged(), options);
-  ASSERT_GT(shares.size(), 2u);
-  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-  EXPECT_GE(shares.front(), 0.0);
-  EXPECT_EQ(shares.back(), 1.0);
+  ASSERT_GT(fractions.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GE(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
 }
 
 TEST(VibrationModes, OfASlenderBarAreFound) {
   const TetMesh bar = makeBox({100, 1, 1}, Vector3d(100, 1, 1));
   VibrationOptions options;
-  options.modes = 50;
+  options.modeCount = 50;
   options.pinned = end(bar);
-  const auto modes = vibrationModes(bar, options);
+  const auto modes = computeVibrationModes(bar, options);
   ASSERT_TRUE(modes.ok()) << modes.status().message;
   expectOrthonormal(modes.value());
 }
 
-/// What is solved for at once is what is free.
+/// Only the free nodes are solved for.
 TEST(VibrationModes, OfALargeBodyOfWhichNearlyAllIsPinned) {
   const TetMesh bar = makeBox({24, 20, 20}, Vector3d(1.2, 1, 1));
   VibrationOptions options;
-  options.modes = 10;
+  options.modeCount = 10;
   for (std::size_t n = 20; n < bar.nodeCount(); ++n) options.pinned.push_back(static_cast<int>(n));
-  const auto modes = vibrationModes(bar, options);
+  const auto modes = computeVibrationModes(bar, options);
   ASSERT_TRUE(modes.ok()) << modes.status().message;
   const MatrixXd shapes = shapesOf(modes.value());
   EXPECT_EQ(shapes.bottomRows(shapes.rows() - 60).cwiseAbs().maxCoeff(), 0.0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the fuzzers share. Each is one function, which libFuzzer calls with bytes of its making, or `random_driver.cpp`
-// where the compiler has no libFuzzer.
+// What the fuzzers share. Each fuzzer is one function, called with bytes by libFuzzer, or by `random_driver.cpp` where
+// the compiler has no libFuzzer.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Stops the fuzzer, which then keeps the bytes that led here.
+/// Stops the fuzzer, which then keeps the bytes that caused this.
 #define TETSKIN_FUZZ_EXPECT(condition)                                             \
   do {                                                                             \
     if (!(condition)) {                                                            \
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace tetskin::test {
 
-/// Takes values off the front of the bytes; zeros once they are used up.
+/// Takes values from the front of the bytes; zeros once they are used up.
 class FuzzedBytes {
  public:
   FuzzedBytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -42,9 +42,9 @@ class FuzzedBytes {
     size_ -= count;
     return value;
   }
-  /// From 0 to `most`.
+  /// A number from 0 to `most`.
   int number(int most) { return take<std::uint8_t>() % (most + 1); }
-  /// A small multiple of a quarter, or, one time in four, any float at all.
+  /// A small multiple of a quarter, or, one time in four, any float.
   double coordinate() {
     const auto kind = take<std::uint8_t>();
     if (kind % 4 == 3) return static_cast<double>(take<float>());

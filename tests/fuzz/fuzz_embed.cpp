@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Small cages and meshes of any coordinates and indices: what embed accepts has finite weights that sum to 1, survives
-// save and load, and what it refuses has a message. The bytes left over are loaded as an embedding themselves.
+// Small cages and meshes with arbitrary coordinates and indices: what embed accepts has finite weights that sum to 1
+// and survives save and load, and what it refuses has a message. The remaining bytes are loaded as an embedding.
 #include "fuzz.h"
 
 #include <tetskin/core/embedding.h>
@@ -17,9 +17,9 @@ namespace {
 using namespace tetskin;
 using test::FuzzedBytes;
 
-constexpr int kMostNodes = 12, kMostTets = 12, kMostVertices = 24;
+constexpr int kMaxFuzzNodes = 12, kMaxFuzzTets = 12, kMaxFuzzVertices = 24;
 
-/// Points of a scale that the bytes choose: 1, tiny or huge.
+/// Points at a scale that the bytes choose: 1, tiny or huge.
 std::vector<Eigen::Vector3d> points(FuzzedBytes& bytes, int most) {
   const double scales[] = {1.0, 1e-12, 1e12, 1e150};
   const double scale = scales[bytes.number(3)];
@@ -32,20 +32,20 @@ std::vector<Eigen::Vector3d> points(FuzzedBytes& bytes, int most) {
 
 TetMesh takeCage(FuzzedBytes& bytes) {
   TetMesh cage;
-  cage.nodes = points(bytes, kMostNodes);
-  cage.tets.resize(static_cast<std::size_t>(bytes.number(kMostTets)));
+  cage.nodes = points(bytes, kMaxFuzzNodes);
+  cage.tets.resize(static_cast<std::size_t>(bytes.number(kMaxFuzzTets)));
   for (Tet& tet : cage.tets) {
-    for (int& node : tet) node = bytes.number(kMostNodes + 1) - 1;
+    for (int& node : tet) node = bytes.number(kMaxFuzzNodes + 1) - 1;
   }
   return cage;
 }
 
 TriangleMesh takeMesh(FuzzedBytes& bytes) {
   TriangleMesh mesh;
-  mesh.positions = points(bytes, kMostVertices);
-  mesh.triangles.resize(static_cast<std::size_t>(bytes.number(kMostTets)));
+  mesh.positions = points(bytes, kMaxFuzzVertices);
+  mesh.triangles.resize(static_cast<std::size_t>(bytes.number(kMaxFuzzTets)));
   for (auto& triangle : mesh.triangles) {
-    for (int& v : triangle) v = bytes.number(kMostVertices);
+    for (int& v : triangle) v = bytes.number(kMaxFuzzVertices);
   }
   return mesh;
 }
@@ -53,8 +53,8 @@ TriangleMesh takeMesh(FuzzedBytes& bytes) {
 void expectSound(const Embedding& embedding, const EmbedReport& report) {
   TETSKIN_FUZZ_EXPECT(report.inside + report.outside == report.vertexCount && report.unbound == 0);
   TETSKIN_FUZZ_EXPECT(embedding.vertexCount() == report.vertexCount);
-  TETSKIN_FUZZ_EXPECT(std::isfinite(report.restErrorMax) && std::isfinite(report.worstDistance));
-  TETSKIN_FUZZ_EXPECT(std::isfinite(report.largestWeight) && report.rescued <= report.outside);
+  TETSKIN_FUZZ_EXPECT(std::isfinite(report.restErrorMax) && std::isfinite(report.maxDistance));
+  TETSKIN_FUZZ_EXPECT(std::isfinite(report.maxWeight) && report.reassignedByWeight <= report.outside);
   for (const VertexBinding& binding : embedding.bindings()) {
     float sum = 0.0f, largest = 1.0f;
     for (const float w : binding.weights) {

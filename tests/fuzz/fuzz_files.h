@@ -15,7 +15,7 @@
 
 namespace tetskin::test {
 
-/// A folder of this process' own.
+/// A folder for this process alone.
 inline const std::filesystem::path& folder() {
   struct Folder {
     std::filesystem::path path = std::filesystem::temp_directory_path() / ("tetskin_fuzz_" + std::to_string(getpid()));
@@ -29,7 +29,7 @@ inline const std::filesystem::path& folder() {
   return made.path;
 }
 
-/// Writes a file into it and returns its path.
+/// Writes a file into the folder and returns its path.
 inline std::string write(const char* name, const std::string& bytes) {
   const std::string path = (folder() / name).string();
   std::ofstream(path, std::ios::binary) << bytes;

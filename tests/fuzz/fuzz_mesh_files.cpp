@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Files of render meshes, damaged: whatever the bytes, there is a sound mesh or a message. The first byte chooses the
-// format: o for OBJ, p for PLY. Other formats are read by assimp, and are its authors' to fuzz.
+// Damaged files of render meshes: whatever the bytes, the result is a sound mesh or a message. The first byte chooses
+// the format: o for OBJ, p for PLY. Other formats are read by assimp, whose authors test them.
 #include "fuzz_files.h"
 
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <string>
 #include <utility>
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const TriangleMesh& mesh = loaded.value();
-  TETSKIN_FUZZ_EXPECT(!mesh.triangles.empty() && checkTriangleMesh(mesh).ok());
+  TETSKIN_FUZZ_EXPECT(!mesh.triangles.empty() && validate(mesh).ok());
   TETSKIN_FUZZ_EXPECT(firstUnusable(viewOf(mesh.positions)) == mesh.vertexCount());
   TETSKIN_FUZZ_EXPECT(mesh.normals.empty() || mesh.normals.size() == mesh.vertexCount());
   TETSKIN_FUZZ_EXPECT(mesh.texcoords.empty() || mesh.texcoords.size() == mesh.vertexCount());

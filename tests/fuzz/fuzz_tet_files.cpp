@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Files of tet meshes, damaged: whatever the bytes, there is a sound mesh or a message. The first byte chooses the
-// format: v for VTK, m for Gmsh, t for TetGen, whose two files are parted by a form feed. VTK files are read as cages,
-// too.
+// Damaged files of tet meshes: whatever the bytes, the result is a sound mesh or a message. The first byte chooses the
+// format: v for VTK, m for Gmsh, t for TetGen, whose two files are separated by a form feed. VTK files are also read as
+// cages.
 #include "fuzz_files.h"
 
-#include <tetskin/io/tet_files.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/io/files.h>
 
 #include <string>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 using namespace tetskin;
 using test::write;
 
-/// The path to be read.
+/// Writes the files of a format, and returns the path to be read.
 std::string writeAll(char format, const std::string& bytes) {
   if (format == 'v') return write("c.vtk", bytes);
   if (format == 'm') return write("c.msh", bytes);
@@ -25,23 +26,24 @@ std::string writeAll(char format, const std::string& bytes) {
   return write("c.ele", split == std::string::npos ? "" : bytes.substr(split + 1));
 }
 
-/// A cage that was read is in order, has the tets that are read without it, and can be saved.
+/// Expects a cage that was read to be valid, to have the same tets as when read as a mesh, and to be savable.
 void checkCage(const std::string& path, const TetMesh& mesh) {
   const Result<Cage> cage = loadCage(path);
   if (!cage.ok()) {
     TETSKIN_FUZZ_EXPECT(!cage.status().message.empty());
     return;
   }
-  TETSKIN_FUZZ_EXPECT(cage.value().check().ok());
-  TETSKIN_FUZZ_EXPECT(cage.value().tets == mesh.tets && cage.value().nodes == mesh.nodes);
+  TETSKIN_FUZZ_EXPECT(checkKnowledge(cage.value()).ok());
+  TETSKIN_FUZZ_EXPECT(cage.value().mesh.tets == mesh.tets && cage.value().mesh.nodes == mesh.nodes);
   const std::string copy = (test::folder() / "copy.vtk").string();
   TETSKIN_FUZZ_EXPECT(saveCage(cage.value(), copy).ok());
   const Result<Cage> again = loadCage(copy);
   TETSKIN_FUZZ_EXPECT(again.ok() && again.value().vertexTets == cage.value().vertexTets);
-  TETSKIN_FUZZ_EXPECT(again.value().fill == cage.value().fill && again.value().factor == cage.value().factor);
-  TETSKIN_FUZZ_EXPECT(again.value().masses == cage.value().masses && again.value().parts == cage.value().parts);
-  TETSKIN_FUZZ_EXPECT(again.value().latticeTets == cage.value().latticeTets);
-  TETSKIN_FUZZ_EXPECT(again.value().fineFill == cage.value().fineFill);
+  TETSKIN_FUZZ_EXPECT(again.value().volumeFraction == cage.value().volumeFraction &&
+                      again.value().stiffnessFactor == cage.value().stiffnessFactor);
+  TETSKIN_FUZZ_EXPECT(again.value().masses == cage.value().masses && again.value().component == cage.value().component);
+  TETSKIN_FUZZ_EXPECT(again.value().sourceTet == cage.value().sourceTet);
+  TETSKIN_FUZZ_EXPECT(again.value().fineVolumeFraction == cage.value().fineVolumeFraction);
   TETSKIN_FUZZ_EXPECT(again.value().meshHash == cage.value().meshHash);
 }
 

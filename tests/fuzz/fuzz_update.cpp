@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A skin whose nodes go anywhere: if they are finite and below kLargestCoordinate, so is the surface, and normals are
-// unit vectors; if not, the first bad node is named and the surface stays. Then the nodes go home, and so does it.
+// A skin whose nodes move anywhere: if they are finite and below Limits::kMaxCoordinate, so is the surface, and normals
+// are unit vectors; if not, the first bad node is named and the surface is kept. Then the nodes return to rest, and so
+// does the surface.
 #include "fuzz.h"
 
 #include <tetskin/core/mesh_skin.h>
@@ -24,7 +25,7 @@ using test::FuzzedBytes;
 template <class Scalar>
 using Points = std::vector<Eigen::Matrix<Scalar, 3, 1>>;
 
-/// Two cubes of a lattice with a flat and an inverted tet; a sphere half outside of it, and one vertex far away.
+/// Two cubes of a lattice with a flat and an inverted tet, a sphere half outside of it, and one vertex far away.
 struct Model {
   TetMesh cage = test::latticeCage(2, 1, 1, 0.5);
   TriangleMesh mesh = test::sphere(6, 0.4, {0.4, 0.2, 0.2});
@@ -47,7 +48,7 @@ SkinOptions takeOptions(FuzzedBytes& bytes) {
   return options;
 }
 
-/// Any scalar, or one of the size of the body, or of the size that the bytes choose.
+/// Any scalar, or one of the body's size, or of a size that the bytes choose.
 template <class Scalar>
 Scalar takeCoordinate(FuzzedBytes& bytes, double scale) {
   if (bytes.number(3) == 0) return bytes.take<Scalar>();
@@ -71,12 +72,12 @@ void expectGood(const MeshSkin<Scalar>& skin) {
   }
 }
 
-/// Made once for each kind of options.
+/// Created once for each kind of options.
 template <class Scalar>
 std::shared_ptr<const SkinBinding<Scalar>> bindingFor(const Model& model, const SkinOptions& options) {
   static std::map<std::tuple<Interpolation, Normals, VertexOrder>, std::shared_ptr<const SkinBinding<Scalar>>> made;
   auto& binding = made[{options.interpolation, options.normals, options.order}];
-  if (!binding) binding = SkinBinding<Scalar>::make(model.cage, model.mesh, options).value();
+  if (!binding) binding = SkinBinding<Scalar>::create(model.cage, model.mesh, options).value();
   TETSKIN_FUZZ_EXPECT(binding != nullptr);
   return binding;
 }
@@ -100,13 +101,13 @@ void fuzz(FuzzedBytes& bytes) {
       for (int k = 0; k < 3; ++k) node[k] = takeCoordinate<Scalar>(bytes, scale);
     }
     const std::size_t bad = firstUnusable(viewOf(std::as_const(nodes)));
-    const UpdateStatus done = skin.update(viewOf(std::as_const(nodes)));
-    TETSKIN_FUZZ_EXPECT(done == (bad < nodes.size() ? UpdateStatus::NonFinite : UpdateStatus::Updated));
+    const StatusCode done = skin.update(viewOf(std::as_const(nodes)));
+    TETSKIN_FUZZ_EXPECT(done == (bad < nodes.size() ? StatusCode::NonFinite : StatusCode::Ok));
     expectGood(skin);
     if (bad == nodes.size()) continue;
-    TETSKIN_FUZZ_EXPECT(skin.firstBadNode() == bad && copyOf<Scalar>(skin.positions()) == before);
+    TETSKIN_FUZZ_EXPECT(skin.firstNonFiniteNode() == bad && copyOf<Scalar>(skin.positions()) == before);
   }
-  TETSKIN_FUZZ_EXPECT(skin.update(viewOf(std::as_const(home))) == UpdateStatus::Updated);
+  TETSKIN_FUZZ_EXPECT(skin.update(viewOf(std::as_const(home))) == StatusCode::Ok);
   TETSKIN_FUZZ_EXPECT(copyOf<Scalar>(skin.positions()) == rest);
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Input = std::vector<std::uint8_t>;
 
-constexpr std::size_t kLongestInput = 4096;
+constexpr std::size_t kMaxInput = 4096;
 Input tried;  // for the signal handler
 
 void keepInput(int signal) {
@@ -55,7 +55,7 @@ void mutate(Input& input, std::mt19937& random) {
         input.erase(place, place + static_cast<std::ptrdiff_t>(std::min<std::size_t>(input.size() - at, random() % 8)));
     }
   }
-  if (input.size() > kLongestInput) input.resize(kLongestInput);
+  if (input.size() > kMaxInput) input.resize(kMaxInput);
 }
 
 void run(const Input& input) {

@@ -24,8 +24,8 @@ RUNS = {  # name: program and arguments; (of all runs, of --quick)
     "drop hand": (["tetskin_drop", "--model", "hand", "--tets", "1000", "--triangles", "20000"], None),
     "drop by the cage": (["tetskin_drop", "--contact", "cage", "--tets", "1000"],
                          ["tetskin_drop", *SERPENT, "--tets", "300", "--frames", "60", "--contact", "cage"]),
-    "drop of Bullet's force": (["tetskin_drop", "--force", "bullet", "--contact", "cage", "--tets", "1000"],
-                               ["tetskin_drop", *SERPENT, "--tets", "300", "--frames", "30", "--force", "bullet",
+    "drop of Bullet's force": (["tetskin_drop", "--elasticity", "bullet", "--contact", "cage", "--tets", "1000"],
+                               ["tetskin_drop", *SERPENT, "--tets", "300", "--frames", "30", "--elasticity", "bullet",
                                 "--contact", "cage"]),
     "drop reduced": (["tetskin_drop", "--body", "reduced", "--contact", "cage", "--tets", "500", "--fine-tets", "3000",
                       "--triangles", "20000"], None),
@@ -39,19 +39,26 @@ CAGES = {
     "serpent, 30,000": (["--tets", "30000"], None),
     "serpent, calibrated": (["--triangles", "20000", "--tets", "300", "--calibrate"], None),
     "hand": (["--model", "hand", "--tets", "1000"], ["--model", "hand", "--triangles", "8000", "--tets", "500"]),
-    "hand, whole": (["--model", "hand", "--tets", "1000", "--whole"], None),
+    "hand, whole": (["--model", "hand", "--tets", "1000", "--no-duplicate-elements"], None),
     "slotted beam": (["--model", "slotted_beam", "--tets", "300"], ["--model", "slotted_beam", "--tets", "300"]),
     "bar, calibrated": (["--model", "bar", "--tets", "100", "--calibrate"], None),
 }
 
 
+EARLIER = {"--elasticity": "--force", "--no-duplicate-elements": "--whole"}  # in builds of earlier versions
+
+
 def run(build, arguments):
     program = pathlib.Path(build).resolve() / "demos" / arguments[0]
-    return subprocess.run([program, *arguments[1:]], capture_output=True, text=True)
+    result = subprocess.run([program, *arguments[1:]], capture_output=True, text=True)
+    if result.returncode != 2 or not EARLIER.keys() & set(arguments):
+        return result
+    earlier = [EARLIER.get(argument, argument) for argument in arguments]
+    return subprocess.run([program, *earlier[1:]], capture_output=True, text=True)
 
 
 def said(result):
-    """The line that --hash prints, or what went wrong."""
+    """The line that --hash prints, or the error."""
     hashes = [line for line in result.stdout.splitlines() if line.startswith("nodes of ")]
     return hashes[0] if hashes else f"exit status {result.returncode}: {result.stderr.strip()[-200:]}"
 
@@ -72,8 +79,8 @@ def hash_of_cage(build, arguments):
 
 
 def hashes_of_stress(build, quick):
-    """By case."""
-    result = run(build, ["tetskin_stress", "--force", "tetskin", "--hash", *(["--quick"] if quick else [])])
+    """The hashes of the cases, by name."""
+    result = run(build, ["tetskin_stress", "--elasticity", "tetskin", "--hash", *(["--quick"] if quick else [])])
     found = {}
     for line in result.stdout.splitlines():
         words = line.split()
@@ -84,7 +91,7 @@ def hashes_of_stress(build, quick):
 
 
 def tasks(quick):
-    """Name, and what says the hash of a build, or a table of hashes."""
+    """Each name with a function of a build, which returns a hash or a table of hashes."""
     which = 1 if quick else 0
     for name, lists in RUNS.items():
         if lists[which]:

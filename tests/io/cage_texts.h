@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <string>
 
@@ -14,16 +14,16 @@
 
 namespace tetskin::test {
 
-/// Everything is known of two tets, in numbers of one or two digits.
+/// A cage of two tets with every field filled in, in numbers of one or two digits.
 inline Cage smallCage() {
   Cage cage(TetMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}});
   cage.vertexTets = {1, 0, 1};
-  cage.fill = {0.5, 1};
-  cage.factor = {2, 0.25};
+  cage.volumeFraction = {0.5, 1};
+  cage.stiffnessFactor = {2, 0.25};
   cage.masses = {1, 2, 3, 4, 5};
-  cage.parts = {0, 1};
-  cage.latticeTets = {7, 7};
-  for (std::size_t k = 0; k < 2 * kFineTets; ++k) cage.fineFill.push_back(static_cast<std::uint8_t>(255 - k));
+  cage.component = {0, 1};
+  cage.sourceTet = {7, 7};
+  for (std::size_t k = 0; k < 2 * kFineTets; ++k) cage.fineVolumeFraction.push_back(static_cast<std::uint8_t>(255 - k));
   cage.meshHash = 0x89ABCDEF01234567u;
   return cage;
 }
@@ -40,9 +40,9 @@ inline Result<Cage> loadText(const std::string& text, TetFileReport* report = nu
 }
 
 inline std::string with(std::string text, const std::string& old, const std::string& replacement) {
-  const std::size_t place = text.find(old);
-  EXPECT_NE(place, std::string::npos) << old;
-  return place == std::string::npos ? text : text.replace(place, old.size(), replacement);
+  const std::size_t index = text.find(old);
+  EXPECT_NE(index, std::string::npos) << old;
+  return index == std::string::npos ? text : text.replace(index, old.size(), replacement);
 }
 
 inline const std::string kTwoTets =

@@ -16,7 +16,7 @@
 
 namespace tetskin::test {
 
-/// A new empty folder, removed with all that is in it at the end of its scope.
+/// A new empty folder, removed with its contents at the end of its scope.
 class TempFolder {
  public:
   TempFolder() {
@@ -52,10 +52,10 @@ class TempFolder {
   std::filesystem::path root_;
 };
 
-/// The status has this code, and its message all these parts.
-inline void expectError(const Status& status, StatusCode code, std::initializer_list<std::string> parts) {
+/// Expects the status to have this code, and its message to contain all these strings.
+inline void expectError(const Status& status, StatusCode code, std::initializer_list<std::string> components) {
   EXPECT_STREQ(toString(status.code), toString(code)) << status.message;
-  for (const std::string& part : parts) {
+  for (const std::string& part : components) {
     EXPECT_NE(status.message.find(part), std::string::npos) << "'" << part << "' is not in: " << status.message;
   }
 }

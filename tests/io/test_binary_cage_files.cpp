@@ -3,7 +3,7 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <cstdint>
 #include <initializer_list>
@@ -43,12 +43,12 @@ TEST(BinaryCageFiles, ReadsBinaryData) {
   const Result<Cage> read = loadText(binaryCage());
   ASSERT_TRUE(read.ok()) << read.status().message;
   const Cage& cage = read.value();
-  EXPECT_EQ(cage.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(cage.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
   EXPECT_EQ(cage.meshHash, 0xFFFFFFFF00000002u);
   EXPECT_EQ(cage.vertexTets, (std::vector<int>{0, 0, 0}));
-  EXPECT_EQ(cage.fill, (std::vector<double>{0.5}));
-  EXPECT_EQ(cage.parts, (std::vector<int>{1}));
-  EXPECT_EQ(cage.fineFill, std::vector<std::uint8_t>(kFineTets, 0xF0));
+  EXPECT_EQ(cage.volumeFraction, (std::vector<double>{0.5}));
+  EXPECT_EQ(cage.component, (std::vector<int>{1}));
+  EXPECT_EQ(cage.fineVolumeFraction, std::vector<std::uint8_t>(kFineTets, 0xF0));
   EXPECT_EQ(cage.masses, (std::vector<double>{1, 0.5, 1, 0.5}));
 }
 

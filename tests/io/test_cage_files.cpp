@@ -5,7 +5,7 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <functional>
 #include <limits>
@@ -23,15 +23,15 @@ using test::textOf;
 using test::with;
 
 void expectSame(const Cage& a, const Cage& b) {
-  EXPECT_EQ(a.nodes, b.nodes);
-  EXPECT_EQ(a.tets, b.tets);
+  EXPECT_EQ(a.mesh.nodes, b.mesh.nodes);
+  EXPECT_EQ(a.mesh.tets, b.mesh.tets);
   EXPECT_EQ(a.vertexTets, b.vertexTets);
-  EXPECT_EQ(a.fill, b.fill);
-  EXPECT_EQ(a.factor, b.factor);
+  EXPECT_EQ(a.volumeFraction, b.volumeFraction);
+  EXPECT_EQ(a.stiffnessFactor, b.stiffnessFactor);
   EXPECT_EQ(a.masses, b.masses);
-  EXPECT_EQ(a.parts, b.parts);
-  EXPECT_EQ(a.latticeTets, b.latticeTets);
-  EXPECT_EQ(a.fineFill, b.fineFill);
+  EXPECT_EQ(a.component, b.component);
+  EXPECT_EQ(a.sourceTet, b.sourceTet);
+  EXPECT_EQ(a.fineVolumeFraction, b.fineVolumeFraction);
   EXPECT_EQ(a.meshHash, b.meshHash);
 }
 
@@ -44,18 +44,18 @@ void expectRoundTrip(const Cage& cage) {
   expectSame(loaded.value(), cage);
   const Result<TetMesh> bare = loadTetMesh(folder.path("c.vtk"));
   ASSERT_TRUE(bare.ok()) << bare.status().message;
-  EXPECT_EQ(bare.value().nodes, cage.nodes);
-  EXPECT_EQ(bare.value().tets, cage.tets);
+  EXPECT_EQ(bare.value().nodes, cage.mesh.nodes);
+  EXPECT_EQ(bare.value().tets, cage.mesh.tets);
 }
 
-/// Ways to know less.
+/// Ways to remove some of a cage's data.
 const std::vector<std::function<void(Cage&)>>& forgetOne() {
-  static const std::vector<std::function<void(Cage&)>> ways = {
-      [](Cage& cage) { cage.vertexTets.clear(); }, [](Cage& cage) { cage.fill.clear(); },
-      [](Cage& cage) { cage.factor.clear(); },     [](Cage& cage) { cage.masses.clear(); },
-      [](Cage& cage) { cage.parts.clear(); },      [](Cage& cage) { cage.latticeTets.clear(); },
-      [](Cage& cage) { cage.fineFill.clear(); },   [](Cage& cage) { cage.meshHash = 0; }};
-  return ways;
+  static const std::vector<std::function<void(Cage&)>> directions = {
+      [](Cage& cage) { cage.vertexTets.clear(); },         [](Cage& cage) { cage.volumeFraction.clear(); },
+      [](Cage& cage) { cage.stiffnessFactor.clear(); },    [](Cage& cage) { cage.masses.clear(); },
+      [](Cage& cage) { cage.component.clear(); },          [](Cage& cage) { cage.sourceTet.clear(); },
+      [](Cage& cage) { cage.fineVolumeFraction.clear(); }, [](Cage& cage) { cage.meshHash.reset(); }};
+  return directions;
 }
 
 TEST(CageFiles, AllThatIsKnownReadsBackExactly) {
@@ -66,7 +66,7 @@ TEST(CageFiles, AllThatIsKnownReadsBackExactly) {
 
 TEST(CageFiles, WhatIsNotKnownIsLeftOut) {
   for (const auto& forget : forgetOne()) {
-    Cage cage = smallCage(), nothingElse(TetMesh{cage.nodes, cage.tets});
+    Cage cage = smallCage(), nothingElse(TetMesh{cage.mesh.nodes, cage.mesh.tets});
     forget(cage);
     expectRoundTrip(cage);
     for (const auto& other : forgetOne()) {
@@ -89,10 +89,10 @@ TEST(CageFiles, EachArrayAlone) {
 
 TEST(CageFiles, ExtremeNumbersReadBackExactly) {
   Cage cage = smallCage();
-  cage.fill = {5e-324, 1.0 / 3.0};
-  cage.factor = {std::numeric_limits<double>::max(), std::numeric_limits<double>::min()};
+  cage.volumeFraction = {5e-324, 1.0 / 3.0};
+  cage.stiffnessFactor = {std::numeric_limits<double>::max(), std::numeric_limits<double>::min()};
   cage.masses = {1e-300, 0.1, 1e300, 2.0 / 3.0, 5e-324};
-  cage.parts = {0, std::numeric_limits<int>::max()};
+  cage.component = {0, std::numeric_limits<int>::max()};
   for (const std::uint64_t hash : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 32}) {
     cage.meshHash = hash;
     expectRoundTrip(cage);
@@ -105,16 +105,16 @@ TEST(CageFiles, ABareCageMakesTheFileOfItsTets) {
   for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     const std::string text = TempFolder::read(folder.path(name));
-    ASSERT_TRUE(saveTetMesh(cage, folder.path(name)).ok());
+    ASSERT_TRUE(saveTetMesh(cage.mesh, folder.path(name)).ok());
     EXPECT_EQ(TempFolder::read(folder.path(name)), text);
   }
 }
 
 TEST(CageFiles, ArraysStandBehindTheMesh) {
   Cage cage = smallCage();
-  cage.fineFill.clear();
+  cage.fineVolumeFraction.clear();
   const TempFolder folder;
-  ASSERT_TRUE(saveTetMesh(cage, folder.path("c.vtk")).ok());
+  ASSERT_TRUE(saveTetMesh(cage.mesh, folder.path("c.vtk")).ok());
   EXPECT_EQ(textOf(cage),
             TempFolder::read(folder.path("c.vtk")) +
                 "FIELD FieldData 2\nmesh_hash 2 1 unsigned_int\n2309737967 19088743\nvertex_tets 1 3 int\n1\n0\n1\n"
@@ -127,12 +127,12 @@ TEST(CageFiles, ArraysStandBehindTheMesh) {
 TEST(CageFiles, OtherFormatsKeepTheTetsAlone) {
   const TempFolder folder;
   Cage cage = smallCage();
-  cage.latticeTets = {7, 8};  // no copies: the map can be found again
+  cage.sourceTet = {7, 8};  // no duplicates: the map can be computed again
   for (const char* name : {"c.msh", "c.ele", "c.node"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     const Result<Cage> loaded = loadCage(folder.path(name));
     ASSERT_TRUE(loaded.ok()) << loaded.status().message;
-    expectSame(loaded.value(), Cage(TetMesh{cage.nodes, cage.tets}));
+    expectSame(loaded.value(), Cage(TetMesh{cage.mesh.nodes, cage.mesh.tets}));
   }
 }
 
@@ -141,7 +141,7 @@ TEST(CageFiles, OnlyVtkKeepsTheMapOfCopies) {
   const Cage cage = platesOfCopies().cage;
   for (const char* name : {"c.msh", "c.ele", "c.node"}) {
     expectError(saveCage(cage, folder.path(name)), StatusCode::UnsupportedFormat,
-                {folder.path(name), "which copy of a tet carries which vertex", "use .vtk"});
+                {folder.path(name), "which duplicate of a tet carries which vertex", "use .vtk"});
   }
   expectError(saveCage(cage, folder.path("c.xyz")), StatusCode::UnsupportedFormat, {"use .vtk, .node, .ele or .msh"});
   EXPECT_EQ(folder.fileCount(), 0u);
@@ -161,8 +161,8 @@ TEST(CageFiles, ReadsOverDataOfEveryOtherKind) {
       "POINT_DATA 5\nFIELD FieldData 1\nmass 1 5 int\n1 2 3 4 5\nCELL_DATA 2\nSCALARS fill float\n0.5 1\n");
   ASSERT_TRUE(cage.ok()) << cage.status().message;
   EXPECT_TRUE(cage.value().vertexTets.empty());
-  EXPECT_EQ(cage.value().fill, (std::vector<double>{0.5, 1}));
-  EXPECT_EQ(cage.value().factor, (std::vector<double>{3, 0.5}));
+  EXPECT_EQ(cage.value().volumeFraction, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(cage.value().stiffnessFactor, (std::vector<double>{3, 0.5}));
   EXPECT_EQ(cage.value().masses, (std::vector<double>{1, 2, 3, 4, 5}));
 }
 
@@ -184,11 +184,11 @@ TEST(CageFiles, ValuesOfCellsThatAreNoTetsAreDropped) {
       &report);
   ASSERT_TRUE(cage.ok()) << cage.status().message;
   EXPECT_EQ(report.skippedCells, 2u);
-  EXPECT_EQ(cage.value().tetCount(), 2u);
+  EXPECT_EQ(cage.value().mesh.tetCount(), 2u);
   EXPECT_EQ(cage.value().vertexTets, (std::vector<int>{0, 1}));
-  EXPECT_EQ(cage.value().fill, (std::vector<double>{0.25, 0.75}));
-  EXPECT_EQ(cage.value().latticeTets, (std::vector<int>{5, 6}));
-  EXPECT_EQ(cage.value().parts, (std::vector<int>{0, 1}));
+  EXPECT_EQ(cage.value().volumeFraction, (std::vector<double>{0.25, 0.75}));
+  EXPECT_EQ(cage.value().sourceTet, (std::vector<int>{5, 6}));
+  EXPECT_EQ(cage.value().component, (std::vector<int>{0, 1}));
 }
 
 TEST(CageFiles, AMeshThatIsNotTheCagesIsKnown) {
@@ -197,7 +197,7 @@ TEST(CageFiles, AMeshThatIsNotTheCagesIsKnown) {
   EXPECT_TRUE(cage.checkMesh(plates.mesh).ok());
   TriangleMesh other = plates.mesh;
   std::swap(other.positions[3], other.positions[4]);
-  expectError(cage.checkMesh(other), StatusCode::CageMismatch, {"in another order"});
+  expectError(cage.checkMesh(other), StatusCode::CageMismatch, {"another order"});
 }
 
 }  // namespace

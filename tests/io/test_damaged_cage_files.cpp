@@ -3,7 +3,8 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/io/files.h>
 
 #include <random>
 
@@ -21,12 +22,12 @@ using test::with;
 TEST(DamagedCageFiles, RefusesToWriteCagesThatAreNotInOrder) {
   const TempFolder folder;
   Cage cage = smallCage();
-  cage.fill.pop_back();
+  cage.volumeFraction.pop_back();
   expectError(saveCage(cage, folder.path("c.vtk")), StatusCode::SizeMismatch,
-              {folder.path("c.vtk"), "fill", "check where the cage comes from"});
+              {folder.path("c.vtk"), "volumeFraction", "check the source of the cage"});
   cage = smallCage();
-  cage.tets[1][2] = 5;
-  expectError(saveCage(cage, folder.path("c.vtk")), StatusCode::IndexOutOfRange, {"tet 1 names node 5"});
+  cage.mesh.tets[1][2] = 5;
+  expectError(saveCage(cage, folder.path("c.vtk")), StatusCode::IndexOutOfRange, {"tet 1 refers to node 5"});
   expectError(saveCage({}, folder.path("c.vtk")), StatusCode::Empty, {"without tets"});
   EXPECT_EQ(folder.fileCount(), 0u);
   expectError(saveCage(smallCage(), folder.path("none/c.vtk")), StatusCode::FileNotWritable, {"none/c.vtk"});
@@ -63,7 +64,7 @@ TEST(DamagedCageFiles, RefusesArraysOfWrongCounts) {
   expectError(loadText(with(text, "vertex_tets 1 3", "vertex_tets 1 2")).status(), code, {"c.vtk:23:"});
   expectError(loadText(with(text, "LOOKUP_TABLE default\n0.5\n", "LOOKUP_TABLE default\n")).status(), code, {"number"});
   expectError(loadText(with(text, "LOOKUP_TABLE default\n0.5\n", "LOOKUP_TABLE default\n0.5\n0.5\n")).status(), code,
-              {"c.vtk:29:", "'1' where data of cells or points should begin", "remove"});
+              {"c.vtk:29:", "'1' where data of cells or points are expected", "remove"});
 }
 
 TEST(DamagedCageFiles, RefusesArraysOfWrongTypes) {
@@ -75,9 +76,9 @@ TEST(DamagedCageFiles, RefusesArraysOfWrongTypes) {
               {"'vertex_tets' of type 'string' in place of integers"});
   expectError(loadText(with(text, "fill double", "fill string")).status(), code, {"'fill' of type 'string'"});
   expectError(loadText(with(text, "int 1\nLOOKUP_TABLE default\n0", "int 1\nLOOKUP_TABLE default\n0.5")).status(), code,
-              {"something else than a number"});
+              {"something other than a number"});
   expectError(loadText(with(text, "\n255 254", "\n256 254")).status(), code,
-              {"has 256 in 'fine_fill', whose values go up to 255"});
+              {"has 256 in 'fine_fill', whose largest value is 255"});
   expectError(loadText(with(text, "\n255 254", "\n-1 254")).status(), code, {"has -1 in 'fine_fill'"});
   expectError(loadText(with(text, "\n2309737967 ", "\n4294967296 ")).status(), code, {"4294967296 in 'mesh_hash'"});
 }
@@ -86,13 +87,13 @@ TEST(DamagedCageFiles, RefusesValuesThatMakeNoSense) {
   const std::string text = textOf(smallCage()), fill = "LOOKUP_TABLE default\n0.5\n1\n";
   for (const std::string bad : {"1.5", "-1", "nan", "inf", "1e999"}) {
     expectError(loadText(with(text, fill, "LOOKUP_TABLE default\n0.5\n" + bad + "\n")).status(),
-                StatusCode::InvalidOption, {"c.vtk: the cage's fill[1] must be from 0 to 1; correct"});
+                StatusCode::InvalidOption, {"c.vtk: the cage's volumeFraction[1] must be from 0 to 1; correct"});
   }
   expectError(loadText(with(text, "\n1\n2\n3\n4\n5\n", "\n1\n2\n0\n4\n5\n")).status(), StatusCode::InvalidOption,
               {"c.vtk: the cage's masses[2] must be above 0"});
   expectError(loadText(with(text, "int\n1\n0\n1\n", "int\n1\n2\n1\n")).status(), StatusCode::IndexOutOfRange,
-              {"c.vtk: ", "map names tet 2 for vertex 1"});
-  expectError(loadText(with(text, "\n7\n7\n", "\n7\n-7\n")).status(), StatusCode::InvalidOption, {"latticeTets[1]"});
+              {"c.vtk: ", "map assigns tet 2 to vertex 1"});
+  expectError(loadText(with(text, "\n7\n7\n", "\n7\n-7\n")).status(), StatusCode::InvalidOption, {"sourceTet[1]"});
 }
 
 TEST(DamagedCageFiles, WhatLoadCageRefusesLoadTetMeshReads) {
@@ -111,12 +112,12 @@ TEST(DamagedCageFiles, SurvivesFilesCutShortAnywhere) {
     const Result<Cage> cage = loadText(text.substr(0, length));
     read += cage.ok();
     if (cage.ok()) {
-      EXPECT_TRUE(cage.value().check().ok());
+      EXPECT_TRUE(checkKnowledge(cage.value()).ok());
     } else {
       EXPECT_NE(cage.status().message.find("c.vtk"), std::string::npos);
     }
   }
-  EXPECT_LT(read, 40u);  // where an array ends, or within its last number
+  EXPECT_LT(read, 40u);  // only cuts at the end of an array, or within its last number, can be read
 }
 
 TEST(DamagedCageFiles, SurvivesDamagedBytes) {
@@ -131,7 +132,7 @@ TEST(DamagedCageFiles, SurvivesDamagedBytes) {
     refused += !cage.ok();
     EXPECT_EQ(cage.ok(), cage.status().message.empty());
     if (cage.ok()) {
-      EXPECT_TRUE(cage.value().check().ok());
+      EXPECT_TRUE(checkKnowledge(cage.value()).ok());
     }
   }
   EXPECT_GT(refused, 100u);

@@ -5,8 +5,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/embedding_file.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 namespace tetskin {
 namespace {

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 
@@ -79,7 +79,7 @@ TEST(LoadGmsh, SkipsAndCountsTetsOfHigherOrder) {
   TetFileReport report;
   const Result<TetMesh> mesh =
       loadText(kHead2 + kNodes2 + "$Elements\n1\n1 11 2 0 1 10 20 15 40 10 20 15 40 10 20\n$EndElements\n", &report);
-  expectError(mesh.status(), StatusCode::Empty, {"c.msh: ", "no linear tets", "1 of them tets of higher order"});
+  expectError(mesh.status(), StatusCode::Empty, {"c.msh: ", "no linear tets", "1 of them higher-order tets"});
   EXPECT_EQ(report.skippedHighOrder, 1u);
 }
 

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <cstring>
 
@@ -100,7 +100,7 @@ TEST(LoadMesh, AppliesTheTransformsOfAllNodes) {
   EXPECT_LT((mesh.positions[4] - Eigen::Vector3d(10, 2, 1)).norm(), 1e-6);
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {3, 4, 5}}));
   ASSERT_EQ(mesh.normals.size(), 6u);
-  // Stretched three times along x, a normal leans three times less that way.
+  // When stretched by three along x, a normal's x component shrinks by a factor of three.
   EXPECT_LT((mesh.normals[0] - Eigen::Vector3f(0.2f, 0, 0.8f).normalized()).norm(), 1e-6f);
   EXPECT_LT((mesh.normals[3] - Eigen::Vector3f(0, 0.6f, 0.8f)).norm(), 1e-6f);
   ASSERT_EQ(mesh.texcoords.size(), 6u);
@@ -177,12 +177,12 @@ TEST(LoadMesh, RefusesCountsThatTheFileCannotHold) {
   for (const char* header : {"OFF\n2000000000 1 0\n", "OFF 4 # vertices\n2000000000 0\n", "2000000000\n1\n",
                              "STCNnOFF\n3\n18446744073709551615 1 0\n", "OFF\n4 2 0\n"}) {
     expectError(loadText("m.off", header + kCorners + "3 0 1 2\n").status(), StatusCode::Malformed,
-                {"m.off: states ", " vertices and ", "but holds 5 lines", "complete"});
+                {"m.off: states ", " vertices and ", "but contains 5 lines", "complete"});
   }
   EXPECT_TRUE(loadText("m.off", "# one\nOFF # two\n\n4\n1 0\n" + kCorners + "3 0 1 2").ok());
   const auto glb = [](std::uint32_t scene) { return "glTF" + raw<std::uint32_t>({2, 24, scene}) + "JSON" + "{}  "; };
   expectError(loadText("m.glb", glb(2000000000)).status(), StatusCode::Malformed,
-              {"m.glb: states a scene of 2000000000 bytes", "holds 24 bytes", "complete"});
+              {"m.glb: states a scene of 2000000000 bytes", "contains 24 bytes", "complete"});
   expectError(loadText("m.glb", glb(5)).status(), StatusCode::Malformed, {"m.glb: states a scene of 5 bytes"});
   expectError(loadText("m.glb", glb(4)).status(), StatusCode::Malformed, {"m.glb: cannot be read: "});
   expectError(loadText("m.glb", "glTF").status(), StatusCode::Malformed, {"m.glb: cannot be read: "});
@@ -190,15 +190,15 @@ TEST(LoadMesh, RefusesCountsThatTheFileCannotHold) {
   const auto stl = [&](std::uint32_t triangles, const std::string& mark) {
     return mark + std::string(80 - mark.size(), '\0') + raw<std::uint32_t>({triangles}) + triangle;
   };
-  // By 32 bits, 2147483649 triangles take as many bytes as one.
+  // In 32-bit arithmetic, 2147483649 triangles take as many bytes as one.
   for (const std::uint32_t count : {2u, 2000000000u, 2147483649u, 4294967295u}) {
     for (const char* mark : {"", "solid"}) {
       expectError(loadText("m.stl", stl(count, mark)).status(), StatusCode::Malformed,
-                  {"m.stl: states " + std::to_string(count) + " triangles", "holds 134 bytes", "complete"});
+                  {"m.stl: states " + std::to_string(count) + " triangles", "contains 134 bytes", "complete"});
     }
   }
   EXPECT_EQ(loadText("m.stl", stl(1, "solid")).value().triangleCount(), 1u);
-  // A reader that takes the digits at its beginning for a number would take this for two thousand million faces.
+  // A reader that takes the leading digits for a number would read two thousand million faces here.
   expectError(loadText("m.off", "OFF\n1 2000000000.5 0\n0 0 0\n").status(), StatusCode::Malformed,
               {"m.off: has '2000000000.5'", "whole number"});
 }
@@ -215,13 +215,13 @@ TEST(LoadMesh, NamesAMissingFileAndAFolder) {
   const TempFolder folder;
   expectError(loadMesh(folder.path("none.ply")).status(), StatusCode::FileNotFound, {folder.path("none.ply"), "check"});
   std::filesystem::create_directory(folder.path("dir.ply"));
-  expectError(loadMesh("").status(), StatusCode::FileNotFound, {"a file without a name"});
+  expectError(loadMesh("").status(), StatusCode::FileNotFound, {"(empty path)"});
   expectError(loadMesh(folder.path("dir.ply")).status(), StatusCode::FileNotFound, {folder.path("dir.ply"), "folder"});
 }
 
 TEST(LoadMesh, NamesFormatsThatAreNotRead) {
   expectError(loadText("m.xyzzy", "text").status(), StatusCode::UnsupportedFormat, {"m.xyzzy", "'.xyzzy'", "convert"});
-  expectError(loadText("mesh", "text").status(), StatusCode::UnsupportedFormat, {"mesh: ", "no extension"});
+  expectError(loadText("mesh", "text").status(), StatusCode::UnsupportedFormat, {"mesh: ", "no file name extension"});
 }
 
 TEST(LoadMesh, PassesOnWhatAssimpSaysOfABrokenFile) {

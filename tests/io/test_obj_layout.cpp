@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 
 #include <cmath>
@@ -22,10 +22,10 @@ std::string formatted(const ObjLayout& layout, const std::vector<Eigen::Vector3f
 
 const std::vector<Eigen::Vector3f> kMoved = {{1, 2, 3}, {0.5f, -0.25f, 1e-7f}, {4, 5, 6}};
 
-/// A text written with kMoved as its positions.
+/// A text rewritten with kMoved as its positions.
 std::string rewritten(const std::string& text) {
   const TempFolder folder;
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", text));
   EXPECT_TRUE(layout.ok()) << layout.status().message;
   if (!layout.ok() || layout.value().vertexCount() != kMoved.size()) return {};
   return formatted(layout.value(), kMoved);
@@ -65,7 +65,7 @@ TEST(ObjLayout, WritesAMeshThatReadsBack) {
   mesh.groups = {{"left wing", "skin", 0, 2}, {"", "", 2, 1}};
   const TempFolder folder;
   const std::string path = folder.path("out.obj");
-  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(path, viewOf(std::as_const(mesh.positions))).ok());
+  ASSERT_TRUE(ObjLayout::create(mesh).writeTo(path, viewOf(std::as_const(mesh.positions))).ok());
   const Result<TriangleMesh> back = loadMesh(path);
   ASSERT_TRUE(back.ok()) << back.status().message;
   EXPECT_EQ(back.value().positions, mesh.positions);
@@ -81,7 +81,7 @@ TEST(ObjLayout, AMeshWithoutGroupsHasNone) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  EXPECT_EQ(formatted(ObjLayout::fromMesh(mesh), kMoved), "v 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nf 1 2 3\n");
+  EXPECT_EQ(formatted(ObjLayout::create(mesh), kMoved), "v 1 2 3\nv 0.5 -0.25 1e-07\nv 4 5 6\nf 1 2 3\n");
 }
 
 TEST(ObjLayout, AMaterialKeepsToItsOwnGroup) {
@@ -91,7 +91,7 @@ TEST(ObjLayout, AMaterialKeepsToItsOwnGroup) {
   mesh.groups = {{"a", "skin", 0, 1}, {"b", "", 1, 1}};
   const TempFolder folder;
   const std::string path = folder.path("out.obj");
-  ASSERT_TRUE(ObjLayout::fromMesh(mesh).writeTo(path, viewOf(kMoved)).ok());
+  ASSERT_TRUE(ObjLayout::create(mesh).writeTo(path, viewOf(kMoved)).ok());
   const TriangleMesh back = loadMesh(path).value();
   ASSERT_EQ(back.groups.size(), 2u);
   EXPECT_EQ(back.groups[0].material, "skin");
@@ -100,9 +100,9 @@ TEST(ObjLayout, AMaterialKeepsToItsOwnGroup) {
 
 const std::string kBody = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// First line of a text, written as out/m.obj below the folder of the source.
+/// The first line of a text that is written as out/m.obj below the source's folder.
 std::string firstLineInSubfolder(const TempFolder& folder, const std::string& text) {
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", text));
   EXPECT_TRUE(layout.ok());
   std::filesystem::create_directories(folder.path("out"));
   EXPECT_TRUE(layout.value().writeTo(folder.path("out/m.obj"), viewOf(kMoved)).ok());
@@ -134,11 +134,11 @@ TEST(ObjLayout, ALibraryNameMayGetShorter) {
 TEST(ObjLayout, RefusesWhatIsNoModel) {
   const TempFolder folder;
   const std::string path = folder.path("m.obj");
-  expectError(ObjLayout::fromFile(path).status(), StatusCode::FileNotFound, {path});
+  expectError(ObjLayout::load(path).status(), StatusCode::FileNotFound, {path});
   folder.write("m.obj", "v 0 0 0\nv 0 0\n");
-  expectError(ObjLayout::fromFile(path).status(), StatusCode::Malformed, {path + ":2:", "3 numbers"});
+  expectError(ObjLayout::load(path).status(), StatusCode::Malformed, {path + ":2:", "3 numbers"});
   folder.write("m.obj", "f 1 2 3\n");
-  expectError(ObjLayout::fromFile(path).status(), StatusCode::Empty, {path, "no vertices"});
+  expectError(ObjLayout::load(path).status(), StatusCode::Empty, {path, "no vertices"});
 }
 
 TEST(ObjLayoutFor, TakesTheFileIfItIsObjAndElseTheMesh) {
@@ -164,10 +164,10 @@ TEST(ObjLayoutFor, NoticesThatTheFileHasChanged) {
 
 const std::vector<Eigen::Vector3f> kNormals = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
 
-/// A text written with kMoved and kNormals.
+/// A text rewritten with kMoved and kNormals.
 std::string rewrittenWithNormals(const std::string& text) {
   const TempFolder folder;
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", text));
   EXPECT_TRUE(layout.ok()) << layout.status().message;
   std::vector<char> buffer;
   return std::string(layout.value().withNormals().format(viewOf(kMoved), buffer, viewOf(kNormals)));
@@ -191,7 +191,7 @@ TEST(ObjLayout, NormalsReadBackAndLibrariesStayNamed) {
   const TempFolder folder;
   folder.write("skin.mtl", "newmtl skin\n");
   const std::string text = "v 0 0 0\nv 1 0 0\nmtllib skin.mtl\nv 0 1 0\nf 1 2 3\n";
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", text));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", text));
   ASSERT_TRUE(layout.ok());
   std::filesystem::create_directories(folder.path("out"));
   const std::string path = folder.path("out/m.obj");
@@ -207,11 +207,11 @@ TEST(ObjLayout, NamesALibraryInFrontAndLeavesAllElseInPlace) {
   const TempFolder folder;
   folder.write("skin.mtl", "newmtl skin\n");
   const std::string text = "v 0 0 0\nv 1 0 0\nmtllib skin.mtl\nv 0 1 0\nf 1 2 3\n";
-  const ObjLayout layout = ObjLayout::fromFile(folder.write("m.obj", text)).value();
+  const ObjLayout layout = ObjLayout::load(folder.write("m.obj", text)).value();
   std::filesystem::create_directories(folder.path("out"));
   const std::string path = folder.path("out/m.obj");
   for (const ObjLayout& both :
-       {layout.withLibrary("a b.mtl").withNormals(), layout.withNormals().withLibrary("a b.mtl")}) {
+       {layout.withMaterialLibrary("a b.mtl").withNormals(), layout.withNormals().withMaterialLibrary("a b.mtl")}) {
     ASSERT_TRUE(both.writeTo(path, viewOf(kMoved), viewOf(kNormals)).ok());
     const std::string written = TempFolder::read(path);
     EXPECT_EQ(written.rfind("mtllib a_b.mtl\nv 1 2 3\nvn ", 0), 0u) << written;
@@ -222,7 +222,7 @@ TEST(ObjLayout, NamesALibraryInFrontAndLeavesAllElseInPlace) {
 
 TEST(ObjLayout, RefusesNormalsThatDoNotBelong) {
   const TempFolder folder;
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kBody));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", kBody));
   ASSERT_TRUE(layout.ok());
   const ObjLayout withNormals = layout.value().withNormals();
   EXPECT_FALSE(layout.value().hasNormals());
@@ -241,7 +241,7 @@ TEST(ObjLayout, FormatsTwiceWithoutAllocating) {
   TriangleMesh mesh;
   mesh.positions.assign(50, Eigen::Vector3d(0, 0, 0));
   mesh.triangles = {{0, 1, 2}};
-  const ObjLayout layout = ObjLayout::fromMesh(mesh);
+  const ObjLayout layout = ObjLayout::create(mesh);
   std::vector<char> buffer;
   const std::vector<Eigen::Vector3d> shortest(50, Eigen::Vector3d(0, 0, 0));
   const std::vector<Eigen::Vector3d> longest(50, Eigen::Vector3d::Constant(-2.2250738585072014e-308));

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/src/mesh/obj_reader.h>
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST(LoadObj, FansAConvexPolygonFromItsFirstCorner) {
 }
 
 TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
-  const std::string points = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";  // vertex 3 is the reflex one
+  const std::string points = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";  // the vertex numbered 3 is the reflex one
   for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
     const TriangleMesh mesh = loadText(points + face).value();
     ASSERT_EQ(mesh.triangleCount(), 2u);
@@ -156,7 +156,7 @@ TEST(LoadObj, ConcavePolygonsAreNotFolded) {
   const TriangleMesh mesh = loadText("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   ASSERT_EQ(mesh.triangleCount(), 3u);
   EXPECT_DOUBLE_EQ(area(mesh), 5.5);
-  // A comb, which no single corner sees as a whole.
+  // A comb, of which no single corner sees everything.
   const TriangleMesh comb =
       loadText(
           "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
@@ -259,7 +259,7 @@ TEST(LoadObj, SurvivesDamagedFiles) {
   std::mt19937 random(3);
   std::size_t read = 0, refused = 0;
   const auto count = [&](const Result<TriangleMesh>& mesh) {
-    EXPECT_TRUE(!mesh.ok() || checkTriangleMesh(mesh.value()).ok());
+    EXPECT_TRUE(!mesh.ok() || validate(mesh.value()).ok());
     ++(mesh.ok() ? read : refused);
   };
   for (std::size_t length = 0; length <= text.size(); ++length) count(loadText(text.substr(0, length)));

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ const std::string kModel =
 
 /// A writer of the model above into the sub-folder "out/frames".
 ObjSequenceWriter makeWriter(const TempFolder& folder, const std::string& baseName = "frame_") {
-  Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kModel));
+  Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", kModel));
   EXPECT_TRUE(layout.ok()) << layout.status().message;
   Result<ObjSequenceWriter> writer =
       ObjSequenceWriter::create(folder.path("out/frames"), std::move(layout).value(), baseName);
@@ -95,7 +95,7 @@ TEST(ObjSequenceWriter, ReadsPositionsFromAnInterleavedBuffer) {
 TEST(ObjSequenceWriter, NamesMaterialLibrariesFromItsFolder) {
   const TempFolder folder;
   folder.write("skin.mtl", "newmtl skin\n");
-  Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", "mtllib skin.mtl\n" + kModel));
+  Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", "mtllib skin.mtl\n" + kModel));
   ASSERT_TRUE(layout.ok());
   Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(folder.path("a/b"), std::move(layout).value());
   ASSERT_TRUE(writer.ok());
@@ -105,7 +105,7 @@ TEST(ObjSequenceWriter, NamesMaterialLibrariesFromItsFolder) {
 
 TEST(ObjSequenceWriter, WritesCurrentNormals) {
   const TempFolder folder;
-  const Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kModel));
+  const Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", kModel));
   ASSERT_TRUE(layout.ok());
   Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(folder.path("out"), layout.value().withNormals());
   ASSERT_TRUE(writer.ok());
@@ -140,7 +140,7 @@ TEST(ObjSequenceWriter, RefusesPositionsThatAreNotFinite) {
 TEST(ObjSequenceWriter, NamesAFolderThatCannotBeMade) {
   const TempFolder folder;
   const std::string blocked = folder.write("file", "not a folder") + "/out";
-  Result<ObjLayout> layout = ObjLayout::fromFile(folder.write("m.obj", kModel));
+  Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", kModel));
   ASSERT_TRUE(layout.ok());
   expectError(ObjSequenceWriter::create(blocked, layout.value()).status(), StatusCode::FileNotWritable, {blocked});
   expectError(ObjSequenceWriter::create(folder.path("file"), layout.value()).status(), StatusCode::FileNotWritable,

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -26,7 +26,7 @@ Result<TriangleMesh> loadText(const std::string& text) {
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
 const std::string kList = "property list uchar int vertex_indices\n";
 
-/// The header of a model: `vertices` and `faces` are counts with the properties behind them.
+/// The header of a model: `vertices` and `faces` are counts followed by the properties.
 std::string header(const std::string& format, const std::string& vertices, const std::string& faces) {
   return "ply\nformat " + format + " 1.0\ncomment any\nelement vertex " + vertices + "element face " + faces +
          "end_header\n";
@@ -49,7 +49,7 @@ void expectPlate(const Result<TriangleMesh>& mesh) {
 TEST(LoadPly, ReadsTextAndCutsPolygons) {
   const Result<TriangleMesh> mesh = loadText(kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n");
   expectPlate(mesh);
-  EXPECT_EQ(mesh.value().positions[3].z(), 0.1);  // as a double, whatever its property says
+  EXPECT_EQ(mesh.value().positions[3].z(), 0.1);  // as a double, whatever type its property declares
   EXPECT_TRUE(mesh.value().normals.empty());
   EXPECT_TRUE(mesh.value().texcoords.empty());
 }
@@ -69,7 +69,7 @@ TEST(LoadPly, ReadsTheLineEndsOfWindowsAndOldMacs) {
   expectError(loadText(mac).status(), StatusCode::Malformed, {"m.ply:13:", "vertex 2"});
 }
 
-/// Bytes of a number in an order that the machine may not have.
+/// Bytes of a number in an order that may differ from the machine's.
 template <class Number>
 std::string bytes(Number value, bool big) {
   std::string result(sizeof(value), '\0');
@@ -233,7 +233,7 @@ TEST(LoadPly, RefusesBadBodies) {
               {"m.ply:13:", "vertex 2", "beyond 1e18"});
   for (const char* bad : {"3 0 1 4", "3 0 1 -1", "3 0 1 0.5", "3 0 1 nan", "3 0 1 1e300"}) {
     expectError(loadText(kHead + kCorners + "3 0 1 2\n" + bad).status(), StatusCode::IndexOutOfRange,
-                {"m.ply:16:", "face 1 names vertex ", "there are 4"});
+                {"m.ply:16:", "face 1 refers to vertex ", "there are 4"});
   }
   expectError(loadText(kHead + kCorners + "3 0 1 2\n-3 0 1 2").status(), StatusCode::Malformed,
               {"m.ply:16:", "face 1"});
@@ -259,7 +259,7 @@ TEST(LoadPly, SurvivesDamage) {
       for (unsigned k = 0; k <= random() % 3; ++k)
         damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
       const Result<TriangleMesh> mesh = loadMesh(folder.write("m.ply", damaged));
-      EXPECT_TRUE(mesh.ok() ? checkTriangleMesh(mesh.value()).ok() : !mesh.status().message.empty());
+      EXPECT_TRUE(mesh.ok() ? validate(mesh.value()).ok() : !mesh.status().message.empty());
       refused += !mesh.ok();
     }
   }

@@ -3,8 +3,8 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/tet_mesh.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/core/mesh.h>
+#include <tetskin/io/files.h>
 
 #include <random>
 
@@ -61,7 +61,7 @@ std::string binaryVtk() {
          word(3) + "\nCELL_TYPES 1\n" + word(10) + "\n";
 }
 
-/// Files of every format; those of more than the writer writes are given here.
+/// Files of every format; this test provides those in formats that the writer does not support.
 std::vector<std::pair<std::string, std::string>> validFiles() {
   const TempFolder folder;
   std::vector<std::pair<std::string, std::string>> files;
@@ -83,7 +83,8 @@ std::vector<std::pair<std::string, std::string>> validFiles() {
   return files;
 }
 
-/// Loads bytes under a name, beside the intact partner if it is a TetGen file. True if they were read.
+/// Loads bytes under a name, beside the intact second file of a pair in the case of TetGen. Returns whether they were
+/// read.
 bool loads(const TempFolder& folder, const std::string& name, const std::string& bytes) {
   const Result<TetMesh> mesh = loadTetMesh(folder.write(name, bytes));
   if (!mesh.ok()) {
@@ -118,7 +119,7 @@ TEST(LoadTetMesh, SurvivesDamagedBytes) {
     for (int i = 0; i < 300; ++i) {
       std::string mutated = bytes;
       for (unsigned k = 0; k <= random() % 3; ++k) {
-        // Digits and blanks keep the text a mesh, so that the damage gets past the first check.
+        // Digits and blanks leave the text plausible, so that the damage passes the first check.
         const char plausible[] = "0123456789 -.e\n";
         const bool plain = random() % 2 == 0;
         mutated[random() % mutated.size()] =

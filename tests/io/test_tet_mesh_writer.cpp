@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <limits>
 #include <random>
@@ -81,7 +81,7 @@ TEST(SaveTetMesh, RefusesMeshesThatCouldNotBeRead) {
   TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0, 0, 1}}, {}};
   expectError(saveTetMesh(mesh, path), StatusCode::Empty, {path, "without tets"});
   mesh.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
-  expectError(saveTetMesh(mesh, path), StatusCode::IndexOutOfRange, {path, "tet 1 names node 4"});
+  expectError(saveTetMesh(mesh, path), StatusCode::IndexOutOfRange, {path, "tet 1 refers to node 4"});
   mesh.tets = {{0, 1, 2, 3}};
   mesh.nodes[2][1] = std::numeric_limits<double>::infinity();
   expectError(saveTetMesh(mesh, path), StatusCode::NonFinite, {path, "node 2"});

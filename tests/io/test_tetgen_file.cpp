@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 
@@ -83,8 +83,8 @@ TEST(LoadTetgen, NamesTheLineOfMalformedText) {
   expectError(loadTexts("", kTets).status(), code, {"c.1.node:", "TetGen"});
   expectError(loadTexts("nodes\n", kTets).status(), code, {"c.1.node:1:", "TetGen"});
   expectError(loadTexts("2 3\n0 0 0 0\n1 0 zero 0\n", kTets).status(), code, {"c.1.node:3:", "node 1 of 2"});
-  expectError(loadTexts("2 3\n0 0 0 0\n3 0 0 0\n", kTets).status(), code, {"c.1.node:3:", "node 3 out of turn"});
-  expectError(loadTexts("1 3\n2 0 0 0\n", kTets).status(), code, {"c.1.node:2:", "out of turn"});
+  expectError(loadTexts("2 3\n0 0 0 0\n3 0 0 0\n", kTets).status(), code, {"c.1.node:3:", "node 3 out of order"});
+  expectError(loadTexts("1 3\n2 0 0 0\n", kTets).status(), code, {"c.1.node:2:", "out of order"});
   expectError(loadTexts("2 3\n0 0.25 0.25 0.25\n", kTets).status(), code, {"c.1.node:", "node 1 of 2", "complete"});
   expectError(loadTexts(kNodes, "2 4 0\n0 0 1 2 3 # and no more\n").status(), code, {"c.1.ele:", "tet 1", "complete"});
   expectError(loadTexts(kNodes, "1 4 0\n0 0 1 2\n").status(), code, {"c.1.ele:2:", "tet 0"});

@@ -3,7 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstring>
@@ -55,7 +55,8 @@ TEST(LoadVtk, WithoutCellTypesAllCellsAreTets) {
   expectError(loadText(kHead + kPoints + wedge).status(), StatusCode::Malformed, {"c.vtk:13:", "cell 1", "6 nodes"});
 }
 
-// What follows is the shape of files that Bullet's btSoftBodyHelpers::CreateFromVtkFile reads, and that Bullet ships.
+// The following tests have files in the form that Bullet's btSoftBodyHelpers::CreateFromVtkFile reads, and that Bullet
+// ships.
 
 TEST(LoadVtk, TheMarkNeedsNoBlank) {
   const std::string rest = kHead.substr(kHead.find("vtk"));
@@ -179,7 +180,7 @@ TEST(LoadVtk, RefusesBinaryCellsThatBelieTheirSize) {
   expectError(loadText(longer).status(), StatusCode::Malformed, {"c.vtk: ", "cell 2 of 3", "counts"});
   std::string fewer = text;
   fewer.replace(text.find("CELLS 3"), 7, "CELLS 2");
-  expectError(loadText(fewer).status(), StatusCode::Malformed, {"c.vtk:", "behind the last of its 2 cells"});
+  expectError(loadText(fewer).status(), StatusCode::Malformed, {"c.vtk:", "after the last of its 2 cells"});
 }
 
 TEST(LoadVtk, NamesTheLineOfACoordinateThatIsNotFinite) {

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Looks for what pages name and there is not: programs, options and tests in `code`; for blocks that would not be tested; and
-for what commands.txt lists and no page has.
+"""Finds names in pages that do not exist: programs, options and tests in `code`; also blocks that would not be tested,
+and commands that commands.txt lists but no page has.
 
 check_names.py --build BUILD --programs PROGRAM [PROGRAM ...] --pages PAGE [PAGE ...]
 
-An option beside a program's name, in the same code, or else in the same paragraph, item or row, must be one of that
-program's; by itself, one of any program's.
+An option beside a program's name, in the same code, or else in the same paragraph, item or row, must belong to that
+program; an option by itself may belong to any program.
 """
 import argparse
 import re
@@ -30,7 +30,7 @@ def programs_in(text, programs):
 
 
 def option_faults(passage, known, handling):
-    """Of one passage. known: options by program"""
+    """The faults of one passage. known: options by program"""
     everybodys = set().union(*known.values())
     together = " ".join(page.code(passage))
     nearby = programs_in(together, known) if DROPS not in together else []
@@ -38,7 +38,7 @@ def option_faults(passage, known, handling):
         own = programs_in(code.replace(DROPS, "tetskin_drop"), known)
         first = plain(code).split()[0] if code.split() else ""
         if not own and not first.startswith("-"):
-            continue  # of another command
+            continue  # belongs to another command
         allowed = set().union(*(known[program] for program in own or nearby)) if own or nearby else everybodys
         for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", code):
             if option not in allowed and not handling.is_known_option(option):
@@ -53,7 +53,7 @@ def program_faults(passage, programs):
 
 
 def test_faults(text, tests):
-    """Tests are named as `Suite.Name`, and the next of the same suite as `.Name`. tests: all that there are"""
+    """Tests are named as `Suite.Name`, and the next of the same suite as `.Name`. tests: all that exist"""
     suite = ""
     for code in page.code(" ".join(page.passages(text))):
         name = re.fullmatch(r"([A-Z][A-Za-z]*)?\.([A-Z][A-Za-z0-9]+)", code)

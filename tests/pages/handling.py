@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""commands.txt: what becomes of which command."""
+"""Reads commands.txt, which says how the tests treat certain commands."""
 import fnmatch
 import re
 from pathlib import Path
@@ -24,11 +24,11 @@ class Handling:
         return rows
 
     def left_out(self, command):
-        """Why it is not run; nothing if it is."""
+        """Why the command is not run; empty if it is run."""
         return " ".join(why for _, _, why in self._matching("leave_out", plain(command)))
 
     def extra(self, command):
-        """Arguments to run it with behind its own."""
+        """Arguments that are added after the command's own."""
         return " ".join(arguments for _, _, arguments in self._matching("shorten", plain(command)))
 
     def is_known_option(self, option):
@@ -39,5 +39,5 @@ class Handling:
 
 
 def plain(command):
-    """Wherever the program lies."""
+    """The command without the program's folder."""
     return re.sub(r"^(\./)?build/demos/", "", command)

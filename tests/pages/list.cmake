@@ -1,4 +1,4 @@
-# The pages of which every command, snippet and link is tested, by their paths in the repository; those that exist.
+# The pages whose commands, snippets and links are all tested, by their paths in the repository; only those that exist.
 # In:   a variable `repository`
 # Out:  a list `pages`
 set(pages README.md plugin/README.md demos/README.md tests/README.md)

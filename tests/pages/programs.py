@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What the programs say of themselves."""
+"""What the programs say about themselves."""
 import functools
 import re
 import subprocess
@@ -8,7 +8,7 @@ import subprocess
 
 @functools.lru_cache(maxsize=None)
 def help_of(build, program):
-    """Up to its examples, and those."""
+    """The program's --help in two parts: up to its examples, and the examples."""
     text = subprocess.run([build / "demos" / program, "--help"], check=True, capture_output=True, text=True).stdout
     options, separator, end = text.partition("\nExamples:\n")
     if not separator:

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Runs what a page says can be run, as it is written: every command of its sh blocks, in a folder with the input files
-that pages speak of.
+"""Runs the commands of a page as they are written: every command in its sh blocks, in a folder with the input files
+that pages mention.
 
 run_commands.py --build BUILD --folder FOLDER PAGE          a page of the repository
 run_commands.py --build BUILD --folder FOLDER --help-of PROGRAM [PROGRAM ...]     the examples in their --help
 
-A command that fails is a fault, unless commands.txt tells why it is not run.
+A command that fails is a fault; commands.txt lists those that are not run, with the reason.
 """
 import argparse
 import math
@@ -27,7 +27,7 @@ SECONDS = 300  # for one command
 
 
 def write_ring(path, around=40, across=20):
-    """A mesh of the user's: a ring of 2 * around * across triangles, 4 units wide."""
+    """Writes a mesh like a user's: a ring of 2 * around * across triangles, 4 units wide."""
     with open(path, "w") as obj:
         for i in range(around):
             for k in range(across):
@@ -42,7 +42,7 @@ def write_ring(path, around=40, across=20):
 
 
 def write_twisted(source, path):
-    """The tet mesh of a .vtk file with its nodes moved, as a simulator would leave them."""
+    """Writes the tet mesh of a .vtk file with its nodes moved, as by a simulator."""
     lines = Path(source).read_text().splitlines()
     first = next(k for k, line in enumerate(lines) if line.startswith("POINTS")) + 1
     for k in range(first, first + int(lines[first - 1].split()[1])):
@@ -52,7 +52,7 @@ def write_twisted(source, path):
 
 
 def make_inputs(folder, environment):
-    """Every file that a page may begin with."""
+    """Makes every file that a page may need as input."""
     write_ring(folder / "yours.obj")
     shutil.copy(folder / "yours.obj", folder / "dragon.obj")
     subprocess.run(["tetskin_cage", "--mesh", "dragon.obj", "--tets", "200", "--quiet", "-o", "rest.vtk"], cwd=folder,
@@ -62,7 +62,7 @@ def make_inputs(folder, environment):
 
 
 def make_folder(folder, build):
-    """Like a checkout after the build, but for the sources: what a command writes goes here."""
+    """Makes a folder like a checkout after the build, without the sources; commands write their files here."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "build").symlink_to(build)
@@ -71,7 +71,7 @@ def make_folder(folder, build):
 
 
 def run(command, handling, folder, environment):
-    """Whether it came to a good end."""
+    """Runs a command, and returns whether it succeeded or need not run."""
     why = handling.left_out(command)
     if why:
         print(f"not run: {command}\n         {why}")

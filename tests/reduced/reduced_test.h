@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A bar of fine tets, its vibrations, and a cage around it.
+// A bar of fine tets, its vibration modes, and a cage around it.
 #pragma once
 
 #include <BulletSoftBody/BulletReducedDeformableBody/btReducedDeformableBodySolver.h>
@@ -18,14 +18,14 @@
 
 namespace tetskin::test {
 
-/// 2 x 0.5 x 0.5, centred.
+/// A bar of 2 x 0.5 x 0.5, centred at the origin.
 inline TetMesh fineBar() {
   TetMesh bar = makeBox({16, 4, 4}, Eigen::Vector3d(2, 0.5, 0.5));
   for (Eigen::Vector3d& node : bar.nodes) node -= Eigen::Vector3d(1, 0.25, 0.25);
   return bar;
 }
 
-/// Larger than the bar by a few hundredths.
+/// A cage a few hundredths larger than the bar.
 inline Cage barCage() {
   TetMesh cage = makeBox({12, 3, 3}, Eigen::Vector3d(2.04, 0.54, 0.54));
   for (Eigen::Vector3d& node : cage.nodes) node -= Eigen::Vector3d(1.02, 0.27, 0.27);
@@ -40,18 +40,18 @@ inline std::vector<int> leftEnd(const TetMesh& bar) {
   return nodes;
 }
 
-/// The bar's 20 softest, free or held at its left end.
-inline const VibrationModes& barModes(bool held = false) {
+/// The bar's 20 softest modes, free or with its left end pinned.
+inline const VibrationModes& barModes(bool pinnedNodes = false) {
   const auto make = [](bool pinned) {
     VibrationOptions options;
     if (pinned) options.pinned = leftEnd(fineBar());
-    return vibrationModes(fineBar(), options).value();
+    return computeVibrationModes(fineBar(), options).value();
   };
   static const VibrationModes free = make(false), pinned = make(true);
-  return held ? pinned : free;
+  return pinnedNodes ? pinned : free;
 }
 
-/// A world of Bullet's reduced solver, or of another one.
+/// A world with Bullet's reduced solver, or with another one.
 class World {
  public:
   explicit World(const btVector3& gravity = btVector3(0, -10, 0),
@@ -66,7 +66,7 @@ class World {
   ~World() {
     if (world && floor_) world->removeRigidBody(floor_.get());
   }
-  /// Its top is at y = 0.
+  /// Adds a floor whose top is at y = 0.
   void addFloor() {
     btTransform below(btQuaternion::getIdentity(), btVector3(0, -1, 0));
     floor_ = std::make_unique<btRigidBody>(0, nullptr, &floorShape_);
@@ -96,7 +96,7 @@ inline btTransform at(double x, double y, double z) {
                      btVector3(static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z)));
 }
 
-/// The bar, soft enough for 20 modes in steps of 1/240 s.
+/// Options for the bar, which is soft enough for 20 modes in steps of 1/240 s.
 inline ReducedBodyOptions barOptions(const btTransform& placement = btTransform::getIdentity()) {
   ReducedBodyOptions options;
   options.density = 2.0;
@@ -105,10 +105,10 @@ inline ReducedBodyOptions barOptions(const btTransform& placement = btTransform:
   return options;
 }
 
-/// Quick to step.
+/// Options with so few modes that steps are quick.
 inline ReducedBodyOptions fewModes(const btTransform& placement) {
   ReducedBodyOptions options = barOptions(placement);
-  options.modes = 6;
+  options.modeCount = 6;
   return options;
 }
 

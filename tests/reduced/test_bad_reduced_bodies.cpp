@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "reduced_test.h"
 
-#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/deformable_world.h>
 
 #include <limits>
 
@@ -30,7 +30,7 @@ TEST(BadReducedBodies, NeedTheReducedSolver) {
 
 TEST(BadReducedBodies, DoNotShareAWorldWithOthers) {
   World world;
-  const auto plain = std::move(makeSoftBody(barCage(), world.world->getWorldInfo())).value();
+  const auto plain = std::move(createSoftBody(barCage(), world.world->getWorldInfo())).value();
   world.world->addSoftBody(plain.get());
   expectError(world, barModes(), barCage(), barOptions(), StatusCode::InvalidOption, "soft body 0");
   world.world->removeSoftBody(plain.get());
@@ -41,21 +41,21 @@ TEST(BadReducedBodies, DoNotShareAWorldWithOthers) {
 TEST(BadReducedBodies, AreRefusedWithModesThatAreTooFastOrGoWithoutThem) {
   World world;
   ReducedBodyOptions options = barOptions();
-  const std::vector<double> all = barModes().frequencies(options.youngsModulus, options.density);
-  // The tenth is just too fast.
+  const std::vector<double> all = barModes().frequencies(*options.youngsModulus, options.density);
+  // The tenth mode is just too fast.
   options.timeStep = 1.6 / all[9] * 1.0001;
   expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, "11 of 20 modes are too fast");
-  options.leaveOutFastModes = true;
+  options.skipFastModes = true;
   const auto body = added(world, barModes(), options);
   EXPECT_EQ(body->modeCount(), 9u);
-  EXPECT_EQ(body->report().leftOut, 11u);
-  EXPECT_NEAR(body->report().fastest, all[8], 1e-9);
+  EXPECT_EQ(body->report().skippedModes, 11u);
+  EXPECT_NEAR(body->report().maxFrequency, all[8], 1e-9);
   EXPECT_NE(body->report().describe().find("11 were left out"), std::string::npos);
-  options.leaveOutFastModes = false;
-  options.modes = 9;
+  options.skipFastModes = false;
+  options.modeCount = 9;
   EXPECT_EQ(added(world, barModes(), options)->modeCount(), 9u);
-  options.modes = 0;
-  options.leaveOutFastModes = true;
+  options.modeCount.reset();
+  options.skipFastModes = true;
   options.timeStep = 10.0;
   expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, "20 of 20");
 }
@@ -63,8 +63,8 @@ TEST(BadReducedBodies, AreRefusedWithModesThatAreTooFastOrGoWithoutThem) {
 TEST(BadReducedBodies, AtTheLimitAreStable) {
   World world(btVector3(0, 0, 0));
   ReducedBodyOptions options = barOptions();
-  options.damping = 0.0;
-  options.timeStep = kMostOmegaDt / barModes().frequencies(options.youngsModulus, options.density).back();
+  options.stiffnessDamping = 0.0;
+  options.timeStep = Limits::kMaxOmegaDt / barModes().frequencies(*options.youngsModulus, options.density).back();
   const auto body = added(world, barModes(), options);
   for (int r = 0; r < body->body().m_nReduced; ++r) body->body().m_reducedVelocityBuffer[r] = btScalar(0.1);
   world.step(2000, options.timeStep);
@@ -78,11 +78,14 @@ TEST(BadReducedBodies, Options) {
     change(options);
     expectError(world, barModes(), barCage(), options, StatusCode::InvalidOption, says);
   };
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
-  expectInvalid([](auto& o) { o.modes = -1; }, "modes");
-  expectInvalid([](auto& o) { o.density = o.mass = 0.0; }, "mass");
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
+  expectInvalid([](auto& o) { o.modeCount = 0; }, "modes");
+  expectInvalid([](auto& o) { o.density = 0.0; }, "mass");
+  expectInvalid([](auto& o) { o.mass = 0.0; }, "mass");
+  expectInvalid([](auto& o) { o.youngsModulus = 0.0; }, "stiffness");
+  expectInvalid([](auto& o) { o.margin = -1.0; }, "margin");
   expectInvalid([](auto& o) { o.density = kNaN; }, "mass");
-  expectInvalid([](auto& o) { o.damping = -1.0; }, "damping");
+  expectInvalid([](auto& o) { o.stiffnessDamping = -1.0; }, "damping");
   expectInvalid([](auto& o) { o.youngsModulus = kInfinity; }, "stiffness");
   expectInvalid([](auto& o) { o.timeStep = 0.0; }, "time step");
   expectInvalid([](auto& o) { o.friction = -1.0; }, "friction");
@@ -97,10 +100,10 @@ TEST(BadReducedBodies, ModesAndCages) {
   expectError(world, torn, barCage(), barOptions(), StatusCode::SizeMismatch, "shapes");
   expectError(world, barModes(), {}, barOptions(), StatusCode::Empty, "");
   Cage away = barCage();
-  for (Eigen::Vector3d& node : away.nodes) node.y() += 2.0;
-  expectError(world, barModes(), away, barOptions(), StatusCode::OutsideCage, "not where the cage is");
+  for (Eigen::Vector3d& node : away.mesh.nodes) node.y() += 2.0;
+  expectError(world, barModes(), away, barOptions(), StatusCode::OutsideCage, "do not overlap with the cage");
   Cage flat = barCage();
-  flat.tets.push_back({0, 1, 2, 3});
+  flat.mesh.tets.push_back({0, 1, 2, 3});
   expectError(world, barModes(), flat, barOptions(), StatusCode::Degenerate, "flat");
 }
 

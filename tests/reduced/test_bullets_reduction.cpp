@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What Bullet's own reduced bodies do. Those of the library are made of them; see ReducedBodies, ReducedMotion.
+// What Bullet's own reduced bodies do. The library's reduced bodies are made of these; see ReducedBodies,
+// ReducedMotion.
 #include "reduced_test.h"
 
 namespace tetskin {
@@ -9,7 +10,7 @@ namespace {
 
 using namespace test;
 
-/// The same body without the library's class.
+/// The same body made without the library's class.
 std::unique_ptr<btReducedDeformableBody> bullets(World& world, const VibrationModes& modes,
                                                  const ReducedBodyOptions& options) {
   World scratch;
@@ -21,7 +22,7 @@ std::unique_ptr<btReducedDeformableBody> bullets(World& world, const VibrationMo
   for (int n = 0; n < from.m_nodes.size(); ++n) nodes.push_back(options.placement * from.m_nodes[n].m_x);
   auto body = std::make_unique<btReducedDeformableBody>(&world.world->getWorldInfo(), static_cast<int>(nodes.size()),
                                                         nodes.data(), nullptr);
-  for (const auto& f : boundaryFaces(barCage())) body->appendFace(f[0], f[1], f[2]);
+  for (const auto& f : boundaryFaces(barCage().mesh)) body->appendFace(f[0], f[1], f[2]);
   body->setReducedModes(from.m_nReduced, from.m_nFull);
   body->m_modes.copyFromArray(from.m_modes);
   body->m_eigenvalues.copyFromArray(from.m_eigenvalues);
@@ -65,14 +66,14 @@ TEST(BulletsReduction, NeverSleeps) {
   world.world->removeSoftBody(body.get());
 }
 
-/// Of a few nodes, far to the left.
+/// A body of a few nodes, far to the left.
 std::unique_ptr<ReducedBody> smallBody(World& world) {
   const TetMesh small = makeBox({3, 2, 2}, Eigen::Vector3d(0.6, 0.4, 0.4));
   VibrationOptions few;
-  few.modes = 4;
+  few.modeCount = 4;
   ReducedBodyOptions options = barOptions(at(-9, 0.5, 0));
-  options.leaveOutFastModes = true;
-  auto body = ReducedBody::add(*world.world, vibrationModes(small, few).value(), small, options);
+  options.skipFastModes = true;
+  auto body = ReducedBody::add(*world.world, computeVibrationModes(small, few).value(), small, options);
   EXPECT_TRUE(body.ok()) << body.status().message;
   return std::move(body).value();
 }
@@ -84,7 +85,7 @@ double largestDistance(const btSoftBody& a, const btSoftBody& b) {
 }
 
 TEST(BulletsReduction, TouchesOtherNodesOfABodyThatCameAfterASmallerOne) {
-  // Tilted, so that one edge lands first.
+  // The body is tilted, so that one edge lands first.
   const btTransform tilted(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)), btVector3(0, btScalar(0.8), 0));
   constexpr int kSubsteps = 120;
   World alone, beside;
@@ -119,7 +120,7 @@ TEST(BulletsReduction, DoesNotBendByGravityWhatIsHeld) {
   World world;
   const auto body = bullets(world, barModes(true), barOptions());
   world.step(120);
-  for (int r = 0; r < body->m_nReduced; ++r) EXPECT_EQ(body->m_reducedDofs[r], 0);  // it falls
+  for (int r = 0; r < body->m_nReduced; ++r) EXPECT_EQ(body->m_reducedDofs[r], 0);  // the body falls
   world.world->removeSoftBody(body.get());
 }
 
@@ -140,11 +141,11 @@ TEST(BulletsReduction, TakesTheBentShapeForTheRestShapeWhenItIsMoved) {
 TEST(BulletsReduction, GoesBackWhereItBeganWhenItIsMoved) {
   World world;
   const auto body = bullets(world, barModes(), barOptions());
-  world.step(120);  // falls by more than a unit
+  world.step(120);  // it falls by more than a unit
   const btVector3 origin = body->getRigidTransform().getOrigin();
   EXPECT_LT(origin.y(), -1);
   body->transform(at(0, 1, 0));
-  EXPECT_NEAR(body->getRigidTransform().getOrigin().y(), 1, 1e-4);  // and not one above where it was
+  EXPECT_NEAR(body->getRigidTransform().getOrigin().y(), 1, 1e-4);  // not one unit above its earlier position
   world.world->removeSoftBody(body.get());
 }
 

@@ -22,14 +22,14 @@ TEST(ReducedBodies, LandAndSleepWhereTheyLie) {
   EXPECT_GT(lowest(body->body()), -0.02);
   EXPECT_LT(lowest(body->body()), 0.1);
   world.step(1);
-  EXPECT_EQ(skin.update(), UpdateStatus::Updated);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
   std::vector<Eigen::Vector3d> nodes;
   for (int n = 0; n < body->body().m_nodes.size(); ++n) nodes.push_back(nodeOf(body->body(), n));
   world.step(480);
   for (int n = 0; n < body->body().m_nodes.size(); ++n) {
     EXPECT_LT((nodeOf(body->body(), n) - nodes[static_cast<std::size_t>(n)]).norm(), 1e-5);
   }
-  EXPECT_EQ(skin.update(), UpdateStatus::Asleep);
+  EXPECT_EQ(skin.update(), StatusCode::Asleep);
   body->body().activate();
   world.step(10);
   EXPECT_GT(lowest(body->body()), -0.02);
@@ -38,13 +38,13 @@ TEST(ReducedBodies, LandAndSleepWhereTheyLie) {
 TEST(ReducedBodies, OfDifferentSizesLandBesideEachOther) {
   World world;
   world.addFloor();
-  // A small one first: numbers of the nodes of the second one are then not its own.
+  // The small body comes first, so that the node indices of the second body do not start at 0.
   TetMesh small = makeBox({3, 2, 2}, Eigen::Vector3d(0.6, 0.4, 0.4));
   VibrationOptions few;
-  few.modes = 4;
+  few.modeCount = 4;
   ReducedBodyOptions options = barOptions(at(-3, 0.5, 0));
-  options.leaveOutFastModes = true;
-  const VibrationModes smallModes = vibrationModes(small, few).value();
+  options.skipFastModes = true;
+  const VibrationModes smallModes = computeVibrationModes(small, few).value();
   const auto first = ReducedBody::add(*world.world, smallModes, small, options);
   ASSERT_TRUE(first.ok()) << first.status().message;
   const auto second = added(world, barModes(), fewModes(at(0, 0.5, 0)));

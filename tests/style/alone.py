@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""alone.py BUILD_FOLDER [FILE...]: each source and each header of the library compiles by itself, not only where a unity
-build has put others before it. By the compile commands of a build without unity; only these files, if any are named.
+"""alone.py BUILD_FOLDER [FILE...]: checks that each source and each header of the library compiles by itself, not only
+after the files that a unity build puts before it. Uses the compile commands of a build without unity; checks only
+FILE... if any are named.
 
-Eigen is precompiled, but for public headers: it takes most of the time, and everything has it by way of core's types."""
+Eigen is precompiled, except for public headers: it takes most of the time, and everything includes it through core's
+types."""
 import concurrent.futures
 import json
 import pathlib
@@ -18,7 +20,7 @@ EIGEN = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
 
 
 def options_of(entry):
-    """Those that matter to what compiles."""
+    """The options that affect whether a file compiles."""
     words = shlex.split(entry["command"])
     kept = [w for w in words[1:] if w.startswith(("-D", "-I", "-m", "-f", "-std")) and w != "-fPIC"]
     for place, word in enumerate(words):
@@ -31,7 +33,7 @@ def precompile(options, folder):
     folder.mkdir(parents=True, exist_ok=True)
     header = folder / "eigen.h"
     header.write_text(EIGEN, encoding="utf-8")
-    # With no more macros than everything has: what is defined beside these may be defined or not.
+    # Only macros that are defined for everything: others are defined for some files and not for others.
     options = [option for option in options if not option.startswith("-DTETSKIN")]
     subprocess.run(options + ["-x", "c++-header", str(header), "-o", str(header) + ".gch"], check=True)
     return ["-include", str(header)]
@@ -42,7 +44,7 @@ def is_public(file):
 
 
 def compile_alone(options, file):
-    """What the compiler says, if that is anything. A source's own header comes first, which is then alone, too."""
+    """The compiler's errors, if any. A source's own header comes first, so that it is checked by itself as well."""
     header = file.with_suffix(".h")
     first = f'#include "{header}"\n' if file.suffix == ".cpp" and header.exists() and not is_public(header) else ""
     text = f'{first}#include "{file}"\n'
@@ -56,7 +58,7 @@ def main():
     wanted = {pathlib.Path(name).resolve() for name in sys.argv[2:]}
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     options = {pathlib.Path(e["file"]): options_of(e) for e in entries if LIBRARY in pathlib.Path(e["file"]).parents}
-    plain = {}  # by library: the options that its headers are compiled with
+    plain = {}  # by library: the options with which its headers are compiled
     for file, own in options.items():
         library = file.relative_to(LIBRARY).parts[0]
         if not any(option.startswith("-m") for option in own):

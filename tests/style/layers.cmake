@@ -1,12 +1,12 @@
-# Includes go one way: from a library to core, from bullet to elastic, contact, touch and reduced to bullet, and from a stage to
-# those before it. Of another library, only what is public or in its src/shared.
+# Includes have one direction: from a library to core, from bullet to elastic, contact, touch and reduced to bullet, and
+# from a stage to earlier stages. Of another library, only public headers and those in its src/shared may be included.
 set(core_stages base bvh mesh kernels search embedding skinning normals)
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets)
 set(elastic_stages kernels tets matrix modes calibration dynamics)
 set(bullet_stages bodies skins forces solver)
 set(contact_stages rigid soft)
-set(touch_stages points forces joints tree)
+set(touch_stages points rows joints tree)
 set(reduced_stages modes bodies)
 
 set(faults)
@@ -23,7 +23,7 @@ foreach(file ${files})
     if(NOT include MATCHES "<tetskin/([a-z]+)/(src/)?(shared/)?(([a-z]+)/)?")
       continue()
     endif()
-    # Of this match: the next condition has one of its own.
+    # Saves the groups of this match, as the next condition has groups of its own.
     set(other ${CMAKE_MATCH_1})
     set(of_source "${CMAKE_MATCH_2}")
     set(of_shared "${CMAKE_MATCH_3}")

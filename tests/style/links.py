@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Links and pictures of all pages lead to files and headings that there are; paths of the repository in `code`, too."""
+"""Checks that links and pictures of all pages lead to existing files and headings; also paths of the repository in
+`code`."""
 import re
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ OURS = re.compile(r"(\./)?(demos|plugin|tests)/[\w./-]+")
 
 
 def link_fault(source, target):
-    """What is wrong with a link; nothing if it leads somewhere, or out of the repository."""
+    """What is wrong with a link; nothing if its target exists, or is outside of the repository."""
     if re.match(r"\w+:", target):
         return ""
     path, _, anchor = target.partition("#")

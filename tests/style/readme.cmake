@@ -1,4 +1,4 @@
-# The README's first program is demos/hello.cpp, word for word.
+# The README's first program must be identical to demos/hello.cpp.
 file(READ README.md readme)
 file(READ demos/hello.cpp program)
 string(FIND "${readme}" "```cpp\n${program}```" place)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Replaces the global operator new: link into the one test program that counts. In a file of its own, so that no caller
-// is inlined into it.
+// Replaces the global operator new: link it into the one test program that counts allocations. It has a file of its own
+// so that no caller is inlined into it.
 #include "support/allocation_count.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
 
-/// The block's size is kept in front of it, in as much as its alignment takes.
+/// The block's size is stored in front of the block, in as many bytes as the block's alignment needs.
 constexpr std::size_t kOrdinary = alignof(std::max_align_t);
 
 std::size_t& sizeOf(void* block) {
@@ -28,8 +28,8 @@ void* allocate(std::size_t size, std::size_t alignment) noexcept {
   if (!memory) return nullptr;
   ++allocations;
   const std::size_t now = bytes += size;
-  std::size_t most = peak;
-  while (now > most && !peak.compare_exchange_weak(most, now)) {
+  std::size_t maximum = peak;
+  while (now > maximum && !peak.compare_exchange_weak(maximum, now)) {
   }
   sizeOf(memory + alignment) = size;
   return memory + alignment;
@@ -52,7 +52,7 @@ std::size_t from(std::align_val_t alignment) {
 
 }  // namespace
 
-// What the standard library's others call, and those which a sanitizer's runtime has of its own.
+// These are what the standard library's other operators call, and those that a sanitizer's runtime defines itself.
 void* operator new(std::size_t size) {
   return allocateOrThrow(size, kOrdinary);
 }

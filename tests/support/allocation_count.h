@@ -6,10 +6,10 @@
 
 namespace tetskin::test {
 
-/// How often operator new has been called in this program, which links the counting replacement.
+/// How often operator new has been called in this program, which links the counting replacement of it.
 std::size_t allocationCount();
 
-/// Bytes asked of operator new and not yet given back; and the most that has been since the last `resetPeak`.
+/// Bytes that are allocated now, and the largest number of them since the last `resetPeak`.
 std::size_t allocatedBytes();
 std::size_t peakBytes();
 void resetPeak();

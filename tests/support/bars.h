@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
 
 namespace tetskin::test {
 
-/// A box from the origin, in cubes of five tets each, every other one mirrored: two ways across are alike where there
-/// are an even number of cubes.
+/// A box that starts at the origin, made of cubes of five tets each; every other cube is mirrored. Along a side with an
+/// even number of cubes, it is the same in both directions.
 inline TetMesh makeBox(const std::array<int, 3>& cubes, const Eigen::Vector3d& size) {
   TetMesh box;
   const auto node = [&](int x, int y, int z) { return x + (cubes[0] + 1) * (y + (cubes[1] + 1) * z); };
@@ -24,7 +24,7 @@ inline TetMesh makeBox(const std::array<int, 3>& cubes, const Eigen::Vector3d& s
   for (int z = 0; z < cubes[2]; ++z) {
     for (int y = 0; y < cubes[1]; ++y) {
       for (int x = 0; x < cubes[0]; ++x) {
-        const int mirror = (x + y + z) % 2;  // of the corners' first coordinate
+        const int mirror = (x + y + z) % 2;  // mirrors the corners along x
         for (const auto& corners : kEven) {
           Tet tet;
           for (int k = 0; k < 4; ++k) {

@@ -31,10 +31,10 @@ std::vector<Candidate> candidatesOf(const TetMesh& cage, const Eigen::Vector3d& 
   return all;
 }
 
-/// What the rules need to know of a cage.
+/// What the binding rules need to know about a cage.
 struct CageScale {
-  double edge = 0.0;      ///< mean, of the tets' six edges each
-  double rounding = 0.0;  ///< distance that counts as none
+  double edge = 0.0;      ///< mean over the six edges of each tet
+  double rounding = 0.0;  ///< distances up to this count as zero
 
   explicit CageScale(const TetMesh& cage) {
     std::size_t edges = 0;
@@ -52,7 +52,7 @@ struct CageScale {
   }
 };
 
-/// The first of those for which `in` holds that has the least of a property; there must be one.
+/// The first candidate with the least value of a property among those for which `in` holds; there must be one.
 template <class In>
 const Candidate& least(const std::vector<Candidate>& all, double Candidate::*property, In&& in) {
   const Candidate* best = nullptr;
@@ -75,10 +75,10 @@ BruteHit choose(const std::vector<Candidate>& all, const CageScale& cage, Outsid
   const Candidate& nearest = least(all, &Candidate::barycentric,
                                    [&](const Candidate& c) { return c.distance <= distance + kNearestTie * c.size; });
   const bool inside = distance <= cage.rounding;
-  const bool rescue = !inside && nearest.weight > kLargestWeight;
-  const Candidate& best =
-      !rescue ? nearest
-              : least(all, &Candidate::weight, [&](const Candidate& c) { return c.distance <= distance + cage.edge; });
+  const bool reassignByWeight = !inside && nearest.weight > kMaxWeight;
+  const Candidate& best = !reassignByWeight ? nearest : least(all, &Candidate::weight, [&](const Candidate& c) {
+    return c.distance <= distance + cage.edge;
+  });
   return {best.tet, nearest.tet, best.barycentric, best.weight, distance, inside};
 }
 

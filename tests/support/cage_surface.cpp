@@ -15,21 +15,21 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Every triangle in four, by its edges' middles.
+/// Cuts every triangle in four at the midpoints of its edges.
 void cutInFour(TriangleMesh& mesh) {
-  std::map<std::array<int, 2>, int> middles;
-  const auto middle = [&](int a, int b) {
+  std::map<std::array<int, 2>, int> centroids;
+  const auto centroid = [&](int a, int b) {
     const auto [entry, isNew] =
-        middles.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.vertexCount())});
+        centroids.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.vertexCount())});
     if (isNew) mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]) / 2.0);
     return entry->second;
   };
-  std::vector<std::array<int, 3>> parts;
+  std::vector<std::array<int, 3>> components;
   for (const auto& [a, b, c] : mesh.triangles) {
-    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    parts.insert(parts.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    const int ab = centroid(a, b), bc = centroid(b, c), ca = centroid(c, a);
+    components.insert(components.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
   }
-  mesh.triangles = std::move(parts);
+  mesh.triangles = std::move(components);
 }
 
 Points vertexNormals(const TriangleMesh& mesh) {
@@ -65,7 +65,7 @@ TriangleMesh surfaceBeside(const TetMesh& cage, double distance, int cuts) {
 BoundaryFollower::BoundaryFollower(const TetMesh& cage, const Points& vertices) {
   const auto faces = boundaryFaces(cage);
   for (const Eigen::Vector3d& v : vertices) {
-    Place place{};
+    Position position{};
     double squared = std::numeric_limits<double>::infinity();
     for (const auto& face : faces) {
       const Eigen::Vector3d &a = cage.nodes[face[0]], &b = cage.nodes[face[1]], &c = cage.nodes[face[2]];
@@ -75,15 +75,15 @@ BoundaryFollower::BoundaryFollower(const TetMesh& cage, const Points& vertices) 
       const Eigen::Vector3d normal = (b - a).cross(c - a);
       const double scale = 1.0 / normal.squaredNorm();
       const double wb = (q - a).cross(c - a).dot(normal) * scale, wc = (b - a).cross(q - a).dot(normal) * scale;
-      place = {face, {1.0 - wb - wc, wb, wc}, v - q};
+      position = {face, {1.0 - wb - wc, wb, wc}, v - q};
     }
-    places_.push_back(place);
+    positions_.push_back(position);
   }
 }
 
 Points BoundaryFollower::positions(const Points& nodes) const {
   Points result;
-  for (const Place& p : places_) {
+  for (const Position& p : positions_) {
     result.push_back(p.offset + p.weights[0] * nodes[p.face[0]] + p.weights[1] * nodes[p.face[1]] +
                      p.weights[2] * nodes[p.face[2]]);
   }

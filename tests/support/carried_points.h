@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Points in a cage and what skinning makes of them.
+// Points in a cage, and the positions that skinning gives them.
 #pragma once
 
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
@@ -18,7 +18,7 @@ namespace tetskin::test {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Skinned with nodes, and written as points, of one scalar type.
+/// Points that are skinned with nodes of one scalar type and written in the same type.
 template <class Scalar>
 class CarriedPoints {
  public:
@@ -26,16 +26,16 @@ class CarriedPoints {
     fit = embedInto(cage, viewOf(vertices), options, embedding);
     prepare();
   }
-  /// tetOf  as in embeddingFromTets
+  /// tetOf  as for embeddingFromTets
   CarriedPoints(const TetMesh& restCage, const Points& vertices, const std::vector<std::int32_t>& tetOf)
       : cage(restCage), embedding(embeddingFromTets(restCage, viewOf(vertices), tetOf)) {
     prepare();
   }
 
-  /// Gives the nodes their current places.
-  void move(const Points& places) {
+  /// Sets the nodes' current positions.
+  void move(const Points& positions) {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> rounded;
-    for (const Eigen::Vector3d& p : places) rounded.push_back(p.cast<Scalar>());
+    for (const Eigen::Vector3d& p : positions) rounded.push_back(p.cast<Scalar>());
     finite = nodes.pack(viewOf(std::as_const(rounded))) == nodes.size();
     (void)edges.update(stencils, nodes);
   }
@@ -57,7 +57,7 @@ class CarriedPoints {
   EdgeVectors<Scalar> edges;
   PackedNodes<Scalar> nodes;
   std::vector<VertexBinding> bindings;
-  /// By vertex: the point that its weights stand for, which are stored in float.
+  /// By vertex: the point that its weights stand for; the weights are stored in float.
   Points rest;
   bool finite = true;
 
@@ -81,7 +81,7 @@ class CarriedPoints {
   }
 };
 
-/// Longest and root mean square distance of points from where they should be.
+/// Largest and root mean square distance of points from where they should be.
 struct Distances {
   double longest = 0.0;
   double rms = 0.0;
@@ -90,7 +90,7 @@ inline Distances distances(const Points& points, const Points& expected) {
   Distances d;
   for (std::size_t v = 0; v < points.size(); ++v) {
     const double length = (points[v] - expected[v]).norm();
-    d.longest = length <= d.longest ? d.longest : length;  // NaN is the longest
+    d.longest = length <= d.longest ? d.longest : length;  // NaN counts as the largest
     d.rms += length * length;
   }
   d.rms = std::sqrt(d.rms / static_cast<double>(points.size()));

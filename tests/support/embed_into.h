@@ -6,13 +6,13 @@
 
 namespace tetskin {
 
-/// The report of an attempt to embed, and how it ended.
+/// The report of an attempt to embed, and its status.
 struct Fit : EmbedReport {
   Status status;
   bool ok() const { return status.ok(); }
 };
 
-/// `embed`, with both at once; the embedding is left alone on an error.
+/// `embed` with report and status in one; leaves the embedding unchanged on an error.
 template <class Points>
 Fit embedInto(const TetMesh& cage, const Points& points, const EmbedOptions& options, Embedding& embedding) {
   Fit fit;
@@ -22,7 +22,7 @@ Fit embedInto(const TetMesh& cage, const Points& points, const EmbedOptions& opt
   return fit;
 }
 
-/// What one skin does with a binding that the same options made.
+/// The part of the options that concerns one skin of a binding.
 inline const InstanceOptions& instanceOf(const SkinOptions& options) {
   return options;
 }

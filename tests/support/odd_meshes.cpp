@@ -14,7 +14,7 @@ double uniform(std::mt19937& generator) {
   return static_cast<double>(generator()) / 4294967296.0;  // the same on every standard library
 }
 
-/// One number after the other: in which order a call's arguments are worked out is the compiler's choice.
+/// Draws one number after the other, because the compiler chooses the order in which a call's arguments are evaluated.
 Eigen::Vector3d uniformVector(std::mt19937& generator) {
   const double z = uniform(generator), y = uniform(generator), x = uniform(generator);
   return {x, y, z};
@@ -30,7 +30,7 @@ TetMesh lattice(const std::vector<double>& xs, const std::vector<double>& ys, co
       for (const double x : xs) mesh.nodes.emplace_back(x, y, z);
     }
   }
-  // Kuhn's six tets: from corner 0 to corner 7 along each order of the three axes.
+  // Kuhn's six tets: each goes from corner 0 to corner 7 along one order of the three axes.
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (int k = 0; k + 1 < static_cast<int>(zs.size()); ++k) {
     for (int j = 0; j + 1 < ny; ++j) {
@@ -91,7 +91,7 @@ TetMesh bodyCentredCage(int nx, int ny, int nz, double edge) {
       for (int i = 0; i < nx; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
           for (int side = 0; side < 2; ++side) {
-            // The face of this cube across `axis`, its corners in a circle.
+            // The face of this cube across `axis`; its corners go around in a circle.
             const int p = (axis + 1) % 3, q = (axis + 2) % 3;
             std::array<int, 4> around{};
             for (int c = 0; c < 4; ++c) {

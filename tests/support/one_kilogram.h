@@ -6,9 +6,9 @@
 
 namespace tetskin::test {
 
-/// The options for a body of 1 kg, unless they say what it weighs: tests compare momenta and forces.
+/// The options for a body of 1 kg, unless they set its mass: tests compare momenta and forces.
 inline SoftBodyOptions oneKilogram(SoftBodyOptions options = {}) {
-  if (options.mass == 0.0 && options.density == SoftBodyOptions().density) options.mass = 1.0;
+  if (!options.mass && options.density == SoftBodyOptions().density) options.mass = 1.0;
   return options;
 }
 

@@ -13,14 +13,14 @@
 
 namespace tetskin::test {
 
-/// Runs tasks on some threads of its own in an order that is different every time.
+/// Runs tasks on threads of its own, in a different order each time.
 class ShuffledThreads : public ParallelFor {
  public:
   explicit ShuffledThreads(int threadCount) : threadCount_(threadCount) {}
 
   void run(std::size_t count, Task task) override {
     ++runs;
-    mostTasks = std::max(mostTasks, count);
+    maxTasks = std::max(maxTasks, count);
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     std::shuffle(order.begin(), order.end(), generator_);
@@ -35,7 +35,7 @@ class ShuffledThreads : public ParallelFor {
   }
 
   int runs = 0;
-  std::size_t mostTasks = 0;
+  std::size_t maxTasks = 0;
 
  private:
   int threadCount_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Maps of space with known gradients, to deform cages by and to compare surfaces with.
+// Maps of space with known gradients, which deform cages and predict surfaces.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,16 +19,17 @@ struct SmoothMap {
   std::vector<Eigen::Vector3d> operator()(std::vector<Eigen::Vector3d> points) const;
 };
 
-/// Twist by 1.5 rad per unit length of x, bend of x on a circle of radius 1.25, cubic sag and waves, about a centre.
+/// About a centre: a twist by 1.5 rad per unit length of x, a bend of x on a circle of radius 1.25, a cubic sag, and
+/// waves.
 std::vector<SmoothMap> smoothMaps(const Eigen::Vector3d& centre);
 
-/// Affine, with coefficients in [-1, 1], of either orientation.
+/// An affine map with coefficients in [-1, 1], of either orientation.
 SmoothMap affineMap(unsigned seed);
 
 /// The identity changed by up to 0.2 in every coefficient, with second derivatives in [-amount, amount].
 SmoothMap quadraticMap(unsigned seed, double amount);
 
-/// The part `amount` of the way from the identity to a map.
+/// The map that is the fraction `amount` of the way from the identity to `map`.
 SmoothMap partOf(const SmoothMap& map, double amount);
 
 }  // namespace tetskin::test

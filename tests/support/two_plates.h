@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A cage whose tets overlap: copies of one lattice, each for a part of the mesh.
+// A cage with duplicate elements: copies of one lattice overlap, each for one component of the mesh.
 #pragma once
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
 #include <cstdint>
@@ -16,12 +16,12 @@
 
 namespace tetskin::test {
 
-/// Two plates, 0.2 apart, in one layer of lattice cubes of edge 1; each has copies of its own of the tets.
+/// Two plates, 0.2 apart, in one layer of lattice cubes of edge 1; each plate has its own copies of the tets.
 struct TwoPlates {
-  Cage cage;  ///< tet t and tet t + latticeTets are copies, unless t is of both plates
+  Cage cage;  ///< tet t and tet t + latticeTets are copies, unless both plates share t
   TriangleMesh mesh;
-  std::size_t plateVertices = 0;  ///< of the first, the lower one; the others are of the second
-  std::size_t latticeTets = 0;    ///< those of the first plate come first
+  std::size_t plateVertices = 0;  ///< vertices of the first, lower plate; the others belong to the second
+  std::size_t latticeTets = 0;    ///< number of tets before the copies: the first plate's come first
 
   bool upper(std::size_t vertex) const { return vertex >= plateVertices; }
 };
@@ -42,52 +42,53 @@ inline void addSheet(TriangleMesh& mesh, double y) {
   }
 }
 
-/// For every tet of a lattice, the number of its copy for the second plate, which is appended with its nodes. Tets no
-/// farther than x = joinedUntil are of both plates.
+/// By tet of a lattice: the index of its copy for the second plate; the copies are appended with their nodes. Both
+/// plates share the tets that reach no farther than x = joinedUntil.
 inline std::vector<int> appendCopies(Cage& cage, double joinedUntil) {
-  const TetMesh lattice = cage;
+  const TetMesh lattice = cage.mesh;
   std::vector<int> nodes(lattice.nodeCount()), tets(lattice.tetCount());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const bool shared = lattice.nodes[n].x() <= joinedUntil;
-    nodes[n] = static_cast<int>(shared ? n : cage.nodeCount());
-    if (!shared) cage.nodes.push_back(lattice.nodes[n]);
+    nodes[n] = static_cast<int>(shared ? n : cage.mesh.nodeCount());
+    if (!shared) cage.mesh.nodes.push_back(lattice.nodes[n]);
   }
   for (std::size_t t = 0; t < tets.size(); ++t) {
     Tet copy = lattice.tets[t];
     for (int& n : copy) n = nodes[static_cast<std::size_t>(n)];
-    tets[t] = static_cast<int>(copy == lattice.tets[t] ? t : cage.tetCount());
-    if (copy != lattice.tets[t]) cage.tets.push_back(copy);
+    tets[t] = static_cast<int>(copy == lattice.tets[t] ? t : cage.mesh.tetCount());
+    if (copy != lattice.tets[t]) cage.mesh.tets.push_back(copy);
   }
   return tets;
 }
 
-/// All that can be known of them; what has no meaning here has values of many digits.
-/// joinedUntil  below 0: the copies have no node in common; otherwise they branch off at this x, one of the cubes'
+/// A cage with every field filled in; values that have no meaning here have many digits.
+/// joinedUntil  below 0: the copies have no node in common; otherwise they branch off at this x, which is one of the
+/// cubes'
 inline TwoPlates platesOfCopies(double joinedUntil = -1.0) {
   TwoPlates made;
   for (const double y : {0.3, 0.35, 0.55, 0.6}) addSheet(made.mesh, y);
   made.plateVertices = made.mesh.vertexCount() / 2;
   Cage& cage = made.cage;
   cage = latticeCage(4, 1, 2);
-  made.latticeTets = cage.tetCount();
-  const auto bindings = embed(cage, viewOf(made.mesh.positions)).value().bindings();
+  made.latticeTets = cage.mesh.tetCount();
+  const auto bindings = embed(cage.mesh, viewOf(made.mesh.positions)).value().bindings();
   const std::vector<int> copyOf = appendCopies(cage, joinedUntil);
   for (std::size_t v = 0; v < bindings.size(); ++v) {
     cage.vertexTets.push_back(made.upper(v) ? copyOf[static_cast<std::size_t>(bindings[v].tet)] : bindings[v].tet);
   }
-  cage.latticeTets.resize(cage.tetCount());
+  cage.sourceTet.resize(cage.mesh.tetCount());
   for (std::size_t t = 0; t < made.latticeTets; ++t) {
-    cage.latticeTets[t] = cage.latticeTets[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
+    cage.sourceTet[t] = cage.sourceTet[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
   }
-  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    cage.parts.push_back(joinedUntil < 0.0 && t >= made.latticeTets);
-    cage.fill.push_back(1.0 / static_cast<double>(t + 1));
-    cage.factor.push_back(static_cast<double>(t + 1) / 3.0);
+  for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
+    cage.component.push_back(joinedUntil < 0.0 && t >= made.latticeTets);
+    cage.volumeFraction.push_back(1.0 / static_cast<double>(t + 1));
+    cage.stiffnessFactor.push_back(static_cast<double>(t + 1) / 3.0);
     for (std::size_t k = 0; k < kFineTets; ++k) {
-      cage.fineFill.push_back(static_cast<std::uint8_t>(7 * t + 37 * k));
+      cage.fineVolumeFraction.push_back(static_cast<std::uint8_t>(7 * t + 37 * k));
     }
   }
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) cage.masses.push_back(0.1 + 0.7 / static_cast<double>(n + 1));
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) cage.masses.push_back(0.1 + 0.7 / static_cast<double>(n + 1));
   cage.meshHash = positionsHash(made.mesh.positions);
   return made;
 }

@@ -19,9 +19,9 @@
 namespace tetskin {
 namespace {
 
-/// Runs `count` tasks and expects each once.
+/// Runs `count` tasks and expects each to run once.
 void expectEachTaskOnce(ThreadPool& pool, std::size_t count) {
-  std::vector<int> calls(count, 0);  // plain: a task that runs twice is a race that sanitizers see, too
+  std::vector<int> calls(count, 0);  // not atomic, so that sanitizers also detect a task that runs twice as a race
   runTasks(&pool, count, [&](std::size_t k) { ++calls[k]; });
   EXPECT_EQ(std::count(calls.begin(), calls.end(), 1), static_cast<std::ptrdiff_t>(count));
 }
@@ -57,14 +57,14 @@ TEST(ThreadPool, ThreadsShareTheWork) {
   ThreadPool pool(2);
   std::atomic<int> started{0};
   std::vector<std::thread::id> ids(2);
-  // Each task waits for the other: that ends only if both are under way at once.
+  // Each task waits for the other: this ends only if both run at the same time.
   runTasks(&pool, 2, [&](std::size_t k) {
     ids[k] = std::this_thread::get_id();
     ++started;
     while (started < 2) std::this_thread::yield();
   });
   EXPECT_NE(ids[0], ids[1]);
-  EXPECT_EQ(std::count(ids.begin(), ids.end(), std::this_thread::get_id()), 1);  // the caller takes part
+  EXPECT_EQ(std::count(ids.begin(), ids.end(), std::this_thread::get_id()), 1);  // the caller runs tasks, too
 }
 
 TEST(ThreadPool, OneThreadIsTheCaller) {
@@ -109,20 +109,20 @@ TEST(ThreadPool, MayBeMadeAndDestroyedWithoutWork) {
   for (int k = 0; k < 100; ++k) const ThreadPool pool(4);
 }
 
-/// Positions, normals and box of an update of a large mesh on these threads.
+/// Positions, normals and bounding box of an update of a large mesh with these threads.
 struct Update {
   explicit Update(ParallelFor* threads, SkinOptions options) {
     const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
     const TriangleMesh mesh = test::sphere(250, 0.53, Eigen::Vector3d::Constant(0.5));
     options.threads = threads;
-    EXPECT_GT(mesh.vertexCount(), 60000u);  // several tasks' worth
+    EXPECT_GT(mesh.vertexCount(), 60000u);  // enough for several tasks
     EXPECT_TRUE(skin.bind(cage, mesh, options).ok());
     std::vector<Eigen::Vector3f> nodes;
     for (const Eigen::Vector3d& p : cage.nodes) {
       const Eigen::Vector3d bent = p + 0.2 * Eigen::Vector3d(std::sin(4 * p.y()), p.x() * p.z(), std::cos(3 * p.x()));
       nodes.push_back(bent.cast<float>());
     }
-    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), UpdateStatus::Updated);
+    EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
   }
 
   MeshSkin<float> skin;

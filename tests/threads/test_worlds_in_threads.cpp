@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the guide says may be done at the same time, for the thread sanitizer to look at, and with the bits of one
-// thread. Bullet itself is not instrumented: it is our own part that is looked at.
+// What the guide says may be done at the same time, tested under the thread sanitizer and for the same bits as with one
+// thread. Bullet itself is not instrumented: only the library is checked.
 #include "contact/contact_test.h"
 
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/threads/thread_pool.h>
-#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <atomic>
 #include <functional>
@@ -16,12 +16,12 @@
 namespace tetskin::test {
 namespace {
 
-/// What bodies of one model share: read by all threads, written by none.
+/// What bodies of one model share: all threads read it, none writes it.
 struct SharedModel {
   TetMesh cage = looseCage();
   TriangleMesh mesh = ballMesh(16, 0.35);
-  std::shared_ptr<const SoftBodyBinding> binding = SoftBodyBinding::make(cage, mesh, withNormals()).value();
-  std::shared_ptr<const ContactShape> shape = makeContactShape(cage, mesh, coarse()).value();
+  std::shared_ptr<const SoftBodyBinding> binding = SoftBodyBinding::create(cage, mesh, withNormals()).value();
+  std::shared_ptr<const ContactShape> shape = ContactShape::create(cage, mesh, coarse()).value();
 
   static BindingOptions withNormals() {
     BindingOptions options;
@@ -30,8 +30,8 @@ struct SharedModel {
   }
   static ContactShapeOptions coarse() {
     ContactShapeOptions options;
-    options.samples = 500;
-    options.cells = 16;
+    options.sampleCount = 500;
+    options.gridResolution = 16;
     return options;
   }
 };
@@ -52,7 +52,7 @@ class Pair {
       bodies.push_back(added(world, cage));
       touching_.push_back(
           SurfaceContact::add(world.deformable(), bodies[k]->body(), *model().binding, model().mesh).value());
-      EXPECT_TRUE(contacts_->include(bodies[k]->body(), model().shape).ok());
+      EXPECT_TRUE(contacts_->add(bodies[k]->body(), model().shape).ok());
       skins.push_back(std::make_unique<SoftBodySkin>());
       EXPECT_TRUE(skins[k]->bind(bodies[k]->body(), model().binding).ok());
     }
@@ -61,7 +61,7 @@ class Pair {
   void run(int frames) {
     for (int f = 0; f < frames; ++f) {
       step(world, 1);
-      for (const auto& skin : skins) EXPECT_EQ(skin->update(), UpdateStatus::Updated);
+      for (const auto& skin : skins) EXPECT_EQ(skin->update(), StatusCode::Ok);
       contactsSeen += contacts_->contacts().size() + touching_[0]->contacts().size();
     }
   }
@@ -85,7 +85,7 @@ class Pair {
   std::vector<std::unique_ptr<SurfaceContact>> touching_;
 };
 
-/// Each task in a thread of its own.
+/// Runs each task in a thread of its own.
 void inThreads(int count, const std::function<void(int)>& task) {
   std::vector<std::thread> threads;
   for (int k = 0; k < count; ++k) threads.emplace_back(task, k);
@@ -98,11 +98,11 @@ TEST(WorldsInThreads, EachInOneHaveTheBitsOfOneAlone) {
   EXPECT_GT(alone.contactsSeen, 0u);
   std::vector<std::vector<btScalar>> drawn(3);
   inThreads(3, [&](int k) {
-    Pair own;  // made, stepped and taken down in the thread
+    Pair own;  // created, stepped and destroyed in this thread
     own.run(12);
     drawn[static_cast<std::size_t>(k)] = own.drawn();
   });
-  for (const auto& of : drawn) EXPECT_EQ(of, alone.drawn());
+  for (const auto& values : drawn) EXPECT_EQ(values, alone.drawn());
 }
 
 TEST(WorldsInThreads, SolveWithAPoolForTheBitsOfOneThread) {
@@ -115,7 +115,7 @@ TEST(WorldsInThreads, SolveWithAPoolForTheBitsOfOneThread) {
   shared.world.bodySolver().setThreads(nullptr);
 }
 
-/// A renderer has the surface as of the last update, until the next one.
+/// A renderer has the surface as of the last update, until the next update.
 TEST(WorldsInThreads, StepsGoOnWhileAnotherThreadDraws) {
   Pair pair;
   pair.run(1);
@@ -125,10 +125,10 @@ TEST(WorldsInThreads, StepsGoOnWhileAnotherThreadDraws) {
     do EXPECT_EQ(pair.drawn(), before);
     while (!done);
   });
-  step(pair.world, 5);  // without an update
+  step(pair.world, 5);  // without an update of the skin
   done = true;
   renderer.join();
-  for (const auto& skin : pair.skins) EXPECT_EQ(skin->update(), UpdateStatus::Updated);
+  for (const auto& skin : pair.skins) EXPECT_EQ(skin->update(), StatusCode::Ok);
   EXPECT_NE(pair.drawn(), before);
 }
 
@@ -137,7 +137,7 @@ TEST(WorldsInThreads, SkinsOfOneWorldAreUpdatedEachByAThread) {
   alone.run(5);
   for (int f = 0; f < 5; ++f) {
     step(spread.world, 1);
-    inThreads(2, [&](int k) { EXPECT_EQ(spread.skins[static_cast<std::size_t>(k)]->update(), UpdateStatus::Updated); });
+    inThreads(2, [&](int k) { EXPECT_EQ(spread.skins[static_cast<std::size_t>(k)]->update(), StatusCode::Ok); });
   }
   EXPECT_EQ(spread.drawn(), alone.drawn());
 }
@@ -147,7 +147,7 @@ TEST(WorldsInThreads, RaysAreCastByEachThreadWithATreeOfItsOwn) {
   pair.run(3);
   std::vector<btScalar> distances(3);
   inThreads(3, [&](int k) {
-    const SurfaceTree tree(model().binding, model().mesh);
+    const SurfaceTree tree = SurfaceTree::create(model().binding, model().mesh).value();
     const SurfaceHit hit = tree.raycast(*pair.skins[0], btVector3(0, 5, 0), btVector3(0, -5, 0));
     EXPECT_TRUE(hit);
     EXPECT_TRUE(tree.pointAt(pair.bodies[0]->body(), hit).ok());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What springs, welds and pushes do to both sides, as ForceRecord tells it.
+// What springs, welds and impulses do to both sides, as ForceRecord reports it.
 #include "../bullet/recorded_forces.h"
 #include "touch_test.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Its springs and welds alone.
+/// Expects the only forces to be those of springs and welds.
 void expectJointsAlone(const AppliedForces& forces) {
   EXPECT_FALSE(forces.joints.force.isZero());
   EXPECT_TRUE(isNothing({forces.contact, forces.friction, {}, forces.anchors}));
@@ -18,14 +18,14 @@ void expectJointsAlone(const AppliedForces& forces) {
 
 TEST(JointForces, OfASpringAreWhatHangsOnIt) {
   auto world = deformableWorld(kWeight);
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint top = of.vertex(of.furthest(Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint top = body.vertex(body.furthest(Vector3d::UnitY()));
   RigidBox hook(*world, 0, *top.position() + btVector3(btScalar(0.3), btScalar(0.2), 0));
   auto spring = SurfaceSpring::add(world->deformable(), top, *hook, btVector3(btScalar(-0.3), btScalar(-0.2), 0));
   ASSERT_TRUE(spring.ok()) << spring.status().message;
   const auto forces = forcesIn(*world);
   step(*world, 900);
-  const AppliedForces onHook = forces->on(*hook), onBody = forces->on(of.body());
+  const AppliedForces onHook = forces->forcesOn(*hook), onBody = forces->forcesOn(body.body());
   expectJointsAlone(onHook);
   expectJointsAlone(onBody);
   expectNear(onHook.joints.force, btVector3(0, -kWeight, 0), 0.01 * kWeight);
@@ -34,23 +34,23 @@ TEST(JointForces, OfASpringAreWhatHangsOnIt) {
   expectNear(onBody.joints.force, spring.value()->force(), 0.01 * kWeight);
   spring.value().reset();
   step(*world, 1);
-  EXPECT_TRUE(isNothing(forces->on(*hook)));
+  EXPECT_TRUE(isNothing(forces->forcesOn(*hook)));
 }
 
-/// At rest, the weld's force beside the centre of mass and its couple are in balance.
+/// At rest, the torque of the weld's force, which acts beside the centre of mass, and the weld's couple balance.
 TEST(JointForces, OfAWeldHoldABodyAndItsTurn) {
   auto world = deformableWorld(kWeight);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
-  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
-  const SurfacePoint low = of.vertex(of.furthest(-Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0), held);
+  const SurfacePoint low = body.vertex(body.furthest(-Vector3d::UnitY()));
   RigidBox box(*world, 0.5, *low.position() + btVector3(btScalar(0.05), btScalar(-0.15), 0));
   box->setActivationState(DISABLE_DEACTIVATION);
   auto weld = SurfaceWeld::add(world->deformable(), low, *box);
   ASSERT_TRUE(weld.ok()) << weld.status().message;
   const auto forces = forcesIn(*world);
   step(*world, 900);
-  const AppliedForces onBox = forces->on(*box);
+  const AppliedForces onBox = forces->forcesOn(*box);
   expectJointsAlone(onBox);
   expectNear(onBox.joints.force, btVector3(0, btScalar(0.5 * kWeight), 0), 0.01 * kWeight);
   expectNear(onBox.joints.torque, btVector3(0, 0, 0), 0.01 * kWeight * 0.05);
@@ -58,15 +58,15 @@ TEST(JointForces, OfAWeldHoldABodyAndItsTurn) {
 
 TEST(JointForces, OfAPushAreOnTheBodyAlone) {
   auto world = deformableWorld();
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
   const auto forces = forcesIn(*world);
-  SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
-  ASSERT_EQ(point.applyForce(btVector3(0, 0, 24)), TouchStatus::Ok);
+  SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitX()));
+  ASSERT_EQ(point.applyForce(btVector3(0, 0, 24)), StatusCode::Ok);
   substep(*world);
-  expectJointsAlone(forces->on(of.body()));
-  expectNear(forces->on(of.body()).joints.force, btVector3(0, 0, 24), 1e-3);
+  expectJointsAlone(forces->forcesOn(body.body()));
+  expectNear(forces->forcesOn(body.body()).joints.force, btVector3(0, 0, 24), 1e-3);
   substep(*world);
-  EXPECT_TRUE(isNothing(forces->on(of.body())));
+  EXPECT_TRUE(isNothing(forces->forcesOn(body.body())));
 }
 
 }  // namespace

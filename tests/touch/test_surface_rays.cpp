@@ -21,7 +21,7 @@ struct Found {
   double distance = HUGE_VAL;
 };
 
-/// By all triangles, and by volumes: another way than the tree's.
+/// The hit found by testing all triangles, and by volumes, independently of the tree.
 Found bruteForce(const SoftBodySkin& skin, const TriangleMesh& mesh, const Vector3d& from, const Vector3d& to) {
   Found best;
   const Vector3d along = (to - from).normalized();
@@ -39,8 +39,8 @@ Found bruteForce(const SoftBodySkin& skin, const TriangleMesh& mesh, const Vecto
   return best;
 }
 
-/// Counts the rays that differ from brute force.
-void compare(TouchedBody& of, int rays, unsigned seed) {
+/// Compares rays with brute force.
+void compare(TouchedBody& body, int rays, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-0.7, 1.7);
   int hits = 0;
@@ -48,14 +48,14 @@ void compare(TouchedBody& of, int rays, unsigned seed) {
     const Vector3d from(number(random), number(random), number(random)),
         to(number(random), number(random), number(random));
     const btVector3 a = toBullet(from), b = toBullet(to);
-    const SurfaceHit hit = of.tree.raycast(of.skin, a, b);
-    const Found wanted = bruteForce(of.skin, of.model.mesh, toEigen(a), toEigen(b));
+    const SurfaceHit hit = body.tree.raycast(body.skin, a, b);
+    const Found wanted = bruteForce(body.skin, body.model.mesh, toEigen(a), toEigen(b));
     ASSERT_EQ(static_cast<bool>(hit), wanted.triangle >= 0) << r;
     if (!hit) continue;
     ++hits;
     ASSERT_NEAR(static_cast<double>(hit.distance), wanted.distance, 1e-6) << r;
     if (hit.triangle == wanted.triangle) continue;
-    // Then two triangles are met at once, at an edge.
+    // The ray then hits two triangles at once, at their common edge.
     ASSERT_LT(std::min({hit.weights[0], hit.weights[1], hit.weights[2]}), 1e-6) << r;
   }
   EXPECT_GT(hits, rays / 10);
@@ -63,11 +63,11 @@ void compare(TouchedBody& of, int rays, unsigned seed) {
 
 TEST(SurfaceTree, MeetsWhatBruteForceMeetsAtDeformedStates) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   for (int state = 0; state < 5; ++state) {
-    deform(of.body(), 0.06);
-    ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
-    compare(of, 2000, static_cast<unsigned>(state));
+    deform(body.body(), 0.06);
+    ASSERT_EQ(body.skin.update(), StatusCode::Ok);
+    compare(body, 2000, static_cast<unsigned>(state));
   }
 }
 
@@ -75,30 +75,30 @@ TEST(SurfaceTree, MeetsQuadraticSurfacesAsTheyAreDrawn) {
   auto world = deformableWorld();
   BindingOptions quadratic;
   quadratic.interpolation = Interpolation::Quadratic;
-  TouchedBody of(*world, TouchModel(0.55), {}, quadratic);
-  deform(of.body(), 0.1);
-  ASSERT_EQ(of.skin.update(), UpdateStatus::Updated);
-  compare(of, 1000, 9);
-  const SurfaceHit hit = of.tree.raycast(of.skin, btVector3(btScalar(0.53), 3, btScalar(0.48)),
-                                         btVector3(btScalar(0.5), -3, btScalar(0.5)));
+  TouchedBody body(*world, TouchModel(0.55), {}, quadratic);
+  deform(body.body(), 0.1);
+  ASSERT_EQ(body.skin.update(), StatusCode::Ok);
+  compare(body, 1000, 9);
+  const SurfaceHit hit = body.tree.raycast(body.skin, btVector3(btScalar(0.53), 3, btScalar(0.48)),
+                                           btVector3(btScalar(0.5), -3, btScalar(0.5)));
   ASSERT_TRUE(hit);
-  const SurfacePoint point = of.tree.pointAt(of.body(), hit).value();
-  EXPECT_LT((*point.position(of.skin) - hit.point).length(), 1e-5);
+  const SurfacePoint point = body.tree.pointAt(body.body(), hit).value();
+  EXPECT_LT((*point.position(body.skin) - hit.point).length(), 1e-5);
   EXPECT_GT((*point.position() - hit.point).length(), 1e-4);
 }
 
 TEST(SurfaceTree, TellsThePointTheNormalAndTheWeights) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  deform(of.body());
+  TouchedBody body(*world);
+  deform(body.body());
   const btVector3 from(btScalar(0.41), 3, btScalar(0.57)), to(btScalar(0.45), -3, btScalar(0.52));
-  const SurfaceHit hit = of.tree.raycast(of.skin, from, to);
+  const SurfaceHit hit = body.tree.raycast(body.skin, from, to);
   ASSERT_TRUE(hit);
-  EXPECT_EQ(hit.body, &of.body());
+  EXPECT_EQ(hit.body, &body.body());
   EXPECT_LT((from + (to - from).normalized() * hit.distance - hit.point).length(), 2e-6);
-  const SurfacePoint point = of.tree.pointAt(of.body(), hit).value();
+  const SurfacePoint point = body.tree.pointAt(body.body(), hit).value();
   EXPECT_LT((*point.position() - hit.point).length(), 2e-6);
-  EXPECT_GT(point.frame()->normal.dot(hit.normal), 0.97);  // the one is smooth, the other a facet's
+  EXPECT_GT(point.frame()->normal.dot(hit.normal), 0.97);  // the first normal is smooth, the second is the facet's
   EXPECT_GT(hit.normal.y(), 0.5);
 }
 
@@ -106,20 +106,20 @@ TEST(SurfaceTree, ServesHiddenSkinsOtherTargetsOrdersAndOrigins) {
   auto world = deformableWorld();
   BindingOptions sorted;
   sorted.order = VertexOrder::Sorted;
-  TouchedBody of(*world, TouchModel(), {}, sorted);
-  std::vector<Eigen::Vector3f> buffer(of.model.mesh.vertexCount());
+  TouchedBody body(*world, TouchModel(), {}, sorted);
+  std::vector<Eigen::Vector3f> buffer(body.model.mesh.vertexCount());
   SoftBodySkin other;
   InstanceOptions elsewhere;
   elsewhere.target = viewOf(buffer);
   elsewhere.origin = Vector3d(100, 0, 0);
-  ASSERT_TRUE(other.bind(of.body(), of.binding, elsewhere).ok());
+  ASSERT_TRUE(other.bind(body.body(), body.binding, elsewhere).ok());
   other.setVisible(false);
-  deform(of.body());
+  deform(body.body());
   SoftBodySkin plain;
-  ASSERT_TRUE(plain.bind(of.body(), of.model.cage, of.model.mesh).ok());
-  const SurfaceTree plainTree(plain.binding(), of.model.mesh);
+  ASSERT_TRUE(plain.bind(body.body(), body.model.cage, body.model.mesh).ok());
+  const SurfaceTree plainTree = SurfaceTree::create(plain.binding(), body.model.mesh).value();
   const btVector3 from(btScalar(0.41), 3, btScalar(0.57)), to(btScalar(0.45), -3, btScalar(0.52));
-  const SurfaceHit hit = of.tree.raycast(other, from, to), wanted = plainTree.raycast(plain, from, to);
+  const SurfaceHit hit = body.tree.raycast(other, from, to), wanted = plainTree.raycast(plain, from, to);
   ASSERT_TRUE(hit && wanted);
   EXPECT_EQ(hit.triangle, wanted.triangle);
   EXPECT_NEAR(hit.distance, wanted.distance, 1e-6);
@@ -139,74 +139,74 @@ TEST(SurfaceTree, FollowsBodiesOfOneBindingInTurn) {
     EXPECT_FALSE(first.tree.raycast(skin, btVector3(x, 3, x), btVector3(x, -3, x)));
     const SurfaceHit hit = first.tree.raycast(skin, btVector3(x + 4, 3, x), btVector3(x + 4, -3, x));
     EXPECT_EQ(hit.body, &second->body());
-    EXPECT_FALSE(first.tree.pointAt(first.body(), hit).ok());  // of another body
+    EXPECT_FALSE(first.tree.pointAt(first.body(), hit).ok());  // hit of another body
   }
 }
 
 TEST(SurfaceTree, LetsRaysPassWhatAFilterLeavesOut) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   const btVector3 from(btScalar(0.51), 3, btScalar(0.52)), to(btScalar(0.51), -3, btScalar(0.52));
-  const SurfaceHit first = of.tree.raycast(of.skin, from, to);
-  const SurfaceHit second = of.tree.raycast(of.skin, from, to, [&](int t) { return t != first.triangle; });
+  const SurfaceHit first = body.tree.raycast(body.skin, from, to);
+  const SurfaceHit second = body.tree.raycast(body.skin, from, to, [&](int t) { return t != first.triangle; });
   ASSERT_TRUE(first && second);
   EXPECT_NE(first.triangle, second.triangle);
-  EXPECT_NEAR(second.distance - first.distance, 0.76, 0.03);  // through the ball
-  EXPECT_FALSE(of.tree.raycast(of.skin, from, to, [](int) { return false; }));
+  EXPECT_NEAR(second.distance - first.distance, 0.76, 0.03);  // after passing through the ball
+  EXPECT_FALSE(body.tree.raycast(body.skin, from, to, [](int) { return false; }));
 }
 
 TEST(SurfaceTree, SaysWhyARayMeetsNothing) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   const btVector3 from(btScalar(0.5), 3, btScalar(0.5)), to(btScalar(0.5), -3, btScalar(0.5));
-  EXPECT_EQ(of.tree.raycast(of.skin, from, btVector3(3, 3, 3)).status, TouchStatus::Miss);
-  EXPECT_EQ(of.tree.raycast(of.skin, from, from).status, TouchStatus::Miss);
-  EXPECT_EQ(of.tree.raycast({}, from, to).status, TouchStatus::Unbound);
+  EXPECT_EQ(body.tree.raycast(body.skin, from, btVector3(3, 3, 3)).status, StatusCode::NoHit);
+  EXPECT_EQ(body.tree.raycast(body.skin, from, from).status, StatusCode::NoHit);
+  EXPECT_EQ(body.tree.raycast({}, from, to).status, StatusCode::Unbound);
   SoftBodySkin other;
-  ASSERT_TRUE(other.bind(of.body(), of.model.cage, of.model.mesh).ok());
-  EXPECT_EQ(of.tree.raycast(other, from, to).status, TouchStatus::OtherBody);
-  EXPECT_EQ(of.tree.raycast(of.skin, btVector3(NAN, 0, 0), to).status, TouchStatus::NonFinite);
-  of.body().m_nodes[7].m_x.setX(NAN);
-  EXPECT_EQ(of.tree.raycast(of.skin, from, to).status, TouchStatus::NonFinite);
-  of.body().m_nodes[7].m_x.setX(0);
-  EXPECT_TRUE(of.tree.raycast(of.skin, from, to));
+  ASSERT_TRUE(other.bind(body.body(), body.model.cage, body.model.mesh).ok());
+  EXPECT_EQ(body.tree.raycast(other, from, to).status, StatusCode::OtherBody);
+  EXPECT_EQ(body.tree.raycast(body.skin, btVector3(NAN, 0, 0), to).status, StatusCode::NonFinite);
+  body.body().m_nodes[7].m_x.setX(NAN);
+  EXPECT_EQ(body.tree.raycast(body.skin, from, to).status, StatusCode::NonFinite);
+  body.body().m_nodes[7].m_x.setX(0);
+  EXPECT_TRUE(body.tree.raycast(body.skin, from, to));
 }
 
 TEST(SurfaceTree, RefusesWhatIsNoSurface) {
   const TouchModel model;
   const auto binding = model.bind();
-  EXPECT_EQ(SurfaceTree(nullptr, model.mesh).check().code, StatusCode::Empty);
+  EXPECT_EQ(SurfaceTree::create(nullptr, model.mesh).status().code, StatusCode::Empty);
   TriangleMesh points = model.mesh;
   points.triangles.clear();
-  EXPECT_EQ(SurfaceTree(binding, points).check().code, StatusCode::Empty);
-  EXPECT_EQ(SurfaceTree(binding, sphere(5, 0.3, {0, 0, 0})).check().code, StatusCode::SizeMismatch);
-  EXPECT_TRUE(SurfaceTree(binding, model.mesh).check().ok());
+  EXPECT_EQ(SurfaceTree::create(binding, points).status().code, StatusCode::Empty);
+  EXPECT_EQ(SurfaceTree::create(binding, sphere(5, 0.3, {0, 0, 0})).status().code, StatusCode::SizeMismatch);
+  EXPECT_TRUE(SurfaceTree::create(binding, model.mesh).ok());
 }
 
 TEST(SurfaceTree, MakesNoPointsOfWhatIsNotThere) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  EXPECT_EQ(of.tree.pointOfVertex(of.body(), -1).status().code, StatusCode::IndexOutOfRange);
-  EXPECT_EQ(of.tree.pointOfVertex(of.body(), 1 << 30).status().code, StatusCode::IndexOutOfRange);
-  EXPECT_EQ(of.tree.pointAt(of.body(), {}).status().code, StatusCode::InvalidOption);
-  EXPECT_EQ(of.tree.pointAtRest(of.body(), {NAN, 0, 0}).status().code, StatusCode::NonFinite);
-  EXPECT_EQ(of.tree.pointAtRest(of.body(), {1e200, 0, 0}).status().code, StatusCode::NonFinite);
+  TouchedBody body(*world);
+  EXPECT_EQ(body.tree.pointAtVertex(body.body(), -1).status().code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body.tree.pointAtVertex(body.body(), 1 << 30).status().code, StatusCode::IndexOutOfRange);
+  EXPECT_EQ(body.tree.pointAt(body.body(), {}).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(body.tree.pointAtRest(body.body(), {NAN, 0, 0}).status().code, StatusCode::NonFinite);
+  EXPECT_EQ(body.tree.pointAtRest(body.body(), {1e200, 0, 0}).status().code, StatusCode::NonFinite);
   const auto small = added(*world, smallCageAbove(5));
-  EXPECT_EQ(of.tree.pointOfVertex(small->body(), 0).status().code, StatusCode::SizeMismatch);
+  EXPECT_EQ(body.tree.pointAtVertex(small->body(), 0).status().code, StatusCode::SizeMismatch);
 }
 
 TEST(SurfaceTree, MakesNoPointsOfWeightsThatDoNotAddUp) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   SurfaceHit hit;
-  hit.status = TouchStatus::Ok;
-  hit.body = &of.body();
+  hit.status = StatusCode::Ok;
+  hit.body = &body.body();
   hit.triangle = 0;
   const auto codeOf = [&](btScalar a, btScalar b, btScalar c) {
     hit.weights[0] = a;
     hit.weights[1] = b;
     hit.weights[2] = c;
-    return of.tree.pointAt(of.body(), hit).status().code;
+    return body.tree.pointAt(body.body(), hit).status().code;
   };
   const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(), infinite = std::numeric_limits<btScalar>::infinity();
   EXPECT_EQ(codeOf(nan, 0, 1), StatusCode::InvalidOption);
@@ -218,33 +218,32 @@ TEST(SurfaceTree, MakesNoPointsOfWeightsThatDoNotAddUp) {
 
 TEST(SurfaceTree, ThatWasMovedFromIsEmpty) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  const SurfaceTree elsewhere(std::move(of.tree));
-  EXPECT_TRUE(elsewhere.check().ok());
-  const SurfaceTree& empty = of.tree;  // NOLINT: moved from
-  EXPECT_EQ(empty.check().code, StatusCode::Empty);
-  EXPECT_EQ(empty.raycast(of.skin, btVector3(0, 9, 0), btVector3(0, -9, 0)).status, TouchStatus::Miss);
-  EXPECT_EQ(empty.pointOfVertex(of.body(), 0).status().code, StatusCode::Empty);
-  EXPECT_EQ(empty.pointAtRest(of.body(), {0, 0, 0}).status().code, StatusCode::Empty);
-  EXPECT_EQ(empty.pointAt(of.body(), {}).status().code, StatusCode::Empty);
-  EXPECT_NE(empty.applyImpulse(of.body(), {btVector3(0, 0, 0), 1, 1}).status, TouchStatus::Ok);
-  EXPECT_NE(empty.applyForce(of.body(), {btVector3(0, 0, 0), 1, 1}).status, TouchStatus::Ok);
+  TouchedBody body(*world);
+  const SurfaceTree elsewhere(std::move(body.tree));
+  EXPECT_TRUE(elsewhere.pointAtVertex(body.body(), 0).ok());
+  const SurfaceTree& empty = body.tree;  // NOLINT: moved from
+  EXPECT_EQ(empty.raycast(body.skin, btVector3(0, 9, 0), btVector3(0, -9, 0)).status, StatusCode::NoHit);
+  EXPECT_EQ(empty.pointAtVertex(body.body(), 0).status().code, StatusCode::Empty);
+  EXPECT_EQ(empty.pointAtRest(body.body(), {0, 0, 0}).status().code, StatusCode::Empty);
+  EXPECT_EQ(empty.pointAt(body.body(), {}).status().code, StatusCode::Empty);
+  EXPECT_NE(empty.applyImpulse(body.body(), {btVector3(0, 0, 0), 1, 1}).status, StatusCode::Ok);
+  EXPECT_NE(empty.applyForce(body.body(), {btVector3(0, 0, 0), 1, 1}).status, StatusCode::Ok);
 }
 
 TEST(RayTriangle, IsMetFromBothSidesWithinTheRayUnlessItIsFlat) {
   const TriangleCorners triangle = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)};
   const TriangleCorners flat = {triangle[0], Eigen::Vector3d(0.5, 0, 0), triangle[1]};
-  const auto meetsIt = [](const touch_detail::Ray& ray, const TriangleCorners& corners) {
+  const auto collidesWithIt = [](const touch_detail::Ray& ray, const TriangleCorners& corners) {
     touch_detail::RayHit hit;
-    return touch_detail::meets(ray, corners, hit) ? hit.at : -1.0;
+    return touch_detail::collides(ray, corners, hit) ? hit.at : -1.0;
   };
-  EXPECT_NEAR(meetsIt({{0.2, 0.3, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12);
-  EXPECT_NEAR(meetsIt({{0.2, 0.3, -1}, {0, 0, 2}}, triangle), 0.5, 1e-12);
-  EXPECT_EQ(meetsIt({{0.2, 0.3, 1}, {0, 0, -0.9}}, triangle), -1.0);
-  EXPECT_EQ(meetsIt({{0.2, 0.3, 1}, {0, 0, 2}}, triangle), -1.0);
-  EXPECT_EQ(meetsIt({{0.8, 0.3, 1}, {0, 0, -2}}, triangle), -1.0);
-  EXPECT_NEAR(meetsIt({{0.25, 0, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12) << "on its edge";
-  EXPECT_EQ(meetsIt({{0.25, 0, 1}, {0, 0, -2}}, flat), -1.0);
+  EXPECT_NEAR(collidesWithIt({{0.2, 0.3, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12);
+  EXPECT_NEAR(collidesWithIt({{0.2, 0.3, -1}, {0, 0, 2}}, triangle), 0.5, 1e-12);
+  EXPECT_EQ(collidesWithIt({{0.2, 0.3, 1}, {0, 0, -0.9}}, triangle), -1.0);
+  EXPECT_EQ(collidesWithIt({{0.2, 0.3, 1}, {0, 0, 2}}, triangle), -1.0);
+  EXPECT_EQ(collidesWithIt({{0.8, 0.3, 1}, {0, 0, -2}}, triangle), -1.0);
+  EXPECT_NEAR(collidesWithIt({{0.25, 0, 1}, {0, 0, -2}}, triangle), 0.5, 1e-12) << "on its edge";
+  EXPECT_EQ(collidesWithIt({{0.25, 0, 1}, {0, 0, -2}}, flat), -1.0);
 }
 
 }  // namespace

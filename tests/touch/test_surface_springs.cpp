@@ -7,19 +7,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One turn a second, a quarter of a unit around.
+/// A motion of one turn per second on a circle with a radius of a quarter of a unit.
 btVector3 onCircle(const btVector3& start, double seconds) {
   const double angle = 2 * EIGEN_PI * seconds;
   return start + toBullet({0.25 * std::sin(angle), 0.25 * (1 - std::cos(angle)), 0});
 }
 
-/// The largest distance between point and target in two seconds of swinging, the first half second apart.
+/// The largest distance between point and target during two seconds of swinging, not counting the first half second.
 double worstLag(EmptyWorld& world, const SurfacePoint& point, SurfaceSpring& spring, double dt) {
   const btVector3 start = *point.position();
   double worst = 0;
   for (double t = 0; t < 2; t += dt) {
     const btVector3 target = onCircle(start, t);
-    EXPECT_EQ(spring.setTarget(target), TouchStatus::Ok);
+    EXPECT_EQ(spring.setTarget(target), StatusCode::Ok);
     substep(world, dt);
     if (t > 0.5) worst = std::max(worst, static_cast<double>((*point.position() - target).length()));
   }
@@ -29,11 +29,11 @@ double worstLag(EmptyWorld& world, const SurfacePoint& point, SurfaceSpring& spr
 TEST(SurfaceSprings, KeepAPointNearItsTarget) {
   for (const double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
     auto world = deformableWorld(10);
-    TouchedBody of(*world, TouchModel(0.38, 3.0));
-    const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+    TouchedBody body(*world, TouchModel(0.38, 3.0));
+    const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitY()));
     auto spring = SurfaceSpring::add(world->deformable(), point).value();
     EXPECT_LT(worstLag(*world, point, *spring, dt), 0.02) << dt;
-    EXPECT_TRUE(isFinite(of.body())) << dt;
+    EXPECT_TRUE(isFinite(body.body())) << dt;
   }
 }
 
@@ -42,15 +42,16 @@ TEST(SurfaceSprings, AreStableAtAnyStiffness) {
     for (const double stiffness : {1e-3, 1.0, 1e3, 1e6}) {
       for (const double dt : {1.0 / 60, 1.0 / 1000}) {
         auto world = deformableWorld(10);
-        TouchedBody of(*world, TouchModel(radius, 3.0));
-        const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+        TouchedBody body(*world, TouchModel(radius, 3.0));
+        const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitX()));
         SurfaceSpringOptions options;
         options.stiffness = stiffness;
-        options.maxForce = INFINITY;  // it is led faster than by the default
+        options.maxForce = INFINITY;  // the target moves faster than the default force can follow
         auto spring = SurfaceSpring::add(world->deformable(), point, options).value();
         const double lag = worstLag(*world, point, *spring, dt);
-        EXPECT_TRUE(isFinite(of.body())) << stiffness << " " << dt << " " << radius;
-        // Outside, the point's tet bends away from under it: a spring of any stiffness is a step behind that.
+        EXPECT_TRUE(isFinite(body.body())) << stiffness << " " << dt << " " << radius;
+        // Outside the cage, the point's tet bends away from under it: a spring of any stiffness is one step behind
+        // that.
         if (stiffness == 1e3 || (stiffness > 1e3 && radius < 0.4)) {
           EXPECT_LT(lag, radius < 0.4 ? 0.001 : 0.03) << stiffness << " " << dt << " " << radius;
         }
@@ -61,8 +62,8 @@ TEST(SurfaceSprings, AreStableAtAnyStiffness) {
 
 TEST(SurfaceSprings, CarryTheBodysWeight) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitY()));
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
   Vector3d mean = Vector3d::Zero();
   for (int s = 0; s < 1440; ++s) {
@@ -74,26 +75,27 @@ TEST(SurfaceSprings, CarryTheBodysWeight) {
 
 TEST(SurfaceSprings, NeverPullHarderThanAllowed) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitY()));
   SurfaceSpringOptions options;
   options.stiffness = 1000;
   options.maxForce = 14;
   auto spring = SurfaceSpring::add(world->deformable(), point, options).value();
   const btVector3 start = *point.position();
-  ASSERT_EQ(spring->setTarget(start + btVector3(0, 1, 0)), TouchStatus::Ok);
-  double most = 0;
+  ASSERT_EQ(spring->setTarget(start + btVector3(0, 1, 0)), StatusCode::Ok);
+  double maximum = 0;
   for (int s = 0; s < 1500; ++s) {
     substep(*world);
-    most = std::max(most, static_cast<double>(spring->force().length()));
+    maximum = std::max(maximum, static_cast<double>(spring->force().length()));
   }
-  EXPECT_LE(most, 14 * 1.05);
-  EXPECT_GT(most, 13);
-  EXPECT_LT((*point.position() - start - btVector3(0, 1, 0)).length(), 0.02);  // above its weight: it gets there
-  ASSERT_EQ(spring->setMaxForce(6), TouchStatus::Ok);
+  EXPECT_LE(maximum, 14 * 1.05);
+  EXPECT_GT(maximum, 13);
+  // More force than its weight: it reaches the target.
+  EXPECT_LT((*point.position() - start - btVector3(0, 1, 0)).length(), 0.02);
+  ASSERT_EQ(spring->setMaxForce(6), StatusCode::Ok);
   for (int s = 0; s < 200; ++s) substep(*world);
-  EXPECT_LT(point.position()->y(), start.y());  // below: it does not stay
-  EXPECT_TRUE(isFinite(of.body()));
+  EXPECT_LT(point.position()->y(), start.y());  // less force than its weight: it sinks
+  EXPECT_TRUE(isFinite(body.body()));
 }
 
 TEST(SurfaceSprings, HangABodyOnARigidOneThatFeelsIt) {
@@ -101,8 +103,8 @@ TEST(SurfaceSprings, HangABodyOnARigidOneThatFeelsIt) {
     auto world = deformableWorld(10);
     SoftBodyOptions held;
     held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
-    TouchedBody of(*world, TouchModel(0.38, 3.0), held);
-    const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+    TouchedBody body(*world, TouchModel(0.38, 3.0), held);
+    const SurfacePoint point = body.vertex(body.furthest(-Vector3d::UnitY()));
     const btVector3 pivot(0, btScalar(0.1), 0);
     RigidBox box(*world, mass, *point.position() - pivot);
     box->setActivationState(DISABLE_DEACTIVATION);
@@ -120,28 +122,28 @@ TEST(SurfaceSprings, HangABodyOnARigidOneThatFeelsIt) {
 
 TEST(SurfaceSprings, ExchangeMomentumWithARigidBody) {
   auto world = deformableWorld();
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitX()));
   RigidBox box(*world, 0.5, *point.position() + btVector3(btScalar(0.15), 0, 0));
   box->setActivationState(DISABLE_DEACTIVATION);
   auto spring = SurfaceSpring::add(world->deformable(), point, *box, btVector3(btScalar(-0.15), 0, 0)).value();
   box->setLinearVelocity(btVector3(0, 1, 0));
   for (int s = 0; s < 240; ++s) substep(*world);
-  const Vector3d sum = Momentum(of.body()).linear + 0.5 * toEigen(box->getLinearVelocity());
+  const Vector3d sum = Momentum(body.body()).linear + 0.5 * toEigen(box->getLinearVelocity());
   EXPECT_LT((sum - Vector3d(0, 0.5, 0)).norm(), 0.01);
-  EXPECT_GT(Momentum(of.body()).linear.y(), 0.1);
+  EXPECT_GT(Momentum(body.body()).linear.y(), 0.1);
 }
 
 TEST(SurfaceSprings, HoldARigidBodyByManyPointsAtOnce) {
   auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
-  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
+  TouchedBody body(*world, TouchModel(0.38, 3.0), held);
   RigidBox box(*world, 0.3, btVector3(btScalar(0.5), btScalar(2.9), btScalar(0.5)));
   box->setActivationState(DISABLE_DEACTIVATION);
   std::vector<std::unique_ptr<SurfaceSpring>> springs;
   for (int v = 0; v < 12; ++v) {
-    const SurfacePoint point = of.vertex(v * 17);
+    const SurfacePoint point = body.vertex(v * 17);
     const btVector3 pivot = box->getWorldTransform().invXform(*point.position());
     springs.push_back(SurfaceSpring::add(world->deformable(), point, *box, pivot).value());
   }
@@ -150,24 +152,24 @@ TEST(SurfaceSprings, HoldARigidBodyByManyPointsAtOnce) {
   for (const auto& spring : springs) EXPECT_LT(spring->stretch(), 0.01);
 }
 
-/// Unbounded ones threw it at hundreds of sizes per second, and stretched it to twenty.
+/// Unbounded springs threw the body at hundreds of body lengths per second, and stretched it to twenty body lengths.
 TEST(SurfaceSprings, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
   auto world = deformableWorld();
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitX()));
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
   const btVector3 target = *point.position() + btVector3(5, 2, 0);
-  ASSERT_EQ(spring->setTarget(target), TouchStatus::Ok);
+  ASSERT_EQ(spring->setTarget(target), StatusCode::Ok);
   double fastest = 0, largest = 0;
   for (int s = 0; s < 480; ++s) {
     substep(*world);
-    ASSERT_TRUE(isFinite(of.body()));
-    for (int n = 0; n < of.body().m_nodes.size(); ++n) {
-      fastest = std::max(fastest, static_cast<double>(of.body().m_nodes[n].m_v.length()));
+    ASSERT_TRUE(isFinite(body.body()));
+    for (int n = 0; n < body.body().m_nodes.size(); ++n) {
+      fastest = std::max(fastest, static_cast<double>(body.body().m_nodes[n].m_v.length()));
     }
     btVector3 low, high;
-    of.body().updateBounds();
-    of.body().getAabb(low, high);
+    body.body().updateBounds();
+    body.body().getAabb(low, high);
     largest = std::max(largest, static_cast<double>((high - low).length()));
   }
   EXPECT_LT(fastest, 40);
@@ -177,12 +179,12 @@ TEST(SurfaceSprings, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
 
 TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  const SurfacePoint point = of.vertex(0);
+  TouchedBody body(*world);
+  const SurfacePoint point = body.vertex(0);
   const auto codeOf = [&](double stiffness, double damping, double maxForce) {
     SurfaceSpringOptions options;
     options.stiffness = stiffness;
-    options.damping = damping;
+    options.dampingRatio = damping;
     options.maxForce = maxForce;
     return SurfaceSpring::add(world->deformable(), point, options).status().code;
   };
@@ -191,81 +193,83 @@ TEST(SurfaceSpring, RefusesWhatMakesNoSense) {
   EXPECT_EQ(codeOf(INFINITY, 0, 5), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(10, -1, 5), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(10, NAN, 5), StatusCode::InvalidOption);
-  EXPECT_EQ(codeOf(10, 0, 0), StatusCode::Ok) << "the default";
+  EXPECT_EQ(codeOf(0, 0, 5), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(10, 0, 0), StatusCode::InvalidOption);
+  EXPECT_EQ(codeOf(10, 0, INFINITY), StatusCode::Ok);
   EXPECT_EQ(codeOf(10, 0, -1), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(10, 0, NAN), StatusCode::InvalidOption);
   EXPECT_EQ(SurfaceSpring::add(world->deformable(), {}).status().code, StatusCode::InvalidOption);
   auto other = deformableWorld();
   EXPECT_EQ(SurfaceSpring::add(other->deformable(), point).status().code, StatusCode::InvalidOption);
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
-  EXPECT_EQ(spring->setTarget(btVector3(NAN, 0, 0)), TouchStatus::NonFinite);
-  EXPECT_EQ(spring->setStiffness(0), TouchStatus::InvalidOption);
-  EXPECT_EQ(spring->setMaxForce(-1), TouchStatus::InvalidOption);
-  EXPECT_EQ(spring->setStiffness(100), TouchStatus::Ok);
+  EXPECT_EQ(spring->setTarget(btVector3(NAN, 0, 0)), StatusCode::NonFinite);
+  EXPECT_EQ(spring->setStiffness(0), StatusCode::InvalidOption);
+  EXPECT_EQ(spring->setMaxForce(-1), StatusCode::InvalidOption);
+  EXPECT_EQ(spring->setStiffness(100), StatusCode::Ok);
 }
 
 TEST(SurfaceSpring, LeavesCollisionsAsTheyWere) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   RigidBox box(*world, 1, btVector3(3, 3, 3));
-  const auto& hidden = of.body().m_collisionDisabledObjects;
-  // Whichever of two goes first.
+  const auto& hidden = body.body().m_collisionDisabledObjects;
+  // Either of the two may be destroyed first.
   for (const bool firstGoesFirst : {true, false}) {
-    auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0)).value();
+    auto spring = SurfaceSpring::add(world->deformable(), body.vertex(0), *box, btVector3(0, 0, 0)).value();
     EXPECT_GT(hidden.size(), 0);
-    auto second = SurfaceSpring::add(world->deformable(), of.vertex(9), *box, btVector3(0, 0, 0)).value();
+    auto second = SurfaceSpring::add(world->deformable(), body.vertex(9), *box, btVector3(0, 0, 0)).value();
     (firstGoesFirst ? spring : second).reset();
     EXPECT_GT(hidden.size(), 0);
     (firstGoesFirst ? second : spring).reset();
     EXPECT_EQ(hidden.size(), 0);
   }
   SurfaceSpringOptions both;
-  both.collide = true;
-  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *box, btVector3(0, 0, 0), both).value();
+  both.collideConnected = true;
+  const auto spring = SurfaceSpring::add(world->deformable(), body.vertex(0), *box, btVector3(0, 0, 0), both).value();
   EXPECT_EQ(hidden.size(), 0);
 }
 
 TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
   auto world = deformableWorld();
   world->deformable().setGravity(btVector3(0, 0, 0));
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   RigidBox platform(*world, 0, btVector3(0, 3, 0));
   (*platform).setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
-  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *platform, btVector3(0, 0, 0)).value();
+  const auto spring = SurfaceSpring::add(world->deformable(), body.vertex(0), *platform, btVector3(0, 0, 0)).value();
   step(*world, 1);
-  of.body().forceActivationState(ISLAND_SLEEPING);
+  body.body().forceActivationState(ISLAND_SLEEPING);
   step(*world, 2);
-  EXPECT_FALSE(of.body().isActive());
+  EXPECT_FALSE(body.body().isActive());
   btTransform moved = (*platform).getWorldTransform();
   moved.getOrigin() += btVector3(0, btScalar(0.1), 0);
   (*platform).setWorldTransform(moved);
   step(*world, 2);
-  EXPECT_TRUE(of.body().isActive());
+  EXPECT_TRUE(body.body().isActive());
 }
 
 TEST(SurfaceSpring, KeepsABodyAwakeThatHangsOnWhatMovesSlowly) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  of.body().forceActivationState(ACTIVE_TAG);
+  TouchedBody body(*world);
+  body.body().forceActivationState(ACTIVE_TAG);
   RigidBox hook(*world, 0, btVector3(0, 3, 0));
   hook->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
   hook->setActivationState(DISABLE_DEACTIVATION);
-  const auto spring = SurfaceSpring::add(world->deformable(), of.vertex(0), *hook, btVector3(0, 0, 0)).value();
+  const auto spring = SurfaceSpring::add(world->deformable(), body.vertex(0), *hook, btVector3(0, 0, 0)).value();
   for (int k = 0; k < 720; ++k) {
-    btTransform place = hook->getWorldTransform();
-    place.getOrigin() += btVector3(0, btScalar(0.01) / 240, 0);
-    hook->setWorldTransform(place);
+    btTransform position = hook->getWorldTransform();
+    position.getOrigin() += btVector3(0, btScalar(0.01) / 240, 0);
+    hook->setWorldTransform(position);
     substep(*world);
-    ASSERT_TRUE(of.body().isActive()) << "step " << k;
+    ASSERT_TRUE(body.body().isActive()) << "step " << k;
   }
 }
 
 TEST(SurfaceSpring, RefusesPivotsThatAreNoPlaces) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   RigidBox box(*world, 1, btVector3(3, 3, 3));
   const btVector3 bad(0, std::numeric_limits<btScalar>::quiet_NaN(), 0);
-  EXPECT_EQ(SurfaceSpring::add(world->deformable(), of.vertex(0), *box, bad).status().code, StatusCode::NonFinite);
+  EXPECT_EQ(SurfaceSpring::add(world->deformable(), body.vertex(0), *box, bad).status().code, StatusCode::NonFinite);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ TEST(SurfaceWelds, KeepAHangingBodyAtItsPlace) {
     auto world = deformableWorld(10);
     SoftBodyOptions held;
     held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
-    TouchedBody of(*world, TouchModel(0.38, 3.0), held);
-    const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+    TouchedBody body(*world, TouchModel(0.38, 3.0), held);
+    const SurfacePoint point = body.vertex(body.furthest(-Vector3d::UnitY()));
     RigidBox box(*world, mass, *point.position() + btVector3(btScalar(0.05), btScalar(-0.15), 0));
     box->setActivationState(DISABLE_DEACTIVATION);
     auto weld = SurfaceWeld::add(world->deformable(), point, *box).value();
@@ -25,19 +25,20 @@ TEST(SurfaceWelds, KeepAHangingBodyAtItsPlace) {
       substep(*world);
       if (s >= 960) mean += static_cast<double>(weld->force().y()) / 480;
       worst = std::max(worst, static_cast<double>(weld->separation()));
-      turned = std::max(turned, static_cast<double>(weld->turn()));
+      turned = std::max(turned, static_cast<double>(weld->angle()));
     }
     EXPECT_LT(worst, 1e-4) << mass;
     EXPECT_LT(turned, 0.02) << mass;
     EXPECT_NEAR(mean, -10 * mass, 0.3 * mass) << mass;
-    EXPECT_TRUE(isFinite(of.body()));
+    EXPECT_TRUE(isFinite(body.body()));
   }
 }
 
 TEST(SurfaceWelds, FollowABodyThatIsSwung) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint top = of.vertex(of.furthest(Vector3d::UnitY())), low = of.vertex(of.furthest(-Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint top = body.vertex(body.furthest(Vector3d::UnitY())),
+                     low = body.vertex(body.furthest(-Vector3d::UnitY()));
   RigidBox box(*world, 0.2, *low.position() - btVector3(0, btScalar(0.2), 0),
                btVector3(btScalar(0.02), btScalar(0.2), btScalar(0.02)));
   box->setActivationState(DISABLE_DEACTIVATION);
@@ -48,18 +49,18 @@ TEST(SurfaceWelds, FollowABodyThatIsSwung) {
   for (int s = 0; s < 720; ++s) {
     const double angle = 2 * EIGEN_PI * s / 240;
     ASSERT_EQ(spring->setTarget(start + toBullet({0.3 * std::sin(angle), 0, 0.3 - 0.3 * std::cos(angle)})),
-              TouchStatus::Ok);
+              StatusCode::Ok);
     substep(*world);
     worst = std::max(worst, static_cast<double>(weld->separation()));
   }
   EXPECT_LT(worst, 1e-4);
-  EXPECT_TRUE(isFinite(of.body()));
+  EXPECT_TRUE(isFinite(body.body()));
 }
 
 TEST(SurfaceWelds, TurnTheBodyWithWhatIsFixedToIt) {
   auto world = deformableWorld();
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitX()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitX()));
   RigidBox box(*world, 1.0, *point.position() + btVector3(btScalar(0.1), 0, 0));
   box->setActivationState(DISABLE_DEACTIVATION);
   auto weld = SurfaceWeld::add(world->deformable(), point, *box).value();
@@ -67,10 +68,10 @@ TEST(SurfaceWelds, TurnTheBodyWithWhatIsFixedToIt) {
   for (int s = 0; s < 120; ++s) substep(*world);
   const Vector3d centre = [&] {
     Vector3d sum = Vector3d::Zero();
-    for (int n = 0; n < of.body().m_nodes.size(); ++n) sum += toEigen(of.body().m_nodes[n].m_x);
-    return Vector3d(sum / of.body().m_nodes.size());
+    for (int n = 0; n < body.body().m_nodes.size(); ++n) sum += toEigen(body.body().m_nodes[n].m_x);
+    return Vector3d(sum / body.body().m_nodes.size());
   }();
-  const Momentum now(of.body());
+  const Momentum now(body.body());
   EXPECT_GT((now.angular - centre.cross(now.linear)).x(), 1e-3);
   EXPECT_LT(box->getAngularVelocity().x(), 1.9);
   EXPECT_LT(weld->separation(), 1e-4);
@@ -78,8 +79,8 @@ TEST(SurfaceWelds, TurnTheBodyWithWhatIsFixedToIt) {
 
 TEST(SurfaceWelds, FixAPointToWhatCannotMove) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world, TouchModel(0.38, 3.0));
-  const SurfacePoint point = of.vertex(of.furthest(Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint point = body.vertex(body.furthest(Vector3d::UnitY()));
   RigidBox wall(*world, 0, *point.position() + btVector3(0, btScalar(0.2), 0));
   auto weld = SurfaceWeld::add(world->deformable(), point, *wall).value();
   const btVector3 start = *point.position();
@@ -89,17 +90,17 @@ TEST(SurfaceWelds, FixAPointToWhatCannotMove) {
     worst = std::max(worst, static_cast<double>((*point.position() - start).length()));
   }
   EXPECT_LT(worst, 2e-4);
-  EXPECT_TRUE(isFinite(of.body()));
+  EXPECT_TRUE(isFinite(body.body()));
 }
 
 TEST(SurfaceWelds, MoveTheLinkOfAMultibody) {
   auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.7; };
-  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
-  const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+  TouchedBody body(*world, TouchModel(0.38, 3.0), held);
+  const SurfacePoint point = body.vertex(body.furthest(-Vector3d::UnitY()));
   const btVector3 at = *point.position() - btVector3(0, btScalar(0.1), 0);
-  // A free base and a link on a hinge, half a unit to the side.
+  // A free base and a link on a hinge, half a unit to one side.
   btBoxShape shape(btVector3(btScalar(0.05), btScalar(0.05), btScalar(0.05)));
   btVector3 inertia(0, 0, 0);
   shape.calculateLocalInertia(btScalar(0.3), inertia);
@@ -129,8 +130,8 @@ TEST(SurfaceWelds, MoveTheLinkOfAMultibody) {
       worst = std::max(worst, static_cast<double>(weld->separation()));
     }
     EXPECT_LT(worst, 2e-4);
-    EXPECT_NEAR(static_cast<double>(weld->force().y()), -5, 0.6);  // the weight of both
-    EXPECT_TRUE(isFinite(of.body()));
+    EXPECT_NEAR(static_cast<double>(weld->force().y()), -5, 0.6);  // the weight of both bodies
+    EXPECT_TRUE(isFinite(body.body()));
   }
   world->deformable().removeCollisionObject(&link);
   world->deformable().removeCollisionObject(&base);

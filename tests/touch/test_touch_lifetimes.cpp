@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/touch/src/points/point_data.h>
 #include "touch_test.h"
 
 namespace tetskin::test {
@@ -7,59 +8,59 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Forces of a world.
-int forceCount(TouchedBody& of) {
-  return static_cast<btDeformableBodySolver*>(of.body().getSoftBodySolver())->getLagrangianForceArray()->size();
+/// Number of forces in a world.
+int forceCount(TouchedBody& body) {
+  return static_cast<btDeformableBodySolver*>(body.body().getSoftBodySolver())->getLagrangianForceArray()->size();
 }
 
 TEST(TouchLifetime, PointsSayThatTheirBodyIsGone) {
   auto world = deformableWorld();
-  auto of = std::make_unique<TouchedBody>(*world);
-  SurfacePoint point = of->vertex(5);
-  of.reset();
-  EXPECT_EQ(point.status(), TouchStatus::Gone);
+  auto body = std::make_unique<TouchedBody>(*world);
+  SurfacePoint point = body->vertex(5);
+  body.reset();
+  EXPECT_EQ(point.status(), StatusCode::BodyDeleted);
   EXPECT_FALSE(point.position());
   EXPECT_FALSE(point.velocity());
   EXPECT_FALSE(point.frame());
-  EXPECT_EQ(point.mass(), 0);
+  EXPECT_EQ(point.effectiveMass(), 0);
   EXPECT_EQ(point.body(), nullptr);
-  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Gone);
-  EXPECT_EQ(point.applyForce(btVector3(1, 0, 0)), TouchStatus::Gone);
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), StatusCode::BodyDeleted);
+  EXPECT_EQ(point.applyForce(btVector3(1, 0, 0)), StatusCode::BodyDeleted);
 }
 
 TEST(TouchLifetime, PointsOfNobodySaySo) {
   SurfacePoint point;
-  EXPECT_EQ(point.status(), TouchStatus::Released);
+  EXPECT_EQ(point.status(), StatusCode::Released);
   EXPECT_FALSE(point.position());
-  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::Released);
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), StatusCode::Released);
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  point = of.vertex(3);
-  EXPECT_EQ(point.status(), TouchStatus::Ok);
+  TouchedBody body(*world);
+  point = body.vertex(3);
+  EXPECT_EQ(point.status(), StatusCode::Ok);
   point.release();
-  EXPECT_EQ(point.status(), TouchStatus::Released);
+  EXPECT_EQ(point.status(), StatusCode::Released);
   EXPECT_STREQ(toString(point.status()), "released");
 }
 
 TEST(TouchLifetime, PointsSayThatTheTopologyHasChanged) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  SurfacePoint point = of.vertex(5);
-  auto own = makeSoftBody(of.model.cage, world->deformable().getWorldInfo()).value();
-  SurfacePoint other = of.tree.pointOfVertex(*own, 5).value();
+  TouchedBody body(*world);
+  SurfacePoint point = body.vertex(5);
+  auto own = createSoftBody(body.model.cage, world->deformable().getWorldInfo()).value();
+  SurfacePoint other = body.tree.pointAtVertex(*own, 5).value();
   own->appendNode(btVector3(9, 9, 9), 1);
-  EXPECT_EQ(other.status(), TouchStatus::TopologyChanged);
-  EXPECT_EQ(other.applyImpulse(btVector3(1, 0, 0)), TouchStatus::TopologyChanged);
-  EXPECT_EQ(point.status(), TouchStatus::Ok);
+  EXPECT_EQ(other.status(), StatusCode::TopologyChanged);
+  EXPECT_EQ(other.applyImpulse(btVector3(1, 0, 0)), StatusCode::TopologyChanged);
+  EXPECT_EQ(point.status(), StatusCode::Ok);
 }
 
 TEST(TouchLifetime, PointsSayThatTheirNodesAreNoNumbers) {
   auto world = deformableWorld();
-  TouchedBody of(*world);
-  SurfacePoint point = of.vertex(5);
-  of.body().m_nodes[point.data().corners[0].nodes[2]].m_x.setY(INFINITY);
-  EXPECT_EQ(point.status(), TouchStatus::NonFinite);
-  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), TouchStatus::NonFinite);
+  TouchedBody body(*world);
+  SurfacePoint point = body.vertex(5);
+  body.body().m_nodes[touch_detail::dataOf(point).corners[0].nodes[2]].m_x.setY(INFINITY);
+  EXPECT_EQ(point.status(), StatusCode::NonFinite);
+  EXPECT_EQ(point.applyImpulse(btVector3(1, 0, 0)), StatusCode::NonFinite);
 }
 
 TEST(TouchLifetime, PointsAreNotReadOfSkinsOfOtherBodies) {
@@ -72,23 +73,23 @@ TEST(TouchLifetime, PointsAreNotReadOfSkinsOfOtherBodies) {
 
 TEST(TouchLifetime, SpringsLeaveNothingInTheWorld) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world);
+  TouchedBody body(*world);
   substep(*world);
   RigidBox box(*world, 1, btVector3(0, 3, 0));
-  const int before = forceCount(of);
+  const int before = forceCount(body);
   {
-    auto spring = SurfaceSpring::add(world->deformable(), of.vertex(5)).value();
-    auto weld = SurfaceWeld::add(world->deformable(), of.vertex(50), *box).value();
+    auto spring = SurfaceSpring::add(world->deformable(), body.vertex(5)).value();
+    auto weld = SurfaceWeld::add(world->deformable(), body.vertex(50), *box).value();
     substep(*world);
-    EXPECT_EQ(spring->status(), TouchStatus::Ok);
-    EXPECT_EQ(forceCount(of), before + 1);
+    EXPECT_EQ(spring->status(), StatusCode::Ok);
+    EXPECT_EQ(forceCount(body), before + 1);
     spring->release();
-    EXPECT_EQ(spring->status(), TouchStatus::Released);
-    EXPECT_EQ(spring->setTarget(btVector3(0, 0, 0)), TouchStatus::Released);
+    EXPECT_EQ(spring->status(), StatusCode::Released);
+    EXPECT_EQ(spring->setTarget(btVector3(0, 0, 0)), StatusCode::Released);
     substep(*world);
   }
   for (int s = 0; s < 10; ++s) substep(*world);
-  EXPECT_TRUE(isFinite(of.body()));
+  EXPECT_TRUE(isFinite(body.body()));
 }
 
 TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
@@ -99,13 +100,13 @@ TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
   auto spring = SurfaceSpring::add(world->deformable(), first->vertex(5)).value();
   auto weld = SurfaceWeld::add(world->deformable(), first->vertex(50), *box).value();
   auto kept = SurfaceSpring::add(world->deformable(), second->vertex(50)).value();
-  ASSERT_EQ(first->vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
+  ASSERT_EQ(first->vertex(9).applyForce(btVector3(1, 0, 0), 100), StatusCode::Ok);
   substep(*world);
   first.reset();
-  EXPECT_EQ(spring->status(), TouchStatus::Gone);
-  EXPECT_EQ(weld->status(), TouchStatus::Gone);
+  EXPECT_EQ(spring->status(), StatusCode::BodyDeleted);
+  EXPECT_EQ(weld->status(), StatusCode::BodyDeleted);
   EXPECT_EQ(weld->separation(), 0);
-  EXPECT_EQ(kept->status(), TouchStatus::Ok);
+  EXPECT_EQ(kept->status(), StatusCode::Ok);
   for (int s = 0; s < 3; ++s) substep(*world);
   spring.reset();
   weld.reset();
@@ -116,27 +117,27 @@ TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
 
 TEST(TouchLifetime, WorldsMayGoWithForcesPending) {
   auto world = deformableWorld(10);
-  auto of = std::make_unique<TouchedBody>(*world);
-  auto spring = SurfaceSpring::add(world->deformable(), of->vertex(5)).value();
+  auto body = std::make_unique<TouchedBody>(*world);
+  auto spring = SurfaceSpring::add(world->deformable(), body->vertex(5)).value();
   substep(*world);
-  ASSERT_EQ(of->vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
-  // The world's end, before anybody's: against what is asked for, but nothing may be touched that is gone.
-  of->skin = {};
+  ASSERT_EQ(body->vertex(9).applyForce(btVector3(1, 0, 0), 100), StatusCode::Ok);
+  // The world is destroyed first: this is against the rules, but nothing that is gone may be accessed.
+  body->skin = {};
   world.reset();
-  of.reset();
-  EXPECT_EQ(spring->status(), TouchStatus::Gone);
+  body.reset();
+  EXPECT_EQ(spring->status(), StatusCode::BodyDeleted);
 }
 
 TEST(TouchLifetime, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
   auto world = deformableWorld(10);
-  TouchedBody of(*world);
-  auto spring = SurfaceSpring::add(world->deformable(), of.vertex(5)).value();
-  ASSERT_EQ(of.vertex(9).applyForce(btVector3(1, 0, 0), 100), TouchStatus::Ok);
+  TouchedBody body(*world);
+  auto spring = SurfaceSpring::add(world->deformable(), body.vertex(5)).value();
+  ASSERT_EQ(body.vertex(9).applyForce(btVector3(1, 0, 0), 100), StatusCode::Ok);
   substep(*world);
-  world->deformable().removeSoftBody(&of.body());
-  EXPECT_EQ(spring->status(), TouchStatus::OutOfWorld);
-  EXPECT_EQ(of.vertex(9).applyForce(btVector3(1, 0, 0)), TouchStatus::OutOfWorld);
-  EXPECT_EQ(of.vertex(9).applyImpulse(btVector3(1, 0, 0)), TouchStatus::Ok);
+  world->deformable().removeSoftBody(&body.body());
+  EXPECT_EQ(spring->status(), StatusCode::NotInWorld);
+  EXPECT_EQ(body.vertex(9).applyForce(btVector3(1, 0, 0)), StatusCode::NotInWorld);
+  EXPECT_EQ(body.vertex(9).applyImpulse(btVector3(1, 0, 0)), StatusCode::Ok);
   substep(*world);
 }
 
@@ -144,7 +145,7 @@ TEST(TouchLifetime, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   auto world = deformableWorld(0);
   const TouchModel model(0.38, 3);
   const auto binding = model.bind();
-  const SurfaceTree tree(binding, model.mesh);
+  const SurfaceTree tree = SurfaceTree::create(binding, model.mesh).value();
   std::vector<btVector3> nodes;
   for (const Vector3d& p : model.cage.nodes) nodes.push_back(toBullet(p));
   btDeformableGravityForce gravity(btVector3(0, 0, 0));
@@ -160,8 +161,8 @@ TEST(TouchLifetime, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   world->deformable().addSoftBody(body.get());
   world->deformable().addForce(body.get(), &gravity);
   world->deformable().addForce(body.get(), &elasticity);
-  SurfacePoint point = tree.pointOfVertex(*body, 100).value();
-  ASSERT_EQ(point.applyForce(btVector3(0, 24, 0)), TouchStatus::Ok);
+  SurfacePoint point = tree.pointAtVertex(*body, 100).value();
+  ASSERT_EQ(point.applyForce(btVector3(0, 24, 0)), StatusCode::Ok);
   substep(*world);
   EXPECT_NEAR(Momentum(*body).linear.y(), 0.1, 0.002);
   auto spring = SurfaceSpring::add(world->deformable(), point).value();
@@ -170,8 +171,8 @@ TEST(TouchLifetime, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   point.release();
   world->deformable().removeSoftBody(body.get());
   body.reset();
-  EXPECT_EQ(spring->status(), TouchStatus::Released);
-  EXPECT_EQ(point.status(), TouchStatus::Released);
+  EXPECT_EQ(spring->status(), StatusCode::Released);
+  EXPECT_EQ(point.status(), StatusCode::Released);
   substep(*world);
 }
 
@@ -179,22 +180,22 @@ TEST(TouchLifetime, WhatHangsFallsAsleepAndWakesTogether) {
   auto world = deformableWorld(10);
   SoftBodyOptions held;
   held.pinned = [](const Vector3d& rest) { return rest.y() > 3.5; };
-  held.damping = 0.1;
-  TouchedBody of(*world, TouchModel(0.38, 3.0), held);
-  of.body().forceActivationState(ACTIVE_TAG);
-  const SurfacePoint point = of.vertex(of.furthest(-Vector3d::UnitY()));
+  held.stiffnessDamping = 0.1;
+  TouchedBody body(*world, TouchModel(0.38, 3.0), held);
+  body.body().forceActivationState(ACTIVE_TAG);
+  const SurfacePoint point = body.vertex(body.furthest(-Vector3d::UnitY()));
   RigidBox box(*world, 0.05, *point.position() - btVector3(0, btScalar(0.1), 0));
   auto spring = SurfaceSpring::add(world->deformable(), point, *box, btVector3(0, btScalar(0.1), 0)).value();
   int slept = 0;
-  for (; slept < 7200 && (of.body().isActive() || box->isActive()); ++slept) substep(*world);
+  for (; slept < 7200 && (body.body().isActive() || box->isActive()); ++slept) substep(*world);
   EXPECT_LT(slept, 7200);
   for (int s = 0; s < 240; ++s) substep(*world);
-  EXPECT_FALSE(of.body().isActive());
+  EXPECT_FALSE(body.body().isActive());
   EXPECT_LT(spring->stretch(), 0.001);
   box->activate();
   box->applyCentralImpulse(btVector3(btScalar(0.02), 0, 0));
   for (int s = 0; s < 10; ++s) substep(*world);
-  EXPECT_TRUE(of.body().isActive());
+  EXPECT_TRUE(body.body().isActive());
   EXPECT_LT(spring->stretch(), 0.001);
 }
 

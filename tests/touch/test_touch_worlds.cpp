@@ -7,13 +7,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What works in any world: reading and rays.
+/// What works in any world: reading points and casting rays.
 void readAndCast(TestWorld& world, const TouchModel& model) {
   SoftBodySkin skin;
   const auto binding = model.bind();
   ASSERT_TRUE(skin.bind(world.body(), binding).ok());
-  const SurfaceTree tree(binding, model.mesh);
-  const SurfacePoint point = tree.pointOfVertex(world.body(), 60).value();
+  const SurfaceTree tree = SurfaceTree::create(binding, model.mesh).value();
+  const SurfacePoint point = tree.pointAtVertex(world.body(), 60).value();
   double worst = 0, fastest = 0;
   for (int s = 0; s < 120; ++s) {
     const Vector3d before = toEigen(*point.position());
@@ -24,8 +24,8 @@ void readAndCast(TestWorld& world, const TouchModel& model) {
   }
   EXPECT_GT(fastest, 1.0);
   EXPECT_LT(worst, 1e-3);
-  const btVector3 middle = *point.position();
-  const SurfaceHit hit = tree.raycast(skin, middle + btVector3(0, 3, 0), middle - btVector3(0, 3, 0));
+  const btVector3 centroid = *point.position();
+  const SurfaceHit hit = tree.raycast(skin, centroid + btVector3(0, 3, 0), centroid - btVector3(0, 3, 0));
   ASSERT_TRUE(hit);
   EXPECT_LT((*tree.pointAt(world.body(), hit).value().position() - hit.point).length(), 1e-5);
 }
@@ -39,10 +39,10 @@ TYPED_TEST(ClassicWorlds, LetPointsBeReadAndPushed) {
   const TouchModel model(0.38, 2.0);
   TypeParam world(model.cage);
   readAndCast(world, model);
-  const SurfaceTree tree(model.bind(), model.mesh);
-  SurfacePoint point = tree.pointOfVertex(world.body(), 60).value();
+  const SurfaceTree tree = SurfaceTree::create(model.bind(), model.mesh).value();
+  SurfacePoint point = tree.pointAtVertex(world.body(), 60).value();
   const Momentum before(world.body());
-  ASSERT_EQ(point.applyImpulse(btVector3(0, 1, 0)), TouchStatus::Ok);
+  ASSERT_EQ(point.applyImpulse(btVector3(0, 1, 0)), StatusCode::Ok);
   const Momentum after(world.body());
   EXPECT_LT((after.linear - before.linear - Vector3d::UnitY()).norm(), 1e-5);
   world.world->stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
@@ -52,17 +52,17 @@ TYPED_TEST(ClassicWorlds, LetPointsBeReadAndPushed) {
 TYPED_TEST(ClassicWorlds, RefuseContinuousForcesSpringsAndWelds) {
   const TouchModel model(0.38, 2.0);
   TypeParam world(model.cage);
-  const SurfaceTree tree(model.bind(), model.mesh);
-  SurfacePoint point = tree.pointOfVertex(world.body(), 60).value();
-  EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), TouchStatus::InvalidOption);
-  EXPECT_EQ(tree.applyForce(world.body(), {*point.position(), 1, 1}).status, TouchStatus::InvalidOption);
+  const SurfaceTree tree = SurfaceTree::create(model.bind(), model.mesh).value();
+  SurfacePoint point = tree.pointAtVertex(world.body(), 60).value();
+  EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), StatusCode::InvalidOption);
+  EXPECT_EQ(tree.applyForce(world.body(), {*point.position(), 1, 1}).status, StatusCode::InvalidOption);
   EXPECT_EQ(SurfaceSpring::add(*world.world, point).status().code, StatusCode::InvalidOption);
   btSphereShape shape(1);
   btRigidBody ball(1, nullptr, &shape);
   EXPECT_EQ(SurfaceWeld::add(*world.world, point, ball).status().code, StatusCode::InvalidOption);
 }
 
-/// Bullet's forces in Bullet's solver, explicit and implicit.
+/// Runs with Bullet's forces in Bullet's solver, explicit and implicit.
 TEST(BulletsSolver, LetsPointsBeReadAndPushedAtOnceAndNothingElse) {
   for (const bool implicit : {false, true}) {
     const TouchModel model(0.38, 3.0);
@@ -71,21 +71,21 @@ TEST(BulletsSolver, LetsPointsBeReadAndPushedAtOnceAndNothingElse) {
     SoftBodyOptions options;
     options.forceModel = ForceModel::NeoHookean;
     options.implicit = implicit;
-    TouchedBody of(world, model, options);
+    TouchedBody body(world, model, options);
     substep(world);
-    SurfacePoint point = of.vertex(250);
-    ASSERT_TRUE(of.tree.raycast(of.skin, *point.position() * 2, btVector3(0.5, 3.4, 0.5)));
+    SurfacePoint point = body.vertex(250);
+    ASSERT_TRUE(body.tree.raycast(body.skin, *point.position() * 2, btVector3(0.5, 3.4, 0.5)));
     const Vector3d given(0.1, -0.2, 0.05);
-    ASSERT_EQ(point.applyImpulse(toBullet(given)), TouchStatus::Ok);
+    ASSERT_EQ(point.applyImpulse(toBullet(given)), StatusCode::Ok);
     for (int s = 0; s < 5; ++s) substep(world);
-    EXPECT_LT((Momentum(of.body()).linear - given).norm(), 0.02 * given.norm()) << implicit;
+    EXPECT_LT((Momentum(body.body()).linear - given).norm(), 0.02 * given.norm()) << implicit;
     const Vector3d before = toEigen(*point.position());
     substep(world);
     const Vector3d moved = (toEigen(*point.position()) - before) * 240;
     EXPECT_LT((moved - toEigen(*point.velocity())).norm(), 1e-3 * moved.norm() + 1e-4);
 
-    EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), TouchStatus::InvalidOption);
-    EXPECT_EQ(of.tree.applyForce(of.body(), {*point.position(), 1, 1}).status, TouchStatus::InvalidOption);
+    EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), StatusCode::InvalidOption);
+    EXPECT_EQ(body.tree.applyForce(body.body(), {*point.position(), 1, 1}).status, StatusCode::InvalidOption);
     btSphereShape shape(1);
     btRigidBody ball(1, nullptr, &shape);
     for (const Status& status : {SurfaceSpring::add(*world.world, point).status(),
@@ -103,14 +103,14 @@ TEST(ReducedWorlds, LetPointsBeReadAndNotPushed) {
   SoftBodySkin skin;
   const auto binding = model.bind();
   ASSERT_TRUE(skin.bind(world.body(), binding).ok());
-  const SurfaceTree tree(binding, model.mesh);
-  SurfacePoint point = tree.pointOfVertex(world.body(), 60).value();
+  const SurfaceTree tree = SurfaceTree::create(binding, model.mesh).value();
+  SurfacePoint point = tree.pointAtVertex(world.body(), 60).value();
   for (int s = 0; s < 30; ++s) world.world->stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
-  const btVector3 middle = *point.position();
-  EXPECT_LT(middle.y(), 2.75);
-  ASSERT_TRUE(tree.raycast(skin, middle + btVector3(0, 3, 0), middle - btVector3(0, 3, 0)));
-  EXPECT_EQ(point.applyImpulse(btVector3(0, 1, 0)), TouchStatus::InvalidOption);
-  EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), TouchStatus::InvalidOption);
+  const btVector3 centroid = *point.position();
+  EXPECT_LT(centroid.y(), 2.75);
+  ASSERT_TRUE(tree.raycast(skin, centroid + btVector3(0, 3, 0), centroid - btVector3(0, 3, 0)));
+  EXPECT_EQ(point.applyImpulse(btVector3(0, 1, 0)), StatusCode::InvalidOption);
+  EXPECT_EQ(point.applyForce(btVector3(0, 1, 0)), StatusCode::InvalidOption);
   EXPECT_EQ(SurfaceSpring::add(*world.world, point).status().code, StatusCode::InvalidOption);
   const Vector3d before = toEigen(*point.position());
   world.world->stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);

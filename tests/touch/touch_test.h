@@ -5,10 +5,8 @@
 #include "../bullet/deformable_test.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
-#include <tetskin/touch/surface_spring.h>
-#include <tetskin/touch/surface_tree.h>
-#include <tetskin/touch/surface_weld.h>
 
 #include <memory>
 #include <ostream>
@@ -16,7 +14,7 @@
 
 namespace tetskin::test {
 
-/// A cage of 5 x 4 x 5 cubes, 1 x 0.8 x 1, with a ball in it or around it.
+/// A cage of 5 x 4 x 5 cubes, 1 x 0.8 x 1 in size, with a ball in it or around it.
 struct TouchModel {
   TetMesh cage = latticeCage(5, 4, 5, 0.2);
   TriangleMesh mesh;
@@ -28,7 +26,7 @@ struct TouchModel {
     }
   }
   std::shared_ptr<const SoftBodyBinding> bind(const BindingOptions& options = {}) const {
-    return SoftBodyBinding::make(cage, mesh, options).value();
+    return SoftBodyBinding::create(cage, mesh, options).value();
   }
 };
 
@@ -40,21 +38,24 @@ inline std::unique_ptr<TetskinWorld> deformableWorld(double gravity = 0.0) {
   return world;
 }
 
-/// A body of a model in such a world, with a skin and a tree.
+/// A body of a model in a world of this kind, with a skin and a tree.
 struct TouchedBody {
-  explicit TouchedBody(EmptyWorld& world, const TouchModel& of = TouchModel(), const SoftBodyOptions& options = {},
+  explicit TouchedBody(EmptyWorld& world, const TouchModel& item = TouchModel(), const SoftBodyOptions& options = {},
                        const BindingOptions& how = {})
-      : model(of), owner(added(world, of.cage, options)), binding(of.bind(how)), tree(binding, of.mesh) {
+      : model(item),
+        owner(added(world, item.cage, options)),
+        binding(item.bind(how)),
+        tree(SurfaceTree::create(binding, item.mesh).value()) {
     EXPECT_TRUE(skin.bind(owner->body(), binding).ok());
     body().setActivationState(DISABLE_DEACTIVATION);
   }
   btSoftBody& body() { return owner->body(); }
   SurfacePoint vertex(int v) {
-    Result<SurfacePoint> made = tree.pointOfVertex(body(), v);
+    Result<SurfacePoint> made = tree.pointAtVertex(body(), v);
     EXPECT_TRUE(made.ok()) << made.status().message;
     return made.value();
   }
-  /// The lowest or highest vertex along an axis at rest.
+  /// The lowest or highest vertex along an axis, at rest.
   int furthest(const Eigen::Vector3d& along) const {
     int best = 0;
     for (std::size_t v = 0; v < model.mesh.vertexCount(); ++v) {
@@ -72,7 +73,7 @@ struct TouchedBody {
   SoftBodySkin skin;
 };
 
-/// Of all nodes; angular about the origin. Pinned ones have none.
+/// The momentum of all nodes, angular momentum about the origin. Pinned nodes have none.
 struct Momentum {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
 
@@ -80,14 +81,14 @@ struct Momentum {
     for (int n = 0; n < body.m_nodes.size(); ++n) {
       const btSoftBody::Node& node = body.m_nodes[n];
       if (node.m_im == 0) continue;
-      const Eigen::Vector3d of = toEigen(node.m_v) / static_cast<double>(node.m_im);
-      linear += of;
-      angular += toEigen(node.m_x).cross(of);
+      const Eigen::Vector3d value = toEigen(node.m_v) / static_cast<double>(node.m_im);
+      linear += value;
+      angular += toEigen(node.m_x).cross(value);
     }
   }
 };
 
-/// Shakes all nodes, so that no tet is as it was at rest.
+/// Displaces all nodes, so that no tet has its rest shape.
 inline void deform(btSoftBody& body, double amount = 0.05) {
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const Eigen::Vector3d x = toEigen(body.m_nodes[n].m_x);
@@ -97,12 +98,12 @@ inline void deform(btSoftBody& body, double amount = 0.05) {
   }
 }
 
-/// One of Bullet's steps.
+/// Makes one of Bullet's steps.
 inline void substep(EmptyWorld& world, double dt = 1.0 / 240) {
   world.deformable().stepSimulation(static_cast<btScalar>(dt), 1, static_cast<btScalar>(dt));
 }
 
-/// A rigid body in a world, and taken out of it again.
+/// A rigid body that is in a world, and is removed from it at the end.
 class RigidBox {
  public:
   RigidBox(EmptyWorld& world, double mass, const btVector3& at, const btVector3& half = btVector3(0.1, 0.1, 0.1))

@@ -8,9 +8,9 @@
 
 namespace tetskin::scenes {
 
-/// Any of its bodies may sleep.
+/// A crowd in which any body may sleep.
 std::unique_ptr<Scene> makeCrowd(const Cage& cage, const SceneOptions& options) {
-  constexpr double kSpacing = 2.0;  // of neighbours, in sizes
+  constexpr double kSpacing = 2.0;  // between neighbours, in units of the body's size
   auto scene = std::make_unique<Scene>(options, kEarth);
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.bodies))));
   for (std::size_t i = 0; i < options.bodies; ++i) {

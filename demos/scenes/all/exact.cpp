@@ -5,12 +5,12 @@
 
 namespace tetskin::scenes {
 
-/// What is wrong with a surface here is its interpolation alone.
+/// The interpolation is the only source of error here.
 std::unique_ptr<Scene> makeExact(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, 0.0);
   const Twist map = smoothTwistOf(layoutBox(options, cage));
   (void)scene->add(cage, [](const Eigen::Vector3d&) { return true; });
-  scene->beforeFrame = [s = scene.get(), rest = cage.nodes, map](int, const Moved& moved) {
+  scene->beforeFrame = [s = scene.get(), rest = cage.mesh.nodes, map](int, const Moved& moved) {
     for (std::size_t n = 0; n < rest.size(); ++n) {
       placeNode(s->body().m_nodes[static_cast<int>(n)], toBullet(map.point(rest[n]) + s->offset));
     }

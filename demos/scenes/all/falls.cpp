@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes of a body over a floor.
+// Scenes in which a body is above a floor.
 #include "scenes/table.h"
 
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kNear = 0.05;  ///< sizes: from the body to the floor, and to the box above it
+constexpr double kNear = 0.05;  ///< from the body to the floor, and to the box above it, in units of the body's size
 
 std::unique_ptr<Scene> makeFall(const Cage& cage, const SceneOptions& options, double gap) {
   auto scene = std::make_unique<Scene>(options, kEarth);
@@ -28,7 +28,7 @@ std::unique_ptr<Scene> makeLand(const Cage& cage, const SceneOptions& options) {
 }
 
 std::unique_ptr<Scene> makeImpact(const Cage& cage, const SceneOptions& options) {
-  constexpr double kLengths = 100.0;  // a second
+  constexpr double kLengths = 100.0;  // body lengths per second
   auto scene = makeFall(cage, options, kNear);
   const double lengths = options.harshness > 0.0 ? options.harshness : kLengths;
   scene->beforeFrame = [s = scene.get(), lengths](int frame, const Moved&) {
@@ -39,7 +39,7 @@ std::unique_ptr<Scene> makeImpact(const Cage& cage, const SceneOptions& options)
 }
 
 std::unique_ptr<Scene> makeHeavyBox(const Cage& cage, const SceneOptions& options) {
-  constexpr double kMass = 1000.0;  // times the body's
+  constexpr double kMass = 1000.0;  // relative to the body's mass
   const double mass = options.harshness > 0.0 ? options.harshness : kMass;
   auto scene = makeFall(cage, options, kNear);
   const Box3 box = boundingBox(nodePositions(scene->body()));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes of a body in free space whose nodes are set in motion by hand.
+// Scenes with a body in free space whose nodes are set in motion by hand.
 #include <algorithm>
 
 #include "scenes/table.h"
@@ -9,12 +9,13 @@
 namespace tetskin::scenes {
 namespace {
 
-/// The node farthest out along x, or against it.
+/// The node farthest along x, in the positive or the negative direction.
 int endNode(const Cage& cage, double direction) {
   const auto further = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return direction * a.x() < direction * b.x();
   };
-  return static_cast<int>(std::max_element(cage.nodes.begin(), cage.nodes.end(), further) - cage.nodes.begin());
+  return static_cast<int>(std::max_element(cage.mesh.nodes.begin(), cage.mesh.nodes.end(), further) -
+                          cage.mesh.nodes.begin());
 }
 
 }  // namespace
@@ -37,7 +38,7 @@ std::unique_ptr<Scene> makePull(const Cage& cage, const SceneOptions& options) {
   constexpr double kLengths = 3.0;
   auto scene = std::make_unique<Scene>(options, 0.0);
   const int end = endNode(cage, 1);
-  const Eigen::Vector3d held = cage.nodes[endNode(cage, -1)], pulled = cage.nodes[end];
+  const Eigen::Vector3d held = cage.mesh.nodes[endNode(cage, -1)], pulled = cage.mesh.nodes[end];
   btSoftBody& body = scene->add(cage, [=](const Eigen::Vector3d& p) { return p == held || p == pulled; });
   const double speed = kLengths * options.size / (options.frames * options.frameSeconds);
   scene->beforeFrame = [&body, end, speed](int, const Moved&) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes of a body in free space whose nodes are put elsewhere by hand.
+// Scenes with a body in free space whose nodes are moved to other positions by hand.
 #include <limits>
 #include <random>
 
@@ -10,8 +10,8 @@
 namespace tetskin::scenes {
 namespace {
 
-/// Where a node shall be, by where it is and by the middle of the body's box.
-using Place = std::function<btVector3(const btVector3& node, const btVector3& centre)>;
+/// The new position of a node, from its present one and the centre of the body's box.
+using Position = std::function<btVector3(const btVector3& node, const btVector3& centre)>;
 
 std::unique_ptr<Scene> makeFree(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, 0.0);
@@ -19,13 +19,13 @@ std::unique_ptr<Scene> makeFree(const Cage& cage, const SceneOptions& options) {
   return scene;
 }
 
-/// All nodes go elsewhere once.
-std::unique_ptr<Scene> makePlacing(const Cage& cage, const SceneOptions& options, const Place& place) {
+/// All nodes are moved once.
+std::unique_ptr<Scene> makePlacing(const Cage& cage, const SceneOptions& options, const Position& toPosition) {
   auto scene = makeFree(cage, options);
   const btVector3 centre = toBullet(boundingBox(nodePositions(scene->body())).center());
-  scene->beforeFrame = [s = scene.get(), centre, place](int frame, const Moved& moved) {
+  scene->beforeFrame = [s = scene.get(), centre, toPosition](int frame, const Moved& moved) {
     if (frame != eventFrame(s->options())) return;
-    s->placeNodes([&](const btVector3& node) { return place(node, centre); });
+    s->placeNodes([&](const btVector3& node) { return toPosition(node, centre); });
     moved();
   };
   return scene;
@@ -38,8 +38,8 @@ std::unique_ptr<Scene> makeLonger(const Cage& cage, const SceneOptions& options,
   });
 }
 
-/// One node has a coordinate that no surface can follow, for one update.
-std::unique_ptr<Scene> makeSpoilt(const Cage& cage, const SceneOptions& options, btScalar coordinate) {
+/// For one update, a node has a coordinate that no surface can follow.
+std::unique_ptr<Scene> makeDamaged(const Cage& cage, const SceneOptions& options, btScalar coordinate) {
   auto scene = makeFree(cage, options);
   scene->beforeFrame = [s = scene.get(), coordinate](int frame, const Moved& moved) {
     if (frame != eventFrame(s->options())) return;
@@ -81,11 +81,11 @@ std::unique_ptr<Scene> makePermute(const Cage& cage, const SceneOptions& options
   scene->beforeFrame = [s = scene.get()](int frame, const Moved& moved) {
     if (frame != eventFrame(s->options())) return;
     std::mt19937 generator(17);
-    std::vector<btVector3> places;
-    places.reserve(static_cast<std::size_t>(s->body().m_nodes.size()));
-    for (int n = 0; n < s->body().m_nodes.size(); ++n) places.push_back(s->body().m_nodes[n].m_x);
-    for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[generator() % k]);
-    auto next = places.begin();
+    std::vector<btVector3> positions;
+    positions.reserve(static_cast<std::size_t>(s->body().m_nodes.size()));
+    for (int n = 0; n < s->body().m_nodes.size(); ++n) positions.push_back(s->body().m_nodes[n].m_x);
+    for (std::size_t k = positions.size(); k > 1; --k) std::swap(positions[k - 1], positions[generator() % k]);
+    auto next = positions.begin();
     s->placeNodes([&](const btVector3&) { return *next++; });
     moved();
   };
@@ -106,15 +106,15 @@ std::unique_ptr<Scene> makeTeleport(const Cage& cage, const SceneOptions& option
 }
 
 std::unique_ptr<Scene> makeNodeNaN(const Cage& cage, const SceneOptions& options) {
-  return makeSpoilt(cage, options, std::numeric_limits<btScalar>::quiet_NaN());
+  return makeDamaged(cage, options, std::numeric_limits<btScalar>::quiet_NaN());
 }
 
 std::unique_ptr<Scene> makeNodeInfinite(const Cage& cage, const SceneOptions& options) {
-  return makeSpoilt(cage, options, -std::numeric_limits<btScalar>::infinity());
+  return makeDamaged(cage, options, -std::numeric_limits<btScalar>::infinity());
 }
 
 std::unique_ptr<Scene> makeNodeTooFar(const Cage& cage, const SceneOptions& options) {
-  return makeSpoilt(cage, options, btScalar(1e30));
+  return makeDamaged(cage, options, btScalar(1e30));
 }
 
 }  // namespace tetskin::scenes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes in which what touches goes: between steps, and within one where Bullet permits it, from an action.
+// Scenes in which touching objects are removed: between steps, and within one where Bullet permits it, from an action.
 #include <algorithm>
 
 #include "scenes/once.h"
@@ -10,9 +10,9 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kBelow = 0.05;  ///< sizes: from the body to what is below it
+constexpr double kBelow = 0.05;  ///< from the body to what is below it, in units of the body's size
 
-/// Something happens at a third of the run, within a step, and at two thirds, between steps.
+/// One event at a third of the run, within a step, and one at two thirds, between steps.
 void atThirds(Scene& scene, const std::function<void()>& within, const std::function<void()>& between) {
   const auto once = std::make_shared<Once>(scene.world().bullet());
   const int frames = std::max(scene.options().frames, 3);
@@ -24,7 +24,7 @@ void atThirds(Scene& scene, const std::function<void()>& within, const std::func
 
 }  // namespace
 
-/// A box lies on the body, which lies on a shelf: both go, and the body falls on the floor.
+/// A box lies on the body, which lies on a shelf: both are removed, and the body falls on the floor.
 std::unique_ptr<Scene> makeObstaclesGo(const Cage& cage, const SceneOptions& options) {
   constexpr double kHalf = 0.1;
   auto scene = std::make_unique<Scene>(options, kEarth);
@@ -42,8 +42,8 @@ std::unique_ptr<Scene> makeObstaclesGo(const Cage& cage, const SceneOptions& opt
   return scene;
 }
 
-/// The body itself goes while it lies on the floor, and stays where it was: within a step, or at a harshness of 2
-/// between steps.
+/// The body itself is removed while it lies on the floor, and keeps its last position: within a step, or, at a
+/// harshness of 2, between steps.
 std::unique_ptr<Scene> makeBodyGoes(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, kEarth);
   scene->add(cage);

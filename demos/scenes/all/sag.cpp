@@ -4,12 +4,12 @@
 
 namespace tetskin::scenes {
 
-/// Held at its lower end, as if it stood in the ground.
+/// The body is pinned at its lower end, as if it stood in the ground.
 std::unique_ptr<Scene> makeSag(const Cage& cage, const SceneOptions& options) {
-  constexpr double kFootShare = 0.35;  // of the height
+  constexpr double kFootFraction = 0.35;  // share of the height
   auto scene = std::make_unique<Scene>(options, kEarth);
   const Box3 box = layoutBox(options, cage);
-  const double foot = box.min().y() + kFootShare * box.sizes().y();
+  const double foot = box.min().y() + kFootFraction * box.sizes().y();
   const auto held = [foot](const Eigen::Vector3d& p) { return p.y() <= foot; };
   (void)nodesWhere(cage, held);
   scene->add(cage, held);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes of a body and obstacles that are hard to meet.
+// Scenes with a body and obstacles that are hard to handle in contact.
 #include <cmath>
 
 #include "scenes/table.h"
@@ -9,7 +9,7 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kClose = 0.05;  ///< sizes: from the body to what is below it
+constexpr double kClose = 0.05;  ///< from the body to what is below it, in units of the body's size
 
 std::unique_ptr<Scene> onNothing(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, kEarth);
@@ -17,24 +17,24 @@ std::unique_ptr<Scene> onNothing(const Cage& cage, const SceneOptions& options) 
   return scene;
 }
 
-/// What a body of the first frames' box is over.
+/// A point below the body in its initial position.
 Eigen::Vector3d under(const Scene& scene) {
   const Box3 box = boundingBox(nodePositions(scene.body()));
   return {box.center().x(), box.min().y() - kClose * scene.options().size, box.center().z()};
 }
 
-/// At as many sizes a second as the options say.
+/// Throws the body down, at the options' harshness in body lengths per second.
 void throwDown(Scene& scene) {
   const double speed = scene.options().harshness * scene.options().size;
   btSoftBody& body = scene.body();
   body.setVelocity(btVector3(0, static_cast<btScalar>(-speed), 0));
-  // Implicit steps begin with the velocities after the last one.
+  // Implicit steps begin with the velocities at the end of the last one.
   for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_vn = body.m_nodes[n].m_v;
 }
 
 }  // namespace
 
-/// Thinner than a tet, under the middle of the body; the floor is half a size below.
+/// The pole is thinner than a tet, and under the centre of the body; the floor is half the body's size below it.
 std::unique_ptr<Scene> makePole(const Cage& cage, const SceneOptions& options) {
   constexpr double kRadius = 0.015;
   auto scene = onNothing(cage, options);
@@ -45,7 +45,7 @@ std::unique_ptr<Scene> makePole(const Cage& cage, const SceneOptions& options) {
   return scene;
 }
 
-/// The edge of a thin box that stands upright.
+/// The body falls on the edge of a thin box that stands upright.
 std::unique_ptr<Scene> makeBlade(const Cage& cage, const SceneOptions& options) {
   constexpr double kThick = 0.01, kHalfHeight = 0.2;
   auto scene = onNothing(cage, options);
@@ -56,7 +56,7 @@ std::unique_ptr<Scene> makeBlade(const Cage& cage, const SceneOptions& options) 
   return scene;
 }
 
-/// A bed of 225 small balls.
+/// The body falls on a bed of 225 small balls.
 std::unique_ptr<Scene> makeBed(const Cage& cage, const SceneOptions& options) {
   constexpr int kAside = 7;
   constexpr double kRadius = 0.05;
@@ -90,9 +90,9 @@ std::unique_ptr<Scene> makeHail(const Cage& cage, const SceneOptions& options) {
   return scene;
 }
 
-/// A tenth of the body's mass falls on it.
+/// A box with a tenth of the body's mass falls on it.
 std::unique_ptr<Scene> makeLightBox(const Cage& cage, const SceneOptions& options) {
-  constexpr double kShare = 0.1;
+  constexpr double kFraction = 0.1;
   auto scene = onNothing(cage, options);
   scene->addFloor(kClose);
   const Box3 box = boundingBox(nodePositions(scene->body()));
@@ -100,7 +100,7 @@ std::unique_ptr<Scene> makeLightBox(const Cage& cage, const SceneOptions& option
   Eigen::Vector3d above = box.center();
   above.y() = box.max().y() + kClose * options.size + half;
   scene->world().addBox(above, Eigen::Vector3d::Constant(half), 0.0,
-                        kShare * static_cast<double>(scene->body().getTotalMass()));
+                        kFraction * static_cast<double>(scene->body().getTotalMass()));
   return scene;
 }
 

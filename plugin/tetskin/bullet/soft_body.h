@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies in and out: a btSoftBody's nodes and tets as tetskin's types, and a btSoftBody of a cage.
+// Soft bodies in and out: a btSoftBody's nodes and tets as tetskin's types, a btSoftBody of a cage, the binding of
+// Bullet's own render nodes, and Bullet's threads.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodySolverVertexBuffer.h>
+#include <LinearMath/btThreads.h>
 #include <tetskin/core/cage.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
+#include <cassert>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,131 +29,193 @@ static_assert(sizeof(btScalar) == 8, "tetskin was built for Bullet in double; co
 static_assert(sizeof(btScalar) == 4, "tetskin was built for Bullet in float; compile without BT_USE_DOUBLE_PRECISION");
 #endif
 
-/// The current node positions, world space, in place: valid until the body's nodes are appended to or it is destroyed.
+/// View of the current node positions, world space, in place: valid until nodes are appended to the body or it is
+/// destroyed.
 TETSKIN_BULLET_API PointView<const btScalar> nodePositions(const btSoftBody& body);
 
-/// The body's tets with its nodes as they are now, by index: node i is `body.m_nodes[i]`, tet t is `body.m_tetras[t]`.
-/// Nothing is repaired. A tet whose node pointers do not point into the node array (Bullet leaves them dangling when
-/// nodes are appended after tets) gets the index -1, which every check reports. Cost O(nodes + tets).
-TETSKIN_BULLET_API TetMesh tetMeshOf(const btSoftBody& body);
+/// The body's tets with its current nodes (world space), by index: node i is `body.m_nodes[i]`, tet t is
+/// `body.m_tetras[t]`. Nothing is repaired. A tet whose node pointers do not point into the node array (Bullet leaves
+/// them dangling when nodes are appended after tets) gets the index -1, which every check reports. Cost O(nodes +
+/// tets).
+TETSKIN_BULLET_API TetMesh readTetMesh(const btSoftBody& body);
 
-/// IndexOutOfRange if there are such tets in what `tetMeshOf` has read: how many, why, and what to do.
-TETSKIN_BULLET_API Status checkDangling(const TetMesh& read);
+/// View of the positions in a Bullet vertex buffer, as a target for skinning: vertexCount points, owned by the owner of
+/// the buffer.
+TETSKIN_BULLET_API PointView<float> positionView(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount);
 
-/// The positions of a Bullet vertex buffer, as a target for skinning: vertexCount points, owned by the buffer's owner.
-TETSKIN_BULLET_API PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount);
-
-/// A vector of Bullet's, in double.
+/// Converts a vector from Bullet, to double.
 inline Eigen::Vector3d toEigen(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
-/// A vector for Bullet, rounded to its precision.
+/// Converts a vector for Bullet, rounded to its precision.
 inline btVector3 toBullet(const Eigen::Vector3d& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
-/// A body's nodes as the functions of `EmbeddedPoint` ask for them, world space: valid as long as the body is there.
-/// For instance `embedding.at<btScalar>(vertex).velocity(velocitiesIn(body))`.
+/// Callable for the functions of `EmbeddedPoint`: node index to position, world space. Valid as long as the body
+/// exists.
 inline auto positionsIn(const btSoftBody& body) {
   return [&body](int node) -> const btVector3& { return body.m_nodes[node].m_x; };
 }
-/// The same for velocities.
+/// Callable for the functions of `EmbeddedPoint`: node index to velocity, world length per second. Valid as long as the
+/// body exists. For instance `embedding.at<btScalar>(vertex).velocity(velocitiesIn(body))`.
 inline auto velocitiesIn(const btSoftBody& body) {
   return [&body](int node) -> const btVector3& { return body.m_nodes[node].m_v; };
 }
-/// The same for inverse masses, 0 where a node is pinned.
+/// Callable for the functions of `EmbeddedPoint`: node index to inverse mass, 0 for a pinned node. Valid as long as the
+/// body exists.
 inline auto inverseMassesIn(const btSoftBody& body) {
   return [&body](int node) { return body.m_nodes[node].m_im; };
 }
 
-/// What holds a body together.
+/// Elastic model of a body.
 enum class ForceModel {
-  Corotated,         ///< deformable world with a `DeformableSolver`: tetskin's own; any rotation, keeps spin
-  NeoHookean,        ///< deformable world: Bullet's; large deformations, loses all spin
-  LinearElasticity,  ///< deformable world: Bullet's; cheaper, loses some
-  MassSpring,        ///< the classic worlds: the body's links, solved as constraints
+  Corotated,         ///< tetskin's own, in a deformable world with a `DeformableSolver`: any rotation, keeps spin
+  NeoHookean,        ///< Bullet's, in a deformable world: large deformations, loses all spin
+  LinearElasticity,  ///< Bullet's, in a deformable world: cheaper, loses some spin
+  MassSpring,        ///< Bullet's, in the classic worlds: the body's links, solved as constraints
 };
 
-/// What a soft body is made of, beside its shape. Lengths are world lengths. The defaults are stable in Bullet's
-/// deformable world at 60 Hz with 4 substeps.
+/// Material and settings of a soft body. Lengths are world lengths. The defaults are stable in Bullet's deformable
+/// world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
-  double mass = 0.0;  ///< total, in kg; 0: from density
-  /// Mass per volume, of the mesh if the cage knows it, else of the cage. The default, in kg / m^3, is that of foam,
-  /// which most of what is soft and of one's own size is nearer to than to water; where lengths are not metres, give a
-  /// mass.
+  std::optional<double> mass;  ///< total, in kg, above 0; not given: from density
+  /// Mass per volume: of the mesh if the cage stores it, otherwise of the cage. The default, in kg / m^3, is that of
+  /// foam, which is closer to most soft objects of everyday size than water; where lengths are not metres, give a mass.
   double density = 100.0;
-  /// nodeCount, above 0: instead of the two above, and of the floor under the masses of slivers' nodes. Empty: from
-  /// those, distributed as the cage's masses are if it has any.
+  /// nodeCount node masses, above 0: replace mass and density, and the lower limit for the masses of slivers' nodes.
+  /// Empty: computed from mass or density, distributed as the cage's masses if it has any.
   std::vector<double> nodeMasses;
-  double margin = -1.0;   ///< collision margin; below 0: 2 % of the largest side of the cage's box
+  /// Collision margin, world length, 0 or more; not given: 2 % of the body's size (largest side of the cage's box).
+  std::optional<double> margin;
   double friction = 0.5;  ///< Bullet's m_cfg.kDF, 0 to 1
-  /// Nodes to hold in place, by their rest position: given infinite mass. Empty: none. See `pinnedIn`.
+  /// Selects nodes to pin, by their rest position: these get infinite mass. Empty: none. See `pinnedIn`.
   std::function<bool(const Eigen::Vector3d& restPosition)> pinned;
 
-  /// Also chooses how the body meets rigid ones: MassSpring as the classic worlds expect, the others as the deformable.
+  /// Elastic model. It also selects how the body collides with rigid ones: MassSpring as in the classic worlds, the
+  /// others as in the deformable one.
   ForceModel forceModel = ForceModel::Corotated;
-  /// Stiffness in pressure units; 0: relativeStiffness x density x gravity x size. Of Bullet's own forces that is no
-  /// more than is stable for timeStep: fine cages are softer by default then, and need shorter steps to be stiff.
-  /// For MassSpring Bullet has no such unit: there `linkStiffness` counts.
-  double youngsModulus = 0.0;
-  /// From 30 (wobbles, sags) to 300 (firm), whatever the body's size; bounded as said above.
+  /// Young's modulus in pressure units, above 0; not given: relativeStiffness x density x gravity x size. With Bullet's
+  /// own forces the default is limited to what is stable for timeStep: fine cages are then softer by default, and need
+  /// shorter steps to be stiff. Not used by MassSpring, for which Bullet has no such unit: see `linkStiffness`. For
+  /// Lame's parameters see `fromLame`.
+  std::optional<double> youngsModulus;
+  /// Dimensionless stiffness, from 30 (wobbles, sags) to 300 (firm), whatever the body's size; limited with Bullet's
+  /// own forces as described for `youngsModulus`.
   double relativeStiffness = 50.0;
-  /// tetCount, above 0: times the stiffness, tet by tet; not for MassSpring. Of Bullet's own forces, by
-  /// `Tetra::m_element_measure`, which the body's `scale` sets anew. Empty: the cage's, by its fill and factor.
+  /// tetCount factors above 0 that multiply the stiffness of each tet; not for MassSpring. With Bullet's own forces
+  /// they are applied through `Tetra::m_element_measure`, which the body's `scale` resets. Empty: those of the cage,
+  /// from its volume fractions and stiffness factors.
   std::vector<double> stiffnessScale;
-  double poissonRatio = 0.3;      ///< 0 to below 0.5
-  double damping = 0.02;          ///< seconds: damping forces are this times the rate of the elastic ones
+  double poissonRatio = 0.3;  ///< 0 to below 0.5
+  double stiffnessDamping =
+      0.02;  ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
-  double solverTolerance = 5e-3;  ///< Corotated: of the residual over that without elasticity, 0 to below 1
-  int maxIterations = 100;        ///< Corotated: of the conjugate gradient in a solve, at most; contact takes several
-  double linkStiffness = 0.5;     ///< MassSpring only: Bullet's m_kLST, 0 to 1
-  /// Trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search against every
-  /// other soft body with trees, in each substep. Without them rays in the deformable world miss the body, those in the
-  /// classic worlds meet only its tets, and it collides by its nodes alone.
+  double solverTolerance = 5e-3;  ///< Corotated: of the residual relative to that without elasticity, 0 to below 1
+  int maxIterations = 100;     ///< Corotated: limit of the conjugate gradient per solve; contact takes several solves
+  double linkStiffness = 0.5;  ///< MassSpring only: Bullet's m_kLST, 0 to 1
+  /// Whether to build trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search
+  /// against every other soft body with trees, in each substep. Without them, rays in the deformable world miss the
+  /// body, those in the classic worlds meet only its tets, and it collides at its nodes alone.
   bool faceTree = true;
 
-  /// For DeformableBody, the next two: may it set what is a property of the whole world? If so, projection is switched
-  /// on, without which bodies do not land; and nothing else, except by `implicit`. If not, nothing is set.
+  /// For DeformableBody: whether it may change settings of the whole world. If true, projection is switched on, without
+  /// which bodies do not land, and `implicit` is applied; nothing else. If false, nothing is set.
   bool configureWorld = true;
-  /// Of Bullet's own forces in a world of these alone: one Newton step an update (true) or explicit elastic forces
-  /// (false), both without line search; not given: as the world is. True is refused for Corotated.
+  /// For DeformableBody with Bullet's own forces, in a world of these alone: one Newton step per update (true) or
+  /// explicit elastic forces (false), both without line search; not given: the world is left as it is. True is refused
+  /// for Corotated.
   std::optional<bool> implicit;
 };
 
-/// For `SoftBodyOptions::pinned`: the nodes in a box, rest space.
+/// For `SoftBodyOptions::pinned`: selects the nodes in a box, rest space.
 inline std::function<bool(const Eigen::Vector3d&)> pinnedIn(const Box3& box) {
   return [box](const Eigen::Vector3d& p) { return box.contains(p); };
 }
 
-/// The options with what the cage knows, where they leave it to that: node masses, and the stiffness of each tet (but
-/// for MassSpring, whose links take none). What `makeSoftBody` and `DeformableBody` do by themselves.
-TETSKIN_BULLET_API SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options);
+/// Completes options from the cage where they give nothing: node masses, and the stiffness of each tet (except for
+/// MassSpring, whose links take none). `createSoftBody` and `DeformableBody` do this by themselves.
+TETSKIN_BULLET_API SoftBodyOptions withCageDefaults(const Cage& cage, SoftBodyOptions options);
 
-/// Makes a soft body of a cage: a node for every node, in order; a tet for every tet, in order; each edge once as a
+/// Creates a soft body from a cage: a node for every node, in order; a tet for every tet, in order; each edge once as a
 /// link and each boundary face once, in the order of btSoftBodyHelpers::CreateFromVtkFile; rest volumes and inverse
 /// rest matrices. Negative tets are reoriented, flat ones refused. Node masses are the cage's, if it has any; otherwise
-/// a quarter of each tet's around the node, but at least 0.3 of the mean: slivers' nodes would be too light to be
-/// stable.
+/// each tet gives a quarter of its mass to each of its nodes, and every node gets at least 0.3 of the mean: slivers'
+/// nodes would be too light to be stable.
 ///
-/// The body collides with rigid bodies by its nodes. Its trees of faces and nodes are ready: Bullet would build them in
-/// the first step or ray test, in quadratic time, and without end for a body of several parts. In the deformable world,
-/// and in the others with VF_SS, it does so again after its own `setMass` and `setTotalMass`: use those below (a
-/// `DeformableBody` may be given either).
+/// The body collides with rigid bodies at its nodes. Its trees of faces and nodes are built here: Bullet would build
+/// them in the first step or ray test, in quadratic time, and would not terminate for a body of several components. In
+/// the deformable world, and in the others with VF_SS, Bullet rebuilds them after its own `setMass` and `setTotalMass`:
+/// use the functions below instead (both accept the body of a `DeformableBody`, too).
 ///
 /// worldInfo  of the world that the body will be added to; must outlive the body
-/// Returns    the body, in no world yet; take it out of its world before it goes
+/// Returns    the body, in no world yet, owned by the caller; remove it from its world before it is destroyed
 /// Cost       O(T log T) for T tets
-/// Errors     an unusable cage (see `usable`), flat tets, options out of range
-TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
-                                                                    const SoftBodyOptions& options = {});
+/// Errors     those of `validate(const Cage&)`; Degenerate: flat tets; InvalidOption: options out of range;
+///            SizeMismatch: an array of another length
+TETSKIN_BULLET_API Result<std::unique_ptr<btSoftBody>> createSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                                                      const SoftBodyOptions& options = {});
 
-/// As the body's own `setMass` (0 pins the node), but Bullet is left nothing to build: the trees stay. For bodies made
-/// by `makeSoftBody` that are in no `DeformableBody`. Cost O(links + faces).
+/// Sets the mass of a node, like `btSoftBody::setMass` (0 pins it), for any body: from `createSoftBody`, of a
+/// `DeformableBody`, or the application's own. The trees of a body created here are kept, so that Bullet need not
+/// rebuild them. Cost O(links + faces).
+/// node  must exist
+/// mass  0 or above
 TETSKIN_BULLET_API void setMass(btSoftBody& body, int node, btScalar mass);
-/// As `btSoftBody::setTotalMass`, likewise.
+/// Scales the masses of all nodes to a total, like `btSoftBody::setTotalMass`, for any body: from `createSoftBody`, of
+/// a `DeformableBody`, or the application's own. The trees of a body created here are kept. Cost O(nodes + links +
+/// faces).
 TETSKIN_BULLET_API void setTotalMass(btSoftBody& body, btScalar mass, bool fromFaces = false);
 
-/// Node masses as `makeSoftBody` gives them, nodeCount, adding up to totalMass.
+/// nodeCount node masses as `createSoftBody` assigns them to a cage without masses; their sum is totalMass.
 TETSKIN_BULLET_API std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass);
+
+/// A drop-in for `btSoftBodyHelpers::interpolateBarycentricWeights`: binds the body's render nodes to its tets, for
+/// applications that leave the update to Bullet's own `interpolateRenderMesh`. Chooses the same tets, except where the
+/// barycentric distances of two agree to about 1e-6, so that Bullet's rounding decides. The weights are the same, but
+/// computed in double and summing to 1. Every render node is bound: none is left without a tet (Bullet draws such nodes
+/// at the world's origin, with uninitialised weights) or bound to a flat tet.
+///
+/// body      its tets, with its nodes and render nodes at their current positions, world space: they must fit each
+///           other. Written on success: m_renderNodesParents and m_renderNodesInterpolationWeights, four of each per
+///           render node; m_z is emptied, by which Bullet recognises that the parents are those of tets. As the parents
+///           are pointers to the body's nodes, bind again after appending nodes.
+/// Returns   the fit, with render nodes as vertices
+/// Errors    Empty: no render nodes; those of `embed`, such as no valid tets or a coordinate that is not finite. On an
+///           error the body is unchanged
+TETSKIN_BULLET_API Result<EmbedReport> bindRenderNodes(btSoftBody& body);
+
+/// Runs on the threads of Bullet's task scheduler, the one set by `btSetTaskScheduler`, as `btParallelFor` does.
+///
+/// Where no scheduler is set it runs sequentially. This is always so with a Bullet that was built without
+/// BT_THREADSAFE, such as Debian's: `btCreateDefaultTaskScheduler` returns null there. (A scheduler of the
+/// application's own works nevertheless: the tasks do not touch Bullet.) `ThreadPool` does not depend on Bullet.
+class BulletParallelFor : public ParallelFor {
+ public:
+  void run(std::size_t count, Task task) override {
+    assert(count <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
+    const Body body(task);
+    // Not btParallelFor itself: it asserts that there is a scheduler, and, without BT_THREADSAFE, that it is not
+    // called.
+    btITaskScheduler* scheduler = btGetTaskScheduler();
+    if (scheduler) {
+      scheduler->parallelFor(0, static_cast<int>(count), 1, body);
+    } else {
+      body.forLoop(0, static_cast<int>(count));
+    }
+  }
+
+ private:
+  class Body : public btIParallelForBody {
+   public:
+    explicit Body(Task task) : task_(task) {}
+    void forLoop(int first, int last) const override {
+      for (int k = first; k < last; ++k) task_(static_cast<std::size_t>(k));
+    }
+
+   private:
+    Task task_;
+  };
+};
 
 }  // namespace tetskin

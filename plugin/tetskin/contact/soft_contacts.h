@@ -6,98 +6,90 @@
 
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 class btDeformableMultiBodyDynamicsWorld;
 
 namespace tetskin {
 
-/// How finely a surface is felt.
+/// Resolution of a contact shape.
 struct ContactShapeOptions {
-  /// Points of the surface that are looked for in other bodies; met within a third. Coarse meshes get points on their
-  /// triangles, of fine ones some vertices are left out.
-  std::size_t samples = 8000;
-  /// Cubes of the distance's grid along the longest side of the cage's box. Parts thinner than two of them are not
-  /// felt well. Making the shape costs nearly as their cube: 256 take some 30 times as long as 64.
-  int cells = 64;
+  /// Surface points that are tested against other bodies; met within a third. Coarse meshes get extra points on their
+  /// triangles; of fine ones some vertices are left out.
+  std::size_t sampleCount = 8000;
+  /// Cells of the distance grid along the largest side of the cage's box. Features thinner than two cells are not
+  /// resolved well. The time to create the shape grows nearly with their cube: 256 take some 30 times as long as 64.
+  int gridResolution = 64;
 };
 
 namespace contact_detail {
 struct ShapeData;
 }
 
-/// The visual surface at rest, as what soft bodies touch: its signed distance on a grid, and points of it with the tets
-/// that carry them. Made once for a model, immutable, shared by all bodies of it.
+/// The visual surface at rest, for contact between soft bodies: its signed distance on a grid, and sample points with
+/// the tets that carry them. Created once per model, immutable, shared by all bodies of it.
 class TETSKIN_CONTACT_API ContactShape {
  public:
-  /// For the library's own use: see `makeContactShape`.
-  explicit ContactShape(std::unique_ptr<const contact_detail::ShapeData> data);
+  /// Creates the shape of a model's surface.
+  /// cage    the cage that the body was created from, or a translated or rotated copy: rest space. Cages with duplicate
+  ///         elements need their `vertexTets`. Not kept
+  /// mesh    in the cage's rest space, triangles counter-clockwise from outside; not kept. Small holes are closed;
+  ///         surfaces of components that lie within other components are left out
+  /// Cost    a second for 20,000 triangles and the default grid
+  /// Errors  those of `validate`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses nothing;
+  ///         InvalidOption: options out of range
+  static Result<std::shared_ptr<const ContactShape>> create(const Cage& cage, const TriangleMesh& mesh,
+                                                            const ContactShapeOptions& options = {});
   ~ContactShape();
 
-  std::size_t nodeCount() const;    ///< of the cage that it was made in
-  std::size_t tetCount() const;     ///< likewise
-  std::size_t sampleCount() const;  ///< points that are looked for in other bodies
-  /// For the library's own use.
-  const contact_detail::ShapeData& data() const { return *data_; }
+  std::size_t nodeCount() const;    ///< number of nodes of the cage that it was created in
+  std::size_t tetCount() const;     ///< number of tets of the cage that it was created in
+  std::size_t sampleCount() const;  ///< number of points that are tested against other bodies
 
  private:
+  friend struct Access<ContactShape>;
+  explicit ContactShape(std::unique_ptr<const contact_detail::ShapeData> data);
   std::unique_ptr<const contact_detail::ShapeData> data_;
 };
 
-/// Makes the shape of a model's surface.
-/// cage    as the body was made of it, or moved or turned: rest space. Split cages need their `vertexTets`
-/// mesh    in the cage's rest space, triangles counter-clockwise from outside. Holes are closed where they are small;
-///         surfaces of parts that lie within other parts are left out
-/// Cost    a second for 20,000 triangles and the default grid
-/// Errors  those of `usable`, `Cage::check`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses
-///         nothing; InvalidOption
-TETSKIN_CONTACT_API Result<std::shared_ptr<const ContactShape>> makeContactShape(
-    const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {});
-
-/// How soft bodies meet.
+/// Options of contact between soft bodies.
 struct SoftContactOptions {
-  /// Coulomb's; below 0: the geometric mean of the bodies' m_cfg.kDF.
-  double friction = -1.0;
+  /// Coulomb's coefficient of friction, 0 or more; not given: the geometric mean of the bodies' m_cfg.kDF.
+  std::optional<double> friction;
 };
 
-/// What a body of SoftContacts is to it.
-enum class IncludedBody {
-  Active,   ///< meets others
-  Gone,     ///< was taken out of the world
-  Changed,  ///< has other nodes or tets than its shape: it meets nothing
-  Unknown,  ///< was never included
-  Within,   ///< lies wholly within another one, and has no way out: it meets all others, but not that one
-};
-
-/// A point where two bodies touch, or one itself, as of the last step.
+/// A contact point between two bodies, or within one, in the last step.
 struct SoftContact {
-  const btSoftBody* body = nullptr;   ///< whose surface point it is
-  const btSoftBody* other = nullptr;  ///< in whose interior, or nearly
-  btVector3 point{0, 0, 0};           ///< world space, when the step began
-  btVector3 normal{0, 1, 0};          ///< of unit length, out of `other`
-  btScalar distance = 0;              ///< below 0: how deep
-  btScalar impulse = 0;               ///< along the normal, of the step's
+  const btSoftBody* body = nullptr;   ///< the body whose surface point it is
+  const btSoftBody* other = nullptr;  ///< the body that the point has entered, or nearly
+  btVector3 point{0, 0, 0};           ///< world space, at the beginning of the step
+  btVector3 normal{0, 1, 0};          ///< unit length, world space, out of `other`
+  btScalar distance = 0;              ///< world length; negative: penetration depth
+  btScalar impulse = 0;               ///< along the normal in that step, mass times velocity
 };
 
-/// Contact among soft bodies of a deformable world, by their visual surfaces: the world's solver is told of points that
-/// touch, and solves for them with Coulomb friction, together with all else that its bodies touch.
+/// Contact between soft bodies of a deformable world, at their visual surfaces: the world's solver gets the contact
+/// points, and solves them with Coulomb friction, simultaneously with everything else that its bodies touch.
 ///
 ///     auto contacts = SoftContacts::add(world).value();
-///     contacts->include(body.body(), shape);
+///     contacts->add(body.body(), shape);
 ///
-/// Bodies may be taken out of the world, and this may go, in any order, as long as it goes before the world does.
-/// Two bodies meet as groups, masks, the world's overlap filter callback, setIgnoreCollisionCheck and
-/// CF_NO_CONTACT_RESPONSE of either allow, in each step, and not where the `m_cfg.collisions` of one is 0; one meets
-/// itself whatever its group and mask.
-/// Bullet's own contact of soft bodies (VF_DD and the like) should be off for them, as it is for bodies of
+/// Bodies may be removed from the world, and this object destroyed, in any order, as long as it is destroyed before the
+/// world.
+/// Two bodies collide if groups, masks, the world's overlap filter callback, setIgnoreCollisionCheck and
+/// CF_NO_CONTACT_RESPONSE of either allow it, evaluated in each step, and the `m_cfg.collisions` of neither is 0;
+/// self-contact does not depend on group and mask.
+/// Bullet's own contact between soft bodies (VF_DD and the like) should be off for them, as it is for bodies of
 /// `DeformableBody`.
 class TETSKIN_CONTACT_API SoftContacts {
  public:
-  /// world   made with a `DeformableSolver`
+  /// Creates contacts for a world, without bodies yet.
+  /// world   created with a `DeformableSolver`; not owned
   /// Errors  InvalidOption for options out of range, and for worlds with another solver
   static Result<std::unique_ptr<SoftContacts>> add(btDeformableMultiBodyDynamicsWorld& world,
                                                    const SoftContactOptions& options = {});
@@ -105,26 +97,31 @@ class TETSKIN_CONTACT_API SoftContacts {
   SoftContacts(const SoftContacts&) = delete;
   SoftContacts& operator=(const SoftContacts&) = delete;
 
-  /// The body meets all others that were included, from the next step on; included again, it gets this shape.
-  /// body    of this world, made of the shape's cage: the same nodes and tets in the same order, wherever they are
-  /// self    it meets itself too, where parts touch that are more than two cage edges apart at rest, or some more along
-  ///         the body: fingers that the cage keeps apart meet, from 1.5 cells of the shape's grid deep if they are
-  ///         nearer
-  /// Errors  Empty without a shape; SizeMismatch; InvalidOption for a body of another world, or in other SoftContacts
-  Status include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self = false);
-  /// No longer; the body stays in the world.
-  void exclude(const btSoftBody& body);
-  /// What a body is to these contacts.
-  IncludedBody statusOf(const btSoftBody& body) const;
+  /// Adds a body: it collides with all others that were added, from the next step on. Adding it again replaces its
+  /// shape.
+  /// body    of this world, created from the shape's cage: the same nodes and tets in the same order, at any positions
+  /// shape   shared
+  /// self    whether it collides with itself, where regions touch that are more than two cage edges apart at rest, or
+  ///         some more along the body: fingers that the cage keeps apart collide, if they are nearer than that only
+  ///         from a depth of 1.5 cells of the shape's grid
+  /// Errors  Empty without a shape; SizeMismatch for another number of nodes or tets; InvalidOption for a body of
+  ///         another world, or in other SoftContacts
+  Status add(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self = false);
+  /// Removes a body from these contacts; it stays in the world.
+  void remove(const btSoftBody& body);
+  /// State of a body in these contacts. Ok: it collides with others; NotAdded; NotInWorld: it has been removed from
+  /// the world; TopologyChanged: it has other nodes or tets than its shape, and collides with nothing; Enclosed: it
+  /// lies wholly within another body, and collides with all others, but not with that one.
+  StatusCode status(const btSoftBody& body) const;
 
-  /// Those of the last step that push; without bodies that have left the world, or were excluded, since. This object's
-  /// own, valid until the next call; allocates only where there are more than ever.
+  /// Contact points with a force in the last step, without bodies that have left the world, or were removed, since.
+  /// Owned by this object, valid until the next call; allocates only if there are more than ever before.
   const std::vector<SoftContact>& contacts() const;
 
  private:
-  struct Parts;
-  explicit SoftContacts(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  explicit SoftContacts(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace tetskin

@@ -2,86 +2,95 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/types.h>
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tetskin {
 
-/// Small tets of a tet in `Cage::fineFill`: those of two uniform refinements.
+/// Number of small tets per tet in `Cage::fineVolumeFraction`: those of two uniform refinements, 8 x 8.
 constexpr std::size_t kFineTets = 64;
-/// `calibrate` refines no cage into more: of two refinements, each tet into 64, down to one, into 8, to none.
-constexpr std::size_t kMostRefinedTets = 300'000;
-/// The least share of its stiffness that a tet keeps, however little of it is filled: less makes light tets so soft
-/// that the time step or the solver suffers.
-constexpr double kLeastFill = 0.1;
 
-/// A cage at rest, with what is known of the mesh in it. Where parts of the mesh lie nearer to each other than a tet,
-/// there are several copies of it, at the same place, one for each part: which of them carries a vertex, its place does
-/// not tell, but `vertexTets`. Every array may be empty: then nothing is known. A plain TetMesh converts to that.
+/// A cage at rest, with what is known about the mesh embedded in it. Where regions of the mesh are nearer to each other
+/// than the size of a tet, the cage has duplicate elements: several copies of a tet at the same position, one for each
+/// region (the virtual-node method). Which copy carries a vertex cannot be found from the vertex's position;
+/// `vertexTets` stores it. Every array may be empty, which means that the property is unknown. A plain TetMesh converts
+/// to such a cage.
 ///
-/// To move or turn a cage, change `nodes`; to scale it, use `scaleBy`, as masses are volumes.
-struct TETSKIN_CORE_API Cage : TetMesh {
-  /// Of no tets.
+/// To translate or rotate a cage, change `mesh.nodes`; to scale it, use `scaleBy`, since masses are proportional to
+/// volumes.
+struct TETSKIN_CORE_API Cage {
+  /// An empty cage, without tets.
   Cage() = default;
-  /// Of tets alone: nothing is known of a mesh in them.
-  Cage(TetMesh mesh) : TetMesh(std::move(mesh)) {}  // NOLINT(google-explicit-constructor): nothing is lost
+  /// A cage of tets alone: nothing is known about a mesh in them.
+  Cage(TetMesh tetMesh) : mesh(std::move(tetMesh)) {}  // NOLINT(google-explicit-constructor): nothing is lost
 
-  std::vector<int> vertexTets;         ///< vertexCount of the mesh: the tet that holds the vertex
-  std::vector<double> fill;            ///< tetCount, 0 to 1: share of the tet's volume within the mesh
-  std::vector<double> factor;          ///< tetCount, above 0: of the stiffness, beside that by `fill`: see `calibrate`
-  std::vector<double> masses;          ///< nodeCount, above 0, for a density of 1: they add up to the mesh's volume
-  std::vector<int> parts;              ///< tetCount, from 0: number of the part, of tets that hang together by nodes
-  std::vector<int> latticeTets;        ///< tetCount, from 0: the same for copies of one tet
-  std::vector<std::uint8_t> fineFill;  ///< tetCount x kFineTets, in 255ths: of the tets of two refinements
-  std::uint64_t meshHash = 0;          ///< `positionsHash` of the mesh as it was; 0: not known
+  TetMesh mesh;                        ///< nodes and tets, rest space
+  std::vector<int> vertexTets;         ///< vertexCount of the mesh: index of the tet that carries each vertex
+  std::vector<double> volumeFraction;  ///< tetCount, 0 to 1: fraction of the tet's volume inside the mesh
+  /// tetCount, above 0: multiplies the stiffness, beside volumeFraction; see `calibrate`
+  std::vector<double> stiffnessFactor;
+  std::vector<double> masses;  ///< nodeCount, above 0, for a density of 1: their sum is the mesh's volume
+  std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes
+  std::vector<int> sourceTet;  ///< tetCount, from 0: equal for all duplicates of one tet
+  /// tetCount x kFineTets, in 255ths: volume fractions after two refinements.
+  std::vector<std::uint8_t> fineVolumeFraction;
+  /// `positionsHash` of the mesh that the cage was built for, where it is known.
+  std::optional<std::uint64_t> meshHash;
 
-  /// tetCount: share of the material's stiffness that each tet has, by fill and factor. Empty if it is 1 for all.
+  /// tetCount scale factors of the material's stiffness, from `volumeFraction` (at least Limits::kMinVolumeFraction)
+  /// and `stiffnessFactor`. Empty if they are 1 for all tets.
   std::vector<double> stiffnessScale() const;
-  /// Nodes times the scale, and masses times its cube.
+  /// Multiplies the node positions by the scale, which is above 0, and the masses by its cube.
   void scaleBy(double scale);
-  /// True where some tet has a copy.
-  bool split() const;
-  /// Ok, or that an array is not as long as it must be, or what it holds makes no sense. Cost O(T)
-  Status check() const;
-  /// Ok unless the mesh is not the one that the cage was built for: by vertexCount, and `meshHash`. For meshes as they
-  /// were loaded: one that was moved with its cage has another hash.
-  Status checkMesh(const TriangleMesh& mesh) const;
+  /// True if the cage has duplicate elements.
+  bool hasDuplicates() const;
+  /// Checks that this is the mesh that the cage was built for, by vertexCount and `meshHash`, where these are known.
+  /// Pass the mesh as it was loaded: one that was moved together with its cage has another hash. Cost O(vertexCount).
+  /// Error: CageMismatch.
+  Status checkMesh(const TriangleMesh& surface) const;
 
-  /// See CageLocator. Cost O(T log T): for several points, make a CageLocator.
+  /// Index of the tet that holds a point in rest space; parameters and result as for `CageLocator::locate`. Cost O(T
+  /// log T) for T tets: for several points, create one CageLocator.
   int locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const;
 };
 
-/// Of the positions' bits, whatever the triangles. Cost O(vertexCount).
+/// Checks a cage: its tet mesh by `validate(const TetMesh&)`, and that each array has the right length and valid
+/// values. Cost O(T) for T tets.
+/// Errors: those of `validate(const TetMesh&)`; SizeMismatch, InvalidOption, IndexOutOfRange.
+TETSKIN_CORE_API Status validate(const Cage& cage);
+
+/// Hash of the bits of the positions; triangles do not enter. Cost O(vertexCount).
 TETSKIN_CORE_API std::uint64_t positionsHash(const std::vector<Eigen::Vector3d>& positions);
 
-/// Finds the copy of a tet that holds a point of the mesh's surface, or near it: samples on triangles, or the vertices
-/// of a second mesh.
+/// Finds which of several duplicate tets holds a point on or near the mesh's surface, such as a sample on a triangle or
+/// a vertex of a second mesh.
 class TETSKIN_CORE_API CageLocator {
  public:
-  /// Looks at the whole cage once. Cost O(T log T)
-  /// cage  usable (see `usable`), and must outlive this
+  /// Builds the search structure. Cost O(T log T) for T tets.
+  /// cage  valid (see `validate`); not copied, must outlive this object
   explicit CageLocator(const Cage& cage);
   ~CageLocator();
   CageLocator(CageLocator&&) noexcept;
   CageLocator& operator=(CageLocator&&) noexcept;
 
-  /// The tet that holds the point, reached from the tets of these vertices through faces; where none does, the one of
-  /// smallest barycentric distance on the way. Of a cage without `vertexTets`, by the point's place alone.
+  /// Index of the tet that holds the point, among those reached through shared faces from the tets of the given
+  /// vertices. If none of them holds it, the tet with the smallest barycentric distance among those visited. For a cage
+  /// without `vertexTets`, the search uses the point's position alone.
   /// point         rest space
-  /// nearVertices  of the triangle that the point lies on or near; in range
-  /// Result        -1 of a locator that was moved from
+  /// nearVertices  vertices of the triangle that the point lies on or near; in range
+  /// Returns       -1 for a locator that was moved from
   /// Cost          O(k log k) for k tets between them; without `vertexTets`, O(T)
   int locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const;
 
  private:
-  struct Parts;
-  std::unique_ptr<const Parts> parts_;
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace tetskin

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/embedded_point.h>
-#include <tetskin/core/tet_mesh.h>
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/types.h>
 
 #include <array>
@@ -13,158 +11,230 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace tetskin {
 
-/// What becomes of vertices outside the cage.
+/// A point of a cage, given by barycentric weights of its tet's nodes. A value of some 60 bytes (90 in double) that
+/// owns nothing; returned by `Embedding::at`.
+///
+/// The functions get node data through a callable, so that nodes may be stored in any way: it takes a node index (int)
+/// and returns a vector (an `Eigen::Matrix<Scalar, 3, 1>` or a `btVector3`, by value or by reference) or a scalar. Node
+/// data and results are in world space, in the units of the data. No function allocates, each calls the callable a few
+/// times per node at most, and none can fail: values that are not finite propagate.
+template <class Scalar>
+struct EmbeddedPoint {
+  Tet nodes{};                      ///< the tet's nodes, in its order
+  std::array<Scalar, 4> weights{};  ///< sum to 1, the fourth being 1 minus the others; outside the tet they extrapolate
+  /// Weights at which forces act: those of the tet's point that is closest at rest; none is below 0, and their sum is 1
+  /// within rounding. With extrapolating weights, a force could accelerate single nodes excessively.
+  std::array<Scalar, 4> clampedWeights{};
+  int tet = -1;         ///< index of the tet in the cage
+  bool inside = false;  ///< the point lies in the tet; if not, `clampedWeights` describes another point than `weights`
+
+  /// Current position of the point: what linear skinning draws. Computed relative to the last node, so that the
+  /// rounding of weights costs no accuracy far from the origin.
+  template <class PositionOf>
+  auto position(const PositionOf& positionOf) const {
+    using Vector = std::decay_t<decltype(positionOf(0))>;
+    const Vector last = positionOf(nodes[3]);
+    Vector sum = weights[0] * (positionOf(nodes[0]) - last);
+    for (std::size_t k = 1; k < 3; ++k) sum += weights[k] * (positionOf(nodes[k]) - last);
+    return Vector(last + sum);
+  }
+
+  /// Velocity of the point at `weights`.
+  template <class VelocityOf>
+  auto velocity(const VelocityOf& velocityOf) const {
+    return weightedSum(weights, velocityOf);
+  }
+
+  /// Velocity of the point at `clampedWeights`, where forces act. An impulse does work on this velocity.
+  template <class VelocityOf>
+  auto clampedVelocity(const VelocityOf& velocityOf) const {
+    return weightedSum(clampedWeights, velocityOf);
+  }
+
+  /// Inverse effective mass at `clampedWeights`: the change of `clampedVelocity` by a unit impulse in any direction,
+  /// from the nodes' own masses alone; 0 if all nodes are pinned.
+  /// inverseMassOf  callable: node index to inverse mass, 0 for a pinned node
+  template <class InverseMassOf>
+  Scalar inverseMass(const InverseMassOf& inverseMassOf) const {
+    Scalar sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) sum += clampedWeights[k] * clampedWeights[k] * inverseMassOf(nodes[k]);
+    return sum;
+  }
+
+  /// Distributes an impulse to the nodes by the clamped weights. The nodes' linear momentum grows by the impulse and
+  /// their angular momentum by its moment about the point of application, except for what pinned nodes take.
+  /// impulse        mass times velocity, world space
+  /// inverseMassOf  callable: node index to inverse mass, 0 for a pinned node
+  /// change         called as change(node, velocityChange) for each of the 4 nodes
+  template <class Vector, class InverseMassOf, class Change>
+  void applyImpulse(const Vector& impulse, const InverseMassOf& inverseMassOf, Change&& change) const {
+    for (std::size_t k = 0; k < 4; ++k) {
+      change(nodes[k], Vector((clampedWeights[k] * inverseMassOf(nodes[k])) * impulse));
+    }
+  }
+
+ private:
+  template <class VectorOf>
+  auto weightedSum(const std::array<Scalar, 4>& factors, const VectorOf& vectorOf) const {
+    using Vector = std::decay_t<decltype(vectorOf(0))>;
+    Vector sum = factors[0] * vectorOf(nodes[0]);
+    for (std::size_t k = 1; k < 4; ++k) sum += factors[k] * vectorOf(nodes[k]);
+    return sum;
+  }
+};
+
+/// How vertices outside the cage are treated.
 struct EmbedOptions {
   OutsideRule outside = OutsideRule::Nearest;  ///< which tet carries them
-  /// In rest units, 0 or more: a vertex farther than this from every tet (under Barycentric, from its own) is refused,
-  /// with a message, and nothing is embedded.
+  /// Rest units, 0 or more. If a vertex is farther than this from every tet (under Barycentric, from its own tet), the
+  /// mesh is refused with OutsideCage and a message, and nothing is embedded.
   double maxDistance = std::numeric_limits<double>::infinity();
 };
 
-/// How well a mesh fits its cage; of a mesh that was refused, as much as was known by then. All lengths and boxes are
-/// in rest space.
+/// How well a mesh fits its cage. For a mesh that was refused, it holds what was known up to then. All lengths and
+/// boxes are in rest space.
 struct TETSKIN_CORE_API EmbedReport {
   std::size_t vertexCount = 0;  ///< inside + outside + unbound
   std::size_t inside = 0;       ///< vertices in some tet
-  std::size_t outside = 0;      ///< vertices in no tet, carried by one nevertheless
+  std::size_t outside = 0;      ///< vertices in no tet, bound to one nevertheless
   std::size_t unbound = 0;      ///< vertices without a tet: all if there is no embedding, otherwise none
-  std::size_t mapped = 0;       ///< vertices whose tet the cage's map told: all or none
-  std::size_t overlapping = 0;  ///< vertices with weights above 1e-6 in two tets or more, and no map: the cage overlaps
-                                ///< itself, and which of the tets is the vertex's own is a guess
+  std::size_t mapped = 0;       ///< vertices whose tet was given by `Cage::vertexTets`: all or none
+  std::size_t overlapping = 0;  ///< vertices with weights above 1e-6 in two tets or more, without `vertexTets`: the
+                                ///< cage overlaps itself, and the choice of the tet is ambiguous
   std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
-  std::size_t flatTets = 0;     ///< tets without volume, never used
-  double worstDistance = 0.0;   ///< longest distance from a vertex to the nearest tet; under Barycentric, to its own
-  std::size_t worstVertex = 0;  ///< which vertex that is
-  Eigen::Vector3d worstPosition = Eigen::Vector3d::Zero();  ///< where it is
-  std::size_t keptWithNeighbours = 0;  ///< vertices outside that another part of the cage is nearer to than their own
-  std::size_t rescued = 0;             ///< places of vertices that their nearest tet would have extrapolated too far
-  double largestWeight = 1.0;  ///< largest absolute weight of a vertex, or 1: how much a node's motion is amplified
-  double worstBarycentric =
-      0.0;       ///< largest barycentric distance, dimensionless; above 0 by rounding only if all are inside
-  Box3 meshBox;  ///< of the vertices
-  Box3 cageBox;  ///< of the nodes
-  double restErrorMax = 0.0;   ///< longest distance of a skinned rest vertex to the vertex, in diagonals of meshBox
-  std::size_t candidates = 0;  ///< pairs of vertex and tet that were tested
+  std::size_t flatTets = 0;     ///< tets without volume; never used
+  double maxDistance = 0.0;     ///< longest distance from a vertex to the nearest tet; under Barycentric, to its own
+  std::size_t maxDistanceVertex = 0;                              ///< index of that vertex
+  Eigen::Vector3d maxDistancePosition = Eigen::Vector3d::Zero();  ///< rest position of that vertex
+  /// Outside vertices kept on the component of their mesh neighbours, not the nearest one.
+  std::size_t reassignedByConnectivity = 0;
+  std::size_t reassignedByWeight = 0;  ///< distinct outside positions whose nearest tet would extrapolate too far
+  double maxWeight = 1.0;  ///< largest absolute weight of a vertex, at least 1: amplification of a node's motion
+  /// Largest barycentric distance, dimensionless; 0 within rounding if all vertices are inside.
+  double maxBarycentricDistance = 0.0;
+  Box3 meshBox;                ///< bounding box of the vertices
+  Box3 cageBox;                ///< bounding box of the nodes
+  double restErrorMax = 0.0;   ///< longest distance from a vertex to its skinned rest position, in diagonals of meshBox
+  std::size_t candidates = 0;  ///< pairs of a vertex and a tet that were tested
   double milliseconds = 0.0;   ///< wall time of the whole embedding
 
-  /// Mesh and cage apart from each other, or one more than kUnitRatio times the size of the other: they are most
-  /// likely in different units. Known before any search; the embedding is made all the same.
+  /// True if mesh and cage are disjoint, or one is more than Limits::kMaxUnitRatio times the size of the other: they
+  /// are most likely in different units. Known before any search; the embedding is made nevertheless.
   bool unitsDiffer() const;
-  /// That in words, the latter half of a sentence; empty if they do not.
-  std::string unitsFault() const;
-  /// One line a fact, for people.
+  /// The result of `unitsDiffer` as the second half of a sentence; empty if the units do not differ.
+  std::string unitsMessage() const;
+  /// Readable summary, one line per item.
   std::string describe() const;
 };
 
-/// Ratio of the diagonals of mesh and cage from which different units are presumed: inches against metres are 39, and
-/// a cage 30 times as large as its mesh would leave the mesh in a handful of tets anyway.
-constexpr double kUnitRatio = 30.0;
-/// Barycentric distance beyond which a mesh is refused: times nodes as far as kLargestCoordinate, weights would leave
-/// float's range; at rest they would keep no digit long before.
-constexpr double kLargestBarycentric = 1e15;
-
-/// Tet and weights of one vertex.
+/// Tet and barycentric weights of one vertex.
 struct VertexBinding {
   int tet = -1;                    ///< index of the tet in the cage
   std::array<float, 4> weights{};  ///< of the tet's nodes in its order; the fourth is 1 minus the others
   bool inside = false;             ///< the vertex lies in the tet; if not, the weights extrapolate
 };
 
-/// The order in which vertices are written.
+/// Order in which skinned vertices are written.
 enum class VertexOrder {
-  Mesh,    ///< the mesh's own
-  Sorted,  ///< by tet, `Embedding::slotVertices()`: faster, if the application permutes its mesh once
+  Mesh,    ///< the order of the mesh
+  Sorted,  ///< grouped by tet, as `Embedding::slotVertices()`: faster, if the application permutes its mesh once
 };
 
 struct EmbeddingData;
 
-/// For every vertex a tet and its weights: made once, never changed, shared by its copies, which cost nothing, and so
-/// by any number of bodies with the same cage. Vertices are stored tet by tet, so that a tet's nodes are read once: a
-/// *slot* is a place in that order, first those of the vertices inside, then those of the vertices outside.
-/// Memory: 20 bytes a vertex, 12 more a vertex outside, 24 bytes an occupied tet.
+/// A tet and weights for every vertex. Immutable; copies share the data and cost nothing, so that any number of bodies
+/// with the same cage can use it. Vertices are stored grouped by tet, so that a tet's nodes are read once. A *slot* is
+/// an index in that order: first the vertices inside the cage, then those outside.
+/// Memory: 20 bytes per vertex, 12 more per outside vertex, 24 bytes per occupied tet.
 class TETSKIN_CORE_API Embedding {
  public:
-  /// Empty: of no vertices.
+  /// An empty embedding, without vertices.
   Embedding();
-  /// For the library's own use, as is `data`.
-  explicit Embedding(std::shared_ptr<const EmbeddingData> data);
-  /// Also where it is moved from: what is left is the same embedding, never nothing.
+  /// Copies share the data. Moving is copying: the source stays a valid, equal embedding.
   Embedding(const Embedding&) = default;
   Embedding& operator=(const Embedding&) = default;
 
-  std::size_t vertexCount() const { return slotVertices().size(); }  ///< of the mesh
-  std::size_t insideCount() const;                                   ///< vertices in some tet
-  std::size_t nodeCount() const;                                     ///< of the cage
-  std::size_t tetCount() const;                                      ///< of the cage
-  bool empty() const { return slotVertices().empty(); }              ///< of no vertices
+  std::size_t vertexCount() const { return slotVertices().size(); }  ///< number of vertices of the mesh
+  std::size_t insideCount() const;                                   ///< number of vertices that lie in some tet
+  std::size_t nodeCount() const;                                     ///< number of nodes of the cage
+  std::size_t tetCount() const;                                      ///< number of tets of the cage
+  bool empty() const { return slotVertices().empty(); }              ///< true without vertices
 
-  /// vertexCount, by slot: which vertex it is; ascending within a tet
+  /// vertexCount vertex indices, by slot; ascending within a tet.
   const std::vector<std::uint32_t>& slotVertices() const;
-  /// vertexCount, by vertex: its slot
+  /// vertexCount slots, by vertex.
   const std::vector<std::uint32_t>& vertexSlots() const;
-  /// Tets and weights by vertex, in the mesh's order. Cost O(vertexCount), allocates the result.
+  /// Tets and weights by vertex, in the order of the mesh. Cost O(vertexCount); allocates the result.
   std::vector<VertexBinding> bindings() const;
-  /// How one vertex moves with the nodes of its tet.
-  /// In float or double, whichever the nodes are in that it is to be used with.
-  /// vertex  of the mesh, below vertexCount(), whatever the order of its slots
+  /// The tet and weights of one vertex, in float or double to match the nodes that it will be used with.
+  /// vertex  index in the mesh's order, below vertexCount()
   /// Cost    O(log tetCount), no allocation
   template <class Scalar = double>
   EmbeddedPoint<Scalar> at(std::size_t vertex) const;
 
-  /// All of it as bytes, the same on every machine, so that an application may embed once and keep the result with its
-  /// models. About 16 bytes a vertex, 12 more a vertex outside, 8 an occupied tet. Must not be empty.
-  /// cage  the one it was made with: a hash of its rest nodes and tets goes with the bytes
+  /// Serialises the embedding to bytes, identical on every machine, so that an application can embed once and store the
+  /// result with its models. About 16 bytes per vertex, 12 more per outside vertex, 8 per occupied tet. The embedding
+  /// must not be empty.
+  /// cage  the cage that it was made with: a hash of its rest nodes and tets is stored
   /// Cost  O(vertexCount + nodeCount + tetCount)
   std::vector<unsigned char> save(const TetMesh& cage) const;
-  /// What `save` wrote, equal to the bit. Never crashes, whatever the bytes. Which mesh it was made for the embedding
-  /// does not know: compare vertexCount() with the mesh's, and keep the two together.
-  /// bytes   `count` of them, read here only
-  /// cage    the one it was saved with: every node in its place to the bit
-  /// Cost    that of `save`
-  /// Errors  UnsupportedFormat: bytes of something else, or of another version; Malformed: too few, too many or
-  ///         damaged; CageMismatch: of another cage
+  /// Reads back what `save` wrote, bit-identical. Safe for arbitrary bytes. The embedding does not record which mesh it
+  /// was made for: compare vertexCount() with the mesh's, and store the two together.
+  /// bytes   `count` bytes; not kept
+  /// cage    the cage that it was saved with, every node bit-identical
+  /// Cost    O(vertexCount + nodeCount + tetCount)
+  /// Errors  UnsupportedFormat: other data, or another version; Malformed: too few, too many or damaged bytes;
+  ///         CageMismatch: saved with another cage
   static Result<Embedding> load(const unsigned char* bytes, std::size_t count, const TetMesh& cage);
 
-  /// For the library's own use.
-  const EmbeddingData& data() const { return *data_; }
-
  private:
+  friend struct Access<Embedding>;
+  explicit Embedding(std::shared_ptr<const EmbeddingData> data);
   std::shared_ptr<const EmbeddingData> data_;  ///< never null
 };
 
 /// Finds the tet and the weights of every vertex, exactly as testing all pairs would:
-/// - a vertex in one tet or more belongs to the one with the lowest index;
-/// - any other to the nearest under `options.outside`. `Nearest`: of the tets whose distance is within 1e-6 of their
-///   size of the shortest, the one of smallest barycentric distance, then of lowest index. `Barycentric`: of
-///   smallest barycentric distance, then of lowest index. Its weights extrapolate, so rest is reproduced. Within
-///   2^-49 of the cage's largest coordinate, it counts as inside;
-/// - under `Nearest`, a vertex outside with an absolute weight above 4 is rescued: of the tets no farther
-///   than the shortest distance plus one mean edge of the cage, it takes the one of smallest largest absolute
-///   weight, then of lowest index: slivers carry no vertex that another tet near it carries well.
+/// - A vertex in one or more tets is bound to the one with the lowest index.
+/// - Any other vertex is bound to a tet chosen by `options.outside`, and its weights extrapolate, so that the rest
+///   shape is reproduced. `Nearest`: among the tets whose distance is within 1e-6 of their size of the shortest, the
+///   one with the smallest barycentric distance, then the lowest index. `Barycentric`: the one with the smallest
+///   barycentric distance, then the lowest index. A vertex within 2^-49 of the cage's largest coordinate counts as
+///   inside.
+/// - Under `Nearest`, an outside vertex with an absolute weight above 4 is reassigned: among the tets no farther than
+///   the shortest distance plus one mean edge of the cage, it takes the one whose largest absolute weight is smallest,
+///   then the lowest index. So slivers carry no vertex that a tet nearby carries well.
+///
 /// Vertices at the same position get identical weights. Decisions are made in double; nothing depends on the unit.
 ///
-/// cage       usable (see `usable`), rest space; orientation does not matter
-/// vertices   vertexCount x 3, rest space; float or double
-/// report     written if not null, on failure too
-/// Cost       about proportional to vertexCount + tetCount; some tens of tested pairs a vertex, most of them in float
-/// Memory     at most 64 bytes a vertex beyond the input while it works, the result included, and about 40 a tet
-/// Errors     an empty or non-finite mesh, an unusable cage, coordinates beyond
-///            kLargestCoordinate, a maxDistance below 0 or NaN, a vertex beyond it
+/// cage      valid (see `validate`), rest space; either orientation
+/// vertices  vertexCount x 3, rest space; float or double
+/// report    written if not null, also on failure
+/// Cost      about proportional to vertexCount + tetCount; some tens of tested pairs per vertex, most of them in float
+/// Memory    at most 64 bytes per vertex beyond the input while it works, including the result, and about 40 per tet
+/// Errors    those of `validate(const TetMesh&)`; Empty: no vertices; NonFinite: a coordinate that is not finite or
+///           beyond Limits::kMaxCoordinate; InvalidOption: a maxDistance below 0 or NaN; SizeMismatch: more than 2^32 -
+///           2 vertices; OutsideCage: a vertex beyond maxDistance; Degenerate: a vertex so far from its tet that
+///           weights would overflow
 TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const double> vertices,
                                          const EmbedOptions& options = {}, EmbedReport* report = nullptr);
-/// The same.
+/// Overload for vertices in float; otherwise as `embed(const TetMesh&, PointView<const double>, ...)`.
 TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices,
                                          const EmbedOptions& options = {}, EmbedReport* report = nullptr);
-/// The same, and under `OutsideRule::Nearest` a vertex outside whose neighbours in the mesh belong to another part of
-/// the cage stays with them, unless that part is farther away by more than an edge of its tet: legs are not sewn
-/// together. It does not stay where all tets of that part would extrapolate it: its largest weight may be no more than
-/// 4 times what it is otherwise, or times 1. Takes some 150 bytes more for each vertex outside while it works.
-/// A cage with a map, `Cage::vertexTets`, is believed: every vertex belongs to the tet that it names, and nothing is
-/// searched. Error: CageMismatch if the vertices are others, or not in their tets.
+/// Embeds a mesh in a cage: as the overload for vertices alone, and uses the mesh's triangles and what the cage stores.
+///
+/// Under `OutsideRule::Nearest`, an outside vertex whose neighbours in the mesh belong to another component of the cage
+/// stays with them, unless that component is farther away by more than an edge of its tet, so that legs are not joined
+/// to each other. It does not stay where all tets of that component would extrapolate it too far: its largest weight
+/// may be at most 4 times the larger of 1 and what it is otherwise. This takes some 150 bytes more per outside vertex
+/// while it works.
+///
+/// If the cage has `vertexTets`, every vertex is bound to the tet named there, and nothing is searched. Further errors:
+/// those of `validate(const TriangleMesh&)`; CageMismatch if the vertices are others, or not in their tets.
 TETSKIN_CORE_API Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options = {},
                                          EmbedReport* report = nullptr);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body of elastic tets by itself, in an engine of any kind. With Bullet, take `ElasticForce` (tetskin/bullet).
+// A body of elastic tets by itself, in an engine of any kind. With Bullet, take `DeformableBody` (tetskin/bullet).
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <array>
 #include <memory>
@@ -13,65 +13,85 @@
 
 namespace tetskin {
 
-/// What an ElasticBody is made of, and how closely it is solved for.
-struct ElasticOptions {
-  double youngsModulus = 0.0;          ///< in pressure units, above 0
-  double poissonRatio = 0.3;           ///< 0 to below 0.5
-  double damping = 0.0;                ///< seconds: damping forces are this times the rate of the elastic ones
-  double density = 1.0;                ///< mass per volume
-  std::vector<double> stiffnessScale;  ///< tetCount, above 0: times the stiffness; empty: 1
-  std::vector<double> nodeMasses;      ///< nodeCount, above 0: instead of a quarter of each tet's; empty: from density
-  double tolerance = 5e-3;             ///< of a step's residual over that at its start; 0 to below 1
-  int iterations = 200;                ///< of the conjugate gradient in a step, at most; at least 1
+/// An isotropic elastic material.
+struct ElasticModuli {
+  double youngsModulus = 0.0;  ///< pressure units
+  double poissonRatio = 0.0;   ///< from -1 to below 0.5
 };
 
-/// Corotated linear elasticity of a cage, stepped by backward Euler: stable, of first order in the step, and with the
-/// linear and angular momentum that it began with. Parts that nothing deforms move as rigid bodies do, at any stiffness
-/// and spin below one radian per step: only what deviates from that is solved for. Tets come back from being flat or
-/// inside out, and find their rotation from any other.
+/// Converts Lame's parameters: E = mu (3 lambda + 2 mu) / (lambda + mu) and nu = lambda / (2 (lambda + mu)).
+/// mu      the shear modulus, pressure units, above 0
+/// lambda  pressure units; above -2/3 mu
+inline ElasticModuli fromLame(double mu, double lambda) {
+  return {mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu)};
+}
+
+/// Material and solver settings of an ElasticBody.
+struct ElasticOptions {
+  double youngsModulus = 1e5;  ///< in pressure units, above 0; the default, in Pa, is that of soft foam
+  double poissonRatio = 0.3;   ///< 0 to below 0.5
+  double stiffnessDamping =
+      0.0;               ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
+  double density = 1.0;  ///< mass per volume, above 0
+  std::vector<double> stiffnessScale;  ///< tetCount, above 0: factors of the stiffness; empty: 1
+  /// nodeCount, above 0; empty: from density, a quarter of each tet's mass to each node
+  std::vector<double> nodeMasses;
+  double tolerance = 5e-3;  ///< residual of a step relative to that at its start; 0 to below 1
+  int maxIterations = 200;  ///< limit of the conjugate gradient per step; at least 1
+};
+
+/// Corotated linear elasticity of a cage, stepped by backward Euler: stable, first order in the step, and conserving
+/// linear and angular momentum. Components that are not deformed move as rigid bodies, at any stiffness and any spin
+/// below one radian per step: only the deviation from rigid motion is solved for. Tets recover from being flat or
+/// inverted, and find their rotation from any other.
 ///
 /// This work is based on:
-///   Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004
-///   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
+///     Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004
+///     David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
 template <class Scalar>
 class TETSKIN_ELASTIC_API ElasticBody {
  public:
-  /// Empty, as one that was moved from: it has no nodes, and a step of it does nothing. Use `make`.
+  /// An empty body, equal to one that was moved from: it has no nodes, and its step does nothing. Use `create`.
   ElasticBody();
   ~ElasticBody();
   ElasticBody(ElasticBody&&) noexcept;
   ElasticBody& operator=(ElasticBody&&) noexcept;
 
-  /// At rest, where the cage is.
-  /// cage    usable (see `usable`), without flat tets; any unit
-  /// Cost    O(T log T) for T tets; memory about 700 bytes a tet in float
-  /// Errors  those of `usable`; Degenerate for flat tets; SizeMismatch; InvalidOption, also for a stiffness over
-  /// density
-  ///         and squared size (the cube root of the volume) above 1e12 in float or 1e16 in double, in 1 / s^2
-  static Result<ElasticBody> make(const TetMesh& cage, const ElasticOptions& options);
+  /// Creates a body at rest, at the position of the cage.
+  /// cage    valid (see `validate`), without flat tets; any unit; not kept
+  /// Cost    O(T log T) for T tets; memory about 700 bytes per tet in float
+  /// Errors  those of `validate(const TetMesh&)`; NonFinite: a node that is not finite or beyond
+  ///         Limits::kMaxCoordinate; Degenerate: flat tets; SizeMismatch: an array of another length; InvalidOption:
+  ///         options out of range, also if stiffness over density and squared size (the cube root of the volume) is
+  ///         above 1e12 in float or 1e16 in double, in 1 / s^2
+  static Result<ElasticBody> create(const TetMesh& cage, const ElasticOptions& options);
 
-  std::size_t nodeCount() const;  ///< of the cage; 0 if empty
-  /// World space, nodeCount, in the order of the cage; to be read and written between steps.
+  std::size_t nodeCount() const;  ///< number of nodes of the cage; 0 if empty
+  /// nodeCount positions, world space, in the order of the cage; may be read and written between steps. Owned by the
+  /// body.
   PointView<Scalar> positions();
-  PointView<Scalar> velocities();  ///< likewise, a second
+  PointView<Scalar>
+  velocities();  ///< nodeCount velocities, world length per second; may be read and written between steps
 
-  /// Holds a node, which then moves with the velocity that it is given and by no force; or lets it go. The node exists.
-  void hold(std::size_t node, bool held = true);
+  /// Pins a node, which then moves with its velocity and is not affected by forces, or releases it. The node must
+  /// exist.
+  void setPinned(std::size_t node, bool pinned = true);
 
-  /// One step; returns the iterations that it took. Cost O(T)
-  /// seconds       above 0 and finite, as the acceleration; else nothing moves
-  /// acceleration  of all nodes that are not held: gravity
-  /// threads       see `ParallelFor`; the bits are the same with any number
+  /// Advances by one step; returns the number of iterations. Cost O(T) for T tets per iteration.
+  /// seconds       above 0 and finite, otherwise nothing moves
+  /// acceleration  of all nodes that are not pinned, such as gravity, world length / s^2; finite, otherwise nothing
+  ///               moves
+  /// threads       see `ParallelFor`; bit-identical with any number; null: none
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);
 
-  /// Elastic forces at the positions as they are, nodeCount.
+  /// nodeCount elastic forces at the current positions, world space, pressure times area.
   std::vector<std::array<double, 3>> forces();
-  /// What they have stored, in the unit of pressure times volume.
+  /// Elastic energy at the current positions, pressure times volume.
   double energy();
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace tetskin

@@ -5,7 +5,7 @@
 // (tetskin/reduced).
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <cstddef>
 #include <functional>
@@ -13,55 +13,59 @@
 
 namespace tetskin {
 
-/// Which vibrations to find, of what body.
+/// Options of `computeVibrationModes`.
 struct VibrationOptions {
-  int modes = 20;                      ///< at least 1
+  int modeCount = 20;                  ///< number of modes, at least 1
   double poissonRatio = 0.3;           ///< 0 to below 0.5
-  std::vector<double> stiffnessScale;  ///< tetCount, above 0: times the stiffness; empty: 1
+  std::vector<double> stiffnessScale;  ///< tetCount, above 0: factors of the stiffness; empty: 1
   std::vector<double> nodeMasses;  ///< nodeCount, above 0, for a density of 1; empty: a quarter of each tet's volume
-  std::vector<int> pinned;         ///< nodes that are held; none: the body is free
-  /// Told now and then how much is done, from 0 to 1, ascending.
-  std::function<void(double share)> progress;
+  std::vector<int> pinned;         ///< indices of pinned nodes; empty: the body is free
+  /// Called now and then with the fraction done, from 0 to 1, ascending. May be empty.
+  std::function<void(double fraction)> progress;
 };
 
-/// The softest vibrations of a tet mesh, softest first, for a Young's modulus and a density of 1: one body's modes
-/// serve any stiffness, size of time step and mass. Rigid motions, of a free body, are none of them.
+/// The softest vibration modes of a tet mesh, softest first, for a Young's modulus and a density of 1: the modes of one
+/// body serve any stiffness, time step and mass. Rigid motions of a free body are not included.
 struct TETSKIN_ELASTIC_API VibrationModes {
-  std::vector<Eigen::Vector3d> nodes;       ///< nodeCount, rest space: those of the tets
-  std::vector<double> masses;               ///< nodeCount
-  std::vector<int> pinned;                  ///< nodes that are held, ascending
+  std::vector<Eigen::Vector3d> nodes;       ///< nodeCount, rest space: nodes of the tets
+  std::vector<double> masses;               ///< nodeCount, for a density of 1
+  std::vector<int> pinned;                  ///< indices of pinned nodes, ascending
   double poissonRatio = 0.0;                ///< of the material
   std::vector<double> eigenvalues;          ///< modeCount, ascending: squares of angular frequencies
   std::vector<std::vector<double>> shapes;  ///< modeCount x 3 nodeCount displacements; mass-orthonormal
-  int iterations = 0;                       ///< that it took; 0: all at once
+  int iterations = 0;                       ///< number of iterations; 0: solved directly
   double milliseconds = 0.0;                ///< wall time
 
-  std::size_t nodeCount() const { return nodes.size(); }        ///< of the tets
-  std::size_t modeCount() const { return eigenvalues.size(); }  ///< of `shapes`
-  /// modeCount angular frequencies of a body of this stiffness and density, radians a second; both above 0.
+  std::size_t nodeCount() const { return nodes.size(); }        ///< number of nodes
+  std::size_t modeCount() const { return eigenvalues.size(); }  ///< number of modes
+  /// modeCount angular frequencies, in radians per second, of a body with this stiffness (pressure units) and density
+  /// (mass per volume), both above 0.
   std::vector<double> frequencies(double youngsModulus, double density) const;
 
-  /// All of it as bytes, the same on every machine: 24 bytes a node and mode, and 8 a node.
-  /// tets  those that the modes are of: their hash goes with the bytes
+  /// Serialises the modes to bytes, identical on every machine: 24 bytes per node and mode, and 8 per node.
+  /// tets  the tets that the modes were computed for: their hash is stored
   std::vector<unsigned char> save(const TetMesh& tets) const;
-  /// What `save` wrote, equal to the bit; iterations and time are 0. Never crashes, whatever the bytes.
-  /// bytes   `count` of them
-  /// Errors  UnsupportedFormat: bytes of something else, or of another version; Malformed: too few, too many or
-  ///         damaged; CageMismatch: of other tets
+  /// Reads back what `save` wrote, bit-identical; iterations and time are 0. Safe for arbitrary bytes.
+  /// bytes   `count` bytes; not kept
+  /// tets    the tets that the modes were saved with
+  /// Errors  UnsupportedFormat: other data, or another version; Malformed: too few, too many or damaged bytes;
+  ///         CageMismatch: saved with other tets
   static Result<VibrationModes> load(const unsigned char* bytes, std::size_t count, const TetMesh& tets);
 };
 
-/// The softest vibrations of linear tets with masses at their nodes, by preconditioned block iteration, in memory
-/// proportional to the mesh: see vibration_modes.cpp. Modes of one frequency span the right space, in some basis of it.
+/// Computes the softest vibration modes of linear tets with lumped masses, by preconditioned block iteration, in memory
+/// proportional to the mesh: see vibration_modes.cpp. Modes of equal frequency span the right space, in an arbitrary
+/// basis.
 ///
-/// tets    usable (see `usable`), one part, without flat ones; rest space, any unit and size. At least as many free
-///         nodes as modes
-/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB a tet, and 60 bytes a tet and
-///         mode
-/// Errors  those of `usable`; InvalidOption: options out of range, more modes than free nodes, or all nodes pinned;
-///         SizeMismatch; IndexOutOfRange: a pinned node does not exist; Degenerate: flat tets, nodes in no tet, several
-///         parts, parts that hang together by a node or an edge alone, so that nothing resists their turning, or no
-///         convergence
-TETSKIN_ELASTIC_API Result<VibrationModes> vibrationModes(const TetMesh& tets, const VibrationOptions& options = {});
+/// tets    valid (see `validate`), one component, without flat tets; rest space, any unit and size. At least as many
+///         free nodes as modes
+/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB per tet, and 60 bytes per tet
+///         and mode
+/// Errors  those of `validate(const TetMesh&)`; InvalidOption: options out of range, more modes than free nodes, or all
+///         nodes pinned; SizeMismatch: an array of another length; IndexOutOfRange: a pinned node does not exist;
+///         Degenerate: flat tets, nodes in no tet, several components, regions that are connected by a node or an edge
+///         alone, so that nothing resists their rotation, or no convergence
+TETSKIN_ELASTIC_API Result<VibrationModes> computeVibrationModes(const TetMesh& tets,
+                                                                 const VibrationOptions& options = {});
 
 }  // namespace tetskin

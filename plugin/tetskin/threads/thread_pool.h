@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 namespace tetskin {
 
@@ -16,20 +17,21 @@ namespace tetskin {
 ///     options.threads = &pool;         // of a skin; the pool outlives it
 class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
  public:
-  /// threadCount  how many work on a `run`, the calling one included; 0: one for each that the machine runs at a time.
-  ///              All others are started here. With 1 there are none, and `run` is a loop.
-  explicit ThreadPool(std::size_t threadCount = 0);
-  /// Waits for the threads to end. No `run` may be under way.
+  /// Starts the threads.
+  /// threadCount  number of threads that work on a `run`, including the calling one, at least 1; not given: one for
+  ///              each hardware thread. With 1 none is started, and `run` is a loop.
+  explicit ThreadPool(std::optional<std::size_t> threadCount = std::nullopt);
+  /// Waits for the threads to end. No `run` may be in progress.
   ~ThreadPool() override;
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Including the calling one. Fewer than asked for if the system gave no more.
+  /// Number of threads, including the calling one. Less than requested if the system provided fewer.
   std::size_t threadCount() const;
 
-  /// See ParallelFor. The calling thread takes part, and sleeps only while others finish their last task. Allocates
-  /// nothing; costs some microseconds to wake the others. Calls from several threads wait for each other; a call from
-  /// within a task never returns.
+  /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and sleeps only
+  /// while others finish their last task. Allocates nothing; costs some microseconds to wake the others. Calls from
+  /// several threads wait for each other; a call from within a task never returns.
   void run(std::size_t count, Task task) override;
 
  private:

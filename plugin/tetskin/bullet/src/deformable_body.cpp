@@ -9,9 +9,11 @@
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/core/src/shared/base/median.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -28,8 +30,9 @@ namespace {
 constexpr double kStableFrequency = 8.0;
 
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
-/// with its neighbours held, over its mass.
+/// with its neighbours pinned, over its mass.
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
+  assert(masses.size() == cage.nodeCount());
   const elastic_detail::Lame unit = elastic_detail::lameOf(1.0, options.poissonRatio);
   std::vector<double> stiffness(cage.nodeCount(), 0.0);
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
@@ -46,16 +49,17 @@ double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& option
 
 /// Density times gravity times size: the unit of relative stiffness.
 double weightPressure(const Cage& cage, const std::vector<double>& masses, double gravity) {
+  assert(masses.size() == cage.mesh.nodeCount());
   const double volume =
-      cage.masses.empty() ? totalVolume(cage) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
+      cage.masses.empty() ? totalVolume(cage.mesh) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
   const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / volume;
-  // Without gravity nothing sags; the earth's serves as a scale.
+  // Without gravity nothing sags; the earth's gravity then serves as a scale.
   constexpr double kEarth = 9.81;
-  return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.nodes).sizes().maxCoeff();
+  return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.mesh.nodes).sizes().maxCoeff();
 }
 
 /// pressure  see `weightPressure`
-/// bounded   by what explicit elastic forces can bear
+/// bounded   limit it to what explicit elastic forces can simulate stably
 double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
                             double pressure, bool bounded) {
   const double wanted = options.relativeStiffness * pressure;
@@ -67,7 +71,7 @@ double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options,
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
   force.setDamping(damping);
 }
-/// Damping by mass, the first, would slow even free fall.
+/// The first argument, damping by mass, would slow even free fall.
 void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
   force.setDamping(0, damping);
 }
@@ -96,31 +100,31 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
     changes.push_back(std::string(kUseDeformableSolver) + ", or choose one of Bullet's force models");
   }
   if (options.implicit.value_or(false)) {
-    changes.emplace_back("leave SoftBodyOptions::implicit out: it is about Bullet's own forces");
+    changes.emplace_back("leave SoftBodyOptions::implicit at false: it applies to Bullet's own forces only");
   }
   return refusal("ForceModel::Corotated", changes);
 }
 
-/// What moves farther in a step than numbers of this precision tell apart is not simulated, it is lost.
+/// Rejects gravity with which bodies move farther in a step than numbers of this precision can represent.
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
-  constexpr double kMost = 1e6;
+  constexpr double kMax = 1e6;
   double volume = 0.0;
   for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
   const double size = std::cbrt(volume), length = static_cast<double>(gravity.length());
-  if (length <= kMost * size) return {};
+  if (length <= kMax * size) return {};
   char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 sizes per second squared)",
-      length, size, kMost * size);
+  std::snprintf(text, sizeof text,
+                "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 body lengths per "
+                "second squared)",
+                length, size, kMax * size);
   return invalid(text);
 }
 
 }  // namespace
 
-/// The members of a DeformableBody, in an order in which forces go before the body that they are for.
-struct DeformableBody::Parts {
-  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
+/// The members of a DeformableBody, in such an order that forces are destroyed before the body on which they act.
+struct DeformableBody::Impl {
+  Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
       : world(ofWorld),
         solver(ofSolver),
         list(*ofSolver.getLagrangianForceArray()),
@@ -131,13 +135,13 @@ struct DeformableBody::Parts {
   btDeformableBodySolver& solver;
   ForceList& list;
   std::unique_ptr<btSoftBody> body;
-  std::vector<btScalar> masses;  ///< by node: what it has when it is not pinned
+  std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
-  double weightPressure = 1.0;  ///< see there
+  double weightPressure = 1.0;  ///< see the function `weightPressure`
   ForceModel forceModel = ForceModel::Corotated;
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
-  std::function<void(const ElasticMaterial&)> applyMaterial;  ///< to `elasticity`, which is one of several types
+  std::function<void(const ElasticMaterial&)> applyMaterial;  ///< sets the material of `elasticity`
 
   template <class Force, class... Arguments>
   void makeElasticity(Arguments&&... arguments) {
@@ -145,10 +149,11 @@ struct DeformableBody::Parts {
     applyMaterial = [to = static_cast<Force*>(force.get())](const ElasticMaterial& now) { setMaterial(*to, now); };
     elasticity = std::move(force);
   }
-  /// Of the body's material.
-  /// rest  its tets; of no use to Bullet's forces
+  /// Creates the force of the body's material.
+  /// rest  the body's tets; not used by Bullet's forces
   void makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest);
   void apply(const ElasticMaterial& now) {
+    assert(applyMaterial);
     material = now;
     applyMaterial(now);
     body->activate();
@@ -161,21 +166,21 @@ struct DeformableBody::Parts {
   }
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
-  /// Whoever takes the body out of the world takes it from its forces.
+  /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces.
   bool isActedOn() const { return isInItsWorld() && gravity.m_softBodies.size() > 0; }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
-    return {StatusCode::IndexOutOfRange,
-            "there is no node " + std::to_string(node) + " in a cage of " + std::to_string(masses.size()) + " nodes"};
+    return {StatusCode::IndexOutOfRange, "node " + std::to_string(node) + " does not exist in a cage of " +
+                                             std::to_string(masses.size()) + " nodes"};
   }
 };
 
-DeformableBody::DeformableBody(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+DeformableBody::DeformableBody(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
                                                             const SoftBodyOptions& given) {
-  if (Status status = cage.check(); !status.ok()) return status;
-  const SoftBodyOptions options = withCage(cage, given);
+  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  const SoftBodyOptions options = withCageDefaults(cage, given);
   if (options.forceModel == ForceModel::MassSpring) {
     return invalid(
         "mass-spring bodies are not stable in the deformable world; choose neo-Hookean or linear elasticity, or add "
@@ -191,10 +196,10 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
   if (!rest.ok()) return rest.status();
   const double pressure = weightPressure(cage, masses, static_cast<double>(world.getGravity().length()));
-  const ElasticMaterial material{options.youngsModulus > 0.0
-                                     ? options.youngsModulus
-                                     : defaultYoungsModulus(cage, options, masses, pressure, !corotated),
-                                 options.poissonRatio, options.damping};
+  const ElasticMaterial material{options.youngsModulus
+                                     ? *options.youngsModulus
+                                     : defaultYoungsModulus(cage.mesh, options, masses, pressure, !corotated),
+                                 options.poissonRatio, options.stiffnessDamping};
   if (Status status = checkMaterial(material); !status.ok()) return status;
   if (Status status = checkStiffness(*body, material); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
@@ -206,22 +211,22 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
     if (options.implicit) world.setImplicit(*options.implicit);
   }
 
-  auto parts = std::make_unique<Parts>(world, solver, std::move(body));
-  for (const double m : masses) parts->masses.push_back(static_cast<btScalar>(m));
-  parts->forceModel = options.forceModel;
-  parts->material = material;
-  parts->weightPressure = pressure;
-  parts->makeElasticity(options, std::move(rest).value());
+  auto impl = std::make_unique<Impl>(world, solver, std::move(body));
+  for (const double m : masses) impl->masses.push_back(static_cast<btScalar>(m));
+  impl->forceModel = options.forceModel;
+  impl->material = material;
+  impl->weightPressure = pressure;
+  impl->makeElasticity(options, std::move(rest).value());
   for (btDeformableLagrangianForce* force :
-       {static_cast<btDeformableLagrangianForce*>(&parts->gravity), parts->elasticity.get()}) {
+       {static_cast<btDeformableLagrangianForce*>(&impl->gravity), impl->elasticity.get()}) {
     force->setIndices(solver.getIndices());
   }
-  addToList(parts->list, parts->gravity, *parts->elasticity, *parts->body);
-  if (corotated) static_cast<DeformableSolver&>(solver).solveAlways();
-  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(parts)));
+  addToList(impl->list, impl->gravity, *impl->elasticity, *impl->body);
+  if (corotated) static_cast<DeformableSolver&>(solver).requireOwnSolve();
+  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 
-void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest) {
+void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest) {
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
@@ -233,93 +238,104 @@ void DeformableBody::Parts::makeElasticity(const SoftBodyOptions& options, elast
       return;
     default:
       makeElasticity<ElasticForce>(world, *body, std::move(rest), material, options.stiffnessScale,
-                                   SolverLimits{options.solverTolerance, options.maxIterations});
+                                   SolverSettings{options.solverTolerance, options.maxIterations});
   }
 }
 
 ForceModel DeformableBody::forceModel() const {
-  return parts_->forceModel;
+  return impl_->forceModel;
 }
 
 SolverPath DeformableBody::solverPath() const {
-  if (!parts_->isActedOn()) return SolverPath::None;
-  return parts_->forceModel == ForceModel::Corotated ? SolverPath::Solver : SolverPath::Bullet;
+  if (!impl_->isActedOn()) return SolverPath::None;
+  return impl_->forceModel == ForceModel::Corotated ? SolverPath::Solver : SolverPath::Bullet;
 }
 
 DeformableBody::~DeformableBody() {
-  // Taken out of the world, by the application or by the world's own end: nothing there is left to be told, and nothing
-  // may be there to tell.
-  if (!parts_->isInAWorld()) return;
-  if (!parts_->isInItsWorld()) {
-    (void)parts_->body.release();  // another world has it still
+  // The body was removed from the world, by the application or by the world's destructor: nothing there needs to be
+  // updated, and the world may not exist any more.
+  if (!impl_->isInAWorld()) return;
+  if (!impl_->isInItsWorld()) {
+    (void)impl_->body.release();  // another world still contains it
     return;
   }
-  removeFromList(parts_->list, &parts_->gravity);
-  removeFromList(parts_->list, parts_->elasticity.get());
-  parts_->world.removeSoftBody(parts_->body.get());
+  removeFromList(impl_->list, &impl_->gravity);
+  removeFromList(impl_->list, impl_->elasticity.get());
+  impl_->world.removeSoftBody(impl_->body.get());
 }
 
 btSoftBody& DeformableBody::body() {
-  return *parts_->body;
+  return *impl_->body;
 }
 const btSoftBody& DeformableBody::body() const {
-  return *parts_->body;
+  return *impl_->body;
 }
 double DeformableBody::youngsModulus() const {
-  return parts_->material.youngsModulus;
+  return impl_->material.youngsModulus;
 }
 double DeformableBody::relativeStiffness() const {
-  return parts_->material.youngsModulus / parts_->weightPressure;
+  return impl_->material.youngsModulus / impl_->weightPressure;
 }
 double DeformableBody::poissonRatio() const {
-  return parts_->material.poissonRatio;
+  return impl_->material.poissonRatio;
 }
-double DeformableBody::damping() const {
-  return parts_->material.damping;
+double DeformableBody::stiffnessDamping() const {
+  return impl_->material.damping;
 }
 
 Status DeformableBody::setYoungsModulus(double pressure) {
-  return parts_->set({pressure, poissonRatio(), damping()});
+  return impl_->set({pressure, poissonRatio(), stiffnessDamping()});
 }
 
 Status DeformableBody::setPoissonRatio(double ratio) {
-  return parts_->set({youngsModulus(), ratio, damping()});
+  return impl_->set({youngsModulus(), ratio, stiffnessDamping()});
 }
 
-Status DeformableBody::setDamping(double seconds) {
-  return parts_->set({youngsModulus(), poissonRatio(), seconds});
+Status DeformableBody::setStiffnessDamping(double seconds) {
+  return impl_->set({youngsModulus(), poissonRatio(), seconds});
 }
 
 Status DeformableBody::setGravity(const btVector3& gravity) {
   if (Status status = checkGravity(gravity, body()); !status.ok()) return status;
-  parts_->gravity.set(gravity);
+  impl_->gravity.set(gravity);
   body().activate();
   return {};
 }
 
 void DeformableBody::followWorldGravity() {
-  parts_->gravity.set({});
+  impl_->gravity.set({});
   body().activate();
 }
 
 bool DeformableBody::isPinned(int node) const {
-  assert(parts_->checkNode(node).ok());
+  assert(impl_->checkNode(node).ok());
   return body().m_nodes[node].m_im == 0;
 }
 
-Status DeformableBody::pin(int node) {
-  if (Status status = parts_->checkNode(node); !status.ok()) return status;
-  btSoftBody::Node& pinned = body().m_nodes[node];
-  if (pinned.m_im > 0) parts_->masses[static_cast<std::size_t>(node)] = 1 / pinned.m_im;
-  for (btVector3* rate : {&pinned.m_v, &pinned.m_vn, &pinned.m_splitv}) rate->setZero();
-  body().setMass(node, 0);
+Status DeformableBody::setPinned(int node, bool pinned) {
+  if (Status status = impl_->checkNode(node); !status.ok()) return status;
+  btSoftBody::Node& held = body().m_nodes[node];
+  btScalar& mass = impl_->masses[static_cast<std::size_t>(node)];
+  if (pinned) {
+    if (held.m_im > 0) mass = 1 / held.m_im;
+    for (btVector3* rate : {&held.m_v, &held.m_vn, &held.m_splitv}) rate->setZero();
+    body().setMass(node, 0);
+  } else if (isPinned(node)) {
+    body().setMass(node, mass);
+  }
   body().activate();
   return {};
 }
 
-Status DeformableBody::unpin(int node) {
-  if (Status status = parts_->checkNode(node); !status.ok()) return status;
-  if (isPinned(node)) body().setMass(node, parts_->masses[static_cast<std::size_t>(node)]);
+Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
+  if (Status status = impl_->checkNode(node); !status.ok()) return status;
+  if (!isPinned(node)) {
+    return invalid("node " + std::to_string(node) + " is not pinned: call setPinned before it is led");
+  }
+  if (!toEigen(position).allFinite()) {
+    return {StatusCode::NonFinite, "the position of pinned node " + std::to_string(node) + " is not finite"};
+  }
+  body().m_nodes[node].m_x = position;
   body().activate();
   return {};
 }

@@ -3,29 +3,32 @@
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
-#include <tetskin/contact/src/soft/contact_force.h>
+#include <tetskin/contact/src/soft/soft_contact_rows.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-using contact_detail::ContactForce;
+using contact_detail::SoftContactRows;
 
 Status invalidContact(const char* message) {
   return {StatusCode::InvalidOption, message};
 }
 
 Status checkSoftOptions(const SoftContactOptions& options) {
-  if (!std::isfinite(options.friction)) return invalidContact("the friction of soft contacts must be a number");
+  if (options.friction && !(*options.friction >= 0.0 && std::isfinite(*options.friction))) {
+    return invalidContact("the friction of soft contacts must be finite and not negative");
+  }
   return {};
 }
 
-/// Whether contacts of the world, but these, have the body: each would push it as if it were alone.
-bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const ContactForce& own,
+/// True if other contacts of the world contain the body: each of them would push it.
+bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const SoftContactRows& own,
                 const btSoftBody& body) {
   for (int i = 0; i < list.size(); ++i) {
-    const auto* contacts = dynamic_cast<const ContactForce*>(list[i]);
+    const auto* contacts = dynamic_cast<const SoftContactRows*>(list[i]);
     if (contacts && contacts != &own && contacts->find(body)) return true;
   }
   return false;
@@ -33,71 +36,72 @@ bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, 
 
 }  // namespace
 
-struct SoftContacts::Parts {
-  Parts(btDeformableMultiBodyDynamicsWorld& ofWorld, DeformableSolver& ofSolver, const SoftContactOptions& options)
+struct SoftContacts::Impl {
+  Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, DeformableSolver& ofSolver, const SoftContactOptions& options)
       : world(ofWorld), solver(ofSolver), force(options) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
   DeformableSolver& solver;
-  ContactForce force;
-  std::vector<SoftContact> contacts;  ///< as last told
+  SoftContactRows force;
+  std::vector<SoftContact> contacts;  ///< as last reported
 };
 
-SoftContacts::SoftContacts(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SoftContacts::SoftContacts(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 SoftContacts::~SoftContacts() {
-  removeFromList(*parts_->solver.getLagrangianForceArray(), &parts_->force);
+  removeFromList(*impl_->solver.getLagrangianForceArray(), &impl_->force);
 }
 
 Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDynamicsWorld& world,
                                                         const SoftContactOptions& options) {
   if (Status status = checkSoftOptions(options); !status.ok()) return status;
   DeformableSolver* solver = deformableSolverOf(world);
-  if (!solver) return refusal("contact among soft bodies", {kUseDeformableSolver});
-  solver->solveAlways();
-  auto parts = std::make_unique<Parts>(world, *solver, options);
-  parts->force.setIndices(solver->getIndices());
-  solver->getLagrangianForceArray()->push_back(&parts->force);
-  return std::unique_ptr<SoftContacts>(new SoftContacts(std::move(parts)));
+  if (!solver) return refusal("contact between soft bodies", {kUseDeformableSolver});
+  solver->requireOwnSolve();
+  auto impl = std::make_unique<Impl>(world, *solver, options);
+  impl->force.setIndices(solver->getIndices());
+  solver->getLagrangianForceArray()->push_back(&impl->force);
+  return std::unique_ptr<SoftContacts>(new SoftContacts(std::move(impl)));
 }
 
-Status SoftContacts::include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
-  if (!shape) return {StatusCode::Empty, "a body needs a contact shape; see makeContactShape"};
-  const auto& inWorld = parts_->world.getSoftBodyArray();
+Status SoftContacts::add(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
+  if (!shape) return {StatusCode::Empty, "the contact shape is null; create it with ContactShape::create"};
+  const auto& inWorld = impl_->world.getSoftBodyArray();
   if (inWorld.findLinearSearch(&body) == inWorld.size()) {
-    return invalidContact("add the body to the world of the contacts before including it");
+    return invalidContact("the body is not in the world of the contacts; add it there first");
   }
-  if (isInOthers(*parts_->solver.getLagrangianForceArray(), parts_->force, body)) {
-    return invalidContact("the body is included in other soft contacts of the world: exclude it there first");
+  if (isInOthers(*impl_->solver.getLagrangianForceArray(), impl_->force, body)) {
+    return invalidContact("the body is in other soft contacts of this world; remove it from them first");
   }
   const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
   const auto tets = static_cast<std::size_t>(body.m_tetras.size());
   if (nodes != shape->nodeCount() || tets != shape->tetCount()) {
     return {StatusCode::SizeMismatch, "the body has " + std::to_string(nodes) + " nodes and " + std::to_string(tets) +
-                                          " tets, the shape " + std::to_string(shape->nodeCount()) + " and " +
+                                          " tets, but the shape has " + std::to_string(shape->nodeCount()) + " and " +
                                           std::to_string(shape->tetCount()) +
-                                          "; include it with the shape of its own cage"};
+                                          "; add it with a shape made from its own cage"};
   }
-  parts_->force.include(body, std::move(shape), self);
+  impl_->force.include(body, std::move(shape), self);
   return {};
 }
 
-void SoftContacts::exclude(const btSoftBody& body) {
-  parts_->force.exclude(body);
+void SoftContacts::remove(const btSoftBody& body) {
+  impl_->force.exclude(body);
 }
 
-IncludedBody SoftContacts::statusOf(const btSoftBody& body) const {
-  if (const contact_detail::ContactBody* of = parts_->force.find(body)) {
-    if (!of->fits()) return IncludedBody::Changed;
-    return parts_->force.isWithin(*of) ? IncludedBody::Within : IncludedBody::Active;
+StatusCode SoftContacts::status(const btSoftBody& body) const {
+  if (const contact_detail::ContactBody* solved = impl_->force.find(body)) {
+    if (!solved->fits()) return StatusCode::TopologyChanged;
+    return impl_->force.isWithin(*solved) ? StatusCode::Enclosed : StatusCode::Ok;
   }
-  return parts_->force.isGone(body) ? IncludedBody::Gone : IncludedBody::Unknown;
+  return impl_->force.isGone(body) ? StatusCode::NotInWorld : StatusCode::NotAdded;
 }
 
 const std::vector<SoftContact>& SoftContacts::contacts() const {
-  std::vector<SoftContact>& contacts = parts_->contacts;
+  std::vector<SoftContact>& contacts = impl_->contacts;
   contacts.clear();
-  for (const SoftPointContact& from : parts_->force.lastContacts()) {
+  for (const SoftPointContact& from : impl_->force.lastContacts()) {
+    assert(from.body && btSoftBody::upcast(from.object));
     const btScalar impulse = from.normal.dot(from.impulse);
     if (!(impulse > 0)) continue;
     contacts.push_back(

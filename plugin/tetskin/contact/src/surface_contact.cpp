@@ -7,88 +7,91 @@
 #include <tetskin/contact/surface_contact.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Default margin over the body's size.
+/// Default margin, relative to the body's size.
 constexpr double kSurfaceMargin = 0.002;
-/// How deep in a mesh a point still belongs to it, over the body's size: deeper than contact ever lets it come.
+/// Depth up to which a point behind a mesh's surface still belongs to it, relative to the body's size: larger than any
+/// depth that contact allows.
 constexpr double kMeshThickness = 0.03;
-/// How far around the surface a search looks, over the body's size, to remember what is clear: nodes move less in some
-/// steps.
+/// Distance around the surface within which a search finds clearances, relative to the body's size: nodes move by less
+/// in a few steps.
 constexpr double kSearchSlack = 0.005;
-/// Of the weights of a vertex outside, their absolute values added up: more is of a cage that does not fit.
-constexpr btScalar kLargestSpread = btScalar(1.2);
+/// Largest sum of the absolute weights of a vertex outside: larger sums come from a cage that does not fit.
+constexpr btScalar kMaxSpread = btScalar(1.2);
 
-/// Of the triangles: with some hundred bytes each, more would be a mistake in the spacing.
-constexpr double kMostSamples = 10'000'000;
+/// Largest number of samples on triangles: with some hundred bytes each, more would be a mistake in the spacing.
+constexpr double kMaxSamples = 10'000'000;
 
 Status refused(StatusCode code, const char* message) {
   return {code, message};
 }
 
 Status checkContactOptions(const SurfaceContactOptions& options) {
-  if (std::isnan(options.margin) || std::isinf(options.margin)) {
-    return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite, or below 0 for a default");
+  if (options.margin && !(*options.margin >= 0.0 && std::isfinite(*options.margin))) {
+    return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite and not negative");
   }
-  if (!(options.sampleSpacing >= 0.0) || std::isinf(options.sampleSpacing)) {
-    return refused(StatusCode::InvalidOption, "the sample spacing of surface contact must be finite, 0 for no samples");
+  if (options.sampleSpacing && !(*options.sampleSpacing > 0.0 && std::isfinite(*options.sampleSpacing))) {
+    return refused(StatusCode::InvalidOption, "the sample spacing of surface contact must be finite and above 0");
   }
   return {};
 }
 
 Status checkFit(const btSoftBody& body, const Embedding& embedding, const TriangleMesh& mesh) {
-  if (embedding.empty()) return refused(StatusCode::Empty, "the binding is of no vertices: nothing can touch");
-  if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
+  if (embedding.empty()) return refused(StatusCode::Empty, "the binding has no vertices; surface contact needs some");
+  if (Status status = validate(mesh); !status.ok()) return status;
   if (embedding.vertexCount() != mesh.vertexCount()) {
-    return refused(StatusCode::SizeMismatch, "the binding is of another mesh: it has another number of vertices");
+    return refused(StatusCode::SizeMismatch, "the binding belongs to another mesh; it has another number of vertices");
   }
   if (embedding.nodeCount() != static_cast<std::size_t>(body.m_nodes.size())) {
-    return refused(StatusCode::SizeMismatch, "the binding is of another cage: the body has another number of nodes");
+    return refused(StatusCode::SizeMismatch,
+                   "the binding belongs to another cage; the body has another number of nodes");
   }
   return {};
 }
 
 Status checkSpacing(const TriangleMesh& mesh, double spacing) {
-  if (!(spacing > 0.0) || countOfSamples(mesh, spacing) <= kMostSamples) return {};
+  if (!(spacing > 0.0) || countOfSamples(mesh, spacing) <= kMaxSamples) return {};
   return refused(StatusCode::InvalidOption,
-                 "the sample spacing of surface contact is so small that the mesh would get more than 10,000,000 "
+                 "the sample spacing of surface contact is so small that the mesh would need more than 10,000,000 "
                  "samples; make it larger, in the unit of the mesh at rest");
 }
 
 Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
   if (!bodyWithTrees(body)) {
     return refused(StatusCode::InvalidOption,
-                   "surface contact needs a body made by makeSoftBody, or a DeformableBody's");
+                   "surface contact needs a body created by createSoftBody, or that of a DeformableBody");
   }
   if (world.getSoftBodyArray().findLinearSearch(&body) == world.getSoftBodyArray().size()) {
-    return refused(StatusCode::InvalidOption, "the body is not in this world: add it there first");
+    return refused(StatusCode::InvalidOption, "the body is not in this world; add it first");
   }
   std::vector<std::string> changes;
   if (!deformableSolverOf(body)) changes.emplace_back(kUseDeformableSolver);
   if (!dynamic_cast<const btCollisionDispatcher*>(world.getDispatcher()))
-    changes.emplace_back("make the world with a btCollisionDispatcher");
+    changes.emplace_back("create the world with a btCollisionDispatcher");
   if (Status status = refusal("surface contact", changes); !status.ok()) return status;
   if (contactsOf(body)) {
-    return refused(StatusCode::InvalidOption, "the body has surface contact already: destroy that first");
+    return refused(StatusCode::InvalidOption, "the body already has surface contact; destroy that first");
   }
   return {};
 }
 
-/// How far vertices outside may be from the nodes' box, over its size.
+/// How far vertices outside may be from the nodes' box, relative to its size.
 btScalar beyondNodes(const ContactPatches& patches) {
   btScalar spread = 1;
   for (const PatchCluster& cluster : patches.clusters) spread = std::max(spread, cluster.spread);
-  return (std::min(spread, kLargestSpread) - 1) / 2;
+  return (std::min(spread, kMaxSpread) - 1) / 2;
 }
 
 double largestSide(const btSoftBody& body) {
   return boundingBox(nodePositions(body)).sizes().maxCoeff();
 }
 
-/// So that the next step makes the body's pairs, and their algorithms, anew.
+/// Removes the body's pairs, so that the next step creates them and their algorithms anew.
 void forgetPairs(btSoftBody& body, btDeformableMultiBodyDynamicsWorld& world) {
   if (btBroadphaseProxy* proxy = body.getBroadphaseHandle()) {
     world.getPairCache()->cleanProxyFromPairs(proxy, world.getDispatcher());
@@ -97,19 +100,20 @@ void forgetPairs(btSoftBody& body, btDeformableMultiBodyDynamicsWorld& world) {
 
 }  // namespace
 
-struct SurfaceContact::Parts {
-  Parts(const btDispatcher& dispatcher, btSoftBody& body, TouchSearch search, btScalar thickness)
+struct SurfaceContact::Impl {
+  Impl(const btDispatcher& dispatcher, btSoftBody& body, SurfaceCollider search, btScalar thickness)
       : contacts(std::make_shared<BodyContacts>(dispatcher, *bodyWithTrees(body), std::move(search), thickness)) {}
 
   void begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach);
   void end();
 
   std::shared_ptr<BodyContacts> contacts;
-  std::vector<SurfaceContactPoint> points;  ///< as last told
+  std::vector<SurfaceContactPoint> points;  ///< as last reported
   btScalar marginBefore = 0;
 };
 
-void SurfaceContact::Parts::begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach) {
+void SurfaceContact::Impl::begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach) {
+  assert(contacts->bodyLives() && !(reach < contacts->search().margin()));
   btSoftBody& body = contacts->body();
   marginBefore = body.getCollisionShape()->getMargin();
   body.getCollisionShape()->setMargin(contacts->search().margin());
@@ -120,17 +124,17 @@ void SurfaceContact::Parts::begin(btDeformableMultiBodyDynamicsWorld& world, btS
   body.activate();
 }
 
-void SurfaceContact::Parts::end() {
+void SurfaceContact::Impl::end() {
   if (!contacts->bodyLives()) return;
   btSoftBody& body = contacts->body();
   body.getCollisionShape()->setMargin(marginBefore);
   bodyWithTrees(body)->setReach(-1);
 }
 
-SurfaceContact::SurfaceContact(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SurfaceContact::SurfaceContact(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 SurfaceContact::~SurfaceContact() {
-  parts_->end();
+  impl_->end();
 }
 
 Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
@@ -140,27 +144,28 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
        {checkContactOptions(options), checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
     if (!status.ok()) return status;
   }
-  if (Status status = checkSpacing(mesh, options.sampleSpacing); !status.ok()) return status;
+  if (Status status = checkSpacing(mesh, options.sampleSpacing.value_or(0.0)); !status.ok()) return status;
   const double size = largestSide(body);
-  const auto margin = static_cast<btScalar>(options.margin >= 0.0 ? options.margin : kSurfaceMargin * size);
-  ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing);
+  const auto margin = static_cast<btScalar>(options.margin.value_or(kSurfaceMargin * size));
+  ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing.value_or(0.0));
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
-  auto parts = std::make_unique<Parts>(
-      *world.getDispatcher(), body, TouchSearch(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
-      static_cast<btScalar>(kMeshThickness * size));
-  deformableSolverOf(body)->solveAlways();
-  parts->begin(world, reach);
-  return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(parts)));
+  auto impl =
+      std::make_unique<Impl>(*world.getDispatcher(), body,
+                             SurfaceCollider(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
+                             static_cast<btScalar>(kMeshThickness * size));
+  deformableSolverOf(body)->requireOwnSolve();
+  impl->begin(world, reach);
+  return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(impl)));
 }
 
 const std::vector<SurfaceContactPoint>& SurfaceContact::contacts() const {
-  parts_->points.clear();
-  if (parts_->contacts->bodyLives()) addContactPoints(*parts_->contacts, parts_->points);
-  return parts_->points;
+  impl_->points.clear();
+  if (impl_->contacts->bodyLives()) addContactPoints(*impl_->contacts, impl_->points);
+  return impl_->points;
 }
 
 std::size_t SurfaceContact::sampleCount() const {
-  return parts_->contacts->search().patches().pointCount;
+  return impl_->contacts->search().patches().pointCount;
 }
 
 }  // namespace tetskin

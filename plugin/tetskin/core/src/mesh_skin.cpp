@@ -6,6 +6,8 @@
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
+#include <cassert>
+
 namespace tetskin {
 namespace {
 
@@ -15,51 +17,33 @@ void fill(PointView<float> points, const Eigen::Vector3f& value) {
 
 }  // namespace
 
-const char* toString(UpdateStatus status) {
-  switch (status) {
-    case UpdateStatus::Updated:
-      return "updated";
-    case UpdateStatus::Asleep:
-      return "asleep";
-    case UpdateStatus::Hidden:
-      return "hidden";
-    case UpdateStatus::NonFinite:
-      return "not finite";
-    case UpdateStatus::TopologyChanged:
-      return "topology changed";
-    case UpdateStatus::Unbound:
-      return "unbound";
-  }
-  return "unknown update status";
-}
-
-/// What a bound skin has, and its steps of an update.
+/// The data of a bound skin, and the steps of an update.
 template <class Scalar>
-struct MeshSkin<Scalar>::Parts {
+struct MeshSkin<Scalar>::Impl {
   Binding binding;
   InstanceOptions options;
   PackedNodes<Scalar> nodes;
   EdgeVectors<Scalar> edges;
   std::vector<Eigen::Matrix<Scalar, 3, 1>> positions, previous;
   std::vector<Eigen::Vector3f> normals, tangents;
-  std::vector<Scalar> padded;   ///< positions, for recomputed normals
-  std::vector<Scalar> scratch;  ///< of positions, where they are not written directly
+  std::vector<Scalar> padded;   ///< positions, needed for recomputed normals
+  std::vector<Scalar> scratch;  ///< used for positions that are not written directly
   std::vector<Eigen::Vector3f> normalScratch, tangentScratch;
   Box3 bounds;
   std::size_t firstBadNode = 0;
 
-  /// Allocates what the options ask for, and nothing else.
-  Parts(Binding made, const InstanceOptions& wanted);
+  /// Allocates only what the options ask for.
+  Impl(Binding made, const InstanceOptions& wanted);
   void skin();
-  /// Those of a quadratic surface; null for a linear one.
+  /// The stencils of a quadratic surface; null for a linear one.
   const QuadraticStencils<Scalar>* stencils() const {
-    return bound().quadratic && !options.leaveOutQuadratic ? &*bound().quadratic : nullptr;
+    return bound().quadratic && !options.disableQuadratic ? &*bound().quadratic : nullptr;
   }
 
  private:
-  const SkinParts<Scalar>& bound() const { return binding->parts(); }
+  const SkinData<Scalar>& bound() const { return dataOf(*binding); }
   VertexOrder order() const { return bound().options.order; }
-  Normals normalsKind() const { return options.leaveOutNormals ? Normals::None : bound().options.normals; }
+  Normals normalsKind() const { return options.disableNormals ? Normals::None : bound().options.normals; }
   PointView<float> normalsOut() { return options.normalTarget.empty() ? viewOf(normals) : options.normalTarget; }
   PointView<float> tangentsOut() { return options.tangentTarget.empty() ? viewOf(tangents) : options.tangentTarget; }
   void prepareNormals();
@@ -69,12 +53,12 @@ struct MeshSkin<Scalar>::Parts {
 };
 
 template <class Scalar>
-MeshSkin<Scalar>::Parts::Parts(Binding made, const InstanceOptions& wanted)
+MeshSkin<Scalar>::Impl::Impl(Binding made, const InstanceOptions& wanted)
     : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
   const std::size_t vertexCount = bound().embedding.vertexCount();
   const auto direct = [&](auto points) { return skin_tasks::isDirect<Scalar>(points, order()); };
   bool positionsDirect = false;
-  const bool readAgain = normalsKind() == Normals::Recomputed;  // which the caller's memory must not be
+  const bool readAgain = normalsKind() == Normals::Recomputed;  // since the caller's memory must not be read
   if (const auto* single = std::get_if<PointView<float>>(&options.target)) {
     positionsDirect = direct(*single) && !readAgain;
   } else if (const auto* twice = std::get_if<PointView<double>>(&options.target)) {
@@ -90,10 +74,11 @@ MeshSkin<Scalar>::Parts::Parts(Binding made, const InstanceOptions& wanted)
 }
 
 template <class Scalar>
-void MeshSkin<Scalar>::Parts::prepareNormals() {
+void MeshSkin<Scalar>::Impl::prepareNormals() {
+  assert(normalsOut().empty() || normalsOut().size() == bound().embedding.vertexCount());
   const std::size_t vertexCount = bound().embedding.vertexCount();
   if (options.normalTarget.empty()) normals.resize(vertexCount);
-  fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors to begin with: see transformDirections
+  fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors initially: see transformDirections
   if (normalsKind() == Normals::Recomputed) {
     padded.resize(4 * vertexCount);
     return;
@@ -108,9 +93,9 @@ void MeshSkin<Scalar>::Parts::prepareNormals() {
   scratchFor(tangentsOut(), Eigen::Vector3f::UnitX(), tangentScratch);
 }
 
-/// For the nodes as they are packed.
+/// Updates for the packed nodes.
 template <class Scalar>
-void MeshSkin<Scalar>::Parts::skin() {
+void MeshSkin<Scalar>::Impl::skin() {
   if (stencils()) edges.update(*stencils(), nodes, options.threads);
   if (const auto* single = std::get_if<PointView<float>>(&options.target)) return skinTo(*single);
   if (const auto* twice = std::get_if<PointView<double>>(&options.target)) return skinTo(*twice);
@@ -120,7 +105,8 @@ void MeshSkin<Scalar>::Parts::skin() {
 
 template <class Scalar>
 template <class Out>
-void MeshSkin<Scalar>::Parts::skinTo(PointView<Out> out) {
+void MeshSkin<Scalar>::Impl::skinTo(PointView<Out> out) {
+  assert(out.size() == bound().embedding.vertexCount());
   const bool recomputed = normalsKind() == Normals::Recomputed, byScratch = !scratch.empty();
   const SkinOutput<Scalar, Out> output{out, order(), options.origin.template cast<Scalar>(),
                                        byScratch ? scratch.data() : nullptr,
@@ -138,7 +124,8 @@ void MeshSkin<Scalar>::Parts::skinTo(PointView<Out> out) {
 }
 
 template <class Scalar>
-void MeshSkin<Scalar>::Parts::skinDirections() {
+void MeshSkin<Scalar>::Impl::skinDirections() {
+  assert(bound().normals && normalsOut().size() == bound().embedding.vertexCount());
   const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& room) {
     transformDirections(bound().embedding, factors, stencils(), stencils() ? &edges : nullptr, nodes, out, order(),
                         room.empty() ? nullptr : room.front().data(), options.threads);
@@ -160,11 +147,11 @@ template <class Scalar>
 Result<EmbedReport> MeshSkin<Scalar>::bind(const Cage& cage, const TriangleMesh& mesh, const SkinOptions& options) {
   if (Status status = checkInstance(options, mesh.vertexCount()); !status.ok()) return status;
   EmbedReport report;
-  Result<Binding> made = SkinBinding<Scalar>::make(cage, mesh, options, &report);
+  Result<Binding> made = SkinBinding<Scalar>::create(cage, mesh, options, &report);
   if (!made.ok()) return made.status();
   std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
-  nodes.reserve(cage.nodeCount());
-  for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(p.cast<Scalar>());
+  nodes.reserve(cage.mesh.nodeCount());
+  for (const Eigen::Vector3d& p : cage.mesh.nodes) nodes.push_back(p.cast<Scalar>());
   const InstanceOptions& instance = options;
   if (Status status = bind(made.value(), viewOf(std::as_const(nodes)), instance); !status.ok()) return status;
   return report;
@@ -172,7 +159,8 @@ Result<EmbedReport> MeshSkin<Scalar>::bind(const Cage& cage, const TriangleMesh&
 
 template <class Scalar>
 Status MeshSkin<Scalar>::bind(Binding binding, PointView<const Scalar> nodes, const InstanceOptions& options) {
-  if (!binding || binding->embedding().empty()) return {StatusCode::Empty, "there is no embedding to bind with"};
+  if (!binding || binding->embedding().empty())
+    return {StatusCode::Empty, "the embedding is empty; embed the mesh before binding"};
   const Embedding& embedding = binding->embedding();
   if (nodes.size() != embedding.nodeCount()) {
     return {StatusCode::SizeMismatch, "there are " + std::to_string(nodes.size()) + " nodes, but the cage has " +
@@ -180,92 +168,92 @@ Status MeshSkin<Scalar>::bind(Binding binding, PointView<const Scalar> nodes, co
   }
   if (Status status = checkInstance(options, embedding.vertexCount()); !status.ok()) return status;
   if (Status status = checkNodes(nodes); !status.ok()) return status;
-  parts_ = std::make_unique<Parts>(std::move(binding), options);
-  const UpdateStatus updated = update(nodes);
-  assert(updated == UpdateStatus::Updated);
+  impl_ = std::make_unique<Impl>(std::move(binding), options);
+  const StatusCode updated = update(nodes);
+  assert(updated == StatusCode::Ok);
   (void)updated;
-  hold();
+  clearMotion();
   return {};
 }
 
 template <class Scalar>
-UpdateStatus MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
-  held_ = true;
-  if (!bound()) return UpdateStatus::Unbound;
-  if (nodes.size() != nodeCount()) return UpdateStatus::TopologyChanged;
-  if (const std::size_t bad = parts_->nodes.pack(nodes); bad < nodes.size()) {
-    parts_->firstBadNode = bad;
-    return UpdateStatus::NonFinite;
+StatusCode MeshSkin<Scalar>::update(PointView<const Scalar> nodes) {
+  motionCleared_ = true;
+  if (!bound()) return StatusCode::Unbound;
+  if (nodes.size() != nodeCount()) return StatusCode::TopologyChanged;
+  if (const std::size_t bad = impl_->nodes.pack(nodes); bad < nodes.size()) {
+    impl_->firstBadNode = bad;
+    return StatusCode::NonFinite;
   }
-  parts_->skin();
-  held_ = false;
-  return UpdateStatus::Updated;
+  impl_->skin();
+  motionCleared_ = false;
+  return StatusCode::Ok;
 }
 
 template <class Scalar>
-UpdateStatus MeshSkin<Scalar>::update(const KeptSteps<Scalar>& steps, Scalar alpha) {
-  held_ = true;
-  if (!bound()) return UpdateStatus::Unbound;
-  if (steps.size() != nodeCount()) return UpdateStatus::TopologyChanged;
-  const PointView<Scalar> memory = parts_->nodes.memory();
+StatusCode MeshSkin<Scalar>::update(const StepHistory<Scalar>& steps, Scalar alpha) {
+  motionCleared_ = true;
+  if (!bound()) return StatusCode::Unbound;
+  if (steps.size() != nodeCount()) return StatusCode::TopologyChanged;
+  const PointView<Scalar> memory = impl_->nodes.memory();
   steps.nodesAt(alpha, memory);
   return update(PointView<const Scalar>(memory));
 }
 
 template <class Scalar>
-std::size_t MeshSkin<Scalar>::firstBadNode() const {
-  return bound() ? parts_->firstBadNode : 0;
+std::size_t MeshSkin<Scalar>::firstNonFiniteNode() const {
+  return bound() ? impl_->firstBadNode : 0;
 }
 
 template <class Scalar>
 std::size_t MeshSkin<Scalar>::nodeCount() const {
-  return bound() ? parts_->nodes.size() : 0;
+  return bound() ? impl_->nodes.size() : 0;
 }
 
 template <class Scalar>
 Interpolation MeshSkin<Scalar>::interpolation() const {
-  return bound() && parts_->stencils() ? Interpolation::Quadratic : Interpolation::Linear;
+  return bound() && impl_->stencils() ? Interpolation::Quadratic : Interpolation::Linear;
 }
 
 template <class Scalar>
 PointView<const Scalar> MeshSkin<Scalar>::positions() const {
   if (!bound()) return {};
-  return viewOf(std::as_const(parts_->positions));
+  return viewOf(std::as_const(impl_->positions));
 }
 
 template <class Scalar>
 PointView<const Scalar> MeshSkin<Scalar>::previousPositions() const {
-  if (!bound() || !parts_->options.previousPositions) return {};
-  return viewOf(std::as_const(held_ ? parts_->positions : parts_->previous));
+  if (!bound() || !impl_->options.previousPositions) return {};
+  return viewOf(std::as_const(motionCleared_ ? impl_->positions : impl_->previous));
 }
 
 template <class Scalar>
 PointView<const float> MeshSkin<Scalar>::normals() const {
   if (!bound()) return {};
-  return viewOf(std::as_const(parts_->normals));
+  return viewOf(std::as_const(impl_->normals));
 }
 
 template <class Scalar>
 PointView<const float> MeshSkin<Scalar>::tangents() const {
   if (!bound()) return {};
-  return viewOf(std::as_const(parts_->tangents));
+  return viewOf(std::as_const(impl_->tangents));
 }
 
 template <class Scalar>
 const Box3& MeshSkin<Scalar>::bounds() const {
   static const Box3 empty;
-  return bound() ? parts_->bounds : empty;
+  return bound() ? impl_->bounds : empty;
 }
 
 template <class Scalar>
 auto MeshSkin<Scalar>::binding() const -> Binding {
-  return bound() ? parts_->binding : nullptr;
+  return bound() ? impl_->binding : nullptr;
 }
 
 template <class Scalar>
 Status MeshSkin<Scalar>::setOrigin(const Eigen::Vector3d& origin) {
   if (Status status = checkOrigin(origin); !status.ok()) return status;
-  if (bound()) parts_->options.origin = origin;
+  if (bound()) impl_->options.origin = origin;
   return {};
 }
 

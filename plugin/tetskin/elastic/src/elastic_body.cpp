@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/shared/base/instantiate.h>
 #include <tetskin/core/src/shared/base/positive_values.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
 
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -19,16 +21,16 @@ template <class Scalar>
 Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
   if (Status status =
-          elastic_detail::checkMaterial<Scalar>(options.youngsModulus, options.poissonRatio, options.damping);
+          elastic_detail::checkMaterial<Scalar>(options.youngsModulus, options.poissonRatio, options.stiffnessDamping);
       !status.ok()) {
     return status;
   }
   if (!(options.density > 0.0 && held(options.density) && held(1.0 / options.density))) {
-    return {StatusCode::InvalidOption, "a density must be above 0, and finite"};
+    return {StatusCode::InvalidOption, "the density must be finite and above 0"};
   }
-  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.iterations < 1) {
+  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0) || options.maxIterations < 1) {
     return {StatusCode::InvalidOption,
-            "a tolerance must be at least 0 and below 1, and there must be at least one iteration"};
+            "the tolerance must be at least 0 and below 1, and the number of iterations at least 1"};
   }
   const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
   if (Status status = checkPositive<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet",
@@ -43,34 +45,35 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const double mass = options.nodeMasses.empty()
                           ? options.density * volume
                           : std::accumulate(options.nodeMasses.begin(), options.nodeMasses.end(), 0.0);
-  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, options.damping, mass, volume);
+  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, options.stiffnessDamping, mass, volume);
 }
 
 Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
-  if (Status status = usable(cage, report); !status.ok()) return status;
+  if (Status status = validate(cage, report); !status.ok()) return status;
   if (const std::size_t far = firstUnusable(viewOf(cage.nodes)); far < cage.nodeCount()) {
-    return {StatusCode::NonFinite, "node " + std::to_string(far) + " of the cage is beyond what can be simulated"};
+    return {StatusCode::NonFinite,
+            "node " + std::to_string(far) + " of the cage is not finite, or too far from the origin to be simulated"};
   }
   const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
   if (flat.count == 0) return {};
-  return {StatusCode::Degenerate, "tet " + std::to_string(flat.first) + " of the cage is flat: remove flat tets"};
+  return {StatusCode::Degenerate, "tet " + std::to_string(flat.first) + " of the cage is flat; remove flat tets"};
 }
 
 }  // namespace
 
 template <class Scalar>
-struct ElasticBody<Scalar>::Parts {
-  Parts(const TetMesh& cage, const ElasticOptions& options)
+struct ElasticBody<Scalar>::Impl {
+  Impl(const TetMesh& cage, const ElasticOptions& options)
       : dynamics(elastic_detail::restTets(cage), cage.nodeCount()), masses(options.nodeMasses) {
     for (const Eigen::Vector3d& p : cage.nodes) {
       for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
     }
     velocities.assign(positions.size(), Scalar(0));
     limits.tolerance = options.tolerance;
-    limits.iterations = options.iterations;
+    limits.iterations = options.maxIterations;
     const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
     dynamics.setMaterial(elastic_detail::lameOfTets(lame, cage.tetCount(), options.stiffnessScale));
-    dynamics.setDamping(options.damping);
+    dynamics.setDamping(options.stiffnessDamping);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
       double total = 0.0;
@@ -79,18 +82,20 @@ struct ElasticBody<Scalar>::Parts {
         for (const int n : tet) masses[static_cast<std::size_t>(n)] += quarter;
         total += 4.0 * quarter;
       }
-      // A node of no tet is a point that falls.
+      // A node that no tet uses is a point that falls.
       for (double& m : masses) m = m > 0.0 ? m : total / static_cast<double>(masses.size());
     }
+    assert(masses.size() == cage.nodeCount());
     for (std::size_t n = 0; n < masses.size(); ++n) dynamics.setMass(n, static_cast<Scalar>(masses[n]));
   }
 
   void read(const std::array<double, 3>& push) {
+    assert(positions.size() == 3 * masses.size() && velocities.size() == positions.size());
     for (std::size_t n = 0; n < masses.size(); ++n) {
-      const bool held = dynamics.matrix().mass(n) == Scalar(0);
+      const bool pinned = dynamics.matrix().mass(n) == Scalar(0);
       for (std::size_t k = 0; k < 3; ++k) {
         dynamics.point(n)[k] = positions[3 * n + k];
-        dynamics.velocity(n)[k] = velocities[3 * n + k] + (held ? Scalar(0) : static_cast<Scalar>(push[k]));
+        dynamics.velocity(n)[k] = velocities[3 * n + k] + (pinned ? Scalar(0) : static_cast<Scalar>(push[k]));
       }
     }
   }
@@ -98,9 +103,9 @@ struct ElasticBody<Scalar>::Parts {
     const Scalar* solution = dynamics.matrix().solution();
     for (std::size_t n = 0; n < masses.size(); ++n) {
       const std::size_t wide = dynamics.matrix().wideOf(n);
-      const bool held = dynamics.matrix().mass(n) == Scalar(0);
+      const bool pinned = dynamics.matrix().mass(n) == Scalar(0);
       for (std::size_t k = 0; k < 3; ++k) {
-        if (!held) velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
+        if (!pinned) velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
         positions[3 * n + k] += static_cast<Scalar>(seconds) * velocities[3 * n + k];
       }
     }
@@ -109,7 +114,7 @@ struct ElasticBody<Scalar>::Parts {
   BodyDynamics<Scalar> dynamics;
   elastic_detail::ConjugateGradient<Scalar> solve;
   elastic_detail::SolveLimits limits;
-  std::vector<double> masses;  ///< by node, when it is not held
+  std::vector<double> masses;  ///< by node, before any is pinned
   std::vector<Scalar> positions, velocities;
 };
 
@@ -123,42 +128,42 @@ template <class Scalar>
 ElasticBody<Scalar>& ElasticBody<Scalar>::operator=(ElasticBody&&) noexcept = default;
 
 template <class Scalar>
-Result<ElasticBody<Scalar>> ElasticBody<Scalar>::make(const TetMesh& cage, const ElasticOptions& options) {
+Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const TetMesh& cage, const ElasticOptions& options) {
   TetMesh positive = cage;
   if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
   if (Status status = checkOptions<Scalar>(cage, options); !status.ok()) return status;
   ElasticBody body;
-  body.parts_ = std::make_unique<Parts>(positive, options);
+  body.impl_ = std::make_unique<Impl>(positive, options);
   return body;
 }
 
 template <class Scalar>
 std::size_t ElasticBody<Scalar>::nodeCount() const {
-  return parts_ ? parts_->masses.size() : 0;
+  return impl_ ? impl_->masses.size() : 0;
 }
 template <class Scalar>
 PointView<Scalar> ElasticBody<Scalar>::positions() {
-  if (!parts_) return {};
-  return {parts_->positions.data(), nodeCount()};
+  if (!impl_) return {};
+  return {impl_->positions.data(), nodeCount()};
 }
 template <class Scalar>
 PointView<Scalar> ElasticBody<Scalar>::velocities() {
-  if (!parts_) return {};
-  return {parts_->velocities.data(), nodeCount()};
+  if (!impl_) return {};
+  return {impl_->velocities.data(), nodeCount()};
 }
 
 template <class Scalar>
-void ElasticBody<Scalar>::hold(std::size_t node, bool held) {
-  if (!parts_) return;
+void ElasticBody<Scalar>::setPinned(std::size_t node, bool pinned) {
+  if (!impl_) return;
   assert(node < nodeCount());
-  parts_->dynamics.setMass(node, held ? Scalar(0) : static_cast<Scalar>(parts_->masses[node]));
+  impl_->dynamics.setMass(node, pinned ? Scalar(0) : static_cast<Scalar>(impl_->masses[node]));
 }
 
 template <class Scalar>
 int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& acceleration, ParallelFor* threads) {
   const bool finite = std::isfinite(acceleration[0] + acceleration[1] + acceleration[2]);
-  if (!parts_ || !(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
-  Parts& p = *parts_;
+  if (!impl_ || !(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
+  Impl& p = *impl_;
   p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
   p.dynamics.predict(seconds, threads);
   p.dynamics.start(seconds, threads);
@@ -174,21 +179,21 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
 
 template <class Scalar>
 std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
-  if (!parts_) return {};
-  parts_->read({});
-  parts_->dynamics.prepareForces(nullptr);
+  if (!impl_) return {};
+  impl_->read({});
+  impl_->dynamics.prepareForces(nullptr);
   std::vector<std::array<double, 3>> out(nodeCount());
   for (std::size_t n = 0; n < out.size(); ++n) {
-    for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(parts_->dynamics.force(n)[k]);
+    for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(impl_->dynamics.force(n)[k]);
   }
   return out;
 }
 
 template <class Scalar>
 double ElasticBody<Scalar>::energy() {
-  if (!parts_) return 0.0;
-  parts_->read({});
-  return parts_->dynamics.energy(nullptr);
+  if (!impl_) return 0.0;
+  impl_->read({});
+  return impl_->dynamics.energy(nullptr);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar) template class ElasticBody<Scalar>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -13,7 +14,7 @@
 
 namespace tetskin {
 
-/// One `run` at a time. Threads take the next task off a counter; who sleeps is woken by a condition.
+/// One `run` at a time. Threads take the next task from a counter; sleeping threads are woken by a condition variable.
 class ThreadPool::Workers {
  public:
   explicit Workers(std::size_t count) {
@@ -21,7 +22,7 @@ class ThreadPool::Workers {
     try {
       while (threads_.size() < count) threads_.emplace_back([this] { work(); });
     } catch (const std::system_error&) {
-      // The system gives no more threads: those that there are will do.
+      // The system provides no more threads: the existing ones suffice.
     }
   }
 
@@ -39,6 +40,7 @@ class ThreadPool::Workers {
   std::size_t size() const { return threads_.size(); }
 
   void run(std::size_t count, Task task) {
+    assert(count > 0 && !threads_.empty());
     const std::lock_guard<std::mutex> one(oneAtATime_);
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -47,13 +49,13 @@ class ThreadPool::Workers {
       next_.store(0, std::memory_order_relaxed);
       ++round_;
     }
-    // No more than have something to do: the caller does one task at least.
+    // No more than there is work for: the caller does at least one task.
     const std::size_t wanted = std::min(threads_.size(), count - 1);
     for (std::size_t k = 0; k < wanted; ++k) wake_.notify_one();
     takeTasks(task, count);
     std::unique_lock<std::mutex> lock(mutex_);
     idle_.wait(lock, [this] { return busy_ == 0; });
-    task_.reset();  // a thread that wakes only now finds nothing
+    task_.reset();  // a thread that wakes later finds nothing
   }
 
  private:
@@ -84,19 +86,20 @@ class ThreadPool::Workers {
 
   std::vector<std::thread> threads_;
   std::mutex oneAtATime_;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards everything below
   std::condition_variable wake_, idle_;
-  std::optional<Task> task_;  ///< there is one while a run is under way
+  std::optional<Task> task_;  ///< set during a run
   std::size_t count_ = 0;
-  std::size_t round_ = 0;  ///< which run it is
+  std::size_t round_ = 0;  ///< number of the run
   std::size_t busy_ = 0;   ///< threads in takeTasks, without the caller
   bool ending_ = false;
-  std::atomic<std::size_t> next_{0};  ///< first task that nobody has taken
+  std::atomic<std::size_t> next_{0};  ///< first task that has not been taken
 };
 
-ThreadPool::ThreadPool(std::size_t threadCount) {
-  if (threadCount == 0) threadCount = std::max(1u, std::thread::hardware_concurrency());
-  workers_ = std::make_unique<Workers>(threadCount - 1);
+ThreadPool::ThreadPool(std::optional<std::size_t> threadCount) {
+  assert(!threadCount || *threadCount > 0);
+  const std::size_t all = std::max<std::size_t>(1, threadCount.value_or(std::thread::hardware_concurrency()));
+  workers_ = std::make_unique<Workers>(all - 1);
 }
 
 ThreadPool::~ThreadPool() = default;

@@ -3,30 +3,33 @@
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/core/src/shared/skin_binding.h>
 #include <tetskin/core/src/shared/skinning/quadratic_point.h>
-#include <tetskin/touch/src/forces/node_pushes.h>
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/src/points/lever.h>
+#include <tetskin/touch/src/points/point_data.h>
+#include <tetskin/touch/src/points/point_jacobian.h>
+#include <tetskin/touch/src/rows/node_pushes.h>
 
 #include <cassert>
 
 namespace tetskin {
 
-using touch_detail::Lever;
-using touch_detail::LeverNode;
+using touch_detail::dataOf;
 using touch_detail::PointData;
+using touch_detail::PointJacobian;
+using touch_detail::PointJacobianNode;
 
 namespace {
 
-/// Of a triangle as it is drawn: along its first side, and out of it.
-SurfaceFrame frameOf(const btVector3 corners[3], const PointData& of) {
+/// The frame of a triangle as it is drawn: one axis along its first side, one along its normal.
+SurfaceFrame frameOf(const btVector3 corners[3], const PointData& point) {
   SurfaceFrame frame;
   frame.position = corners[0];
-  for (std::size_t k = 1; k < 3; ++k) frame.position += of.shares[k] * (corners[k] - corners[0]);
+  for (std::size_t k = 1; k < 3; ++k) frame.position += point.weights[k] * (corners[k] - corners[0]);
   const btVector3 side = corners[1] - corners[0];
   const btVector3 area = side.cross(corners[2] - corners[0]);
   if (!(side.length2() > 0) || !(area.length2() > 0)) return frame;
   const btVector3 tangent = side.normalized(), out = area.normalized(), across = out.cross(tangent);
-  frame.normal = (of.restNormal[0] * tangent + of.restNormal[1] * across + of.restNormal[2] * out).normalized();
+  frame.normal =
+      (point.restNormal[0] * tangent + point.restNormal[1] * across + point.restNormal[2] * out).normalized();
   frame.tangent = (tangent - tangent.dot(frame.normal) * frame.normal).normalized();
   frame.bitangent = frame.normal.cross(frame.tangent);
   return frame;
@@ -38,14 +41,14 @@ Point pointOf(const btVector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// How a skin draws a point's triangle; nothing if it is of another body.
+/// Computes the corners of a point's triangle as the skin draws them; false if the skin is of another body.
 bool drawCorners(const SoftBodySkin& skin, btScalar alpha, const btSoftBody& body, const PointData& data,
                  btVector3 corners[3]) {
   const auto binding = skin.binding();
   if (skin.body() != &body || binding->embedding().tetCount() <= static_cast<std::size_t>(data.corners[0].tet)) {
     return false;
   }
-  const auto& stencils = binding->parts().quadratic;
+  const auto& stencils = dataOf(*binding).quadratic;
   const bool bends = stencils && skin.interpolation() == Interpolation::Quadratic;
   const NodePositions<btScalar> positionOf = [&](int node) { return pointOf(skin.nodeAt(node, alpha)); };
   for (std::size_t k = 0; k < 3; ++k) {
@@ -63,32 +66,6 @@ void linearCorners(const btSoftBody& body, const PointData& data, btVector3 corn
 
 }  // namespace
 
-const char* toString(TouchStatus status) {
-  switch (status) {
-    case TouchStatus::Ok:
-      return "ok";
-    case TouchStatus::Miss:
-      return "miss";
-    case TouchStatus::Unbound:
-      return "unbound";
-    case TouchStatus::Gone:
-      return "gone";
-    case TouchStatus::Released:
-      return "released";
-    case TouchStatus::OtherBody:
-      return "other body";
-    case TouchStatus::TopologyChanged:
-      return "topology changed";
-    case TouchStatus::NonFinite:
-      return "not finite";
-    case TouchStatus::OutOfWorld:
-      return "out of the world";
-    case TouchStatus::InvalidOption:
-      return "invalid option";
-  }
-  return "unknown touch status";
-}
-
 btTransform SurfaceFrame::transform() const {
   const btMatrix3x3 basis(tangent.x(), normal.x(), -bitangent.x(), tangent.y(), normal.y(), -bitangent.y(), tangent.z(),
                           normal.z(), -bitangent.z());
@@ -103,16 +80,16 @@ SurfacePoint::SurfacePoint(btSoftBody& body, const PointData& data)
   }
 }
 
-TouchStatus SurfacePoint::status() const {
-  if (!body_) return TouchStatus::Released;
-  if (watched_ && life_.expired()) return TouchStatus::Gone;
-  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return TouchStatus::TopologyChanged;
+StatusCode SurfacePoint::status() const {
+  if (!body_) return StatusCode::Released;
+  if (watched_ && life_.expired()) return StatusCode::BodyDeleted;
+  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return StatusCode::TopologyChanged;
   for (const EmbeddedPoint<btScalar>& corner : data_.corners) {
     for (const int node : corner.nodes) {
-      if (!touch_detail::isFiniteVector(body_->m_nodes[node].m_x)) return TouchStatus::NonFinite;
+      if (!touch_detail::isFiniteVector(body_->m_nodes[node].m_x)) return StatusCode::NonFinite;
     }
   }
-  return TouchStatus::Ok;
+  return StatusCode::Ok;
 }
 
 void SurfacePoint::release() {
@@ -134,7 +111,7 @@ std::optional<btVector3> SurfacePoint::position(const SoftBodySkin& skin, btScal
 }
 
 std::optional<SurfaceFrame> SurfacePoint::frame() const {
-  if (status() != TouchStatus::Ok) return {};
+  if (status() != StatusCode::Ok) return {};
   btVector3 corners[3];
   linearCorners(*body_, data_, corners);
   return frameOf(corners, data_);
@@ -142,37 +119,37 @@ std::optional<SurfaceFrame> SurfacePoint::frame() const {
 
 std::optional<SurfaceFrame> SurfacePoint::frame(const SoftBodySkin& skin, btScalar alpha) const {
   btVector3 corners[3];
-  if (status() != TouchStatus::Ok || !drawCorners(skin, alpha, *body_, data_, corners)) return {};
+  if (status() != StatusCode::Ok || !drawCorners(skin, alpha, *body_, data_, corners)) return {};
   return frameOf(corners, data_);
 }
 
 std::optional<btVector3> SurfacePoint::velocity() const {
-  if (status() != TouchStatus::Ok) return {};
+  if (status() != StatusCode::Ok) return {};
   const auto velocityOf = [&](int node) { return body_->m_nodes[node].m_v + body_->m_nodes[node].m_splitv; };
   btVector3 sum(0, 0, 0);
-  for (std::size_t c = 0; c < 3; ++c) sum += data_.shares[c] * data_.corners[c].velocity(velocityOf);
+  for (std::size_t c = 0; c < 3; ++c) sum += data_.weights[c] * data_.corners[c].velocity(velocityOf);
   return sum;
 }
 
-btScalar SurfacePoint::mass() const {
-  if (status() != TouchStatus::Ok) return 0;
-  const Lever lever = touch_detail::leverOf(data_, *body_);
+btScalar SurfacePoint::effectiveMass() const {
+  if (status() != StatusCode::Ok) return 0;
+  const PointJacobian lever = touch_detail::leverOf(data_, *body_);
   return static_cast<btScalar>(touch_detail::massOf(touch_detail::linearResponse(lever, *body_)));
 }
 
-TouchStatus SurfacePoint::applyImpulse(const btVector3& impulse) {
-  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
-  if (!touch_detail::isFiniteVector(impulse)) return TouchStatus::NonFinite;
-  if (touch_detail::isReduced(*body_)) return TouchStatus::InvalidOption;
+StatusCode SurfacePoint::applyImpulse(const btVector3& impulse) {
+  if (const StatusCode now = status(); now != StatusCode::Ok) return now;
+  if (!touch_detail::isFiniteVector(impulse)) return StatusCode::NonFinite;
+  if (touch_detail::isReduced(*body_)) return StatusCode::InvalidOption;
   touch_detail::NodePushes pushes;
   touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(impulse), pushes);
   touch_detail::applyImpulses(pushes, *body_);
-  return TouchStatus::Ok;
+  return StatusCode::Ok;
 }
 
-TouchStatus SurfacePoint::applyForce(const btVector3& force, int steps) {
-  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
-  if (!touch_detail::isFiniteVector(force)) return TouchStatus::NonFinite;
+StatusCode SurfacePoint::applyForce(const btVector3& force, int steps) {
+  if (const StatusCode now = status(); now != StatusCode::Ok) return now;
+  if (!touch_detail::isFiniteVector(force)) return StatusCode::NonFinite;
   touch_detail::NodePushes pushes;
   touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(force), pushes);
   return touch_detail::applyForces(std::move(pushes), steps, *body_, watched_ ? nullptr : &forces_);

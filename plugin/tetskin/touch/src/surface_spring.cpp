@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/touch/src/joints/joint_owner.h>
 #include <tetskin/touch/src/points/body_kind.h>
-#include <tetskin/touch/surface_spring.h>
+#include <tetskin/touch/surface_joint.h>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -27,14 +27,14 @@ bool isStiffness(double s) {
 }
 
 Status checkSpring(const SurfaceSpringOptions& options) {
-  if (options.stiffness != 0.0 && !isStiffness(options.stiffness)) {
-    return {StatusCode::InvalidOption, "the stiffness of a spring must be above 0 and finite, or 0 for the default"};
+  if (options.stiffness && !isStiffness(*options.stiffness)) {
+    return {StatusCode::InvalidOption, "the stiffness of a spring must be finite and above 0"};
   }
-  if (!(options.damping >= 0.0) || !std::isfinite(options.damping)) {
-    return {StatusCode::InvalidOption, "the damping of a spring must be 0 or more, and finite"};
+  if (!(options.dampingRatio >= 0.0) || !std::isfinite(options.dampingRatio)) {
+    return {StatusCode::InvalidOption, "the damping of a spring must be finite and not negative"};
   }
-  if (!(options.maxForce >= 0.0)) {
-    return {StatusCode::InvalidOption, "the largest force of a spring must be above 0, or 0 for the default"};
+  if (options.maxForce && !(*options.maxForce > 0.0)) {
+    return {StatusCode::InvalidOption, "the maximum force of a spring must be above 0"};
   }
   return {};
 }
@@ -43,7 +43,7 @@ Status badPivot() {
   return {StatusCode::NonFinite, "the pivot of a spring is not finite"};
 }
 
-/// For a point in space: holds the body and moves it as fast as a hand would.
+/// The default largest force for a point in space: it carries the body, and accelerates it as fast as a hand would.
 double defaultForce(const btDiscreteDynamicsWorld& world, const btSoftBody& body) {
   constexpr double kWeights = 4.0, kSizes = 20.0;
   double mass = 0.0;
@@ -62,14 +62,14 @@ JointSettings settingsOf(const btDiscreteDynamicsWorld& world, const SurfacePoin
                          const SurfaceSpringOptions& options) {
   JointSettings settings;
   const double stiffness = anchor.object ? kToBody : kToPoint;
-  settings.stiffness = options.stiffness > 0.0 ? options.stiffness : stiffness;
-  settings.damping = options.damping;
-  if (options.maxForce > 0.0) {
-    settings.maxForce = options.maxForce;
+  settings.stiffness = options.stiffness.value_or(stiffness);
+  settings.damping = options.dampingRatio;
+  if (options.maxForce) {
+    settings.maxForce = *options.maxForce;
   } else if (!anchor.object) {
     settings.maxForce = defaultForce(world, *point.body());
   }
-  settings.collide = options.collide;
+  settings.collide = options.collideConnected;
   return settings;
 }
 
@@ -79,15 +79,15 @@ btTransform at(const btVector3& pivot) {
 
 }  // namespace
 
-struct SurfaceSpring::Parts {
-  Parts(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
+struct SurfaceSpring::Impl {
+  Impl(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
       : owner(std::make_shared<Joint>(point, anchor, settings)) {}
 
   static Result<std::unique_ptr<SurfaceSpring>> make(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                      const JointAnchor& anchor, const Options& options) {
     const JointSettings settings = settingsOf(world, point, anchor, options);
-    auto parts = std::make_unique<Parts>(point, anchor, settings);
-    return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(parts)));
+    auto impl = std::make_unique<Impl>(point, anchor, settings);
+    return std::unique_ptr<SurfaceSpring>(new SurfaceSpring(std::move(impl)));
   }
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point, const Options& options) {
     if (Status status = checkSpring(options); !status.ok()) return status;
@@ -97,72 +97,72 @@ struct SurfaceSpring::Parts {
   JointOwner owner;
 };
 
-SurfaceSpring::SurfaceSpring(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SurfaceSpring::SurfaceSpring(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SurfaceSpring::~SurfaceSpring() = default;
 
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                           const Options& options) {
-  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
-  return Parts::make(world, point, {nullptr, at(*point.position())}, options);
+  if (Status status = Impl::check(world, point, options); !status.ok()) return status;
+  return Impl::make(world, point, {nullptr, at(*point.position())}, options);
 }
 
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                           btRigidBody& rigid, const btVector3& pivot,
                                                           const Options& options) {
-  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  if (Status status = Impl::check(world, point, options); !status.ok()) return status;
   if (!touch_detail::isFiniteVector(pivot)) return badPivot();
-  return Parts::make(world, point, {&rigid, at(pivot)}, options);
+  return Impl::make(world, point, {&rigid, at(pivot)}, options);
 }
 
 Result<std::unique_ptr<SurfaceSpring>> SurfaceSpring::add(btDiscreteDynamicsWorld& world, const SurfacePoint& point,
                                                           btMultiBodyLinkCollider& link, const btVector3& pivot,
                                                           const Options& options) {
-  if (Status status = Parts::check(world, point, options); !status.ok()) return status;
+  if (Status status = Impl::check(world, point, options); !status.ok()) return status;
   if (!touch_detail::isFiniteVector(pivot)) return badPivot();
-  return Parts::make(world, point, {&link, at(pivot)}, options);
+  return Impl::make(world, point, {&link, at(pivot)}, options);
 }
 
-TouchStatus SurfaceSpring::setTarget(const btVector3& target) {
-  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
-  if (!touch_detail::isFiniteVector(target)) return TouchStatus::NonFinite;
-  Joint& joint = parts_->owner.joint();
+StatusCode SurfaceSpring::setTarget(const btVector3& target) {
+  if (const StatusCode now = status(); now != StatusCode::Ok) return now;
+  if (!touch_detail::isFiniteVector(target)) return StatusCode::NonFinite;
+  Joint& joint = impl_->owner.joint();
   btVector3& pivot = joint.anchor().frame.getOrigin();
   if (target != pivot) joint.body()->activate();
   pivot = target;
-  return TouchStatus::Ok;
+  return StatusCode::Ok;
 }
 
-TouchStatus SurfaceSpring::setStiffness(double stiffness) {
-  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
-  if (!isStiffness(stiffness)) return TouchStatus::InvalidOption;
-  parts_->owner.joint().settings().stiffness = stiffness;
-  parts_->owner.joint().body()->activate();
-  return TouchStatus::Ok;
+StatusCode SurfaceSpring::setStiffness(double stiffness) {
+  if (const StatusCode now = status(); now != StatusCode::Ok) return now;
+  if (!isStiffness(stiffness)) return StatusCode::InvalidOption;
+  impl_->owner.joint().settings().stiffness = stiffness;
+  impl_->owner.joint().body()->activate();
+  return StatusCode::Ok;
 }
 
-TouchStatus SurfaceSpring::setMaxForce(double force) {
-  if (const TouchStatus now = status(); now != TouchStatus::Ok) return now;
-  if (!(force > 0.0)) return TouchStatus::InvalidOption;
-  parts_->owner.joint().settings().maxForce = force;
-  parts_->owner.joint().body()->activate();
-  return TouchStatus::Ok;
+StatusCode SurfaceSpring::setMaxForce(double force) {
+  if (const StatusCode now = status(); now != StatusCode::Ok) return now;
+  if (!(force > 0.0)) return StatusCode::InvalidOption;
+  impl_->owner.joint().settings().maxForce = force;
+  impl_->owner.joint().body()->activate();
+  return StatusCode::Ok;
 }
 
-TouchStatus SurfaceSpring::status() const {
-  return parts_->owner.status();
+StatusCode SurfaceSpring::status() const {
+  return impl_->owner.status();
 }
 
 btVector3 SurfaceSpring::force() const {
-  return parts_->owner.joint().force();
+  return impl_->owner.joint().force();
 }
 
 btScalar SurfaceSpring::stretch() const {
-  if (status() != TouchStatus::Ok) return 0;
-  return parts_->owner.joint().offset().length();
+  if (status() != StatusCode::Ok) return 0;
+  return impl_->owner.joint().offset().length();
 }
 
 void SurfaceSpring::release() {
-  parts_->owner.release();
+  impl_->owner.release();
 }
 
 }  // namespace tetskin

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 namespace tetskin {
@@ -26,7 +28,7 @@ PointView<const btScalar> nodePositions(const btSoftBody& body) {
   return {&body.m_nodes[0].m_x.m_floats[0], static_cast<std::size_t>(body.m_nodes.size()), sizeof(btSoftBody::Node)};
 }
 
-TetMesh tetMeshOf(const btSoftBody& body) {
+TetMesh readTetMesh(const btSoftBody& body) {
   TetMesh mesh;
   mesh.nodes.resize(static_cast<std::size_t>(body.m_nodes.size()));
   for (int i = 0; i < body.m_nodes.size(); ++i) mesh.nodes[i] = toEigen(body.m_nodes[i].m_x);
@@ -45,11 +47,11 @@ Status checkDangling(const TetMesh& read) {
   return {StatusCode::IndexOutOfRange,
           std::to_string(count) + " of the body's " + std::to_string(read.tetCount()) + " tets, tet " +
               std::to_string(first) +
-              " the first, point to where its nodes were before Bullet moved them in memory (appendNode, refine, "
-              "cutLink); give SoftBodySkin::bind a restCage of all of the body's nodes, or make the body anew"};
+              " the first, refer to nodes where they were before Bullet moved them in memory (appendNode, refine, "
+              "cutLink); pass SoftBodySkin::bind a restCage of all nodes of the body, or create the body again"};
 }
 
-PointView<float> positionsOf(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount) {
+PointView<float> positionView(const btCPUVertexBufferDescriptor& buffer, std::size_t vertexCount) {
   assert(buffer.hasVertexPositions());
   return {buffer.getBasePointer() + buffer.getVertexOffset(), vertexCount,
           static_cast<std::size_t>(buffer.getVertexStride()) * sizeof(float)};

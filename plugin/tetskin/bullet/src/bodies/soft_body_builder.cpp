@@ -4,36 +4,40 @@
 #include <tetskin/bullet/src/shared/bodies/body_elements.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/core/src/shared/base/positive_values.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <numeric>
 
 namespace tetskin {
 namespace {
 
-/// Nodes lighter than this fraction of the mean explode on cages with slivers.
-constexpr double kLightestNode = 0.3;
-/// Default margin over the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
+/// Least mass of a node relative to the mean: lighter nodes explode on cages with slivers.
+constexpr double kMinNode = 0.3;
+/// Default margin relative to the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
 constexpr double kMarginFraction = 0.02;
-/// Bullet's default of one pass over the links leaves a body of thousands of tets a puddle.
+/// With Bullet's default of one pass over the links, a body of thousands of tets collapses.
 constexpr int kMassSpringIterations = 8;
 
 Status checkOptions(const SoftBodyOptions& options) {
   const auto finite = [](double value) { return std::isfinite(static_cast<btScalar>(value)); };
-  if (!(options.mass >= 0.0 && finite(options.mass)) || !(options.density >= 0.0 && finite(options.density)) ||
-      (options.mass == 0.0 && options.density == 0.0)) {
-    return {StatusCode::InvalidOption, "a soft body needs a mass above 0, or a density above 0, and both finite"};
-  }
-  if (!(options.friction >= 0.0 && finite(options.friction)) || !finite(options.margin)) {
-    return {StatusCode::InvalidOption, "a soft body's friction must not be negative, and it and its margin be finite"};
-  }
-  if (!(options.youngsModulus >= 0.0) || !(options.relativeStiffness > 0.0) || !(options.damping >= 0.0) ||
-      !(options.timeStep > 0.0) || !finite(options.youngsModulus) || !finite(options.relativeStiffness) ||
-      !finite(options.damping) || !finite(options.timeStep)) {
+  const auto positive = [&](double value) { return value > 0.0 && finite(value); };
+  if (options.mass ? !positive(*options.mass) || !(options.density >= 0.0) : !positive(options.density)) {
     return {StatusCode::InvalidOption,
-            "a soft body's stiffness and damping must not be negative, and finite, and its time step must be above 0"};
+            "the mass of a soft body, or its density, must be above 0, and both must be finite"};
+  }
+  if (!(options.friction >= 0.0 && finite(options.friction)) ||
+      (options.margin && !(*options.margin >= 0.0 && finite(*options.margin)))) {
+    return {StatusCode::InvalidOption, "the friction and margin of a soft body must be finite and not negative"};
+  }
+  if ((options.youngsModulus && !positive(*options.youngsModulus)) || !(options.relativeStiffness > 0.0) ||
+      !(options.stiffnessDamping >= 0.0) || !(options.timeStep > 0.0) || !finite(options.relativeStiffness) ||
+      !finite(options.stiffnessDamping) || !finite(options.timeStep)) {
+    return {StatusCode::InvalidOption,
+            "the stiffness and time step of a soft body must be above 0, its damping not negative, and all finite"};
   }
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
     return {StatusCode::InvalidOption, "a soft body's Poisson ratio must be at least 0 and below 0.5"};
@@ -49,11 +53,11 @@ Status checkOptions(const SoftBodyOptions& options) {
     case ForceModel::MassSpring:
       break;
     default:
-      return {StatusCode::InvalidOption, "there is no such force model: see ForceModel"};
+      return {StatusCode::InvalidOption, "unknown force model; choose one of ForceModel"};
   }
   if (!options.stiffnessScale.empty() && options.forceModel == ForceModel::MassSpring) {
     return {StatusCode::InvalidOption,
-            "mass-spring bodies take no stiffness for each tet (stiffnessScale); leave it out, or choose another "
+            "mass-spring bodies do not support a stiffness per tet (stiffnessScale); leave it empty, or choose another "
             "ForceModel"};
   }
   if (!(options.linkStiffness > 0.0 && options.linkStiffness <= 1.0)) {
@@ -74,26 +78,28 @@ btSoftBody::TetraScratch restScratch() {
 
 std::vector<double> massesOf(const TetMesh& cage, const SoftBodyOptions& options) {
   if (!options.nodeMasses.empty()) return options.nodeMasses;
-  return lumpedMasses(cage, options.mass > 0.0 ? options.mass : options.density * totalVolume(cage));
+  return lumpedMasses(cage, options.mass ? *options.mass : options.density * totalVolume(cage));
 }
 
 void setMasses(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses,
                btSoftBody& body) {
+  assert(masses.size() == cage.nodeCount() && masses.size() == static_cast<std::size_t>(body.m_nodes.size()));
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const bool pinned = options.pinned && options.pinned(cage.nodes[n]);
     body.setMass(static_cast<int>(n), pinned ? btScalar(0) : static_cast<btScalar>(masses[n]));
   }
 }
 
-/// By the measure of a tet, Bullet's forces multiply all that they compute.
+/// Multiplies the measures of tets by the stiffness factors: Bullet's forces are proportional to the measure of a tet.
 void scaleMeasures(const std::vector<double>& scale, btSoftBody& body) {
+  assert(scale.empty() || scale.size() == static_cast<std::size_t>(body.m_tetras.size()));
   for (std::size_t t = 0; t < scale.size(); ++t) {
     body.m_tetras[static_cast<int>(t)].m_element_measure *= static_cast<btScalar>(scale[t]);
   }
 }
 
 void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
-  meetRigidBodies(cage, options.margin, options.friction, body);
+  collideWithRigidBodies(cage, options.margin, options.friction, body);
   if (options.forceModel == ForceModel::MassSpring) {
     body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
     body.m_cfg.piterations = kMassSpringIterations;
@@ -101,7 +107,7 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
-/// What Bullet would do in the first step, but with our trees.
+/// Does what Bullet would do in the first step, but with our trees.
 void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
   body.updateConstants();
   body.makeTrees(options.faceTree);
@@ -111,17 +117,18 @@ void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
 }  // namespace
 
 Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
-  if (Status status = usable(cage, report); !status.ok()) return status;
+  if (Status status = validate(cage, report); !status.ok()) return status;
   const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
   if (flat.count == 0) return {};
   return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
-                                      " tets of the cage are flat, the first is tet " + std::to_string(flat.first) +
-                                      "; Bullet divides by their volume, so remove them"};
+                                      " tets of the cage are flat, the first of them tet " +
+                                      std::to_string(flat.first) + "; Bullet divides by their volume, so remove them"};
 }
 
 void appendElements(const TetMesh& cage, btSoftBody& body) {
+  assert(static_cast<std::size_t>(body.m_nodes.size()) == cage.nodeCount() && body.m_tetras.size() == 0);
   for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
-  // Bullet's own search for an existing link is linear; these are distinct already.
+  // Bullet's own function searches linearly for an existing link; these are already distinct.
   for (const auto& e : uniqueEdges(cage)) body.appendLink(e[0], e[1], nullptr, false);
   for (const auto& f : boundaryFaces(cage)) body.appendFace(f[0], f[1], f[2]);
   body.initializeDmInverse();
@@ -130,9 +137,9 @@ void appendElements(const TetMesh& cage, btSoftBody& body) {
   for (int i = 0; i < body.m_nodes.size(); ++i) body.m_nodes[i].index = i;
 }
 
-void meetRigidBodies(const TetMesh& cage, double wished, double friction, btSoftBody& body) {
+void collideWithRigidBodies(const TetMesh& cage, std::optional<double> margin, double friction, btSoftBody& body) {
   const double size = boundingBox(cage.nodes).sizes().maxCoeff();
-  body.getCollisionShape()->setMargin(static_cast<btScalar>(wished >= 0.0 ? wished : kMarginFraction * size));
+  body.getCollisionShape()->setMargin(static_cast<btScalar>(margin.value_or(kMarginFraction * size)));
   body.m_cfg.kDF = static_cast<btScalar>(friction);
   body.m_cfg.kCHR = 1;  // hard contacts with rigid and with kinematic bodies
   body.m_cfg.kKHR = 1;
@@ -158,17 +165,17 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
     for (const int n : t) masses[n] += quarter;
     sum += 4.0 * quarter;
   }
-  const double lightest = kLightestNode * sum / static_cast<double>(cage.nodeCount());
+  const double lightest = kMinNode * sum / static_cast<double>(cage.nodeCount());
   for (double& m : masses) m = std::max(m, lightest);
   const double scale = totalMass / std::accumulate(masses.begin(), masses.end(), 0.0);
   for (double& m : masses) m *= scale;
   return masses;
 }
 
-SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options) {
+SoftBodyOptions withCageDefaults(const Cage& cage, SoftBodyOptions options) {
   if (options.nodeMasses.empty() && !cage.masses.empty()) {
     const double volume = std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
-    const double density = options.mass > 0.0 ? options.mass / volume : options.density;
+    const double density = options.mass ? *options.mass / volume : options.density;
     for (const double mass : cage.masses) options.nodeMasses.push_back(density * mass);
   }
   if (options.stiffnessScale.empty() && options.forceModel != ForceModel::MassSpring) {
@@ -179,10 +186,11 @@ SoftBodyOptions withCage(const Cage& cage, SoftBodyOptions options) {
 
 Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options) {
   if (Status status = checkOptions(options); !status.ok()) return status;
-  TetMesh positive = cage;
-  if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
-  for (Status status : {checkPositive<btScalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"),
-                        checkPositive<btScalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet")}) {
+  TetMesh positive = cage.mesh;
+  if (Status status = checkCage(cage.mesh, repairTetMesh(positive)); !status.ok()) return status;
+  for (Status status :
+       {checkPositive<btScalar>(options.nodeMasses, cage.mesh.nodeCount(), "nodeMasses", "node"),
+        checkPositive<btScalar>(options.stiffnessScale, cage.mesh.tetCount(), "stiffnessScale", "tet")}) {
     if (!status.ok()) return status;
   }
 
@@ -198,10 +206,10 @@ Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, co
   return BuiltBody{std::move(body), std::move(masses)};
 }
 
-Result<std::unique_ptr<btSoftBody>> makeSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
-                                                 const SoftBodyOptions& options) {
-  if (Status status = cage.check(); !status.ok()) return status;
-  Result<BuiltBody> built = buildBody(cage, worldInfo, withCage(cage, options));
+Result<std::unique_ptr<btSoftBody>> createSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                                   const SoftBodyOptions& options) {
+  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  Result<BuiltBody> built = buildBody(cage, worldInfo, withCageDefaults(cage, options));
   if (!built.ok()) return built.status();
   return std::move(built.value().body);
 }

@@ -8,7 +8,7 @@ namespace tetskin {
 
 ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
                            const ElasticMaterial& material, std::vector<double> stiffnessScale,
-                           const SolverLimits& limits)
+                           const SolverSettings& limits)
     : material_(material), limits_(limits) {
   assert(checkMaterial(material).ok() && rest.count() == static_cast<std::size_t>(body.m_tetras.size()));
   assert(stiffnessScale.empty() || stiffnessScale.size() == rest.count());
@@ -30,7 +30,7 @@ void ElasticForce::reinitialize(bool) {
   if (m_softBodies.size() == 0 || body_.hasItsRestShapes()) return;
   if (Result<elastic_detail::RestTets> rest = restTetsOf(*body_.body); rest.ok()) {
     body_.build(std::move(rest).value(), material_);
-  } else if (!body_.hasItsCounts()) {
+  } else if (!body_.hasOwnCounts()) {
     removeSoftBody(body_.body);
   }
 }

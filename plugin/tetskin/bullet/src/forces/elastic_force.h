@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::bullet: the corotated elasticity of one body, as it stands in Bullet's list of forces.
+// Internal to tetskin::bullet: the corotated elasticity of one body, as an entry in Bullet's list of forces.
 #pragma once
 
 #include <tetskin/bullet/src/forces/forced_bodies.h>
@@ -9,30 +9,30 @@
 
 namespace tetskin {
 
-/// A `DeformableSolver` finds the body here, and solves for it: the force itself gives Bullet nothing. It is in the
-/// list so that Bullet tells when the body leaves the world, and asks for its energy.
+/// A `DeformableSolver` finds the body here, and solves for it: for Bullet, the force is always 0. It is in the list so
+/// that Bullet reports when the body leaves the world, and can ask for its energy.
 ///
-/// Corotated linear elasticity: every tet's rotation is taken out of its deformation, so that it resists neither
-/// turning nor, like linear elasticity, gets fatter by it; it comes back from being flat or inside out.
-class ElasticForce : public SilentForce {
+/// Corotated linear elasticity: every tet's rotation is removed from its deformation. The tet therefore neither resists
+/// rotation nor, as with linear elasticity, swells by it; it recovers from being flat or inside out.
+class ElasticForce : public InactiveForce {
  public:
-  /// rest            the body's: see `restTetsOf`
+  /// rest            tets of the body: see `restTetsOf`
   /// material        checked: see `checkMaterial`
   /// stiffnessScale  tetCount, above 0; or empty: 1
   ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
-               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverLimits& limits);
+               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverSettings& limits);
 
   void setMaterial(const ElasticMaterial& material);
-  const SolverLimits& limits() const { return limits_; }
+  const SolverSettings& limits() const { return limits_; }
   ForcedBody& body() { return body_; }
 
-  /// Of each step: builds anew what the application has changed of the body.
+  /// Called in each step: rebuilds what the application has changed in the body.
   void reinitialize(bool nodeUpdated) override;
   double totalElasticEnergy(btScalar dt) override;
 
  private:
   ElasticMaterial material_;
-  SolverLimits limits_;
+  SolverSettings limits_;
   ForcedBody body_;
 };
 

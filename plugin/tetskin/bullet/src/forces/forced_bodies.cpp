@@ -4,6 +4,7 @@
 #include <tetskin/bullet/src/forces/node_vectors.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -20,8 +21,9 @@ bool hasRestShape(const btSoftBody::Tetra& tet) {
   return tet.m_element_measure > 0 && size > 0 && std::isfinite(size);
 }
 
-/// Of some of the tets: another one if the body has been scaled, or given another rest shape.
+/// A measure of some of the tets, which changes if the body is scaled, or gets another rest shape.
 btScalar restMeasureOf(const btSoftBody& body) {
+  assert(body.m_tetras.size() > 0);
   btScalar sum = 0;
   const int last = body.m_tetras.size() - 1;
   for (const int t : {0, last / 3, 2 * last / 3, last}) {
@@ -35,6 +37,7 @@ btScalar restMeasureOf(const btSoftBody& body) {
 }  // namespace
 
 void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics) {
+  assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.m_nodes[n];
     const auto at = static_cast<std::size_t>(n);
@@ -46,22 +49,23 @@ void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics) {
 
 Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body) {
   if (body.m_tetras.size() == 0) {
-    return Status{StatusCode::Degenerate,
-                  "the body has no tets to be elastic; Bullet's mass-spring force serves cloth and ropes"};
+    return Status{StatusCode::Degenerate, "the body has no tets; for cloth and ropes, use Bullet's mass-spring force"};
   }
   elastic_detail::RestTets rest;
-  rest.tets = tetMeshOf(body).tets;
+  rest.tets = readTetMesh(body).tets;
   for (std::size_t t = 0; t < rest.count(); ++t) {
     const btSoftBody::Tetra& tetra = body.m_tetras[static_cast<int>(t)];
     if (std::count(rest.tets[t].begin(), rest.tets[t].end(), -1) > 0) {
       return badTet(t,
-                    " names no node of the body: Bullet leaves tets dangling when nodes are appended after them; "
+                    " refers to a node that the body does not have: Bullet leaves tets dangling when nodes are "
+                    "appended after them; "
                     "append the nodes first");
     }
     if (!hasRestShape(tetra)) {
-      return badTet(t,
-                    " of the body has no volume at rest, or no rest shape; call the body's initializeDmInverse() after "
-                    "its tets have been appended");
+      return badTet(
+          t,
+          " of the body has no volume at rest, or no rest shape; call initializeDmInverse() of the body after "
+          "its tets have been appended");
     }
     std::array<double, 9>& gradients = rest.gradients.emplace_back();
     for (std::size_t k = 0; k < gradients.size(); ++k) {
@@ -87,12 +91,13 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
   }
   if (free == 0) return {};
   for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
-  // What is pinned has mass, too.
+  // Pinned nodes have mass, too.
   const double whole = mass * body.m_nodes.size() / free;
   return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, whole, volume);
 }
 
 void ForcedBody::build(elastic_detail::RestTets rest, const ElasticMaterial& material) {
+  assert(body && rest.count() == static_cast<std::size_t>(body->m_tetras.size()));
   if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
   dynamics = std::make_unique<Dynamics>(std::move(rest), static_cast<std::size_t>(body->m_nodes.size()));
   restMeasure = restMeasureOf(*body);
@@ -100,18 +105,20 @@ void ForcedBody::build(elastic_detail::RestTets rest, const ElasticMaterial& mat
 }
 
 void ForcedBody::setMaterial(const ElasticMaterial& material) {
+  assert(dynamics && (stiffnessScale.empty() || stiffnessScale.size() == dynamics->tets()->count()));
   const elastic_detail::Lame lame = elastic_detail::lameOf(material.youngsModulus, material.poissonRatio);
   dynamics->setMaterial(elastic_detail::lameOfTets(lame, dynamics->tets()->count(), stiffnessScale));
   dynamics->setDamping(material.damping);
 }
 
-bool ForcedBody::hasItsCounts() const {
+bool ForcedBody::hasOwnCounts() const {
+  assert(body && dynamics);
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
          dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());
 }
 
 bool ForcedBody::hasItsRestShapes() const {
-  return hasItsCounts() && restMeasureOf(*body) == restMeasure;
+  return hasOwnCounts() && restMeasureOf(*body) == restMeasure;
 }
 
 }  // namespace tetskin

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::bullet: Bullet's vectors as the elastic library has them, a point in 3 scalars one after the
-// other or in 3 wide ones, and back.
+// Internal to tetskin::bullet: conversion between Bullet's vectors and those of the elastic library, which stores a
+// point in 3 contiguous scalars or in 3 wide ones.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
@@ -12,8 +12,8 @@
 
 namespace tetskin {
 
-/// Any of the three.
-inline bool isNoNumber(const btVector3& v) {
+/// True if any of the three is NaN.
+inline bool isNaN(const btVector3& v) {
   return std::isnan(v.x()) || std::isnan(v.y()) || std::isnan(v.z());
 }
 
@@ -31,7 +31,7 @@ inline btVector3 fromWide(const btScalar* wide) {
   return {wide[0], wide[kernels::kGroup], wide[2 * kernels::kGroup]};
 }
 
-/// Of its upper triangle, row by row.
+/// A symmetric matrix from its upper triangle, row by row.
 inline btMatrix3x3 symmetricMatrix(const btScalar d[6]) {
   return {d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]};
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftBodySkin: the four nodes that it looks at to tell whether a sleeping body has been moved.
+// Internal to SoftBodySkin: chooses the four nodes by which it detects whether a sleeping body has been moved.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -17,7 +18,8 @@ using FourNodes = std::array<int, 4>;
 /// The first four nodes from `start` on that are not in one plane; the last is -1 if there are none.
 template <class At>
 FourNodes independentFrom(std::size_t start, std::size_t count, At&& at) {
-  // Below this fraction of the largest offset, a part that is orthogonal to the others counts as none.
+  assert(start < count);
+  // Below this fraction of the largest offset, a component that is orthogonal to the others counts as 0.
   constexpr double kIndependent = 1e-3;
   FourNodes found = {static_cast<int>(start), -1, -1, -1};
   const Eigen::Vector3d origin = at(start);
@@ -35,13 +37,14 @@ FourNodes independentFrom(std::size_t start, std::size_t count, At&& at) {
   return found;
 }
 
-/// Four nodes that are not in one plane, close together in memory: each page of it that is not in the caches costs a
-/// sleeping body a tenth of a microsecond or two. Any four of a flat body.
+/// Four nodes that are not in one plane, close together in memory: each page that is not in the caches costs a sleeping
+/// body one or two tenths of a microsecond. For a flat body, any four.
 /// strideBytes  from one node to the next
 /// at           position of a node
 /// Cost         at most 64 looks at all nodes; of a lattice, at 64 of its layers
 template <class At>
 FourNodes nodesToSample(std::size_t count, std::size_t strideBytes, At&& at) {
+  assert(count > 0 && strideBytes > 0);
   constexpr std::size_t kPage = 4096, kStarts = 64;
   const auto page = [&](int n) { return static_cast<std::size_t>(n) * strideBytes / kPage; };
   const auto cost = [&](const FourNodes& n) { return std::make_pair(page(n[3]) - page(n[0]), n[3] - n[0]); };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/render_nodes.h>
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
+
+#include <cassert>
 
 namespace tetskin {
 namespace {
@@ -14,7 +16,7 @@ PointView<const btScalar> renderNodePositions(const btSoftBody& body) {
           sizeof(btSoftBody::RenderNode)};
 }
 
-/// In Bullet's precision; the fourth from the other three as they are after rounding.
+/// Weights in Bullet's precision; the fourth is computed from the other three after their rounding.
 btVector4 weightsIn(const BarycentricMap& map, const btVector3& point) {
   const Eigen::Vector4d b = map(toEigen(point));
   const auto b0 = static_cast<btScalar>(b[0]), b1 = static_cast<btScalar>(b[1]), b2 = static_cast<btScalar>(b[2]);
@@ -25,21 +27,22 @@ btVector4 weightsIn(const BarycentricMap& map, const btVector3& point) {
 
 Result<EmbedReport> bindRenderNodes(btSoftBody& body) {
   if (body.m_renderNodes.size() == 0) {
-    return Status{StatusCode::Empty, "the body has no render nodes; fill m_renderNodes before binding them"};
+    return Status{StatusCode::Empty, "the body has no render nodes; fill m_renderNodes before binding"};
   }
-  const TetMesh cage = tetMeshOf(body);
+  const TetMesh cage = readTetMesh(body);
   if (Status status = checkDangling(cage); !status.ok()) return status;
   EmbedOptions options;
   options.outside = OutsideRule::Barycentric;
   EmbedReport report;
   const Result<Embedding> made = embed(cage, renderNodePositions(body), options, &report);
   if (!made.ok()) return made.status();
-  const EmbeddingData& embedding = made.value().data();
+  const EmbeddingData& embedding = dataOf(made.value());
+  assert(embedding.vertexCount() == static_cast<std::size_t>(body.m_renderNodes.size()));
 
   body.m_z.resize(0);
   body.m_renderNodesInterpolationWeights.resize(body.m_renderNodes.size());
   body.m_renderNodesParents.resize(body.m_renderNodes.size());
-  // In Bullet's order, so that its update finds them in memory one after the other.
+  // In Bullet's order, so that its update reads them from memory sequentially.
   for (int v = 0; v < body.m_renderNodes.size(); ++v) body.m_renderNodesParents[v].resize(4);
   const std::vector<EmbeddingData::Run>& runs = embedding.runs;
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
 #include <tetskin/core/src/shared/skin_binding.h>
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace tetskin {
@@ -12,11 +14,12 @@ namespace {
 
 Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {
   if (static_cast<std::size_t>(body.m_nodes.size()) == nodeCount) return {};
-  return {StatusCode::SizeMismatch, "the body has " + std::to_string(body.m_nodes.size()) + " nodes, but the cage " +
-                                        std::to_string(nodeCount) + "; bind with the cage that the body was made of"};
+  return {StatusCode::SizeMismatch, "the body has " + std::to_string(body.m_nodes.size()) +
+                                        " nodes, but the cage has " + std::to_string(nodeCount) +
+                                        "; bind with the cage from which the body was created"};
 }
 
-/// Asks memory for what is there.
+/// Prefetches memory.
 void prefetch(const void* where) {
 #if defined(__GNUC__)
   __builtin_prefetch(where);
@@ -25,25 +28,26 @@ void prefetch(const void* where) {
 #endif
 }
 
-/// Where Bullet keeps whether a body sleeps.
+/// Gives access to the state by which Bullet marks sleeping bodies.
 struct ActivationState : btCollisionObject {
-  static const void* of(const btCollisionObject& object) { return &(object.*(&ActivationState::m_activationState1)); }
+  static const void* item(const btCollisionObject& object) { return &(object.*(&ActivationState::m_activationState1)); }
 };
 
-/// Skins decided on before any is computed.
+/// Number of skins that are decided on before any is computed.
 constexpr std::size_t kTogether = 512;
-/// Skins whose memory is under way at a time: each has up to nine lines, and a processor waits for some dozens at most.
+/// Number of skins whose memory is being prefetched: each has up to nine cache lines, and a processor has at most some
+/// dozens in flight.
 constexpr std::size_t kInFlight = 8;
 
 }  // namespace
 
 Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const Cage& restCage, const TriangleMesh& mesh,
                                        const SkinOptions& options) {
-  if (Status s = checkNodeCount(body, restCage.nodeCount()); !s.ok()) return s;
+  if (Status s = checkNodeCount(body, restCage.mesh.nodeCount()); !s.ok()) return s;
   if (Status s = checkNodes(nodePositions(body)); !s.ok()) return s;
   if (Status s = checkInstance(options, mesh.vertexCount()); !s.ok()) return s;
   EmbedReport report;
-  auto made = SoftBodyBinding::make(restCage, mesh, options, &report);
+  auto made = SoftBodyBinding::create(restCage, mesh, options, &report);
   if (!made.ok()) return made.status();
   const InstanceOptions& instance = options;
   if (Status s = bind(body, std::move(made).value(), instance); !s.ok()) return s;
@@ -61,7 +65,7 @@ Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const Cage& restC
 }
 
 Result<EmbedReport> SoftBodySkin::bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options) {
-  const TetMesh cage = tetMeshOf(body);
+  const TetMesh cage = readTetMesh(body);
   if (Status s = checkDangling(cage); !s.ok()) return s;
   return bind(body, cage, mesh, options);
 }
@@ -87,71 +91,73 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   return {};
 }
 
-UpdateStatus SoftBodySkin::update(btScalar alpha) {
-  const UpdateStatus status = decide(alpha);
-  return status == UpdateStatus::Updated ? compute(alpha) : status;
+StatusCode SoftBodySkin::update(btScalar alpha) {
+  const StatusCode status = decide(alpha);
+  return status == StatusCode::Ok ? compute(alpha) : status;
 }
 
-/// What the update is to be, as far as can be told without computing anything.
-UpdateStatus SoftBodySkin::decide(btScalar alpha) {
-  if (!skin_.bound()) return UpdateStatus::Unbound;
-  skin_.hold();  // unless it is updated
-  if (!visible_) return UpdateStatus::Hidden;
+/// Decides what the update must do, as far as that is known without computing anything.
+StatusCode SoftBodySkin::decide(btScalar alpha) {
+  if (!skin_.bound()) return StatusCode::Unbound;
+  skin_.clearMotion();  // unless it is updated
+  if (!visible_) return StatusCode::Hidden;
   if (body_->m_nodes.size() != nodeCount_) return topologyChanged();
-  if (!body_->isActive() && !moved_ && !isBetween(alpha) && samplesUnmoved()) return UpdateStatus::Asleep;
+  if (!body_->isActive() && !moved_ && !isBetween(alpha) && samplesUnmoved()) return StatusCode::Asleep;
   if (body_->m_tetras.size() != tetCount_) return topologyChanged();
-  return UpdateStatus::Updated;
+  return StatusCode::Ok;
 }
 
-UpdateStatus SoftBodySkin::compute(btScalar alpha) {
+StatusCode SoftBodySkin::compute(btScalar alpha) {
+  assert(skin_.bound() && body_->m_nodes.size() == nodeCount_);
   const bool between = isBetween(alpha);
-  const UpdateStatus done = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
-  if (done != UpdateStatus::Updated) {
-    moved_ = true;  // there are no good nodes to compare with
+  const StatusCode done = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
+  if (done != StatusCode::Ok) {
+    moved_ = true;  // there are no valid nodes to compare with
     return done;
   }
-  if (teleported_) skin_.hold();
+  if (teleported_) skin_.clearMotion();
   teleported_ = false;
-  moved_ = between;  // the surface is not yet where the body is
+  moved_ = between;  // the surface has not reached the body's position yet
   sample();
-  return UpdateStatus::Updated;
+  return StatusCode::Ok;
 }
 
-/// A step of other nodes, or tets, is not the one before the next.
-UpdateStatus SoftBodySkin::topologyChanged() {
+/// A step with other nodes or tets does not count as the one before the next.
+StatusCode SoftBodySkin::topologyChanged() {
   between_ = false;
-  steps_.forget();
-  return UpdateStatus::TopologyChanged;
+  steps_.clear();
+  return StatusCode::TopologyChanged;
 }
 
-void SoftBodySkin::keepStep() {
+void SoftBodySkin::recordStep() {
   if (!skin_.bound() || !visible_) return;
   between_ = false;
   const bool slept = std::exchange(sleeps_, !body_->isActive());
   if (slept && sleeps_) return;  // where it was
-  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return steps_.forget();
-  if (slept) steps_.forget();
-  between_ = steps_.keep(nodePositions(*body_));
+  if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return steps_.clear();
+  if (slept) steps_.clear();
+  between_ = steps_.record(nodePositions(*body_));
 }
 
 void SoftBodySkin::markTeleported() {
   moved_ = teleported_ = true;
-  if (visible_) beginAnew();
+  if (visible_) restart();
 }
 
-/// The next step kept begins where the body is now.
-void SoftBodySkin::beginAnew() {
+/// The next kept step begins at the body's current position.
+void SoftBodySkin::restart() {
   between_ = false;
   if (steps_.empty()) return;
   sleeps_ = !body_->isActive();
-  steps_.forget();
-  if (body_->m_nodes.size() == nodeCount_) (void)steps_.keep(nodePositions(*body_));
+  steps_.clear();
+  if (body_->m_nodes.size() == nodeCount_) (void)steps_.record(nodePositions(*body_));
 }
 
-std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses,
+std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses,
                                     btScalar alpha) {
-  // First all decisions, then all work: the pages that decisions touch would slow each update in between by a tenth.
-  std::array<UpdateStatus, kTogether> done;
+  // First all decisions, and then all work: the memory pages that decisions read would slow each update in between by a
+  // tenth.
+  std::array<StatusCode, kTogether> done;
   std::size_t updated = 0;
   for (std::size_t first = 0; first < count; first += kTogether) {
     const std::size_t size = std::min(kTogether, count - first);
@@ -159,16 +165,17 @@ std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t coun
       decideAll(skins + first + k, std::min(kInFlight, size - k), done.data() + k, alpha);
     }
     for (std::size_t k = 0; k < size; ++k) {
-      if (done[k] == UpdateStatus::Updated) done[k] = skins[first + k]->compute(alpha);
-      updated += done[k] == UpdateStatus::Updated;
+      if (done[k] == StatusCode::Ok) done[k] = skins[first + k]->compute(alpha);
+      updated += done[k] == StatusCode::Ok;
     }
     if (statuses) std::copy_n(done.data(), size, statuses + first);
   }
   return updated;
 }
 
-/// Decides on a few skins. Each step reads what the one before has asked memory for.
-void SoftBodySkin::decideAll(SoftBodySkin* const* skins, std::size_t count, UpdateStatus* statuses, btScalar alpha) {
+/// Decides on a few skins. Each stage reads what the stage before has prefetched.
+void SoftBodySkin::decideAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha) {
+  assert(count <= kInFlight);
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetch();
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetchBody();
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetchNodes();
@@ -184,7 +191,7 @@ void SoftBodySkin::fetch() const {
 void SoftBodySkin::fetchBody() const {
   if (!skin_.bound() || !visible_) return;
   prefetch(&body_->m_nodes);
-  prefetch(ActivationState::of(*body_));
+  prefetch(ActivationState::item(*body_));
 }
 
 void SoftBodySkin::fetchNodes() const {
@@ -196,12 +203,12 @@ void SoftBodySkin::fetchNodes() const {
 void SoftBodySkin::setVisible(bool visible) {
   if (visible == visible_) return;
   visible_ = visible;
-  moved_ = true;  // whatever has happened meanwhile
+  moved_ = true;  // whatever has happened in between
   if (visible) {
-    beginAnew();
+    restart();
     (void)update();
   }
-  skin_.hold();  // what happened meanwhile is no motion
+  skin_.clearMotion();  // what happened in between is no motion
 }
 
 btVector3 SoftBodySkin::nodeAt(int node, btScalar alpha) const {
@@ -218,17 +225,20 @@ Status SoftBodySkin::setOrigin(const btVector3& origin) {
 }
 
 void SoftBodySkin::sample() {
+  assert(body_ && body_->m_nodes.size() == nodeCount_);
   const PointView<const btScalar> now = nodePositions(*body_);
   for (Sample& s : samples_) std::copy_n(now[static_cast<std::size_t>(s.node)], 3, s.position);
 }
 
-/// An affine map that leaves four points in place that are not in one plane leaves everything in place.
+/// An affine map that fixes four points that are not in one plane fixes everything.
 bool SoftBodySkin::samplesUnmoved() const {
+  assert(body_->m_nodes.size() == nodeCount_);
   const PointView<const btScalar> now = nodePositions(*body_);
   bool unmoved = true;
   for (const Sample& s : samples_) {
     const btScalar* p = now[static_cast<std::size_t>(s.node)];
-    unmoved &= (p[0] == s.position[0]) & (p[1] == s.position[1]) & (p[2] == s.position[2]);  // no branches: in parallel
+    unmoved &= (p[0] == s.position[0]) & (p[1] == s.position[1]) &
+               (p[2] == s.position[2]);  // no branches, so that the comparisons run in parallel
   }
   return unmoved;
 }

@@ -3,32 +3,34 @@
 #include <tetskin/bullet/src/solver/contact_row.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
-/// a a^T
+/// The outer product a a^T.
 btMatrix3x3 square(const btVector3& a) {
   return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
           a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
 }
 
 btVector3 jointImpulse(const ContactRow& row, const btVector3& u, ContactRow::State& state) {
+  assert(row.joined && row.highest >= 0);
   const btVector3 wanted = -row.stiffness * (row.directions * (u + row.offsetVelocity));
   const btScalar length = wanted.length();
   state = length > row.highest ? ContactRow::State::Slides : ContactRow::State::Sticks;
   return length > row.highest ? wanted * (row.highest / length) : wanted;
 }
 
-/// As of friction.
+/// The derivative of a joint's impulse, bounded by its largest force as friction is bounded by the normal force.
 btMatrix3x3 jointTangent(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
   if (state == ContactRow::State::Sticks) return row.directions * row.stiffness;
-  const btVector3 way = row.directions * (u + row.offsetVelocity);
-  const btScalar length = std::max(way.length(), SIMD_EPSILON);
-  return (row.directions - square(way / length) * (1 - kept)) * (row.highest / length);
+  const btVector3 direction = row.directions * (u + row.offsetVelocity);
+  const btScalar length = std::max(direction.length(), SIMD_EPSILON);
+  return (row.directions - square(direction / length) * (1 - kept)) * (row.highest / length);
 }
 
-/// Along the surface, the offset included.
+/// The velocity along the surface, including the one that would undo the offset within the step.
 btVector3 slip(const ContactRow& row, const btVector3& u) {
   return u - row.normal.dot(u) * row.normal + row.offsetVelocity;
 }
@@ -36,6 +38,7 @@ btVector3 slip(const ContactRow& row, const btVector3& u) {
 }  // namespace
 
 btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state) {
+  assert(!(row.stiffness < 0) && !(row.tangentStiffness < 0));
   using State = ContactRow::State;
   if (row.constant) {
     state = State::Apart;
@@ -48,15 +51,16 @@ btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, Cont
   if (normal != wanted) return normal * row.normal;
   state = State::Sticks;
   btVector3 along = -row.tangentStiffness * slip(row, u);
-  const btScalar most = row.friction * row.normalBound, length = along.length();
-  if (length > most && !sticks) {
+  const btScalar maximum = row.friction * row.normalBound, length = along.length();
+  if (length > maximum && !sticks) {
     state = State::Slides;
-    along *= most / length;
+    along *= maximum / length;
   }
   return normal * row.normal + along;
 }
 
 btMatrix3x3 tangentAt(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
+  assert(kept >= 0 && kept <= 1);
   using State = ContactRow::State;
   const btMatrix3x3 one = btMatrix3x3::getIdentity();
   if (row.joined) return jointTangent(row, u, state, kept);

@@ -3,13 +3,13 @@
 //
 // Internal to DeformableSolver: the law of contact at one point, as impulses over velocities.
 //
-// With u the velocity of the point over that of what it meets, over the step, n the normal, g the gap and s the offset
+// With u the velocity of the point relative to what it meets, over the step, n the normal, g the gap and s the offset
 // from where the point sticks:
 //   normal      max(0, -D (n . u + max(g / dt, -pushingOut)))
 //   tangential  -T (u - n n.u + s / dt), no more than the friction coefficient times the normal impulse
-// A penalty, so stiff that what it gives way by is not seen, and no stiffer than the bodies themselves can be solved
-// for: D is 20 effective masses. It is solved for implicitly, at the end of the step, until it has converged; with a
-// fixed number of passes it puts energy in.
+// A penalty so stiff that its violation is not visible, and no stiffer than the bodies themselves can be solved for:
+// D is 20 effective masses. It is solved for implicitly, at the end of the step, until it has converged; a fixed
+// number of passes would add energy.
 //
 // This work is based on:
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
@@ -23,7 +23,7 @@
 
 namespace tetskin {
 
-/// A point that nodes of a soft body carry, or a point of a rigid object.
+/// One end of a row: a point that nodes of a soft body carry, or a point of a rigid object.
 struct RowEnd {
   std::size_t body = 0;         ///< in SolverBodies::bodies; of a rigid point: unused
   std::uint32_t nodeCount = 0;  ///< 0: a rigid point
@@ -34,65 +34,67 @@ struct RowEnd {
   bool isSoft() const { return nodeCount > 0; }
 };
 
-/// Of a point against another.
+/// A row: the contact or joint between two points.
 struct ContactRow {
   enum class State { Apart, Sticks, Slides };
 
-  /// The first one's impulse is the row's; the second one's is the opposite, at the same place.
+  /// The two points: the row's impulse acts on the first one, its opposite at the same position on the second one.
   std::array<RowEnd, 2> ends;
-  const btCollisionObject* object = nullptr;  ///< that the second is of
+  const btCollisionObject* object = nullptr;  ///< the object of the second end
 
-  btVector3 position;                                   ///< of both, when the step begins
-  PointContact* contact = nullptr;                      ///< that it is of, if any
-  std::uint32_t point = 0;                              ///< its number
-  bool joined = false;                                  ///< by a penalty that pulls, too, no more than `highest`
-  bool constant = false;                                ///< the impulse is what it is at the beginning: a load
-  PointJoint* joint = nullptr;                          ///< that it is of, if any
-  btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< of a joined one: a projection to those that are held
+  btVector3 position;               ///< of both ends, when the step begins
+  PointContact* contact = nullptr;  ///< the contact that the row comes from; null: another source
+  std::uint32_t point = 0;          ///< number of the point within its contact or body
+  bool joined = false;              ///< a joint: the penalty also pulls, with an impulse of at most `highest`
+  bool constant = false;            ///< a load: the impulse keeps its initial value
+  PointJoint* joint = nullptr;      ///< the joint that the row comes from; null: another source
+  btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< of a joint: projection to the constrained directions
 
   btVector3 normal;
   btScalar lowest = 0,
-           highest = BT_LARGE_FLOAT;  ///< of the impulse along the normal; of a joined one, in any direction
+           highest = BT_LARGE_FLOAT;  ///< bound of the impulse along the normal; of a joint, in any direction
   btScalar friction = 0;
-  btScalar stiffness = 0;             ///< D, in masses
-  btScalar tangentStiffness = 0;      ///< T
-  btScalar gapVelocity = 0;           ///< max(g / dt, -pushingOut)
-  btVector3 offsetVelocity{0, 0, 0};  ///< s / dt
-  btVector3 relative{0, 0, 0};        ///< u where nothing is solved for yet
-  btVector3 given{0, 0, 0};           ///< impulse that velocities have already
-  btScalar normalBound = 0;           ///< normal impulse by which friction is bounded
-  btVector3 stickingPlace{0, 0, 0};   ///< where the point sticks, in the object's frame
-  bool stuck = false;                 ///< in the step before: the first pass takes it that it does still
+  btScalar stiffness = 0;               ///< D, in masses
+  btScalar tangentStiffness = 0;        ///< T
+  btScalar gapVelocity = 0;             ///< max(g / dt, -pushingOut)
+  btVector3 offsetVelocity{0, 0, 0};    ///< s / dt
+  btVector3 relative{0, 0, 0};          ///< u before the solve
+  btVector3 given{0, 0, 0};             ///< impulse that the velocities already include
+  btScalar normalBound = 0;             ///< normal impulse by which friction is bounded
+  btVector3 stickingPosition{0, 0, 0};  ///< sticking position, in the object's frame
+  bool stuck = false;                   ///< stuck in the step before, so that the first pass assumes sticking
 
-  btScalar effectiveMass = 0;  ///< of both sides along the normal
-  btVector3 slip{0, 0, 0};     ///< u along the surface, at the velocities as they are
-  btVector3 impulse{0, 0, 0};  ///< likewise
-  btMatrix3x3 tangent;         ///< H, by which it falls as they grow
+  btScalar effectiveMass = 0;  ///< of both ends along the normal
+  btVector3 slip{0, 0, 0};     ///< u along the surface, at the current velocities
+  btVector3 impulse{0, 0, 0};  ///< impulse at the current velocities
+  btMatrix3x3 tangent;         ///< H: the negative derivative of the impulse by the velocity
   State state = State::Apart;
 };
 
-/// Of an end's impulse and velocity in the row's.
+/// Sign of an end's impulse and velocity relative to the row's.
 constexpr int signOf(std::size_t end) {
   return end == 0 ? 1 : -1;
 }
 
-/// Where a point has stuck, or slid to, in a step.
+/// Where a point sticks, or has slid to, at the end of a step.
 struct Sticking {
   std::uint32_t point = 0;
   const btCollisionObject* object = nullptr;
   btVector3 normal;
-  btVector3 place;           ///< in the object's frame; against a soft body: how far it is from there, world space
-  btScalar normalForce = 0;  ///< of the step
-  bool stuck = false;        ///< and did not slide
+  btVector3
+      position;  ///< in the object's frame; against a soft body: its offset from the sticking position, world space
+  btScalar normalForce = 0;  ///< of the step that stored it
+  bool stuck = false;        ///< true if the point stuck in that step, false if it slid
 };
 
-/// The impulse at a velocity over that of what it meets, and what kind it is of.
-/// sticks  as if friction were not bounded
+/// The impulse at a relative velocity, and whether the point is separate, sticks or slides.
+/// sticks  treat friction as unbounded
 btVector3 impulseAt(const ContactRow& row, const btVector3& u, bool sticks, ContactRow::State& state);
 
-/// By how much the impulse falls as velocities grow: the derivative, but for sliding, where it leaves out `kept` of how
-/// friction turns with its direction less than it resists. With 0 kept it is the derivative, and passes cycle; with 1
-/// the resistance of a speed that stays, which only ever takes energy away.
+/// By how much the impulse falls as velocities grow. For sticking and separate points it is the derivative. For
+/// sliding, it leaves out the fraction `kept` of the part of the derivative that turns friction with the sliding
+/// direction. With 0 kept it is the exact derivative, with which passes may cycle; with 1 it is the resistance at
+/// constant sliding speed, which only ever removes energy.
 btMatrix3x3 tangentAt(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept);
 
 }  // namespace tetskin

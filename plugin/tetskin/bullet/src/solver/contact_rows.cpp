@@ -5,26 +5,29 @@
 #include <tetskin/bullet/src/solver/contact_rows.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// D over effective masses: gaps give way by a twentieth of what the nodes alone would.
+/// D over effective masses: gaps are violated by a twentieth of what the nodes alone would move.
 constexpr double kStiffness = 20.0;
 /// T over D.
 constexpr btScalar kTangentShare = btScalar(0.3);
-/// The same as the first of anchors: more costs iterations, and is not seen.
+/// D of joints over effective masses. Anchors begin at the same value: a higher one costs iterations without a visible
+/// difference.
 constexpr double kAnchorStiffness = 1000.0;
-/// Sizes of the body per second at which what is in each other is pushed apart, at most.
+/// Body's sizes per second: bound of the velocity at which penetrating bodies are pushed apart.
 constexpr btScalar kPushingOut = 1;
-/// Last digits of a position.
+/// Rounding of a position, in units of the last digit.
 constexpr btScalar kRounding = 2;
-/// Weights below do not count where rows share a node.
+/// Weights below this one are ignored where rows share a node.
 constexpr btScalar kSmallWeight = btScalar(0.02);
-/// Cosine: contacts of one point whose normals are as near as that are the same from step to step.
+/// Cosine: contacts of one point whose normals differ by less than this angle count as the same contact from step to
+/// step.
 constexpr btScalar kSameNormal = btScalar(0.7);
-/// Numbers of points of Bullet's contacts of faces begin here.
+/// Contacts that Bullet finds at faces are numbered from here on.
 constexpr std::uint32_t kFirstFace = 0x80000000U;
 
 btScalar sizeOf(const btSoftBody& body) {
@@ -37,16 +40,18 @@ std::array<double, 3> numbersOf(const btVector3& v) {
 }
 
 void addNode(int node, btScalar weight, PointContact& contact) {
+  assert(contact.nodeCount < kMaxPointNodes);
   contact.nodes[contact.nodeCount] = node;
   contact.weights[contact.nodeCount++] = weight;
 }
 
 int indexIn(const btSoftBody& body, const btSoftBody::Node* node) {
+  assert(node >= &body.m_nodes[0] && node < &body.m_nodes[0] + body.m_nodes.size());
   return static_cast<int>(node - &body.m_nodes[0]);
 }
 
-/// What Bullet's own contacts have in common.
-/// speculation  that Bullet takes for a part of the margin
+/// What all of Bullet's own contacts have in common.
+/// speculation  distance that Bullet takes for part of the margin
 PointContact bulletsContact(const btSoftBody::DeformableRigidContact& from, btScalar speculation) {
   PointContact contact;
   contact.object = from.m_cti.m_colObj;
@@ -79,7 +84,7 @@ void readBulletsContacts(const btSoftBody& body, btScalar speculation, PointCont
 }
 
 bool isFinite(const PointContact& contact) {
-  return std::isfinite(contact.distance) && !isNoNumber(contact.normal) && !isNoNumber(contact.position);
+  return std::isfinite(contact.distance) && !isNaN(contact.normal) && !isNaN(contact.position);
 }
 
 bool isFree(const SolverBodies& bodies, const RowEnd& end) {
@@ -89,8 +94,9 @@ bool isFree(const SolverBodies& bodies, const RowEnd& end) {
   return false;
 }
 
-/// Where nothing is solved for yet; 0 of what no nodes carry.
+/// The end's velocity before the solve; 0 if no nodes carry it.
 btVector3 carriedVelocity(const SolverBodies& bodies, const RowEnd& end) {
+  assert(end.nodeCount <= kMaxPointNodes && end.body < bodies.bodies().size());
   btVector3 sum(0, 0, 0);
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
     const auto node = static_cast<std::size_t>(end.nodes[k]);
@@ -99,13 +105,13 @@ btVector3 carriedVelocity(const SolverBodies& bodies, const RowEnd& end) {
   return sum;
 }
 
-/// Over what it meets, which is rigid.
+/// The velocity of the first end relative to the rigid object that it meets, before the solve.
 btVector3 relativeVelocity(const SolverBodies& bodies, const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
   return carriedVelocity(bodies, row.ends[0]) - rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
 }
 
-/// A kinematic body is already where the step, or the frame, takes it when contacts are looked for: by how much it has
-/// moved to there, the gap is less than when the step begins.
+/// When contacts are detected, a kinematic body is already at the position where the step, or the frame, takes it. The
+/// gap found then is smaller than at the beginning of the step by how much the body has moved: this difference.
 btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) {
   const btScalar time = rigids.timeToGo(*row.object, seconds);
   if (!(time > 0)) return 0;
@@ -113,6 +119,7 @@ btScalar leadOf(const ContactRow& row, RigidUnknowns& rigids, btScalar seconds) 
 }
 
 ContactRow rowOf(std::size_t index, PointContact& contact) {
+  assert(contact.object && contact.nodeCount > 0 && contact.nodeCount <= kMaxPointNodes);
   ContactRow row;
   row.ends[0].body = index;
   row.ends[0].nodeCount = contact.nodeCount;
@@ -127,7 +134,7 @@ ContactRow rowOf(std::size_t index, PointContact& contact) {
   return row;
 }
 
-/// What positions there are rounded by, by axis: far from the origin, a last digit is no depth to be pushed out of.
+/// Rounding of a position, by axis: far from the origin, a depth of one last digit must not be pushed out.
 btVector3 roundingOf(const btVector3& position) {
   return kRounding * SIMD_EPSILON * position.absolute();
 }
@@ -136,8 +143,8 @@ btScalar seenGap(btScalar gap, const ContactRow& row) {
   return gap < 0 ? std::min(gap + row.normal.absolute().dot(roundingOf(row.position)), btScalar(0)) : gap;
 }
 
-/// Without what is rounding.
-btVector3 seenPart(const btVector3& offset, const btVector3& position) {
+/// The offset without its components that are below the rounding.
+btVector3 seenComponent(const btVector3& offset, const btVector3& position) {
   const btVector3 rounding = roundingOf(position);
   btVector3 seen = offset;
   for (int k = 0; k < 3; ++k) {
@@ -146,28 +153,31 @@ btVector3 seenPart(const btVector3& offset, const btVector3& position) {
   return seen;
 }
 
-/// Where the point sticks, and what it was pushed with.
+/// Reads from the step before where the point sticks, and the impulse that acted on it.
 /// frame  the object's
 void recall(const SolvedBody& body, const btTransform& frame, btScalar seconds, ContactRow& row) {
-  row.stickingPlace = frame.invXform(row.position);
+  assert(body.sticking && seconds > 0);
+  row.stickingPosition = frame.invXform(row.position);
   const auto less = [](const Sticking& a, const Sticking& b) { return a.point < b.point; };
   Sticking key;
   key.point = row.point;
   const auto range = std::equal_range(body.sticking->begin(), body.sticking->end(), key, less);
   for (auto known = range.first; known != range.second; ++known) {
     if (known->object != row.object || known->normal.dot(row.normal) < kSameNormal) continue;
-    row.stickingPlace = known->place;
-    btVector3 offset = row.ends[1].isSoft() ? known->place : row.position - frame * known->place;
+    row.stickingPosition = known->position;
+    btVector3 offset = row.ends[1].isSoft() ? known->position : row.position - frame * known->position;
     offset -= row.normal.dot(offset) * row.normal;
-    row.offsetVelocity = seenPart(offset, row.position) / seconds;
+    row.offsetVelocity = seenComponent(offset, row.position) / seconds;
     row.normalBound = known->normalForce * seconds;
     row.stuck = known->stuck;
     return;
   }
 }
 
-/// Of the nodes by themselves in a direction, as stiff as they are coupled; of any for those that are joined.
+/// Inverse effective mass of an end's point in a direction: that of its nodes by themselves, plus that of the rigid
+/// motion of their component.
 double compliance(const SolvedBody& body, const RowEnd& end, const btVector3& position, const btVector3& direction) {
+  assert(end.isSoft());
   double sum = 0.0;
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
     btScalar inverse[6];
@@ -191,25 +201,27 @@ double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const Ri
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/// The offset from where the point sticks as the step leaves it; where it slides, as much as friction holds.
+/// The offset from the sticking position at the end of the step; where the point slides, the offset that friction can
+/// hold.
 Sticking stickingOf(const ContactRow& row, btScalar seconds) {
+  assert(row.object && seconds > 0);
   Sticking kept;
   kept.point = row.point;
   kept.object = row.object;
   kept.normal = row.normal;
   const btScalar along = row.normal.dot(row.impulse);
   kept.normalForce = along / seconds;
-  kept.place = row.stickingPlace;
+  kept.position = row.stickingPosition;
   kept.stuck = row.state == ContactRow::State::Sticks;
-  if (row.ends[1].isSoft()) kept.place = (row.slip + row.offsetVelocity) * seconds;
+  if (row.ends[1].isSoft()) kept.position = (row.slip + row.offsetVelocity) * seconds;
   if (row.state != ContactRow::State::Slides || !(row.tangentStiffness > 0)) return kept;
   const btVector3 reached = (row.slip + row.offsetVelocity) * seconds;
   const btVector3 held = -(row.impulse - along * row.normal) * (seconds / row.tangentStiffness);
   if (row.ends[1].isSoft()) {
-    kept.place = held;
+    kept.position = held;
     return kept;
   }
-  kept.place += row.object->getWorldTransform().getBasis().transpose() * (reached - held);
+  kept.position += row.object->getWorldTransform().getBasis().transpose() * (reached - held);
   return kept;
 }
 
@@ -217,6 +229,7 @@ Sticking stickingOf(const ContactRow& row, btScalar seconds) {
 
 void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources,
                           btScalar seconds) {
+  assert(seconds > 0);
   rows_.clear();
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
     SolvedBody& body = bodies.bodies()[b];
@@ -237,14 +250,15 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std
   setStiffness(bodies, rigids);
 }
 
-/// What sleeps is not moved by it.
+/// Rows do not move sleeping bodies.
 void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btScalar seconds) {
   contact.impulse.setZero();
-  const std::size_t index = bodies.placeOf(contact.body);
+  const std::size_t index = bodies.indexOf(contact.body);
   if (index == bodies.bodies().size() || !isFinite(contact)) return;
   ContactRow row = rowOf(index, contact);
+  assert(contact.nodeCount > 0 && btSoftBody::upcast(contact.object));
   const auto* object = btSoftBody::upcast(contact.object);
-  const std::size_t other = bodies.placeOf(object);
+  const std::size_t other = bodies.indexOf(object);
   const bool moves = other < bodies.bodies().size();
   if (moves) {
     row.ends[1].body = other;
@@ -254,7 +268,7 @@ void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btSca
   }
   row.relative = carriedVelocity(bodies, row.ends[0]) - carriedVelocity(bodies, row.ends[1]);
   const bool anyFree = isFree(bodies, row.ends[0]) || isFree(bodies, row.ends[1]);
-  if (!anyFree || isNoNumber(row.relative)) return;
+  if (!anyFree || isNaN(row.relative)) return;
   const btScalar pushingOut = kPushingOut * std::min(sizeOf(*contact.body), sizeOf(*object));
   row.gapVelocity = std::max(seenGap(contact.distance, row) / seconds, -pushingOut);
   recall(bodies.bodies()[index], object->getWorldTransform(), seconds, row);
@@ -264,11 +278,12 @@ void ContactRows::addSoft(SolverBodies& bodies, SoftPointContact& contact, btSca
   }
 }
 
-/// What sleeps holds still.
+/// Sleeping bodies do not move.
 void ContactRows::addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknowns& rigids, btScalar seconds) {
+  assert(joint.nodeCount > 0 && joint.nodeCount <= kMaxPointNodes && joint.maximum >= 0);
   if (!joint.constant) joint.impulse.setZero();
-  const std::size_t index = bodies.placeOf(joint.body);
-  if (index == bodies.bodies().size() || isNoNumber(joint.offset)) return;
+  const std::size_t index = bodies.indexOf(joint.body);
+  if (index == bodies.bodies().size() || isNaN(joint.offset)) return;
   ContactRow row;
   row.ends[0].body = index;
   row.ends[0].nodeCount = joint.nodeCount;
@@ -282,17 +297,17 @@ void ContactRows::addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknown
   row.directions = joint.directions;
   row.constant = joint.constant;
   row.stiffness = joint.stiffness;
-  row.highest = joint.most;
+  row.highest = joint.maximum;
   row.offsetVelocity = joint.offset / seconds;
   if (row.constant) row.impulse = joint.impulse;
   row.relative = carriedVelocity(bodies, row.ends[0]);
-  // A kinematic one is where the step takes it.
+  // A kinematic body moves as the step prescribes.
   if (row.object && row.object->isActive() && !row.object->isKinematicObject()) {
     row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.relative -= rigids.velocityAt(row.ends[1].rigid, *row.object, seconds);
   }
   if (!isFree(bodies, row.ends[0]) && row.ends[1].rigid.unknown < 0) return;
-  if (isNoNumber(row.relative)) return;
+  if (isNaN(row.relative)) return;
   rows_.push_back(row);
   ++bodies.bodies()[index].rowCount;
 }
@@ -310,7 +325,7 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     if (!isFree(bodies, row.ends[0])) return;
     row.ends[1].rigid = rigids.at(*row.object, row.position);
     row.relative = relativeVelocity(bodies, row, rigids, seconds);
-    if (isNoNumber(row.relative)) return;
+    if (isNaN(row.relative)) return;
     const btScalar gap = contact.distance + leadOf(row, rigids, seconds);
     row.gapVelocity = std::max(seenGap(gap, row) / seconds, -pushingOut);
     recall(body, rigids.frameOf(*row.object, seconds), seconds, row);
@@ -322,6 +337,7 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
 }
 
 void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
+  assert(bodies.bodies()[index].elastic);
   const SolvedBody& body = bodies.bodies()[index];
   const auto& anchors = body.body->m_deformableAnchors;
   for (int k = 0; k < anchors.size(); ++k) {
@@ -342,7 +358,7 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
   }
 }
 
-/// Nodes that many rows share are no stiffer than by one.
+/// Nodes that several rows share get no stiffer than with one row.
 void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids) {
   std::vector<std::vector<btScalar>> loads(bodies.bodies().size());
   for (const ContactRow& row : rows_) {
@@ -357,17 +373,17 @@ void ContactRows::setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids
   }
   for (ContactRow& row : rows_) {
     if (row.constant) continue;
-    btScalar share = 1;
+    btScalar fraction = 1;
     for (const RowEnd& end : row.ends) {
       for (std::uint32_t k = 0; k < end.nodeCount && !row.joined; ++k) {
         if (std::abs(end.weights[k]) < kSmallWeight) continue;
-        share = std::max(share, loads[end.body][static_cast<std::size_t>(end.nodes[k])]);
+        fraction = std::max(fraction, loads[end.body][static_cast<std::size_t>(end.nodes[k])]);
       }
     }
     const double mass = effectiveMass(bodies, row, rigids);
-    // What is stiffer would not be seen, and what is left of a solve would push by it.
-    const auto most = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / share;
-    row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, most) : most;
+    // A higher stiffness makes no visible difference, and the residual left by the solve would push with it.
+    const auto maximum = static_cast<btScalar>((row.joined ? kAnchorStiffness : kStiffness) * mass) / fraction;
+    row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, maximum) : maximum;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: the contacts and anchors of a step as rows, with what is remembered of the step before.
+// Internal to DeformableSolver: the contacts and anchors of a step as rows, with what they store from step to step.
 #pragma once
 
 #include <tetskin/bullet/src/shared/solver/row_source.h>
@@ -14,11 +14,11 @@ namespace tetskin {
 
 class ContactRows {
  public:
-  /// Of all bodies that are elastic here: the points that a search has left in the body, Bullet's contacts of nodes and
-  /// faces with rigid objects, and its anchors. After velocities have been read.
+  /// Collects the rows of all bodies that are elastic here: the points that a search has left in the body, Bullet's
+  /// contacts of nodes and faces with rigid objects, and the body's anchors. Call it after velocities have been read.
   /// sources  of contacts among soft bodies, and of joints
   void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources, btScalar seconds);
-  /// What the next step begins with; tells contacts their impulses.
+  /// Stores what the next step begins with, and reports the impulses to the contacts.
   void finish(SolverBodies& bodies, btScalar seconds) const;
 
   std::vector<ContactRow>& rows() { return rows_; }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What Bullet calls. What it comes to is in step.cpp.
+// The functions that Bullet calls. The stages that they call are in step.cpp.
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/shared/bodies/contact_filter.h>
 #include <tetskin/bullet/src/solver/step.h>
+
+#include <cassert>
 
 namespace tetskin {
 namespace {
@@ -17,7 +19,7 @@ void dropAll(btAlignedObjectArray<Constraint>& constraints) {
 
 }  // namespace
 
-DeformableSolver::DeformableSolver() : parts_(std::make_unique<Parts>(*this)) {
+DeformableSolver::DeformableSolver() : impl_(std::make_unique<Impl>(*this)) {
   m_useProjection = true;
   setImplicit(false);
   setLineSearch(false);
@@ -26,67 +28,68 @@ DeformableSolver::DeformableSolver() : parts_(std::make_unique<Parts>(*this)) {
 DeformableSolver::~DeformableSolver() = default;
 
 void DeformableSolver::setThreads(ParallelFor* threads) {
-  parts_->threads = threads;
+  impl_->threads = threads;
 }
 void DeformableSolver::setNodeNormals(bool on) {
-  parts_->nodeNormals = on;
+  impl_->nodeNormals = on;
 }
-void DeformableSolver::solveAlways() {
-  parts_->always = true;
+void DeformableSolver::requireOwnSolve() {
+  impl_->always = true;
 }
-bool DeformableSolver::solves() const {
-  return parts_->always || (m_useProjection && !m_lineSearch && !m_implicit);
+bool DeformableSolver::ownSolveActive() const {
+  return impl_->always || (m_useProjection && !m_lineSearch && !m_implicit);
 }
 int DeformableSolver::iterations() const {
-  return parts_->iterations;
+  return impl_->iterations;
 }
-int DeformableSolver::passes() const {
-  return parts_->passes;
+int DeformableSolver::linearSolves() const {
+  return impl_->passes;
 }
-int DeformableSolver::unconverged() const {
-  return parts_->unconverged;
+int DeformableSolver::unconvergedSystems() const {
+  return impl_->unconverged;
 }
 
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
-  parts_->gather(softBodies, dt);
+  impl_->gather(softBodies, dt);
   updateSoftBodies();
 }
 
 void DeformableSolver::updateSoftBodies() {
-  if (parts_->nodeNormals) btDeformableBodySolver::updateSoftBodies();
+  if (impl_->nodeNormals) btDeformableBodySolver::updateSoftBodies();
 }
 
 void DeformableSolver::predictMotion(btScalar dt) {
-  Parts& parts = *parts_;
-  if (parts.solving != solves()) {
-    // The world's settings have changed since the step before.
-    parts.solving = solves();
-    parts.collect(parts.all);
-    parts.assign();
+  Impl& impl = *impl_;
+  if (impl.solving != ownSolveActive()) {
+    // The world's settings may have changed since the step before.
+    impl.solving = ownSolveActive();
+    impl.collect(impl.all);
+    impl.assign();
   }
-  parts.solving ? parts.predict() : btDeformableBodySolver::predictMotion(dt);
+  impl.solving ? impl.predict() : btDeformableBodySolver::predictMotion(dt);
 }
 
-/// Of a body and a rigid object whose boxes overlap.
+/// Bullet calls this for a body and a rigid object whose boxes overlap.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
-  if (parts_->solving) {
-    if (!body->isActive() || !meetsRigid(*body, *object->getCollisionObject())) return;
-    parts_->obstacleChanges.notice(*body, *object);
+  if (impl_->solving) {
+    if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
+    impl_->obstacleChanges.notice(*body, *object);
   }
   btDeformableBodySolver::processCollision(body, object);
 }
 
 void DeformableSolver::setupDeformableSolve(bool implicit) {
-  btDeformableBodySolver::setupDeformableSolve(implicit && !parts_->solving);
+  btDeformableBodySolver::setupDeformableSolve(implicit && !impl_->solving);
 }
 
-/// Rows are solved for here; Bullet's own of the same nodes would be a second time.
+/// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice.
 void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
   btDeformableBodySolver::setConstraints(info);
-  if (!parts_->solving) return;
+  if (!impl_->solving) return;
   btDeformableContactProjection& projection = m_objective->m_projection;
-  for (std::size_t b = 0; b < parts_->bodies.bodies().size(); ++b) {
-    if (!parts_->bodies.bodies()[b].elastic) continue;
+  assert(static_cast<std::size_t>(projection.m_nodeRigidConstraints.size()) >= impl_->bodies.bodies().size());
+  for (std::size_t b = 0; b < impl_->bodies.bodies().size(); ++b) {
+    if (!impl_->bodies.bodies()[b].elastic) continue;
     const auto at = static_cast<int>(b);
     dropAll(projection.m_nodeRigidConstraints[at]);
     dropAll(projection.m_nodeAnchorConstraints[at]);
@@ -94,38 +97,38 @@ void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
   }
 }
 
-/// What a world without projection asks for.
+/// A world without projection calls this instead.
 void DeformableSolver::setLagrangeMultiplier() {
-  parts_->solving ? setProjection() : btDeformableBodySolver::setLagrangeMultiplier();
+  impl_->solving ? setProjection() : btDeformableBodySolver::setLagrangeMultiplier();
 }
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
-  Parts& parts = *parts_;
-  if (!parts.solving) {
-    parts.iterations = parts.passes = parts.unconverged = 0;
+  Impl& impl = *impl_;
+  if (!impl.solving) {
+    impl.iterations = impl.passes = impl.unconverged = 0;
     return btDeformableBodySolver::solveDeformableConstraints(dt);
   }
-  parts.assemble();
-  parts.solve();
-  parts.finishContacts();
-  parts.writeBack();
+  impl.assemble();
+  impl.solve();
+  impl.finishContacts();
+  impl.writeBack();
 }
 
 void DeformableSolver::applyTransforms(btScalar dt) {
-  Parts& parts = *parts_;
-  parts.hidden.show(m_softBodies);
+  Impl& impl = *impl_;
+  impl.hidden.show(m_softBodies);
   // A body that has fallen asleep since the step began was not solved for: its velocities are not to be used.
   for (int i = 0; i < m_softBodies.size(); ++i) {
     btSoftBody& body = *m_softBodies[i];
-    if (body.isActive() || !parts.solving) continue;
+    if (body.isActive() || !impl.solving) continue;
     for (int n = 0; n < body.m_nodes.size(); ++n) {
       body.m_nodes[n].m_v.setZero();
       body.m_nodes[n].m_splitv.setZero();
     }
   }
-  parts.driven.beforeIntegration(m_softBodies);
+  impl.driven.beforeIntegration(m_softBodies);
   btDeformableBodySolver::applyTransforms(dt);
-  parts.driven.end(m_softBodies, dt);
+  impl.driven.end(m_softBodies, dt);
 }
 
 }  // namespace tetskin

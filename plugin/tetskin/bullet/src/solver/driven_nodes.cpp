@@ -3,14 +3,15 @@
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Seconds. Who moves a node after a longer pause begins anew.
-constexpr btScalar kLongestFrame = btScalar(0.1);
-/// Of a step's way: how near counts as arrived. Bullet may have bounded the velocity.
+/// Seconds. A node that is moved again after a longer pause begins a new motion.
+constexpr btScalar kMaxFrame = btScalar(0.1);
+/// Fraction of a step's path: a node nearer than this to its target has arrived. Bullet may have bounded its velocity.
 constexpr btScalar kArrived = btScalar(1e-3);
 
 bool wasMoved(const btSoftBody::Node& node) {
@@ -26,35 +27,36 @@ bool isAState(const btSoftBody& body) {
   return false;
 }
 
-/// What was given stays, or the nodes would go on with it.
+/// Sets the velocities to 0: they would otherwise stay, and move the nodes further.
 void stop(btSoftBody& body, const std::vector<DrivenNode>& nodes) {
-  for (const DrivenNode& of : nodes) {
-    if (of.node >= body.m_nodes.size()) continue;
-    btSoftBody::Node& node = body.m_nodes[of.node];
-    if (node.m_im == 0 && node.m_v == of.velocity) node.m_v = node.m_vn = btVector3(0, 0, 0);
+  for (const DrivenNode& driven : nodes) {
+    if (driven.node >= body.m_nodes.size()) continue;
+    btSoftBody::Node& node = body.m_nodes[driven.node];
+    if (node.m_im == 0 && node.m_v == driven.velocity) node.m_v = node.m_vn = btVector3(0, 0, 0);
   }
 }
 
-/// Takes in what the application has done since the last step.
-void notice(const btSoftBody::Node& node, DrivenNode& of) {
-  if (node.m_q != of.target) {  // the body was translated, rotated or scaled
-    of.position = of.target = node.m_q;
-    of.left = 0;
+/// Records what the application has done since the last step.
+void notice(const btSoftBody::Node& node, DrivenNode& driven) {
+  if (node.m_q != driven.target) {  // the body was translated, rotated or scaled
+    driven.position = driven.target = node.m_q;
+    driven.left = 0;
   }
   if (!wasMoved(node)) return;
-  if (of.sinceMoved > 0 && of.sinceMoved <= kLongestFrame) of.interval = of.sinceMoved;
-  of.target = node.m_x;
-  of.left = of.interval;
-  of.sinceMoved = 0;
+  if (driven.sinceMoved > 0 && driven.sinceMoved <= kMaxFrame) driven.interval = driven.sinceMoved;
+  driven.target = node.m_x;
+  driven.left = driven.interval;
+  driven.sinceMoved = 0;
 }
 
-void drive(btSoftBody::Node& node, btScalar dt, DrivenNode& of) {
-  const btScalar steps = btMax(std::round(of.left / dt), btScalar(1));
-  of.velocity = (of.target - of.position) / (steps * dt);
-  of.left -= dt;
-  of.sinceMoved += dt;
-  node.m_x = node.m_q = of.position;
-  node.m_v = node.m_vn = of.velocity;
+void drive(btSoftBody::Node& node, btScalar dt, DrivenNode& driven) {
+  assert(dt > 0 && driven.node >= 0);
+  const btScalar steps = btMax(std::round(driven.left / dt), btScalar(1));
+  driven.velocity = (driven.target - driven.position) / (steps * dt);
+  driven.left -= dt;
+  driven.sinceMoved += dt;
+  node.m_x = node.m_q = driven.position;
+  node.m_v = node.m_vn = driven.velocity;
 }
 
 }  // namespace
@@ -65,9 +67,9 @@ DrivenNodes::Nodes* DrivenNodes::find(const btSoftBody& body) {
 }
 
 void DrivenNodes::keepOnly(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  for (auto of = bodies_.begin(); of != bodies_.end();) {
-    const bool here = bodies.findLinearSearch(const_cast<btSoftBody*>(of->first)) < bodies.size();
-    of = here ? std::next(of) : bodies_.erase(of);
+  for (auto driven = bodies_.begin(); driven != bodies_.end();) {
+    const bool here = bodies.findLinearSearch(const_cast<btSoftBody*>(driven->first)) < bodies.size();
+    driven = here ? std::next(driven) : bodies_.erase(driven);
   }
 }
 
@@ -90,16 +92,17 @@ void DrivenNodes::beginBody(btSoftBody& body, btScalar dt) {
     while (known && next < known->size() && (*known)[next].node < n) ++next;
     const bool isKnown = known && next < known->size() && (*known)[next].node == n;
     if (!isKnown && !wasMoved(node)) continue;
-    DrivenNode of;
-    of.node = n;
-    of.position = of.target = node.m_q;
-    if (isKnown) of = (*known)[next];
-    // A velocity of the application's own is what the node goes by.
-    if (!node.m_v.isZero() && node.m_v != of.velocity) continue;
-    notice(node, of);
-    drive(node, dt, of);
-    found_.push_back(of);
+    DrivenNode driven;
+    driven.node = n;
+    driven.position = driven.target = node.m_q;
+    if (isKnown) driven = (*known)[next];
+    // A velocity that the application has set itself takes precedence.
+    if (!node.m_v.isZero() && node.m_v != driven.velocity) continue;
+    notice(node, driven);
+    drive(node, dt, driven);
+    found_.push_back(driven);
   }
+  assert(std::is_sorted(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.node < b.node; }));
   if (known || !found_.empty()) bodies_[&body].swap(found_);
 }
 
@@ -108,9 +111,10 @@ void DrivenNodes::beforeIntegration(const btAlignedObjectArray<btSoftBody*>& awa
   for (int b = 0; b < awake.size(); ++b) {
     Nodes* nodes = find(*awake[b]);
     if (!nodes) continue;
-    const auto wasMovedSince = [&](const DrivenNode& of) {
-      btSoftBody::Node& node = awake[b]->m_nodes[of.node];
-      if (node.m_x == of.position) return false;
+    const auto wasMovedSince = [&](const DrivenNode& driven) {
+      assert(driven.node < awake[b]->m_nodes.size());
+      btSoftBody::Node& node = awake[b]->m_nodes[driven.node];
+      if (node.m_x == driven.position) return false;
       node.m_v = btVector3(0, 0, 0);
       return true;
     };
@@ -123,12 +127,12 @@ void DrivenNodes::end(const btAlignedObjectArray<btSoftBody*>& awake, btScalar d
   for (int b = 0; b < awake.size(); ++b) {
     Nodes* nodes = find(*awake[b]);
     if (!nodes) continue;
-    for (DrivenNode& of : *nodes) {
-      btSoftBody::Node& node = awake[b]->m_nodes[of.node];
-      const btScalar rounding = kArrived * dt * of.velocity.length();
-      of.position = (of.target - node.m_x).length() <= rounding ? of.target : node.m_x;
-      of.velocity = node.m_v;
-      node.m_x = node.m_q = of.target;
+    for (DrivenNode& driven : *nodes) {
+      btSoftBody::Node& node = awake[b]->m_nodes[driven.node];
+      const btScalar rounding = kArrived * dt * driven.velocity.length();
+      driven.position = (driven.target - node.m_x).length() <= rounding ? driven.target : node.m_x;
+      driven.velocity = node.m_v;
+      node.m_x = node.m_q = driven.target;
     }
   }
 }

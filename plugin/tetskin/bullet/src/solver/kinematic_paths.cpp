@@ -4,17 +4,18 @@
 #include <tetskin/bullet/src/solver/kinematic_paths.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Of a frame: more was no motion.
+/// Most steps per frame: what takes longer counts as no motion.
 constexpr btScalar kMaxSteps = 64;
-/// By how much the steps may differ from a whole number: Bullet's angular velocities have few digits.
+/// By how much the number of steps may differ from an integer: Bullet's angular velocities have few digits.
 constexpr btScalar kWholeStep = btScalar(0.1);
 
-/// Seconds in which the body's velocity takes it so far; 0 if it does not.
+/// Seconds in which the body's velocity takes it from one transform to the other; 0 if it does not.
 btScalar timeOf(const btTransform& from, const btTransform& to, const btRigidBody& body) {
   const btVector3 moved = to.getOrigin() - from.getOrigin(), &velocity = body.getLinearVelocity();
   if (velocity.length2() > 0) return moved.dot(velocity) / velocity.length2();
@@ -26,7 +27,7 @@ btScalar timeOf(const btTransform& from, const btTransform& to, const btRigidBod
   return angle / rate;
 }
 
-/// In how many steps it goes there: 1, unless it is known better.
+/// The number of steps in which the body moves from one transform to the other; 1 if it cannot be told.
 int stepsOf(const btTransform& from, const btTransform& to, const btRigidBody& body, btScalar seconds) {
   const btScalar steps = timeOf(from, to, body) / seconds, whole = std::round(steps);
   const bool isWhole = std::abs(steps - whole) <= kWholeStep && whole >= 1 && whole <= kMaxSteps;
@@ -36,9 +37,11 @@ int stepsOf(const btTransform& from, const btTransform& to, const btRigidBody& b
 }  // namespace
 
 btTransform KinematicPath::now() const {
+  assert(done >= 1 && steps >= 1);
   if (done >= steps) return to;
-  const btScalar share = static_cast<btScalar>(done) / static_cast<btScalar>(steps);
-  return btTransform(from.getRotation().slerp(to.getRotation(), share), from.getOrigin().lerp(to.getOrigin(), share));
+  const btScalar fraction = static_cast<btScalar>(done) / static_cast<btScalar>(steps);
+  return btTransform(from.getRotation().slerp(to.getRotation(), fraction),
+                     from.getOrigin().lerp(to.getOrigin(), fraction));
 }
 
 void KinematicPaths::beginStep() {
@@ -46,7 +49,7 @@ void KinematicPaths::beginStep() {
   now_.clear();
 }
 
-const KinematicPath& KinematicPaths::of(const btRigidBody& body, btScalar seconds) {
+const KinematicPath& KinematicPaths::pathOf(const btRigidBody& body, btScalar seconds) {
   const auto [found, isNew] = now_.emplace(&body, KinematicPath());
   KinematicPath& path = found->second;
   if (!isNew) return path;

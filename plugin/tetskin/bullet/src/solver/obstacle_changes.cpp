@@ -5,7 +5,7 @@
 namespace tetskin {
 namespace {
 
-/// Shapes whose boxes are kept: more may have come and gone.
+/// Most shapes whose boxes are kept; beyond it, all are forgotten, since shapes may have been destroyed.
 constexpr std::size_t kMaxShapes = 10'000;
 
 }  // namespace

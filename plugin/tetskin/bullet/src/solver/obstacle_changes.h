@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: rigid objects that the application has changed, as Bullet's search by nodes does not
-// notice it.
+// Internal to DeformableSolver: rigid objects that the application has changed in ways that Bullet's search by nodes
+// does not notice.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -13,11 +13,12 @@
 
 namespace tetskin {
 
-/// Bullet keeps distances to a shape in cells, for good, and looks for contacts where an object is predicted to be,
-/// which of those that do not move by themselves, or sleep, nobody keeps up to date.
+/// Bullet stores distances to a shape in cells, and never renews them; and it searches for contacts at an object's
+/// predicted transform, which nothing updates for objects that do not move by themselves or that sleep. This class
+/// finds such changes.
 class ObstacleChanges {
  public:
-  /// Before nodes of the body are searched for in the object.
+  /// Call it before nodes of the body are tested against the object.
   void notice(btSoftBody& body, const btCollisionObjectWrapper& rigid);
 
  private:

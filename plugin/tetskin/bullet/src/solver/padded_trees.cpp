@@ -4,27 +4,29 @@
 #include <tetskin/bullet/src/solver/solver_bodies.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Of the leaves of a body's trees, in collision margins: more is to be looked at for contacts, less often to be
-/// fitted.
+/// Padding of the leaves of a body's trees, in collision margins: with a larger one, contact searches visit more
+/// leaves, and the trees are refitted less often.
 constexpr btScalar kPadding = 2;
 
 }  // namespace
 
-bool meetsSoftBodies(btSoftBody& body) {
+bool collidesWithSoftBodies(btSoftBody& body) {
   return (body.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0 || body.useSelfCollision();
 }
 
-bool meetsByFaces(btSoftBody& body) {
+bool collidesByFaces(btSoftBody& body) {
   constexpr int kFaces = btSoftBody::fCollision::SDF_RDF | btSoftBody::fCollision::SDF_MDF;
-  return (body.m_cfg.collisions & kFaces) != 0 || meetsSoftBodies(body);
+  return (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
 }
 
 void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
+  assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
   const btScalar margin = body.getCollisionShape()->getMargin();
   if (pad != kPadding * margin) ready = false;
   pad = kPadding * margin;
@@ -52,24 +54,26 @@ void PaddedTrees::keep(Dynamics& dynamics) {
 }
 
 btScalar PaddedTrees::furthest(Dynamics& dynamics) const {
-  btScalar most = 0;
+  assert(points.size() == 3 * dynamics.nodeCount());
+  btScalar maximum = 0;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     const btScalar* now = dynamics.point(n);
     const btScalar x = now[0] - points[3 * n], y = now[1] - points[3 * n + 1], z = now[2] - points[3 * n + 2];
-    most = std::max(most, x * x + y * y + z * z);
+    maximum = std::max(maximum, x * x + y * y + z * z);
   }
-  return btSqrt(most);
+  return btSqrt(maximum);
 }
 
 void HiddenBodies::hide(const std::vector<SolvedBody>& bodies, btScalar dt) {
-  for (const SolvedBody& of : bodies) {
-    btSoftBody& body = *of.body;
-    const bool hides = body.isActive() && !meetsSoftBodies(body);
+  assert(hidden_.empty());
+  for (const SolvedBody& solved : bodies) {
+    btSoftBody& body = *solved.body;
+    const bool hides = body.isActive() && !collidesWithSoftBodies(body);
     if (!hides) {
-      of.paddedTrees->ready = false;  // Bullet fits them tightly
+      solved.paddedTrees->ready = false;  // because Bullet fits them without padding
       continue;
     }
-    of.paddedTrees->fitBefore(body, btSqrt(body.m_maxSpeedSquared) * dt);
+    solved.paddedTrees->fitBefore(body, btSqrt(body.m_maxSpeedSquared) * dt);
     hidden_.emplace_back(&body, body.getActivationState());
     body.forceActivationState(ISLAND_SLEEPING);
   }

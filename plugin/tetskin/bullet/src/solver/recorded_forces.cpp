@@ -5,16 +5,17 @@
 #include <tetskin/bullet/src/solver/recorded_forces.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace tetskin {
 namespace {
 
-/// Arrows are as long as they would be here, where the world has no gravity.
+/// In a world without gravity, arrows have the length that they would have under this one.
 constexpr btScalar kEarthsGravity = btScalar(9.81);
 
-/// A base class's member may be named by way of a derived one.
+/// Gives access to members of a base class, whose names a derived class may use.
 struct WorldMembers : btDeformableMultiBodyDynamicsWorld {
   static btScalar& fixedTimeStep(btDeformableMultiBodyDynamicsWorld& world) {
     return world.*(&WorldMembers::m_fixedTimeStep);
@@ -42,7 +43,7 @@ void addImpulse(const btVector3& impulse, const btVector3& arm, Wrench& to) {
   to.torque += arm.cross(impulse);
 }
 
-/// Of a row on one of its ends.
+/// Adds the impulse of a row at one of its ends.
 /// sign  of the row's impulse there
 void addRow(const ContactRow& row, btScalar sign, const btVector3& arm, AppliedForces& to) {
   if (row.joined) return addImpulse(sign * row.impulse, arm, row.joint ? to.joints : to.anchors);
@@ -58,11 +59,11 @@ bool isNothing(const AppliedForces& forces) {
   return true;
 }
 
-/// Of two objects, of which one is soft at least.
+/// True if a soft participant is awake; at least one of them is soft.
 template <class Participants>
 bool isAnyAwake(const SolverBodies& bodies, const Participants& participants) {
   return std::any_of(participants.begin(), participants.end(), [&](const auto& participant) {
-    return participant.soft && bodies.placeOf(participant.soft) < bodies.bodies().size();
+    return participant.soft && bodies.indexOf(participant.soft) < bodies.bodies().size();
   });
 }
 
@@ -79,6 +80,7 @@ RecordedForces::~RecordedForces() {
 // ---- a substep
 
 void RecordedForces::record(const SolverBodies& bodies, const std::vector<ContactRow>& rows, btScalar seconds) {
+  assert(seconds > 0);
   if (stepBegins()) beginStep();
   seconds_ += seconds;
   for (Pair& pair : pairs_) {
@@ -93,9 +95,9 @@ void RecordedForces::record(const SolverBodies& bodies, const std::vector<Contac
   }
 }
 
-/// Bullet tells nobody where a stepSimulation begins. But it sets m_fixedTimeStep there, and reads it for the motion
-/// states of rigid bodies alone: a last digit more, 5e-10 s of a 240th, is still there in the substeps that follow. It
-/// is 0 where a stepSimulation has one substep, of any length.
+/// Bullet tells nobody where a stepSimulation begins. But it sets m_fixedTimeStep there, and reads it only for the
+/// motion states of rigid bodies. This function changes it by one last digit, 5e-10 s for a 240th of a second; the
+/// change is still there in the substeps that follow. It is 0 where a stepSimulation has one substep, of any length.
 bool RecordedForces::stepBegins() {
   btScalar& length = WorldMembers::fixedTimeStep(world_);
   if (length == 0) return true;
@@ -114,8 +116,8 @@ void RecordedForces::beginStep() {
   dropRemoved();
 }
 
-/// And what has ended. Objects that are gone are looked for where the world has others than it had: that is for memory
-/// alone.
+/// Drops contacts that have ended, and objects that have been removed. The latter are looked for when the number of
+/// objects in the world has changed: they only cost memory.
 void RecordedForces::dropRemoved() {
   const bool anyRemoved = objectCount_ != world_.getNumCollisionObjects();
   objectCount_ = world_.getNumCollisionObjects();
@@ -127,10 +129,10 @@ void RecordedForces::dropRemoved() {
   const auto last = std::remove_if(pairs_.begin(), pairs_.end(), goes);
   if (last == pairs_.end()) return;
   pairs_.erase(last, pairs_.end());
-  places_.clear();
+  indices_.clear();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const auto& [first, second] = pairs_[k].participants;
-    places_[{first.object, second.object}] = k;
+    indices_[{first.object, second.object}] = k;
   }
 }
 
@@ -152,16 +154,17 @@ void RecordedForces::add(const SolverBodies& bodies, const ContactRow& row, btSc
   }
 }
 
-/// Either way round.
+/// The pair of two participants, in either order.
 RecordedForces::Pair& RecordedForces::pairOf(const Participants& participants) {
   const auto& [first, second] = participants;
-  auto place = places_.find({first.object, second.object});
-  if (place == places_.end()) place = places_.find({second.object, first.object});
-  if (place == places_.end()) {
-    place = places_.emplace(std::make_pair(first.object, second.object), pairs_.size()).first;
+  auto entry = indices_.find({first.object, second.object});
+  if (entry == indices_.end()) entry = indices_.find({second.object, first.object});
+  if (entry == indices_.end()) {
+    entry = indices_.emplace(std::make_pair(first.object, second.object), pairs_.size()).first;
     pairs_.push_back({participants, {}, {}, 0});
   }
-  Pair& pair = pairs_[place->second];
+  assert(entry->second < pairs_.size());
+  Pair& pair = pairs_[entry->second];
   const std::size_t own = pair.participants[0].object == first.object ? 0 : 1;
   const bool same = pair.participants[own].id == first.id && pair.participants[1 - own].id == second.id;
   if (!same) {
@@ -177,7 +180,7 @@ RecordedForces::Pair& RecordedForces::pairOf(const Participants& participants) {
 btVector3 RecordedForces::armOf(const RowEnd& end, const Participant& participant, const btVector3& position) {
   if (!participant.soft) return position - participant.object->getWorldTransform().getOrigin();
   const btVector3& centroid = weightOf(*participant.soft).centroid;
-  // What sleeps has no end of its own in a row.
+  // A sleeping body has no end of its own in a row.
   if (!end.isSoft()) return position - centroid;
   btVector3 arm(0, 0, 0);
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
@@ -186,10 +189,10 @@ btVector3 RecordedForces::armOf(const RowEnd& end, const Participant& participan
   return arm;
 }
 
-/// Pinned nodes have no mass that moves; of a body of these alone all count the same.
+/// Pinned nodes have no mass that moves; if all nodes of a body are pinned, each has the same weight.
 const RecordedForces::Weight& RecordedForces::weightOf(const btSoftBody& body) {
-  const auto [place, isNew] = weights_.emplace(&body, Weight());
-  Weight& weight = place->second;
+  const auto [entry, isNew] = weights_.emplace(&body, Weight());
+  Weight& weight = entry->second;
   if (!isNew) return weight;
   btVector3 sum(0, 0, 0), any(0, 0, 0);
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -227,17 +230,17 @@ AppliedForces RecordedForces::forcesOf(const Pair& pair, std::size_t side) const
   return forces;
 }
 
-/// What is not in the world may be gone: only its address is looked at.
+/// An object that is not in the world may have been destroyed: only its address is compared.
 bool RecordedForces::isPresent(const Participant& participant) const {
   if (!participant.object) return true;
   const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
-  const int place = objects.findLinearSearch(const_cast<btCollisionObject*>(participant.object));
-  return place < objects.size() && idInWorld(*objects[place]) == participant.id;
+  const int index = objects.findLinearSearch(const_cast<btCollisionObject*>(participant.object));
+  return index < objects.size() && idInWorld(*objects[index]) == participant.id;
 }
 
 // ---- drawing
 
-/// A force as large as the body's weight is as long as the body.
+/// The length of the arrow of a force: a force as large as the body's weight is as long as the body.
 btVector3 RecordedForces::arrowOf(const btVector3& force, const btSoftBody& body) {
   const btVector3 size = body.m_bounds[1] - body.m_bounds[0];
   const btScalar gravity = world_.getGravity().length(), mass = weightOf(body).mass;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ForceRecord: the impulses of a stepSimulation's rows, added up by pair of objects.
+// Internal to ForceRecord: the impulses of the rows, added up per stepSimulation and pair of objects.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
-#include <tetskin/bullet/force_record.h>
+#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/solver/contact_row.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
 
@@ -17,7 +17,7 @@
 
 namespace tetskin {
 
-/// In the world's actions, so that it is drawn.
+/// One of the world's actions, so that the world's debug drawing draws it.
 class RecordedForces : public btActionInterface {
  public:
   explicit RecordedForces(btDeformableMultiBodyDynamicsWorld& world);
@@ -25,29 +25,29 @@ class RecordedForces : public btActionInterface {
   RecordedForces(const RecordedForces&) = delete;
   RecordedForces& operator=(const RecordedForces&) = delete;
 
-  /// In each substep, when it has been solved.
+  /// Call it in each substep after the solve.
   void record(const SolverBodies& bodies, const std::vector<ContactRow>& rows, btScalar seconds);
-  /// other  null: of all
+  /// other  null: the sum over all objects
   AppliedForces on(const btCollisionObject& object, const btCollisionObject* other) const;
 
   void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override {}
   void debugDraw(btIDebugDraw* drawer) override;
 
  private:
-  /// An object that may be gone, and another one at its address.
+  /// An object that may have been destroyed; the id tells it from a later object at the same address.
   struct Participant {
-    const btCollisionObject* object = nullptr;  ///< null: points in space
-    const btSoftBody* soft = nullptr;           ///< the same, if it is one
-    int id = 0;                                 ///< Bullet's, of its proxy in the world
+    const btCollisionObject* object = nullptr;  ///< null: a point in space
+    const btSoftBody* soft = nullptr;           ///< the object if it is soft, or null
+    int id = 0;                                 ///< the id of its proxy in Bullet's broadphase
   };
   using Participants = std::array<Participant, 2>;
   struct Pair {
     Participants participants;
-    std::array<AppliedForces, 2> impulses;  ///< of the stepSimulation, on each of the two
-    std::array<AppliedForces, 2> before;    ///< forces, of the one before: they stay where both sleep on
-    btScalar asleep = 0;                    ///< seconds of the stepSimulation in which both did
+    std::array<AppliedForces, 2> impulses;  ///< on each of the two objects, of this stepSimulation
+    std::array<AppliedForces, 2> before;    ///< forces of the stepSimulation before, which stay valid while both sleep
+    btScalar asleep = 0;                    ///< seconds of this stepSimulation in which both slept
   };
-  /// Of the last substep in which either was awake.
+  /// A point of the last substep in which either was awake.
   struct Point {
     Participants participants;
     btVector3 position, normal, arrow;
@@ -69,13 +69,13 @@ class RecordedForces : public btActionInterface {
   bool isPresent(const Participant& participant) const;
 
   btDeformableMultiBodyDynamicsWorld& world_;
-  btScalar mark_ = 0;     ///< see stepBegins
-  btScalar seconds_ = 0;  ///< of the stepSimulation, so far
-  int objectCount_ = 0;   ///< of the world, when removed ones were last dropped
+  btScalar mark_ = 0;     ///< the value left in m_fixedTimeStep, see stepBegins
+  btScalar seconds_ = 0;  ///< of this stepSimulation so far
+  int objectCount_ = 0;   ///< objects in the world when removed ones were last dropped
   std::vector<Pair> pairs_;
-  std::map<std::pair<const void*, const void*>, std::size_t> places_;  ///< in `pairs_`
+  std::map<std::pair<const void*, const void*>, std::size_t> indices_;  ///< index in `pairs_`
   std::vector<Point> points_;
-  std::unordered_map<const btSoftBody*, Weight> weights_;  ///< in this substep
+  std::unordered_map<const btSoftBody*, Weight> weights_;  ///< of this substep
 };
 
 }  // namespace tetskin

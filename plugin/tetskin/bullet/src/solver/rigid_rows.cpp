@@ -9,16 +9,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// D over effective masses: such contacts are between bodies that do not yield.
+/// D over effective masses: higher than for soft bodies, as both bodies are rigid.
 constexpr double kRigidStiffness = 200.0;
-/// Unknowns of one step that rows are followed to: all of a system are eliminated at once, at the cost of their cube.
+/// Most unknowns of one step to which rows are followed: the unknowns of a system are eliminated together, at a cost
+/// cubic in their number.
 constexpr std::size_t kMaxUnknowns = 24;
-/// Of what friction holds at most: below, Bullet's contact has stuck.
+/// Fraction of the bound of friction: below it, Bullet's contact sticks.
 constexpr btScalar kStuck = btScalar(0.99);
 
 double massOf(const ContactRow& row, const RigidUnknowns& rigids) {
@@ -27,7 +29,7 @@ double massOf(const ContactRow& row, const RigidUnknowns& rigids) {
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/// What no row has been made of yet.
+/// Collects rows of contacts and joints that have none yet.
 class RigidRowCollector {
  public:
   RigidRowCollector(btScalar seconds, RigidUnknowns& rigids, std::vector<ContactRow>& rows)
@@ -45,7 +47,7 @@ class RigidRowCollector {
     for (int c = 0; c < world.getNumConstraints(); ++c) {
       if (world.getConstraint(c)->isEnabled()) joints_.push_back(world.getConstraint(c));
     }
-    // Each round leads to the bodies next to those of the round before.
+    // Each round adds the bodies next to those of the round before.
     while (addManifolds() || addJoints()) {
     }
   }
@@ -83,7 +85,7 @@ class RigidRowCollector {
     return point;
   }
 
-  /// The point is body A's.
+  /// The contact point belongs to body A.
   void addContact(const btCollisionObject& a, const btCollisionObject& b, const btManifoldPoint& from) {
     ContactRow row;
     row.object = &b;
@@ -120,10 +122,10 @@ class RigidRowCollector {
   std::vector<btTypedConstraint*> joints_;
 };
 
-/// The rows of a joint, as Bullet's solver asks for them.
+/// The rows of a joint, in the form in which Bullet's solver asks for them.
 struct JointRows {
-  static constexpr std::size_t kMost = 6, kStride = 16;
-  std::array<btScalar, kMost * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
+  static constexpr std::size_t kMax = 6, kStride = 16;
+  std::array<btScalar, kMax * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
       highest{};
 
   btTypedConstraint::btConstraintInfo2 info(btScalar seconds) {
@@ -144,16 +146,17 @@ struct JointRows {
   }
 };
 
-btVector3 vectorAt(const std::array<btScalar, JointRows::kMost * JointRows::kStride>& from, int row) {
+btVector3 vectorAt(const std::array<btScalar, JointRows::kMax * JointRows::kStride>& from, int row) {
+  assert(row >= 0 && row < static_cast<int>(JointRows::kMax));
   const auto at = static_cast<std::size_t>(row) * JointRows::kStride;
   return {from[at], from[at + 1], from[at + 2]};
 }
 
-/// Each row goes on as Bullet has left it, and gives as much more as it must.
+/// Each row begins with the impulse that Bullet has left it, and adds what else is needed.
 void RigidRowCollector::addJoint(btTypedConstraint& joint) {
   btTypedConstraint::btConstraintInfo1 counts{};
   joint.getInfo1(&counts);
-  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMost)) return;
+  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMax)) return;
   JointRows from;
   from.lowest.fill(-BT_LARGE_FLOAT);
   from.highest.fill(BT_LARGE_FLOAT);
@@ -171,17 +174,17 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
       return point;
     };
     row.ends[0].rigid = at(a, vectorAt(from.linearA, k), vectorAt(from.angularA, k));
-    // The other side's row has its own sign.
+    // The row of the other body has the opposite sign.
     row.ends[1].rigid = at(b, -vectorAt(from.linearB, k), -vectorAt(from.angularB, k));
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     if (!(row.effectiveMass > 0)) continue;
-    const auto place = static_cast<std::size_t>(k) * JointRows::kStride;
+    const auto index = static_cast<std::size_t>(k) * JointRows::kStride;
     row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
-    if (from.softness[place] > 0) {
-      row.stiffness = std::min(row.stiffness, row.effectiveMass / from.softness[place]);
+    if (from.softness[index] > 0) {
+      row.stiffness = std::min(row.stiffness, row.effectiveMass / from.softness[index]);
     }
-    row.lowest = from.lowest[place];
-    row.highest = from.highest[place];
+    row.lowest = from.lowest[index];
+    row.highest = from.highest[index];
     rows_.push_back(row);
   }
 }
@@ -190,6 +193,7 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
 
 void collectRigidRows(btDiscreteDynamicsWorld& world, btScalar seconds, RigidUnknowns& rigids,
                       std::vector<ContactRow>& rows) {
+  assert(seconds > 0);
   if (!rigids.list().empty()) RigidRowCollector(seconds, rigids, rows).collect(world);
 }
 

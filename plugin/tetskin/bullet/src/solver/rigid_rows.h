@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: what rigid bodies that soft ones touch are held by beside: contacts with each other and
-// with the world, and joints.
+// Internal to DeformableSolver: the other constraints of rigid bodies that touch soft ones: contacts with each other
+// and with the world, and joints.
 //
-// Bullet has solved for these already, without what soft bodies push with. They are rows of the same solve, which begin
-// where Bullet has left them: a contact with the impulse that Bullet has found, at the velocity that it has found, so
-// that nothing changes where nothing pushes. Rows are followed from body to body, as far as kMaxUnknowns; what is
-// beyond moves as Bullet has it.
+// Bullet has solved for these already, without the impulses of soft bodies. They become rows of the same solve, and
+// begin where Bullet has left them: a contact with the impulse and the velocity that Bullet has found, so that nothing
+// changes where nothing pushes. Rows are followed from body to body, up to kMaxUnknowns; bodies beyond move as Bullet
+// has solved them.
 #pragma once
 
 #include <tetskin/bullet/src/solver/contact_row.h>
@@ -18,7 +18,7 @@ class btDiscreteDynamicsWorld;
 
 namespace tetskin {
 
-/// Appends the rows, and to the unknowns the bodies that they lead to. Cost O(manifolds + joints of the world), where
+/// Appends the rows, and the bodies that they lead to to the unknowns. Cost O(manifolds + joints of the world), if
 /// there are unknowns.
 void collectRigidRows(btDiscreteDynamicsWorld& world, btScalar seconds, RigidUnknowns& rigids,
                       std::vector<ContactRow>& rows);

@@ -7,29 +7,30 @@
 #include <tetskin/bullet/src/solver/rigid_unknowns.h>
 
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Radians in a step, and a share of the velocity, that Bullet's velocities of kinematic bodies may be off by.
+/// By how much Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
 constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
 
-/// a x
+/// The matrix of the cross product with a.
 Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d m;
   m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
   return m;
 }
 
-/// Of a point of a rigid body.
+/// The Jacobian of a point of a rigid body.
 Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
   return jacobian;
 }
 
-/// As btRigidBody::applyImpulse has it; symmetric where factors lock single axes.
+/// The inverse mass matrix that btRigidBody::applyImpulse applies; symmetric unless factors lock single axes.
 Eigen::MatrixXd inverseMassOf(const btRigidBody& rigid) {
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(6, 6);
   const btVector3 &linear = rigid.getLinearFactor(), &angular = rigid.getAngularFactor();
@@ -55,11 +56,11 @@ Eigen::MatrixXd inverseMassOf(btMultiBody& body) {
     force[k] = 0;
     for (int i = 0; i < size; ++i) inverse(i, k) = static_cast<double>(answer[i]);
   }
-  // Symmetric, but for rounding.
+  // Makes it symmetric, as it is up to rounding.
   return 0.5 * (inverse + inverse.transpose());
 }
 
-/// Of the way that turning takes a point in a step, over seconds, what is not straight on.
+/// Of the path on which turning takes a point within a step: the difference to the straight path, per second.
 btVector3 bend(const btVector3& turning, const btVector3& arm, btScalar seconds) {
   const btScalar rate = turning.length();
   if (!(rate * seconds > SIMD_EPSILON)) return {0, 0, 0};
@@ -76,7 +77,7 @@ const void* keyOf(const btCollisionObject& object) {
   return link ? static_cast<const void*>(link->m_multiBody) : &object;
 }
 
-/// Whether anything that it meets changes how it moves.
+/// True if nothing that the object meets changes its motion.
 bool movesFreely(const btCollisionObject& object) {
   if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
   const btRigidBody* rigid = btRigidBody::upcast(&object);
@@ -87,14 +88,14 @@ bool movesFreely(const btCollisionObject& object) {
 
 void RigidUnknowns::clear() {
   unknowns_.clear();
-  places_.clear();
+  indices_.clear();
   jacobians_.clear();
   paths_.beginStep();
 }
 
 int RigidUnknowns::find(const btCollisionObject& object) const {
-  const auto found = places_.find(keyOf(object));
-  return found == places_.end() ? -1 : found->second;
+  const auto found = indices_.find(keyOf(object));
+  return found == indices_.end() ? -1 : found->second;
 }
 
 int RigidUnknowns::addScalarJacobian(const btVector3& linear, const btVector3& angular) {
@@ -106,7 +107,7 @@ int RigidUnknowns::addScalarJacobian(const btVector3& linear, const btVector3& a
 
 int RigidUnknowns::add(const btCollisionObject& object) {
   const btMultiBodyLinkCollider* link = linkOf(object);
-  const auto [found, isNew] = places_.emplace(keyOf(object), static_cast<int>(unknowns_.size()));
+  const auto [found, isNew] = indices_.emplace(keyOf(object), static_cast<int>(unknowns_.size()));
   if (!isNew) return found->second;
   RigidUnknown& unknown = unknowns_.emplace_back();
   if (link) {
@@ -121,6 +122,7 @@ int RigidUnknowns::add(const btCollisionObject& object) {
 }
 
 int RigidUnknowns::addLinkPoint(const btCollisionObject& object, const btVector3& position) {
+  assert(linkOf(object) && linkOf(object)->m_multiBody);
   const btMultiBodyLinkCollider& link = *linkOf(object);
   const int size = 6 + link.m_multiBody->getNumDofs();
   Jacobian jacobian(3, size);
@@ -164,29 +166,30 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   return rigid->isKinematicObject() ? carriedBy(*rigid, at.arm, velocity, seconds) : velocity;
 }
 
-/// Bullet makes the angular velocity of a kinematic body of the arc cosine of its turn in a step, of which few digits
-/// are left. Its places in this step and the one before have all of them.
+/// Bullet computes the angular velocity of a kinematic body from the arc cosine of its rotation in a step, which leaves
+/// few digits. Its transforms in this step and the one before have all of them.
 btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
                                    btScalar seconds) {
-  const KinematicPath& path = paths_.of(body, seconds);
+  assert(body.isKinematicObject());
+  const KinematicPath& path = paths_.pathOf(body, seconds);
   if (!path.isKnown) return velocity;
   const btTransform now = path.now();
   const btVector3 turned = now.getBasis() * (path.before.getBasis().transpose() * arm);
   const btVector3 carried = (now.getOrigin() - path.before.getOrigin() + turned - arm) / seconds;
-  // Else it was put there, or is another one.
-  const btScalar most = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
-  return (carried - velocity).length() <= most ? carried : velocity;
+  // If the difference is larger, the body was put there, or it is a different one.
+  const btScalar maximum = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
+  return (carried - velocity).length() <= maximum ? carried : velocity;
 }
 
 btTransform RigidUnknowns::frameOf(const btCollisionObject& object, btScalar seconds) {
   const btRigidBody* body = btRigidBody::upcast(&object);
-  return body && body->isKinematicObject() ? paths_.of(*body, seconds).now() : object.getWorldTransform();
+  return body && body->isKinematicObject() ? paths_.pathOf(*body, seconds).now() : object.getWorldTransform();
 }
 
 btScalar RigidUnknowns::timeToGo(const btCollisionObject& object, btScalar seconds) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (!body || !body->isKinematicObject()) return 0;
-  return seconds * static_cast<btScalar>(paths_.of(*body, seconds).stepsLeft());
+  return seconds * static_cast<btScalar>(paths_.pathOf(*body, seconds).stepsLeft());
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {
@@ -195,24 +198,25 @@ RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {
 
 btVector3 RigidUnknowns::velocity(const RigidPoint& at, const Eigen::VectorXd& change) const {
   if (at.unknown < 0) return {0, 0, 0};
-  const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    return toBullet(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(of.first, of.size));
+    return toBullet(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(unknown.first, unknown.size));
   }
-  const Eigen::Vector3d linear = change.segment<3>(of.first), angular = change.segment<3>(of.first + 3);
+  const Eigen::Vector3d linear = change.segment<3>(unknown.first), angular = change.segment<3>(unknown.first + 3);
   return toBullet(linear) + toBullet(angular).cross(at.arm);
 }
 
 void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const {
   if (at.unknown < 0) return;
-  const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    to.segment(of.first, of.size) += jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
+    to.segment(unknown.first, unknown.size) +=
+        jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
     return;
   }
   const Eigen::Vector3d force = toEigen(impulse);
-  to.segment<3>(of.first) += force;
-  to.segment<3>(of.first + 3) += toEigen(at.arm).cross(force);
+  to.segment<3>(unknown.first) += force;
+  to.segment<3>(unknown.first + 3) += toEigen(at.arm).cross(force);
 }
 
 void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
@@ -220,7 +224,7 @@ void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const
   if (a.unknown < 0 || b.unknown < 0) return;
   const RigidUnknown &first = unknowns_[static_cast<std::size_t>(a.unknown)],
                      &second = unknowns_[static_cast<std::size_t>(b.unknown)];
-  if (a.jacobian < 0 && b.jacobian < 0) {  // nearly always: without a matrix on the heap
+  if (a.jacobian < 0 && b.jacobian < 0) {  // nearly always, so that no matrix is allocated
     to.block<6, 6>(first.first, second.first) += sign * bodyJacobian(a).transpose() * h * bodyJacobian(b);
     return;
   }
@@ -229,9 +233,9 @@ void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const
 
 double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {
   if (at.unknown < 0) return 0.0;
-  const RigidUnknown& of = unknowns_[static_cast<std::size_t>(at.unknown)];
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
   const Eigen::VectorXd moment = jacobianOf(at).transpose() * toEigen(direction);
-  return moment.dot(of.inverseMass * moment);
+  return moment.dot(unknown.inverseMass * moment);
 }
 
 void RigidUnknowns::apply(const RigidUnknown& unknown, const Eigen::VectorXd& change) {

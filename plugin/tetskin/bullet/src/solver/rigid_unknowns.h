@@ -4,8 +4,9 @@
 // Internal to DeformableSolver: rigid bodies and multibodies that a step solves for together with the soft bodies they
 // meet.
 //
-// What is unknown is by how much the solve changes their velocities, beside what Bullet has made of them in this step.
-// They have few degrees of freedom, and are eliminated: with J the velocity of a row's point over these, H the
+// The unknowns are the changes of their velocities by the solve, relative to the velocities that Bullet has found.
+// They have few degrees of freedom, and are eliminated: with J the derivative of a row's point's velocity by these, H
+// the
 // stiffness of the row and M the masses,
 //   (M + sum J^T H J) dV = sum J^T f,    dV = (1 + M^-1 sum J^T H J)^-1 M^-1 sum J^T f
 // in which only inverse masses occur, so that an axis may be locked.
@@ -26,9 +27,9 @@ namespace tetskin {
 
 /// A point of a rigid object.
 struct RigidPoint {
-  int unknown = -1;   ///< in RigidUnknowns; below 0: the object moves as it is prescribed
+  int unknown = -1;   ///< index in RigidUnknowns; below 0: the object's motion is prescribed
   btVector3 arm;      ///< of a rigid body: from its centre of mass
-  int jacobian = -1;  ///< of a link of a multibody: in RigidUnknowns
+  int jacobian = -1;  ///< of a link of a multibody: index in RigidUnknowns
 };
 
 /// A rigid body or a whole multibody.
@@ -36,34 +37,36 @@ struct RigidUnknown {
   btRigidBody* rigid = nullptr;
   btMultiBody* multiBody = nullptr;
   Eigen::Index size = 6;        ///< degrees of freedom
-  Eigen::Index first = 0;       ///< of them in its system's vectors
+  Eigen::Index first = 0;       ///< index of the first of them in its system's vectors
   Eigen::MatrixXd inverseMass;  ///< size x size
 };
 
 class RigidUnknowns {
  public:
-  /// When a step begins.
+  /// Call it when a step begins.
   void clear();
 
-  /// Where an object is met: of one that is free to move, which becomes an unknown.
+  /// The point of an object at a position. An object that is free to move becomes an unknown.
   RigidPoint at(const btCollisionObject& object, const btVector3& position);
-  /// Its place in `list`; below 0: it is none, or not yet.
+  /// Its index in `list`; below 0: it is none, or not yet.
   int find(const btCollisionObject& object) const;
-  /// For a RigidPoint of a rigid body: a row of a joint, whose velocity is along x alone.
+  /// For a RigidPoint of a rigid body: a row of a joint, which has a velocity along x only.
   int addScalarJacobian(const btVector3& linear, const btVector3& angular);
-  /// Of the object there, as Bullet has left it: that of the straight way which a point of it goes in the step.
+  /// The velocity of the object at the point, as Bullet has left it: that of the straight path on which the point goes
+  /// in the step.
   btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
-  /// Where the object is when this step ends, as far as it moves as it is prescribed.
+  /// The object's transform when this step ends, if its motion is prescribed.
   btTransform frameOf(const btCollisionObject& object, btScalar seconds);
-  /// Seconds for which a kinematic body has still to go, with this step, to where Bullet has it already; 0 for others.
+  /// Seconds that a kinematic body still takes, including this step, to reach the transform that Bullet has already
+  /// set; 0 for others.
   btScalar timeToGo(const btCollisionObject& object, btScalar seconds);
 
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
 
-  // With vectors of a system: the unknowns' places there are set.
-  /// What changed velocities do to the point.
+  // The functions below use vectors of a system: the unknowns' indices in it must be set.
+  /// The change of the point's velocity that changed velocities of the unknowns cause.
   btVector3 velocity(const RigidPoint& at, const Eigen::VectorXd& change) const;
   /// Adds J^T times the impulse on the object.
   void addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const;
@@ -83,7 +86,7 @@ class RigidUnknowns {
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;
-  std::unordered_map<const void*, int> places_;  ///< by rigid body or multibody
+  std::unordered_map<const void*, int> indices_;  ///< index in the list, by rigid body or multibody
   std::vector<Jacobian> jacobians_;
   KinematicPaths paths_;
 };

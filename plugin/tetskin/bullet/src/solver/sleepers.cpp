@@ -6,15 +6,16 @@
 #include <tetskin/bullet/src/solver/sleepers.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace tetskin {
 namespace {
 
-/// Steps until the broadphase knows all that is beside a body that was put to sleep as it was added.
+/// Steps until the broadphase knows all neighbours of a body that was added in the state of sleep.
 constexpr int kStepsToPair = 2;
 
-/// Asleep, or about to be.
+/// True if the body sleeps, or is about to.
 bool rests(const btSoftBody& body) {
   return !body.isActive() || body.getActivationState() == WANTS_DEACTIVATION || body.getDeactivationTime() > 0;
 }
@@ -26,7 +27,7 @@ btBroadphaseInterface* broadphaseOf(const btSoftBody& body) {
 
 bool mayTouch(const btSoftBody& body, const btCollisionObject& object) {
   const btSoftBody* other = btSoftBody::upcast(&object);
-  return other ? meetsSoft(body, *other) : meetsRigid(body, object);
+  return other ? collidesWithSoft(body, *other) : collidesWithRigid(body, object);
 }
 
 Neighbour neighbourOf(const btCollisionObject& object) {
@@ -44,7 +45,8 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   return neighbour;
 }
 
-/// Boxes of what may move also hold where it goes.
+/// True if a neighbour has changed. Boxes of objects that can move also contain their path, so that they are not
+/// compared.
 bool wasChanged(const Neighbour& before, const Neighbour& now) {
   if (before.isObstacle != now.isObstacle) return true;
   if (!before.stands || !now.stands) return false;
@@ -53,8 +55,10 @@ bool wasChanged(const Neighbour& before, const Neighbour& now) {
   return now.isObstacle && !(before.shape == now.shape && sameBox);
 }
 
-/// A box of the body that shrinks as it falls asleep may part from what has not changed.
+/// True if the neighbour has not changed. The box of a body that falls asleep shrinks, and may then no longer overlap
+/// it.
 bool isStillThere(const btSoftBody& body, const Neighbour& before) {
+  assert(broadphaseOf(body));
   struct Finder : btBroadphaseAabbCallback {
     bool process(const btBroadphaseProxy* proxy) override {
       if (proxy->m_clientObject == wanted) found = wanted;
@@ -67,48 +71,50 @@ bool isStillThere(const btSoftBody& body, const Neighbour& before) {
   return finder.found && mayTouch(body, *finder.found) && !wasChanged(before, neighbourOf(*finder.found));
 }
 
-Neighbour* findNeighbour(const btCollisionObject& object, RestingBody& of) {
-  const std::size_t count = of.neighbours.size();
+Neighbour* findNeighbour(const btCollisionObject& object, RestingBody& sleeper) {
+  const std::size_t count = sleeper.neighbours.size();
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t at = (of.next + k) % count;
-    if (of.neighbours[at].object != &object) continue;
-    of.next = at + 1;
-    return &of.neighbours[at];
+    const std::size_t at = (sleeper.next + k) % count;
+    if (sleeper.neighbours[at].object != &object) continue;
+    sleeper.next = at + 1;
+    return &sleeper.neighbours[at];
   }
   return nullptr;
 }
 
-/// An obstacle that is new has come: as long as the body is asleep, its own box stays.
-void see(const btCollisionObject& object, RestingBody& of) {
-  Neighbour* known = findNeighbour(object, of);
+/// Records an object beside the body. An obstacle that is new has moved there by itself: while the body sleeps, its own
+/// box does not change.
+void see(const btCollisionObject& object, RestingBody& sleeper) {
+  Neighbour* known = findNeighbour(object, sleeper);
   if (known) known->isHere = true;
   if (known && known->isSoft) return;
   const Neighbour now = neighbourOf(object);
   if (!known) {
-    of.neighbours.push_back(now);
-    of.disturbed |= of.steps > kStepsToPair && now.isObstacle;
+    sleeper.neighbours.push_back(now);
+    sleeper.disturbed |= sleeper.steps > kStepsToPair && now.isObstacle;
     return;
   }
-  of.disturbed |= wasChanged(*known, now);
+  sleeper.disturbed |= wasChanged(*known, now);
   *known = now;
 }
 
-void seeAnchors(RestingBody& of) {
-  const auto& anchors = of.body->m_deformableAnchors;
+void seeAnchors(RestingBody& sleeper) {
+  const auto& anchors = sleeper.body->m_deformableAnchors;
   for (int k = 0; k < anchors.size(); ++k) {
-    if (const btCollisionObject* object = anchors[k].m_cti.m_colObj) see(*object, of);
+    if (const btCollisionObject* object = anchors[k].m_cti.m_colObj) see(*object, sleeper);
   }
 }
 
-void forgetWhatIsGone(RestingBody& of) {
-  const bool asleep = !of.body->isActive();
+void removeStale(RestingBody& sleeper) {
+  const bool asleep = !sleeper.body->isActive();
   const auto isGone = [&](const Neighbour& neighbour) {
     if (neighbour.isHere) return false;
-    if (asleep && isStillThere(*of.body, neighbour)) return false;
-    of.disturbed |= asleep;
+    if (asleep && isStillThere(*sleeper.body, neighbour)) return false;
+    sleeper.disturbed |= asleep;
     return true;
   };
-  of.neighbours.erase(std::remove_if(of.neighbours.begin(), of.neighbours.end(), isGone), of.neighbours.end());
+  sleeper.neighbours.erase(std::remove_if(sleeper.neighbours.begin(), sleeper.neighbours.end(), isGone),
+                           sleeper.neighbours.end());
 }
 
 }  // namespace
@@ -116,43 +122,44 @@ void forgetWhatIsGone(RestingBody& of) {
 void Sleepers::wake(const btAlignedObjectArray<btSoftBody*>& bodies) {
   listResting(bodies);
   if (resting_.empty()) return;
-  std::vector<btBroadphaseInterface*> worlds;  // one, but for bodies that have been moved to another
-  for (const auto& [object, of] : resting_) {
-    btBroadphaseInterface* world = broadphaseOf(*of.body);
+  std::vector<btBroadphaseInterface*> worlds;  // one world, unless bodies have been moved to another
+  for (const auto& [object, sleeper] : resting_) {
+    btBroadphaseInterface* world = broadphaseOf(*sleeper.body);
     if (std::find(worlds.begin(), worlds.end(), world) == worlds.end()) worlds.push_back(world);
   }
   for (btBroadphaseInterface* world : worlds) seePairs(*world->getOverlappingPairCache());
-  for (auto& [object, of] : resting_) {
-    seeAnchors(of);
-    forgetWhatIsGone(of);
-    if (of.disturbed) of.body->activate();
+  for (auto& [object, sleeper] : resting_) {
+    seeAnchors(sleeper);
+    removeStale(sleeper);
+    if (sleeper.disturbed) sleeper.body->activate();
   }
 }
 
 void Sleepers::listResting(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  for (auto& [object, of] : resting_) of.isHere = false;
+  for (auto& [object, sleeper] : resting_) sleeper.isHere = false;
   byIndex_.clear();
   for (int b = 0; b < bodies.size(); ++b) {
     btSoftBody* body = bodies[b];
     const int index = body->getWorldArrayIndex();
     if (!rests(*body) || !broadphaseOf(*body) || index < 0) continue;
-    RestingBody& of = resting_[body];
-    of.body = body;
-    of.isHere = true;
-    of.disturbed = false;
-    of.next = 0;
-    of.steps = body->isActive() ? 0 : of.steps + 1;
-    for (Neighbour& neighbour : of.neighbours) neighbour.isHere = false;
+    RestingBody& sleeper = resting_[body];
+    sleeper.body = body;
+    sleeper.isHere = true;
+    sleeper.disturbed = false;
+    sleeper.next = 0;
+    sleeper.steps = body->isActive() ? 0 : sleeper.steps + 1;
+    for (Neighbour& neighbour : sleeper.neighbours) neighbour.isHere = false;
     if (byIndex_.size() <= static_cast<std::size_t>(index)) byIndex_.resize(static_cast<std::size_t>(index) + 1);
-    byIndex_[static_cast<std::size_t>(index)] = &of;
+    byIndex_[static_cast<std::size_t>(index)] = &sleeper;
   }
-  for (auto of = resting_.begin(); of != resting_.end();) of = of->second.isHere ? std::next(of) : resting_.erase(of);
+  for (auto sleeper = resting_.begin(); sleeper != resting_.end();)
+    sleeper = sleeper->second.isHere ? std::next(sleeper) : resting_.erase(sleeper);
 }
 
 RestingBody* Sleepers::find(const btCollisionObject& object) const {
   const auto index = static_cast<std::size_t>(object.getWorldArrayIndex());
-  RestingBody* of = index < byIndex_.size() ? byIndex_[index] : nullptr;
-  return of && of->body == &object ? of : nullptr;
+  RestingBody* sleeper = index < byIndex_.size() ? byIndex_[index] : nullptr;
+  return sleeper && sleeper->body == &object ? sleeper : nullptr;
 }
 
 void Sleepers::seePairs(btOverlappingPairCache& pairs) {

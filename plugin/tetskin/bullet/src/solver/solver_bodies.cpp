@@ -5,14 +5,15 @@
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
+#include <cassert>
 #include <typeinfo>
 
 namespace tetskin {
 namespace {
 
-const SolverLimits kBulletsBodies;
+const SolverSettings kBulletsBodies;
 
-/// Gravity has no differential, so that it couples nothing.
+/// Gravity has no derivative by positions, so that it couples nothing.
 bool isGravity(const btDeformableLagrangianForce& force) {
   return typeid(force) == typeid(btDeformableGravityForce) || dynamic_cast<const BodyGravity*>(&force);
 }
@@ -75,27 +76,27 @@ void SolverBodies::assign(const ForceList& forces) {
 
 void SolverBodies::listAwake() {
   bodies_.assign(awake_.size(), {});
-  places_.clear();
+  indices_.clear();
   int first = 0;
   for (std::size_t k = 0; k < awake_.size(); ++k) {
     bodies_[k].body = awake_[k];
     bodies_[k].first = first;
     bodies_[k].limits = &kBulletsBodies;
     first += awake_[k]->m_nodes.size();
-    places_[awake_[k]] = k;
+    indices_[awake_[k]] = k;
   }
 }
 
-std::size_t SolverBodies::placeOf(const btSoftBody* body) const {
-  const auto found = places_.find(body);
-  return found == places_.end() ? bodies_.size() : found->second;
+std::size_t SolverBodies::indexOf(const btSoftBody* body) const {
+  const auto found = indices_.find(body);
+  return found == indices_.end() ? bodies_.size() : found->second;
 }
 
 void SolverBodies::takeElastic(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
     auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
     if (!elastic || elastic->m_softBodies.size() == 0) continue;
-    const std::size_t k = placeOf(elastic->body().body);
+    const std::size_t k = indexOf(elastic->body().body);
     if (k == bodies_.size()) continue;
     bodies_[k].elastic = &elastic->body();
     bodies_[k].limits = &elastic->limits();
@@ -103,55 +104,56 @@ void SolverBodies::takeElastic(const ForceList& forces) {
 }
 
 void SolverBodies::lendKept() {
-  for (SolvedBody& of : bodies_) {
-    Kept& kept = kept_[of.body];
-    const auto nodes = static_cast<std::size_t>(of.body->m_nodes.size());
-    of.sticking = &kept.sticking;
-    of.bulletsContacts = &kept.bulletsContacts;
-    of.touches = &kept.touches;
-    of.wasTouched = kept.touches;
-    of.paddedTrees = &kept.paddedTrees;
-    of.solve = &kept.solve;
+  for (SolvedBody& body : bodies_) {
+    Kept& kept = kept_[body.body];
+    const auto nodes = static_cast<std::size_t>(body.body->m_nodes.size());
+    body.sticking = &kept.sticking;
+    body.bulletsContacts = &kept.bulletsContacts;
+    body.touches = &kept.touches;
+    body.wasTouched = kept.touches;
+    body.paddedTrees = &kept.paddedTrees;
+    body.solve = &kept.solve;
     if (kept.paddedTrees.points.size() != 3 * nodes) kept.paddedTrees.ready = false;
-    if (of.elastic) {
-      of.dynamics = of.elastic->dynamics.get();
+    if (body.elastic) {
+      body.dynamics = body.elastic->dynamics.get();
       continue;
     }
     if (!kept.masses || kept.masses->nodeCount() != nodes) {
       kept.masses = std::make_unique<Dynamics>(elastic_detail::RestTets{}, nodes);
     }
-    of.dynamics = kept.masses.get();
+    body.dynamics = kept.masses.get();
+    assert(body.dynamics->nodeCount() == nodes);
   }
 }
 
 std::vector<std::size_t> SolverBodies::actedOnBy(const btDeformableLagrangianForce& force) const {
-  std::vector<std::size_t> places;
-  if (isGravity(force) || isSilent(force)) return places;
+  std::vector<std::size_t> indices;
+  if (isGravity(force) || isSilent(force)) return indices;
   const auto add = [&](const btSoftBody* body) {
-    if (const std::size_t k = placeOf(body); k < bodies_.size()) places.push_back(k);
+    if (const std::size_t k = indexOf(body); k < bodies_.size()) indices.push_back(k);
   };
   if (force.m_softBodies.size() > 0) {
     for (int b = 0; b < force.m_softBodies.size(); ++b) add(force.m_softBodies[b]);
   } else {
-    // Forces that say of no body that they act on it may act on any.
-    for (const SolvedBody& of : bodies_) add(of.body);
+    // A force that names no bodies may act on any.
+    for (const SolvedBody& body : bodies_) add(body.body);
   }
-  return places;
+  return indices;
 }
 
 void SolverBodies::makeSystems(const ForceList& forces) {
   DisjointSets sets(bodies_.size());
-  std::vector<std::pair<std::size_t, btDeformableLagrangianForce*>> acting;  // on the set of this body
+  std::vector<std::pair<std::size_t, btDeformableLagrangianForce*>> acting;  // the set's body index, and a force on it
   for (int i = 0; i < forces.size(); ++i) {
-    const std::vector<std::size_t> places = actedOnBy(*forces[i]);
-    for (const std::size_t k : places) {
-      sets.unite(static_cast<int>(places.front()), static_cast<int>(k));
+    const std::vector<std::size_t> indices = actedOnBy(*forces[i]);
+    for (const std::size_t k : indices) {
+      sets.unite(static_cast<int>(indices.front()), static_cast<int>(k));
       bodies_[k].needsDeformation |= needsDeformation(*forces[i]);
     }
-    if (!places.empty()) acting.emplace_back(places.front(), forces[i]);
+    if (!indices.empty()) acting.emplace_back(indices.front(), forces[i]);
   }
   systems_.clear();
-  std::vector<std::size_t> systemOf(bodies_.size(), bodies_.size());  // by the set
+  std::vector<std::size_t> systemOf(bodies_.size(), bodies_.size());  // by set
   const auto systemAt = [&](std::size_t k) -> SolvedSystem& {
     std::size_t& system = systemOf[static_cast<std::size_t>(sets.find(static_cast<int>(k)))];
     if (system == bodies_.size()) {
@@ -164,12 +166,15 @@ void SolverBodies::makeSystems(const ForceList& forces) {
   for (const auto& [k, force] : acting) systemAt(k).forces.push_back(force);
 }
 
-SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
+SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& indices) {
+  assert(!indices.empty());
   const auto holds = [&](const SolvedSystem& system) {
-    return std::any_of(system.bodies.begin(), system.bodies.end(),
-                       [&](std::size_t body) { return std::find(places.begin(), places.end(), body) != places.end(); });
+    return std::any_of(system.bodies.begin(), system.bodies.end(), [&](std::size_t body) {
+      return std::find(indices.begin(), indices.end(), body) != indices.end();
+    });
   };
   const auto first = std::find_if(systems_.begin(), systems_.end(), holds);
+  assert(first != systems_.end());
   const auto others = std::stable_partition(std::next(first), systems_.end(),
                                             [&](const SolvedSystem& system) { return !holds(system); });
   for (auto other = others; other != systems_.end(); ++other) {
@@ -180,7 +185,7 @@ SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
     append(first->rows, other->rows);
   }
   systems_.erase(others, systems_.end());
-  // A force may act on both.
+  // A force may act on both bodies.
   std::vector<btDeformableLagrangianForce*> forces;
   for (btDeformableLagrangianForce* force : first->forces) {
     if (std::find(forces.begin(), forces.end(), force) == forces.end()) forces.push_back(force);
@@ -190,8 +195,9 @@ SolvedSystem& SolverBodies::join(const std::vector<std::size_t>& places) {
 }
 
 SolvedBody& SolverBodies::bodyOf(int node) {
-  const auto after =
-      std::upper_bound(bodies_.begin(), bodies_.end(), node, [](int n, const SolvedBody& of) { return n < of.first; });
+  assert(!bodies_.empty() && node >= 0);
+  const auto after = std::upper_bound(bodies_.begin(), bodies_.end(), node,
+                                      [](int n, const SolvedBody& body) { return n < body.first; });
   return *std::prev(after);
 }
 

@@ -5,11 +5,13 @@
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
 FixedNode fixedNode(std::size_t node, const btAlignedObjectArray<btVector3>& directions) {
+  assert(directions.size() > 0);
   FixedNode fixed;
   fixed.node = node;
   if (directions.size() >= 3) return fixed;
@@ -30,13 +32,14 @@ void listFixedNodes(const btDeformableContactProjection& projection, SolverBodie
   const auto& projected = projection.m_projectionsDict;
   for (int k = 0; k < projected.size(); ++k) {
     const int number = projected.getKeyAtIndex(k).getUid1();
-    SolvedBody& of = bodies.bodyOf(number);
-    const std::size_t node = of.placeOf(number);
-    if (of.dynamics->matrix().mass(node) != 0) of.fixed.push_back(fixedNode(node, *projected.getAtIndex(k)));
+    SolvedBody& body = bodies.bodyOf(number);
+    const std::size_t node = body.indexOf(number);
+    if (body.dynamics->matrix().mass(node) != 0) body.fixed.push_back(fixedNode(node, *projected.getAtIndex(k)));
   }
 }
 
 void fixNodes(const SolvedBody& body) {
+  assert(body.dynamics);
   auto& matrix = body.dynamics->matrix();
   for (const FixedNode& fixed : body.fixed) {
     if (fixed.kind == FixedNode::Fixed) matrix.fix(fixed.node);
@@ -48,7 +51,7 @@ void fixNodes(const SolvedBody& body) {
 void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual) {
   const auto add = [&](const auto& constraint, const btSoftBody::Node& node) {
     const btVector3 dv = constraint.getDv(&node);
-    if (node.m_im == 0 || isNoNumber(dv)) return;
+    if (node.m_im == 0 || isNaN(dv)) return;
     residual[node.index] += dv / node.m_im;
     bodies.bodyOf(node.index).touched = true;
   };

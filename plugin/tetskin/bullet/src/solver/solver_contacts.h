@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: what Bullet's contact solve leaves for the solve after it.
+// Internal to DeformableSolver: how results of Bullet's contact solve enter the solve that follows.
 #pragma once
 
 #include <tetskin/bullet/src/solver/solver_bodies.h>
@@ -10,13 +10,13 @@ class btDeformableContactProjection;
 
 namespace tetskin {
 
-/// Lists the nodes whose velocity stays, in some directions, as Bullet's constraints have made it: of bodies under
-/// Bullet's forces all, of elastic ones those of contacts that Bullet alone knows of.
+/// Lists the nodes whose velocity must stay, in some directions, as Bullet's constraints have set it: for bodies under
+/// Bullet's forces all nodes with constraints, for elastic ones those of contacts that only Bullet handles.
 void listFixedNodes(const btDeformableContactProjection& projection, SolverBodies& bodies);
-/// Fixes them in the matrix: after all that is added to its diagonal.
+/// Fixes these nodes in the matrix; call it after everything that is added to its diagonal.
 void fixNodes(const SolvedBody& body);
 
-/// What friction does to nodes that slide, as impulses, where Bullet solves for contacts.
+/// Adds the impulses of friction on sliding nodes, where Bullet solves for contacts.
 /// residual  by node number
 void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual);
 

@@ -3,13 +3,13 @@
 //
 // A step, from top to bottom. Bullet's world calls, in this order:
 //   reinitialize                gather          which bodies are awake, and which forces act on them
-//   predictMotion               predict         other forces' impulses; the elastic solve, but of bodies that will be
-//                                               touched again; where nodes go by it
+//   predictMotion               predict         other forces' impulses; the elastic solve, except of bodies that will
+//                                               be touched again; the positions that follow from it
 //   (detection of contacts, by Bullet; its solve of rigid bodies among themselves)
-//   solveDeformableConstraints  assemble        contacts, anchors, and what rigid bodies are held by beside, as rows;
+//   solveDeformableConstraints  assemble        rows of contacts, anchors, and other constraints of rigid bodies;
 //                                               what Bullet's other constraints have changed and fixed
-//                               solve           on where nothing was met; else again, with all of that
-//                               finishContacts  what contacts have pushed with
+//                               solve           goes on where nothing was touched; otherwise again, with all of that
+//                               finishContacts  reports the impulses of contacts
 //                               writeBack       velocities
 //   applyTransforms             positions, by Bullet
 #include <BulletSoftBody/btDeformableContactProjection.h>
@@ -21,12 +21,14 @@
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
 void prepareStep(btSoftBody& body, btScalar dt) {
+  assert(dt > 0);
   body.m_sst.sdt = dt * body.m_cfg.timescale;
   body.m_sst.isdt = 1 / body.m_sst.sdt;
   body.m_sst.velmrg = body.m_sst.sdt * 3;
@@ -35,11 +37,11 @@ void prepareStep(btSoftBody& body, btScalar dt) {
   body.updateBounds();
 }
 
-/// Returns the square of the highest speed, before it is bounded.
+/// Moves the nodes by their velocities. Returns the square of the highest speed before it is bounded.
 double moveNodes(btSoftBody& body, btScalar dt) {
   const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
   const btScalar kept = 1 - body.m_cfg.drag;
-  double most = 0.0;
+  double maximum = 0.0;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     btSoftBody::Node& node = body.m_nodes[n];
     node.m_v *= kept;
@@ -47,12 +49,12 @@ double moveNodes(btSoftBody& body, btScalar dt) {
     const double squared = toEigen(node.m_v).squaredNorm();
     const auto allowed = static_cast<double>(fastest);
     if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
-    most = std::max(most, squared);
+    maximum = std::max(maximum, squared);
     node.m_q = node.m_x + dt * node.m_v;
     node.m_splitv.setZero();
     node.m_constrained = false;
   }
-  return most;
+  return maximum;
 }
 
 void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
@@ -64,8 +66,8 @@ void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
   }
 }
 
-/// Destroys each, as contacts with multibodies own memory. resize(0) would do the same with a contact of no values, for
-/// which GCC warns.
+/// Clears the list and destroys each contact, as contacts with multibodies own memory. resize(0) would do the same with
+/// a default contact, for which GCC warns.
 template <class Contact>
 void destroyAll(btAlignedObjectArray<Contact>& contacts) {
   while (contacts.size() > 0) contacts.pop_back();
@@ -79,9 +81,9 @@ void clearContacts(btSoftBody& body) {
   if (auto* own = bodyWithTrees(body)) own->pointContacts().clear();
 }
 
-/// Without what a step is too short for: far from the origin, rounded positions keep velocities alive that move
-/// nothing.
-btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
+/// The velocity without components too small to move the node within a step: far from the origin, rounded positions
+/// would keep such velocities forever.
+btVector3 movingComponent(const btSoftBody::Node& node, btScalar dt) {
   btVector3 v = node.m_v;
   for (int k = 0; k < 3; ++k) {
     if (node.m_x[k] + dt * v[k] == node.m_x[k]) v[k] = 0;
@@ -89,7 +91,7 @@ btVector3 movingPart(const btSoftBody::Node& node, btScalar dt) {
   return v;
 }
 
-/// Several bodies side by side, or one in pieces.
+/// Runs a task for each body: several bodies in parallel, or a single one that is itself divided among threads.
 /// task  (SolvedBody&, ParallelFor* inner)
 template <class Task>
 void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& task) {
@@ -101,9 +103,9 @@ void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& t
 
 // ---- gather
 
-/// seconds  0 or less: a body was removed, which is no step
-void DeformableSolver::Parts::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
-  solving = solver.solves();
+/// seconds  0 or less: called because a body was removed, outside of a step
+void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
+  solving = solver.ownSolveActive();
   hidden.show(world);
   all.copyFromArray(world);
   if (seconds > 0 && solving) sleepers.wake(all);
@@ -119,12 +121,12 @@ void DeformableSolver::Parts::gather(const btAlignedObjectArray<btSoftBody*>& wo
     solver.m_dt = seconds;
     solver.m_objective->setDt(seconds);
   }
-  // They may make a body's dynamics anew.
+  // These calls may create a body's dynamics anew.
   for (int i = 0; i < forces().size(); ++i) forces()[i]->reinitialize(changed);
   assign();
 }
 
-bool DeformableSolver::Parts::collect(const btAlignedObjectArray<btSoftBody*>& world) {
+bool DeformableSolver::Impl::collect(const btAlignedObjectArray<btSoftBody*>& world) {
   const bool changed = bodies.collect(world, !solving, solver.m_softBodies);
   if (changed) {
     bodies.number(*solver.m_objective);
@@ -137,7 +139,7 @@ bool DeformableSolver::Parts::collect(const btAlignedObjectArray<btSoftBody*>& w
   return changed;
 }
 
-void DeformableSolver::Parts::assign() {
+void DeformableSolver::Impl::assign() {
   if (solving) return bodies.assign(forces());
   bodies.clear();
   resetEffectiveMasses(solver.m_softBodies);
@@ -145,60 +147,61 @@ void DeformableSolver::Parts::assign() {
 
 // ---- predict
 
-void DeformableSolver::Parts::predict() {
+void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
-  for (SolvedBody& of : bodies.bodies()) readNodes(*of.body, false, *of.dynamics);
+  for (SolvedBody& body : bodies.bodies()) readNodes(*body.body, false, *body.dynamics);
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
-    // With other forces, the limits of what these leave are known by what the step begins with.
+    // With other forces, the velocities at the beginning of the step determine the tolerances.
     first.waits = first.wasTouched && system.forces.empty();
   }
-  forEachBody(bodies.bodies(), threads, [&](SolvedBody& of, ParallelFor* inner) { predictVelocities(of, inner); });
-  for (SolvedBody& of : bodies.bodies()) {
-    writePrediction(of);
-    clearContacts(*of.body);
-    predictPositions(of);
-    if (of.elastic) speculate(of);
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) { predictVelocities(body, inner); });
+  for (SolvedBody& body : bodies.bodies()) {
+    writePrediction(body);
+    clearContacts(*body.body);
+    predictPositions(body);
+    if (body.elastic) speculate(body);
   }
 }
 
-/// The world tells its own in each step.
-void DeformableSolver::Parts::useOwnSettings() {
+/// The world sets its own values in each step.
+void DeformableSolver::Impl::useOwnSettings() {
   solver.setImplicit(false);
   solver.setLineSearch(false);
   solver.m_useProjection = true;
   solver.setStrainLimiting(true);
 }
 
-void DeformableSolver::Parts::predictVelocities(SolvedBody& of, ParallelFor* inner) {
-  Dynamics& dynamics = *of.dynamics;
+void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
+  Dynamics& dynamics = *body.dynamics;
   dynamics.predict(static_cast<double>(dt()), inner);
   dynamics.matrix().free();
-  if (of.waits) return dynamics.startLater(static_cast<double>(dt()));
+  if (body.waits) return dynamics.startLater(static_cast<double>(dt()));
   dynamics.start(static_cast<double>(dt()), inner);
-  if (of.elastic) solveAlone(of, of.wasTouched ? 0 : of.limits->iterations, inner);
+  if (body.elastic) solveAlone(body, body.wasTouched ? 0 : body.limits->iterations, inner);
 }
 
-void DeformableSolver::Parts::solveAlone(SolvedBody& of, int most, ParallelFor* inner) const {
+void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const {
+  assert(body.elastic && maximum >= 0);
   const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
-  limits.tolerance = of.limits->tolerance;
-  limits.iterations = of.limits->iterations;
-  limits.floor = std::max(kUnseen * seconds, of.dynamics->roundingSpeed(seconds));
-  limits.enough = limits.tolerance * limits.tolerance * of.dynamics->squaredDeviation();
-  of.solve->start({&of.dynamics->matrix()}, limits, {}, inner);
-  of.solve->iterate(most, inner);
-  of.iterations = of.solve->iterations();
+  limits.tolerance = body.limits->tolerance;
+  limits.iterations = body.limits->iterations;
+  limits.floor = std::max(kUnseen * seconds, body.dynamics->roundingSpeed(seconds));
+  limits.enough = limits.tolerance * limits.tolerance * body.dynamics->squaredDeviation();
+  body.solve->start({&body.dynamics->matrix()}, limits, {}, inner);
+  body.solve->iterate(maximum, inner);
+  body.iterations = body.solve->iterations();
 }
 
-void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
-  if (!of.elastic) return;
-  const auto& matrix = of.dynamics->matrix();
-  for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
-    btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
+  if (!body.elastic) return;
+  const auto& matrix = body.dynamics->matrix();
+  for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
     if (node.m_im > 0) {
-      node.m_v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
+      node.m_v = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
     }
     btScalar inverse[6];
     matrix.freeInverse(n, inverse);
@@ -206,43 +209,44 @@ void DeformableSolver::Parts::writePrediction(SolvedBody& of) const {
   }
 }
 
-/// As btDeformableBodySolver::predictDeformableMotion, but for the trees.
-void DeformableSolver::Parts::predictPositions(SolvedBody& of) {
-  // Bullet's own also refits the trees of faces.
-  if (of.body->m_bUpdateRtCst || meetsByFaces(*of.body)) {
-    of.paddedTrees->ready = false;
-    solver.predictDeformableMotion(of.body, dt());
+/// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees.
+void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
+  // Bullet's own function also refits the trees of faces.
+  if (body.body->m_bUpdateRtCst || collidesByFaces(*body.body)) {
+    body.paddedTrees->ready = false;
+    solver.predictDeformableMotion(body.body, dt());
     return;
   }
-  prepareStep(*of.body, dt());
-  const double squaredSpeed = moveNodes(*of.body, dt());
-  of.paddedTrees->fit(*of.body, *of.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
+  prepareStep(*body.body, dt());
+  const double squaredSpeed = moveNodes(*body.body, dt());
+  body.paddedTrees->fit(*body.body, *body.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
 }
 
 // ---- assemble
 
-void DeformableSolver::Parts::assemble() {
-  for (SolvedBody& of : bodies.bodies()) of.dynamics->matrix().free();
-  for (SolvedBody& of : bodies.bodies()) readContacts(of);
+void DeformableSolver::Impl::assemble() {
+  for (SolvedBody& body : bodies.bodies()) body.dynamics->matrix().free();
+  for (SolvedBody& body : bodies.bodies()) readContacts(body);
   addOthers();
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
   collectRows();
 }
 
-/// Bullet's step so far: by how much its constraints have changed the velocities, which begins the solution; and what
-/// velocities the whole step begins with.
-void DeformableSolver::Parts::readContacts(SolvedBody& of) {
-  Dynamics& dynamics = *of.dynamics;
+/// Reads the result of Bullet's step so far: the change of velocity by its constraints, with which the solution begins,
+/// and the velocities at the beginning of the whole step.
+void DeformableSolver::Impl::readContacts(SolvedBody& body) {
+  assert(body.first + static_cast<int>(body.dynamics->nodeCount()) <= solver.m_dv.size());
+  Dynamics& dynamics = *body.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const int number = of.first + static_cast<int>(n);
+    const int number = body.first + static_cast<int>(n);
     const btVector3& before = solver.m_backupVelocity[number];
     btVector3& dv = solver.m_dv[number];
-    of.touched |= !dv.isZero();
-    if (isNoNumber(dv)) dv.setZero();  // as btDeformableBodySolver::updateVelocity
+    body.touched |= !dv.isZero();
+    if (isNaN(dv)) dv.setZero();  // the same test as in btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
-    // Beside the rigid motion: what the solution has been.
-    const btVector3 own = of.elastic ? fromWide(solution) : btVector3(0, 0, 0);
+    // The solution relative to the rigid motion.
+    const btVector3 own = body.elastic ? fromWide(solution) : btVector3(0, 0, 0);
     toPoint(before - own, dynamics.velocity(n));
     toWide(own + dv, solution);
   }
@@ -250,8 +254,9 @@ void DeformableSolver::Parts::readContacts(SolvedBody& of) {
 
 // ---- solve
 
-/// What Bullet's forces have a part in is solved here, one after the other, each by all threads; the rest side by side.
-void DeformableSolver::Parts::solve() {
+/// Systems on which Bullet's forces act are solved here one after the other, each by all threads; the others in
+/// parallel.
+void DeformableSolver::Impl::solve() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
   image.resize(solver.m_numNodes, btVector3(0, 0, 0));
   extras.resize(bodies.bodies().size());
@@ -262,19 +267,20 @@ void DeformableSolver::Parts::solve() {
   ParallelFor* inner = own.size() == 1 ? threads : nullptr;
   runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solveSystem(*own[k], inner); });
   iterations = passes = unconverged = 0;
-  for (const SolvedBody& of : bodies.bodies()) iterations += of.iterations;
+  for (const SolvedBody& body : bodies.bodies()) iterations += body.iterations;
   for (const SolvedSystem& system : bodies.systems()) {
     passes += system.passes;
     unconverged += system.converged ? 0 : 1;
   }
 }
 
-void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inner) {
+void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inner) {
+  assert(!system.bodies.empty());
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   bool again = !system.forces.empty() || !system.rows.empty();
   for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    again |= !of.fixed.empty() || of.touched;
+    const SolvedBody& body = bodies.bodies()[b];
+    again |= !body.fixed.empty() || body.touched;
   }
   if (again) {
     const SolveReport report = SystemSolve(*this, system, inner).solve();
@@ -283,9 +289,10 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
     system.converged = report.converged;
     for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
   } else if (first.elastic) {
-    // Of a body that waited for contacts, and has none, all; else on from where it stopped.
+    // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
+    // stopped.
     if (first.waits) {
-      first.dynamics->startAgain(inner);
+      first.dynamics->restart(inner);
       solveAlone(first, first.limits->iterations, inner);
     } else {
       first.solve->iterate(first.limits->iterations, inner);
@@ -298,7 +305,7 @@ void DeformableSolver::Parts::solveSystem(SolvedSystem& system, ParallelFor* inn
 
 // ---- contacts
 
-void DeformableSolver::Parts::finishContacts() {
+void DeformableSolver::Impl::finishContacts() {
   rows.finish(bodies, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
   if (const auto record = recorded.lock()) record->record(bodies, rows.rows(), dt());
@@ -306,22 +313,22 @@ void DeformableSolver::Parts::finishContacts() {
 
 // ---- write back
 
-void DeformableSolver::Parts::writeBack() {
-  for (SolvedBody& of : bodies.bodies()) {
-    if (of.solvedAgain) of.dynamics->bendTurns(static_cast<double>(dt()));
-    writeVelocities(of);
+void DeformableSolver::Impl::writeBack() {
+  for (SolvedBody& body : bodies.bodies()) {
+    if (body.solvedAgain) body.dynamics->bendTurns(static_cast<double>(dt()));
+    writeVelocities(body);
   }
   hidden.hide(bodies.bodies(), dt());
 }
 
-void DeformableSolver::Parts::writeVelocities(SolvedBody& of) const {
-  const auto& matrix = of.dynamics->matrix();
-  of.body->m_maxSpeedSquared = 0;
-  for (std::size_t n = 0; n < of.dynamics->nodeCount(); ++n) {
-    btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
-    const btVector3 v = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
+void DeformableSolver::Impl::writeVelocities(SolvedBody& body) const {
+  const auto& matrix = body.dynamics->matrix();
+  body.body->m_maxSpeedSquared = 0;
+  for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
+    const btVector3 v = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
     if (node.m_im > 0) node.m_v = v - node.m_splitv;
-    of.body->m_maxSpeedSquared = std::max(of.body->m_maxSpeedSquared, movingPart(node, dt()).length2());
+    body.body->m_maxSpeedSquared = std::max(body.body->m_maxSpeedSquared, movingComponent(node, dt()).length2());
   }
 }
 

@@ -3,7 +3,7 @@
 //
 // Internal to DeformableSolver: its members, and the stages of a step, in their order.
 //
-// A node has four numbers, and not one:
+// A node has four numbers:
 //   node            in its body, as the application has it
 //   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
 //   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
@@ -12,7 +12,7 @@
 // renumbered in the application's body to be rid of them.
 #pragma once
 
-#include <tetskin/bullet/deformable_solver.h>
+#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 #include <tetskin/bullet/src/solver/obstacle_changes.h>
@@ -25,13 +25,13 @@ namespace tetskin {
 
 class RecordedForces;
 
-/// An error in velocity that nobody sees, over what the earth's gravity gives in a step.
+/// The velocity error that is not visible, as a fraction of what the earth's gravity adds in a step.
 constexpr double kUnseen = 1e-3 * 9.81;
 
-struct DeformableSolver::Parts {
-  explicit Parts(DeformableSolver& ofSolver) : solver(ofSolver) {}
+struct DeformableSolver::Impl {
+  explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
-  // The stages: step.cpp.
+  // The stages of a step; implemented in step.cpp.
   void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
   void predict();
   void assemble();
@@ -43,43 +43,44 @@ struct DeformableSolver::Parts {
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
   btScalar dt() const { return solver.m_dt; }
 
-  // Of gather.
+  // Steps of the stage `gather`.
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
-  // Of predict; forces: step_forces.cpp.
-  /// Of what is left to Bullet's code in a step that is solved here.
+  // Steps of the stage `predict`; those about forces are in step_forces.cpp.
+  /// Sets what Bullet's code uses in a step that is solved here.
   void useOwnSettings();
-  /// The impulses of other forces.
+  /// Applies the impulses of other forces.
   void applyOthers();
-  void predictVelocities(SolvedBody& of, ParallelFor* inner);
-  /// most  iterations
-  void solveAlone(SolvedBody& of, int most, ParallelFor* inner) const;
-  void writePrediction(SolvedBody& of) const;
-  void predictPositions(SolvedBody& of);
+  void predictVelocities(SolvedBody& body, ParallelFor* inner);
+  /// most  bound of the iterations
+  void solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const;
+  void writePrediction(SolvedBody& body) const;
+  void predictPositions(SolvedBody& body);
 
-  // Of assemble; rows: step_rows.cpp.
-  void readContacts(SolvedBody& of);
+  // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
+  void readContacts(SolvedBody& body);
   void addOthers();
-  /// Of contacts and anchors, and of what rigid bodies are held by beside; each to the system that it acts on.
+  /// Collects the rows of contacts and anchors, and of the other constraints of rigid bodies, and adds each to the
+  /// system on which it acts.
   void collectRows();
   std::vector<RowSource*> rowSources();
   void collectRigidRowsOfWorlds();
   void joinByRows();
-  void goOn(SolvedBody& of);
-  void speculate(const SolvedBody& of) const;
+  void goOn(SolvedBody& body);
+  void speculate(const SolvedBody& body) const;
 
-  // Of solve.
+  // Steps of the stage `solve`.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);
-  /// Adds to the bodies' residuals what others do at the solutions as they are.
+  /// Adds to the bodies' residuals the effect of other forces at the current solutions.
   void addOtherResiduals(const SolvedSystem& system);
-  /// What others add to the matrices' products with their own steps, in `extras`.
+  /// Computes, into `extras`, what other forces add to the matrices' products with their steps.
   void beginProducts(const SolvedSystem& system);
-  /// The same of `step`.
+  /// Computes, into `image`, the products of the other forces' derivatives with `step`.
   void multiplyOthers(const SolvedSystem& system);
 
-  // Of writeBack.
-  void writeVelocities(SolvedBody& of) const;
+  // Steps of the stage `writeBack`.
+  void writeVelocities(SolvedBody& body) const;
 
   DeformableSolver& solver;
   SolverBodies bodies;
@@ -89,15 +90,15 @@ struct DeformableSolver::Parts {
   RigidUnknowns rigids;
   ContactRows rows;
   HiddenBodies hidden;
-  std::weak_ptr<RecordedForces> recorded;  ///< null where nobody asks
+  std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;
-  bool always = false;  ///< see DeformableSolver::solveAlways
-  bool solving = true;  ///< in this step
+  bool always = false;  ///< see DeformableSolver::requireOwnSolve
+  bool solving = true;  ///< value for this step
   int iterations = 0, passes = 0, unconverged = 0;
   btAlignedObjectArray<btSoftBody*> all;
-  VectorStack step, image;                    ///< of systems with other forces
-  std::vector<std::vector<btScalar>> extras;  ///< by body, wide
+  VectorStack step, image;                    ///< vectors of systems with other forces
+  std::vector<std::vector<btScalar>> extras;  ///< by body, in the wide layout
 };
 
 }  // namespace tetskin

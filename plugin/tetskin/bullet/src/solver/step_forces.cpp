@@ -1,32 +1,34 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What other forces than elasticity do in a step: Bullet's, the application's, and those that couple bodies.
+// The effect of forces other than elasticity in a step: Bullet's, the application's, and those that couple bodies.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/step.h>
 
+#include <cassert>
+
 namespace tetskin {
 
-/// As btDeformableBackwardEulerObjective::applyExplicitForce, where elastic forces are explicit.
-void DeformableSolver::Parts::applyOthers() {
-  for (SolvedBody& of : bodies.bodies()) {
-    if (of.needsDeformation) of.body->advanceDeformation();
+/// Like btDeformableBackwardEulerObjective::applyExplicitForce, with elastic forces taken explicitly.
+void DeformableSolver::Impl::applyOthers() {
+  for (SolvedBody& body : bodies.bodies()) {
+    if (body.needsDeformation) body.body->advanceDeformation();
   }
   VectorStack& impulses = solver.m_residual;
   for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledExplicitForce(dt(), impulses);
-  for (SolvedBody& of : bodies.bodies()) {
-    for (int n = 0; n < of.body->m_nodes.size(); ++n) {
-      btSoftBody::Node& node = of.body->m_nodes[n];
+  for (SolvedBody& body : bodies.bodies()) {
+    for (int n = 0; n < body.body->m_nodes.size(); ++n) {
+      btSoftBody::Node& node = body.body->m_nodes[n];
       node.m_vn = node.m_v;
-      node.m_v += node.m_im * impulses[of.first + n];
-      impulses[of.first + n].setZero();
-      if (!of.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
+      node.m_v += node.m_im * impulses[body.first + n];
+      impulses[body.first + n].setZero();
+      if (!body.elastic) node.m_effectiveMass_inv = btMatrix3x3::getIdentity() * node.m_im;
     }
   }
 }
 
-/// As btDeformableBackwardEulerObjective::computeResidual.
-void DeformableSolver::Parts::addOthers() {
+/// Like btDeformableBackwardEulerObjective::computeResidual.
+void DeformableSolver::Impl::addOthers() {
   for (int i = 0; i < forces().size(); ++i) {
     btDeformableLagrangianForce& force = *forces()[i];
     if (force.getForceType() == BT_MOUSE_PICKING_FORCE) {
@@ -37,51 +39,53 @@ void DeformableSolver::Parts::addOthers() {
   }
 }
 
-void DeformableSolver::Parts::addOtherResiduals(const SolvedSystem& system) {
+void DeformableSolver::Impl::addOtherResiduals(const SolvedSystem& system) {
   const bool withForces = !system.forces.empty();
   if (withForces) {
     for (const std::size_t b : system.bodies) {
-      const SolvedBody& of = bodies.bodies()[b];
-      const auto& matrix = of.dynamics->matrix();
+      const SolvedBody& body = bodies.bodies()[b];
+      const auto& matrix = body.dynamics->matrix();
       for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-        const int number = of.first + static_cast<int>(n);
-        step[number] = fromPoint(of.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
+        const int number = body.first + static_cast<int>(n);
+        step[number] = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
                        solver.m_backupVelocity[number];
       }
     }
     multiplyOthers(system);
   }
   for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    auto& matrix = of.dynamics->matrix();
+    const SolvedBody& body = bodies.bodies()[b];
+    auto& matrix = body.dynamics->matrix();
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
       const std::size_t wide = matrix.wideOf(n);
-      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[of.first + static_cast<int>(n)];
+      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[body.first + static_cast<int>(n)];
       if (withForces) residual -= fromWide(&extras[b][wide]);
       toWide(residual, matrix.residual() + wide);
     }
   }
 }
 
-void DeformableSolver::Parts::beginProducts(const SolvedSystem& system) {
+void DeformableSolver::Impl::beginProducts(const SolvedSystem& system) {
+  assert(extras.size() == bodies.bodies().size());
   for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    const auto& matrix = of.dynamics->matrix();
+    const SolvedBody& body = bodies.bodies()[b];
+    const auto& matrix = body.dynamics->matrix();
     if (system.forces.empty()) {
       extras[b].assign(matrix.wideSize(), btScalar(0));
       continue;
     }
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      step[of.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
+      step[body.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
     }
   }
   if (!system.forces.empty()) multiplyOthers(system);
 }
 
-void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
+void DeformableSolver::Impl::multiplyOthers(const SolvedSystem& system) {
+  assert(extras.size() == bodies.bodies().size() && step.size() == image.size());
   for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    for (int n = 0; n < of.body->m_nodes.size(); ++n) image[of.first + n].setZero();
+    const SolvedBody& body = bodies.bodies()[b];
+    for (int n = 0; n < body.body->m_nodes.size(); ++n) image[body.first + n].setZero();
   }
   for (btDeformableLagrangianForce* force : system.forces) {
     force->addScaledDampingForceDifferential(-dt(), step, image);
@@ -90,11 +94,11 @@ void DeformableSolver::Parts::multiplyOthers(const SolvedSystem& system) {
     }
   }
   for (const std::size_t b : system.bodies) {
-    const SolvedBody& of = bodies.bodies()[b];
-    const auto& matrix = of.dynamics->matrix();
+    const SolvedBody& body = bodies.bodies()[b];
+    const auto& matrix = body.dynamics->matrix();
     extras[b].resize(matrix.wideSize(), btScalar(0));
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      toWide(image[of.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
+      toWide(image[body.first + static_cast<int>(n)], &extras[b][matrix.wideOf(n)]);
     }
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies touch in a step: how far around them contacts are looked for, the rows that come of it, and which bodies
-// are solved for together by them.
+// The contacts of a step: the distance within which they are searched for, their rows, and which bodies are solved for
+// together because of them.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/bullet/src/solver/rigid_rows.h>
@@ -10,35 +10,37 @@
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
+#include <cassert>
 #include <unordered_map>
 
 namespace tetskin {
 namespace {
 
-/// Null where it is not known: of a body that is not elastic, or has been moved since.
-btDiscreteDynamicsWorld* worldOf(const SolvedBody& of) {
-  if (!of.elastic) return nullptr;
-  return of.body->getWorldInfo() == of.elastic->worldInfo ? of.elastic->world : nullptr;
+/// Null if the world is not known: the body is not elastic, or has been moved to another one since.
+btDiscreteDynamicsWorld* worldOf(const SolvedBody& body) {
+  if (!body.elastic) return nullptr;
+  return body.body->getWorldInfo() == body.elastic->worldInfo ? body.elastic->world : nullptr;
 }
 
 }  // namespace
 
-/// Twice as far as gravity takes anything in a step: one of two that are in touch may be predicted to fall, and neither
-/// does. And a share of the body's own way: what is stopped by some points turns others in.
-void DeformableSolver::Parts::speculate(const SolvedBody& of) const {
+/// The distance is twice the path of a body that gravity accelerates for a step: of two bodies in contact, the
+/// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
+/// of a body turns others towards the obstacle.
+void DeformableSolver::Impl::speculate(const SolvedBody& body) const {
   constexpr btScalar kShareOfWay = btScalar(0.2);
-  auto* own = bodyWithTrees(*of.body);
-  const btDiscreteDynamicsWorld* world = worldOf(of);
+  auto* own = bodyWithTrees(*body.body);
+  const btDiscreteDynamicsWorld* world = worldOf(body);
   if (!own || !world) return;
   btScalar fastest = 0;
-  for (int n = 0; n < of.body->m_nodes.size(); ++n) fastest = std::max(fastest, of.body->m_nodes[n].m_v.length2());
+  for (int n = 0; n < body.body->m_nodes.size(); ++n) fastest = std::max(fastest, body.body->m_nodes[n].m_v.length2());
   const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
   own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
-  // The box that the broadphase is given has it; the trees, which are fitted to the margin, have not.
-  of.body->updateBounds();
+  // The box in the broadphase includes this distance; the trees, which are fitted to the margin, do not.
+  body.body->updateBounds();
 }
 
-std::vector<RowSource*> DeformableSolver::Parts::rowSources() {
+std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
   std::vector<RowSource*> sources;
   for (int i = 0; i < forces().size(); ++i) {
     if (auto* source = dynamic_cast<RowSource*>(forces()[i])) sources.push_back(source);
@@ -46,44 +48,45 @@ std::vector<RowSource*> DeformableSolver::Parts::rowSources() {
   return sources;
 }
 
-void DeformableSolver::Parts::collectRows() {
+void DeformableSolver::Impl::collectRows() {
   rigids.clear();
   rows.collect(bodies, rigids, rowSources(), dt());
   collectRigidRowsOfWorlds();
   joinByRows();
-  for (SolvedBody& of : bodies.bodies()) {
-    if (of.wasTouched && of.rowCount > 0) goOn(of);
+  for (SolvedBody& body : bodies.bodies()) {
+    if (body.wasTouched && body.rowCount > 0) goOn(body);
   }
 }
 
-/// What rests goes on to rest: the solution begins with the velocities of the step before.
-void DeformableSolver::Parts::goOn(SolvedBody& of) {
-  Dynamics& dynamics = *of.dynamics;
+/// A resting body stays at rest: the solution begins with the velocities of the step before.
+void DeformableSolver::Impl::goOn(SolvedBody& body) {
+  assert(body.dynamics->nodeCount() == static_cast<std::size_t>(body.body->m_nodes.size()));
+  Dynamics& dynamics = *body.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const btSoftBody::Node& node = of.body->m_nodes[static_cast<int>(n)];
+    const btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
     if (!(node.m_im > 0)) continue;
     toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
   }
-  // What stiff bodies deform by does not last.
-  if (dynamics.isStiff()) dynamics.keepRigidPart();
+  // The deformation of a stiff body does not persist to the next step.
+  if (dynamics.isStiff()) dynamics.keepRigidComponent();
 }
 
-void DeformableSolver::Parts::collectRigidRowsOfWorlds() {
+void DeformableSolver::Impl::collectRigidRowsOfWorlds() {
   if (rigids.list().empty()) return;
   std::vector<btDiscreteDynamicsWorld*> worlds;
-  for (const SolvedBody& of : bodies.bodies()) {
-    btDiscreteDynamicsWorld* world = worldOf(of);
+  for (const SolvedBody& body : bodies.bodies()) {
+    btDiscreteDynamicsWorld* world = worldOf(body);
     if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
     worlds.push_back(world);
     collectRigidRows(*world, dt(), rigids, rows.rows());
   }
 }
 
-/// Soft bodies are solved for together where rows lead from one to the other, or by way of rigid bodies.
-void DeformableSolver::Parts::joinByRows() {
+/// Unites the systems of soft bodies that rows connect directly, or through rigid bodies.
+void DeformableSolver::Impl::joinByRows() {
   const std::size_t bodyCount = bodies.bodies().size();
   DisjointSets sets(bodyCount + rigids.list().size());
-  // Below 0: what moves as it is prescribed.
+  // Below 0: the object's motion is prescribed.
   const auto memberOf = [&](const RowEnd& end) {
     if (end.isSoft()) return static_cast<int>(end.body);
     return end.rigid.unknown < 0 ? -1 : static_cast<int>(bodyCount) + end.rigid.unknown;
@@ -92,7 +95,7 @@ void DeformableSolver::Parts::joinByRows() {
     const int first = memberOf(row.ends[0]), second = memberOf(row.ends[1]);
     if (first >= 0 && second >= 0) sets.unite(first, second);
   }
-  std::unordered_map<int, std::vector<std::size_t>> groups;  // bodies, by set
+  std::unordered_map<int, std::vector<std::size_t>> groups;  // indices of bodies, by set
   for (std::size_t b = 0; b < bodyCount; ++b) groups[sets.find(static_cast<int>(b))].push_back(b);
   for (std::size_t b = 0; b < bodyCount; ++b) {
     const auto& group = groups[sets.find(static_cast<int>(b))];
@@ -102,6 +105,7 @@ void DeformableSolver::Parts::joinByRows() {
   for (SolvedSystem& system : bodies.systems()) {
     for (const std::size_t b : system.bodies) systemOf[b] = &system;
   }
+  assert(std::find(systemOf.begin(), systemOf.end(), nullptr) == systemOf.end());
   const auto systemOfSet = [&](int member) -> SolvedSystem* {
     const auto group = groups.find(sets.find(member));
     return group == groups.end() ? nullptr : systemOf[group->second.front()];

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The few unknowns of a system: V of rigid bodies, and q of stiff bodies' parts. They are eliminated from the nodes'
-// equations, and follow what the nodes do.
+// The few unknowns of a system: V of rigid bodies, and q of the components of stiff bodies. They are eliminated from
+// the nodes' equations, and are computed from the nodes' velocities afterwards.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
-/// Stiffness numbers from which on the rigid motions of parts are unknowns of their own.
+/// Stiffness factor from which on the rigid motions of components are separate unknowns.
 constexpr double kStiffPart = 5.0;
-/// Parts of a body whose rigid motions are solved for by themselves.
+/// Most components of a body whose rigid motions are separate unknowns.
 constexpr std::size_t kMaxParts = 4;
 
 Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
@@ -24,6 +25,12 @@ Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
     for (int j = 0; j < 3; ++j) to(i, j) = static_cast<double>(m[i][j]);
   }
   return to;
+}
+
+/// In one place, and into a vector of its own: the compiler takes seconds for each kind of vector that Eigen solves
+/// into.
+Vector6 ldltSolve(const Eigen::Matrix<double, 6, 6>& matrix, const Vector6& right) {
+  return matrix.ldlt().solve(right);
 }
 
 }  // namespace
@@ -44,14 +51,15 @@ void SystemSolve::numberRigids() {
   rigidMomentum_ = rigidPush_ = Vector::Zero(size);
 }
 
-void SystemSolve::collectParts() {
+void SystemSolve::collectComponents() {
   endParts_.assign(system_.rows.size(), {});
   for (const std::size_t b : system_.bodies) {
-    const SolvedBody& of = step_.bodies.bodies()[b];
-    // What others do to the nodes is not asked of parts.
-    if (!of.elastic || of.rowCount == 0 || !system_.forces.empty() || !of.fixed.empty()) continue;
-    if (of.dynamics->stiffnessNumber() < kStiffPart && !isJoined(b)) continue;
-    for (std::size_t part = 0; part < std::min(of.dynamics->partCount(), kMaxParts); ++part) addPart(b, part);
+    const SolvedBody& body = step_.bodies.bodies()[b];
+    // The separate unknowns do not include other forces on the nodes.
+    if (!body.elastic || body.rowCount == 0 || !system_.forces.empty() || !body.fixed.empty()) continue;
+    if (body.dynamics->stiffnessNumber() < kStiffPart && !isJoined(b)) continue;
+    for (std::size_t component = 0; component < std::min(body.dynamics->componentCount(), kMaxParts); ++component)
+      addComponent(b, component);
   }
   few_ = fewStep_ = fewResidual_ = Vector::Zero(fewSize_);
 }
@@ -62,9 +70,10 @@ bool SystemSolve::isJoined(std::size_t body) const {
   });
 }
 
-void SystemSolve::addPart(std::size_t body, std::size_t part) {
+void SystemSolve::addComponent(std::size_t body, std::size_t component) {
+  assert(endParts_.size() == system_.rows.size());
   const Dynamics& dynamics = *step_.bodies.bodies()[body].dynamics;
-  std::optional<PartUnknown> unknown = PartUnknown::make(dynamics, part, threads_);
+  std::optional<ComponentUnknown> unknown = ComponentUnknown::make(dynamics, component, threads_);
   if (!unknown) return;
   unknown->body = body;
   unknown->first = fewSize_;
@@ -73,127 +82,137 @@ void SystemSolve::addPart(std::size_t body, std::size_t part) {
       const RowEnd& end = system_.rows[r]->ends[e];
       if (!end.isSoft() || end.body != body) continue;
       const RowMotions motions = unknown->motionsAt(dynamics, end);
-      if (!motions.isZero(0.0)) endParts_[r][e] = {static_cast<int>(parts_.size()), motions};
+      if (!motions.isZero(0.0)) endParts_[r][e] = {static_cast<int>(components_.size()), motions};
     }
   }
-  parts_.push_back(std::move(*unknown));
+  components_.push_back(std::move(*unknown));
   fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
 }
 
-Dynamics& SystemSolve::dynamicsOf(const PartUnknown& part) const {
-  return *step_.bodies.bodies()[part.body].dynamics;
+Dynamics& SystemSolve::dynamicsOf(const ComponentUnknown& component) const {
+  return *step_.bodies.bodies()[component.body].dynamics;
 }
 
-/// Beside the parts' rigid motions solutions have none.
-void SystemSolve::moveIntoParts() {
-  for (const PartUnknown& part : parts_) {
-    few_.segment<6>(part.first) = part.mass.ldlt().solve(part.imageProducts(dynamicsOf(part).matrix().solution()));
-    part.addMotions(-few_.segment<6>(part.first), dynamicsOf(part));
+/// Moves the rigid motions of the components out of the solutions into the separate unknowns.
+void SystemSolve::moveIntoComponents() {
+  for (const ComponentUnknown& component : components_) {
+    few_.segment<6>(component.first) =
+        ldltSolve(component.mass, component.imageProducts(dynamicsOf(component).matrix().solution()));
+    component.addMotions(-few_.segment<6>(component.first), dynamicsOf(component));
   }
 }
 
-void SystemSolve::moveOutOfParts() {
-  for (const PartUnknown& part : parts_) part.addMotions(few_.segment<6>(part.first), dynamicsOf(part));
+void SystemSolve::moveOutOfComponents() {
+  for (const ComponentUnknown& component : components_)
+    component.addMotions(few_.segment<6>(component.first), dynamicsOf(component));
 }
 
 /// Z^T A (y + Z q)
-Vector6 SystemSolve::momentumOf(const PartUnknown& part) const {
-  return part.imageProducts(dynamicsOf(part).matrix().solution()) + part.mass * few_.segment<6>(part.first);
+Vector6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
+  return component.imageProducts(dynamicsOf(component).matrix().solution()) +
+         component.mass * few_.segment<6>(component.first);
 }
 
-/// The nodes' equations have each part's rigid motion, too, and must ask of it what its own do: together they are
-/// singular, and along what contradicts the conjugate gradient goes on without end. Forces of stiff bodies, which are
-/// summed to 0, leave that much by rounding.
-void SystemSolve::matchParts() {
-  for (const PartUnknown& part : parts_) {
-    btScalar* residual = dynamicsOf(part).matrix().residual();
-    const Vector6 excess = part.motionProducts(dynamicsOf(part), residual) - fewResidual_.segment<6>(part.first);
-    part.addImages(-part.mass.ldlt().solve(excess), residual);
+/// The nodes' equations also contain each component's rigid motion, and must agree with its own equation about it:
+/// together they are singular, and where they contradict each other the conjugate gradient does not converge. Forces of
+/// stiff bodies, whose sum is 0, differ by rounding of that size.
+void SystemSolve::matchComponents() {
+  for (const ComponentUnknown& component : components_) {
+    btScalar* residual = dynamicsOf(component).matrix().residual();
+    const Vector6 excess =
+        component.motionProducts(dynamicsOf(component), residual) - fewResidual_.segment<6>(component.first);
+    component.addImages(-ldltSolve(component.mass, excess), residual);
   }
 }
 
-bool SystemSolve::meetsFew(std::size_t r) const {
+bool SystemSolve::collidesWithFew(std::size_t r) const {
+  assert(r < endParts_.size());
   const ContactRow& row = *system_.rows[r];
   for (std::size_t e = 0; e < 2; ++e) {
-    if (row.ends[e].rigid.unknown >= 0 || endParts_[r][e].part >= 0) return true;
+    if (row.ends[e].rigid.unknown >= 0 || endParts_[r][e].component >= 0) return true;
   }
   return false;
 }
 
-/// Of the part's six among the few unknowns.
-Eigen::Index SystemSolve::firstOf(const EndPart& of) const {
-  return parts_[static_cast<std::size_t>(of.part)].first;
+/// Index of the component's six among the few unknowns.
+Eigen::Index SystemSolve::firstOf(const EndPart& end) const {
+  assert(end.component >= 0 && static_cast<std::size_t>(end.component) < components_.size());
+  return components_[static_cast<std::size_t>(end.component)].first;
 }
 
-/// What the few unknowns do to the velocity of a row.
+/// The velocity that the few unknowns give a row.
 btVector3 SystemSolve::fewVelocity(std::size_t r, const Vector& few) const {
   btVector3 sum(0, 0, 0);
   for (std::size_t e = 0; e < 2; ++e) {
-    const EndPart& of = endParts_[r][e];
+    const EndPart& end = endParts_[r][e];
     btVector3 velocity = step_.rigids.velocity(system_.rows[r]->ends[e].rigid, few);
-    if (of.part >= 0) velocity += toBullet(of.motions * few.segment<6>(firstOf(of)));
+    if (end.component >= 0) velocity += toBullet(end.motions * few.segment<6>(firstOf(end)));
     sum += btScalar(signOf(e)) * velocity;
   }
   return sum;
 }
 
-/// The other way round: what an impulse of the row is to the few unknowns.
+/// The transpose of `fewVelocity`: adds the effect of an impulse of the row on the few unknowns.
 void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
   for (std::size_t e = 0; e < 2; ++e) {
-    const EndPart& of = endParts_[r][e];
+    const EndPart& end = endParts_[r][e];
     const btVector3 own = btScalar(signOf(e)) * push;
     step_.rigids.addImpulse(system_.rows[r]->ends[e].rigid, own, to);
-    if (of.part >= 0) to.segment<6>(firstOf(of)) += of.motions.transpose() * toEigen(own);
+    if (end.component >= 0) to.segment<6>(firstOf(end)) += end.motions.transpose() * toEigen(own);
   }
 }
 
-/// Without rows: what rigid bodies and parts have of momentum.
+/// The momentum of rigid bodies and components that is left without rows.
 void SystemSolve::findFewResiduals() {
+  assert(fewResidual_.size() == fewSize_ && rigidMomentum_.size() == rigidSize_);
   fewResidual_.head(rigidSize_) -= rigidMomentum_;
   partsBefore_ = Vector::Zero(fewSize_);
-  for (const PartUnknown& part : parts_) {
-    partsBefore_.segment<6>(part.first) = momentumOf(part);
-    fewResidual_.segment<6>(part.first) += part.began - partsBefore_.segment<6>(part.first);
+  for (const ComponentUnknown& component : components_) {
+    partsBefore_.segment<6>(component.first) = momentumOf(component);
+    fewResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
   }
 }
 
-/// Of the few unknowns, but for the masses of rigid bodies: what rows, and the masses of parts, couple them by.
+/// The matrix of the few unknowns without the masses of rigid bodies: what rows, and the masses of components, couple
+/// them by.
 SystemSolve::Matrix SystemSolve::fewMatrix() const {
   Matrix few = Matrix::Zero(fewSize_, fewSize_);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    if (system_.rows[r]->state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    if (system_.rows[r]->state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
     const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
     for (std::size_t a = 0; a < 2; ++a) {
       for (std::size_t b = 0; b < 2; ++b) addFewStiffness(r, a, b, h, few);
     }
   }
-  for (const PartUnknown& part : parts_) few.block<6, 6>(part.first, part.first) += part.mass;
+  for (const ComponentUnknown& component : components_)
+    few.block<6, 6>(component.first, component.first) += component.mass;
   return few;
 }
 
-/// Of two ends of a row; what couples a rigid body and a part is added both ways from the part's end.
+/// Adds the block of two ends of a row. The block of a rigid body and a component, and its transpose, are added when
+/// the component's end comes first.
 void SystemSolve::addFewStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
                                   Matrix& few) const {
   const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
   const double sign = signOf(a) * signOf(b);
   step_.rigids.addStiffness(first.rigid, second.rigid, h, sign, few);
-  const EndPart &part = endParts_[r][a], &other = endParts_[r][b];
-  if (part.part < 0) return;
-  if (other.part >= 0) {
-    few.block<6, 6>(firstOf(part), firstOf(other)) += sign * part.motions.transpose() * h * other.motions;
+  const EndPart &end = endParts_[r][a], &other = endParts_[r][b];
+  if (end.component < 0) return;
+  if (other.component >= 0) {
+    few.block<6, 6>(firstOf(end), firstOf(other)) += sign * end.motions.transpose() * h * other.motions;
   }
   for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
     Vector push = Vector::Zero(rigidSize_);
-    step_.rigids.addImpulse(second.rigid, toBullet(sign * h * part.motions.col(k)), push);
-    few.col(firstOf(part) + k).head(rigidSize_) += push;
-    few.row(firstOf(part) + k).head(rigidSize_) += push.transpose();
+    step_.rigids.addImpulse(second.rigid, toBullet(sign * h * end.motions.col(k)), push);
+    few.col(firstOf(end) + k).head(rigidSize_) += push;
+    few.row(firstOf(end) + k).head(rigidSize_) += push.transpose();
   }
 }
 
-/// Rows of rigid bodies are multiplied by M^-1, in which axes may be locked.
+/// The equations of rigid bodies are multiplied by M^-1, in which axes may be locked.
 void SystemSolve::eliminate() {
   if (fewSize_ == 0) return;
-  matchParts();
+  matchComponents();
   Matrix scale = Matrix::Identity(fewSize_, fewSize_);
   scale.topLeftCorner(rigidSize_, rigidSize_) = inverseMass_;
   Matrix system = scale * fewMatrix();
@@ -202,7 +221,7 @@ void SystemSolve::eliminate() {
   addFew(compliance_ * fewResidual_, true);
 }
 
-/// What the few unknowns do to the nodes: to their residuals, or to the products.
+/// Adds the effect of the few unknowns on the nodes, to their residuals or to the products.
 void SystemSolve::addFew(const Vector& few, bool toResiduals) {
   const auto target = [&](std::size_t body) {
     return toResiduals ? step_.bodies.bodies()[body].dynamics->matrix().residual() : step_.extras[body].data();
@@ -210,33 +229,33 @@ void SystemSolve::addFew(const Vector& few, bool toResiduals) {
   const btScalar sign = toResiduals ? btScalar(-1) : btScalar(1);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    if (row.state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    if (row.state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
     const btVector3 push = sign * (row.tangent * fewVelocity(r, few));
     for (std::size_t e = 0; e < 2; ++e) {
       const RowEnd& end = row.ends[e];
       if (end.isSoft()) addToNodes(end, btScalar(signOf(e)) * push, target(end.body));
     }
   }
-  for (const PartUnknown& part : parts_) {
-    part.addImages(static_cast<double>(sign) * few.segment<6>(part.first), target(part.body));
+  for (const ComponentUnknown& component : components_) {
+    component.addImages(static_cast<double>(sign) * few.segment<6>(component.first), target(component.body));
   }
 }
 
-/// What the nodes' steps of the conjugate gradient do to the few unknowns.
+/// The effect of the nodes' steps of the conjugate gradient on the few unknowns.
 SystemSolve::Vector SystemSolve::fewOf() const {
   Vector few = Vector::Zero(fewSize_);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    if (row.state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    if (row.state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
     addRowPush(r, -(row.tangent * nodesOf(row, true)), few);
   }
-  for (const PartUnknown& part : parts_) {
-    few.segment<6>(part.first) -= part.imageProducts(dynamicsOf(part).matrix().step());
+  for (const ComponentUnknown& component : components_) {
+    few.segment<6>(component.first) -= component.imageProducts(dynamicsOf(component).matrix().step());
   }
   return few;
 }
 
-/// What couples the nodes of two ends: the matrices have each end's own blocks.
+/// Adds the blocks that couple the nodes of two ends; the matrices contain the blocks of each end with itself.
 void SystemSolve::addCrossProducts() {
   for (const ContactRow* row : system_.rows) {
     if (!row->ends[0].isSoft() || !row->ends[1].isSoft() || row->state == ContactRow::State::Apart) continue;
@@ -248,27 +267,29 @@ void SystemSolve::addCrossProducts() {
 }
 
 void SystemSolve::addProducts(std::vector<const btScalar*>& added) {
+  assert(added.size() == system_.bodies.size() && compliance_.rows() == fewSize_);
   step_.beginProducts(system_);
   addCrossProducts();
   if (fewSize_ > 0) addFew(compliance_ * fewOf(), false);
   for (std::size_t k = 0; k < system_.bodies.size(); ++k) added[k] = step_.extras[system_.bodies[k]].data();
 }
 
-/// The few unknowns follow what the nodes have done in the pass.
+/// Computes the few unknowns from the nodes' change in the pass.
 void SystemSolve::moveFew() {
+  assert(before_.size() == system_.rows.size());
   Vector push = fewResidual_;
   for (std::size_t r = 0; r < system_.rows.size() && fewSize_ > 0; ++r) {
     const ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * (velocityOf(r) - before_[r])), push);
   }
-  for (const PartUnknown& part : parts_) {
-    push.segment<6>(part.first) -= part.imageProducts(dynamicsOf(part).matrix().solution()) -
-                                   part.imageProducts(states_[placeOf(part.body)].solution.data());
+  for (const ComponentUnknown& component : components_) {
+    push.segment<6>(component.first) -= component.imageProducts(dynamicsOf(component).matrix().solution()) -
+                                        component.imageProducts(states_[indexOf(component.body)].solution.data());
   }
   if (fewSize_ > 0) fewStep_ = compliance_ * push;
   few_ += fewStep_;
   stepped_.resize(system_.rows.size());
-  // M times the step is what is left of the bodies' equation, less what rows take back.
+  // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
   Vector left = fewResidual_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
@@ -279,8 +300,8 @@ void SystemSolve::moveFew() {
   rigidMomentum_ += rigidPush_;
 }
 
-/// What is left is small by what it moves, and by impulses need not be: of stiff rows. The few unknowns take it, so
-/// that momentum by the rows' impulses is theirs, and changes little.
+/// The residual that is left is small in terms of velocity, but with stiff rows its impulses need not be small. The few
+/// unknowns take them up, so that momentum agrees with the rows' impulses while velocities hardly change.
 void SystemSolve::settleFew() {
   if (fewSize_ == 0) return;
   const Vector change = compliance_ * fewResidual_;
@@ -291,7 +312,8 @@ void SystemSolve::settleFew() {
   }
 }
 
-std::size_t SystemSolve::placeOf(std::size_t body) const {
+std::size_t SystemSolve::indexOf(std::size_t body) const {
+  assert(std::find(system_.bodies.begin(), system_.bodies.end(), body) != system_.bodies.end());
   return static_cast<std::size_t>(std::find(system_.bodies.begin(), system_.bodies.end(), body) -
                                   system_.bodies.begin());
 }

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How closely a system is solved for.
+// The tolerances to which a system is solved.
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
-/// Where forces of Bullet's or of the application's act on elastic bodies, the residual at most: they act on few nodes,
-/// so that their part of it is small, and what is left of that they give anew in each step, and energy with it.
+/// Bound of the relative residual where forces of Bullet or of the application act on elastic bodies: they act on few
+/// nodes, so that they contribute little to it, and an error in them recurs in each step and adds energy.
 constexpr double kWithForeignForces = 1e-6;
-/// With rows: the tolerance over that of a body by itself; and of what hangs by joints without a largest force, at
-/// most, as it goes on at the speed that it has, as far as its tolerance lets it.
+/// With rows: the tolerance relative to that of a body without rows; and its bound for a body that hangs by joints
+/// without a largest force, since such a body keeps an error in its velocity as far as the tolerance allows.
 constexpr double kCloserWithRows = 0.1, kWhereJoined = 1e-4;
-/// Closer than that to a solution no arithmetic comes that has so few digits.
+/// A residual smaller than this cannot be reached in this precision.
 constexpr double kClosest = 8.0 * SIMD_EPSILON;
-/// By how much the first pass lessens the residual, at most, and the others: rows are others after it.
+/// By how much the first pass reduces the residual, at most, and the passes after it: the rows change after each pass.
 constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
 
 }  // namespace
@@ -33,7 +34,7 @@ double SystemSolve::toleranceWithForces(double tolerance, bool anyElastic) const
   return anyForeign ? std::min(tolerance, kWithForeignForces) : tolerance;
 }
 
-/// The strictest of all.
+/// The strictest tolerance of all bodies of the system.
 elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   elastic_detail::SolveLimits limits;
   limits.floor = kUnseen * static_cast<double>(step_.dt());
@@ -41,21 +42,23 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   bool changed = false, anyElastic = false, stiff = false;
   double squaredStart = 0.0;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    const SolvedBody& of = bodyAt(k);
-    limits.tolerance = std::min(limits.tolerance, of.limits->tolerance);
-    limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    if (of.elastic && !of.waits) limits.enough += of.solve->enough();
-    changed |= !of.fixed.empty() || of.touched;
-    stiff |= of.dynamics->isStiff();
-    squaredStart += of.dynamics->squaredSolution();
-    anyElastic |= of.elastic != nullptr;
+    const SolvedBody& body = bodyAt(k);
+    limits.tolerance = std::min(limits.tolerance, body.limits->tolerance);
+    limits.iterations = std::max(limits.iterations, body.limits->iterations);
+    if (body.elastic && !body.waits) limits.enough += body.solve->enough();
+    changed |= !body.fixed.empty() || body.touched;
+    stiff |= body.dynamics->isStiff();
+    squaredStart += body.dynamics->squaredSolution();
+    anyElastic |= body.elastic != nullptr;
   }
   const double tolerance = toleranceWithForces(limits.tolerance, anyElastic);
-  const double share = tolerance / std::max(limits.tolerance, 1e-300);  // 0 is a tolerance, too
+  const double fraction = tolerance / std::max(limits.tolerance, 1e-300);  // a tolerance may be 0
   limits.tolerance = tolerance;
-  limits.enough *= share * share;  // of squares
-  // A share of how the velocities differ from rigid motion may be left, too. Of stiff bodies nothing else: the residual
-  // that a contact begins with is as large as the body is stiff, and what may be left of it would move light nodes.
+  limits.enough *= fraction * fraction;  // the limits are squares
+  assert(!(limits.tolerance < 0.0) && limits.tolerance <= 1.0);
+  // The residual may also be a fraction of the difference between the velocities and a rigid motion. Stiff bodies use
+  // this criterion only: the initial residual of a contact is proportional to the body's stiffness, and a fraction of
+  // it would move light nodes.
   if (changed || stiff) {
     limits.enough = std::max(limits.enough, limits.tolerance * limits.tolerance * squaredStart);
   }
@@ -63,22 +66,22 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   return limits;
 }
 
-/// Over what contacts and others have changed: how much the solution is, or by how much velocities have changed in the
-/// step, whichever is more.
+/// The residual is relative to what contacts and others have changed: the size of the solution, or the change of the
+/// velocities in the step, whichever is larger.
 elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   elastic_detail::SolveLimits limits;
   limits.iterations = 0;
   limits.floor = 0.0;
   double byMatrix = 0.0, byMasses = 0.0, tolerance = 1.0;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    const SolvedBody& of = bodyAt(k);
-    tolerance = std::min(tolerance, of.limits->tolerance);
-    limits.iterations = std::max(limits.iterations, of.limits->iterations);
-    byMatrix += of.dynamics->squaredByMatrix();
-    byMasses += of.dynamics->squaredChange();
+    const SolvedBody& body = bodyAt(k);
+    tolerance = std::min(tolerance, body.limits->tolerance);
+    limits.iterations = std::max(limits.iterations, body.limits->iterations);
+    byMatrix += body.dynamics->squaredByMatrix();
+    byMasses += body.dynamics->squaredChange();
   }
-  for (const PartUnknown& part : parts_) {
-    byMasses += few_.segment<6>(part.first).dot(partsBefore_.segment<6>(part.first));
+  for (const ComponentUnknown& component : components_) {
+    byMasses += few_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));
   }
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);

@@ -1,33 +1,35 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How much of a pass's step to take, where sliding bends what the pass took for straight.
+// The fraction of a pass's step to take: sliding is nonlinear, and the pass has linearized it.
 #include <tetskin/bullet/src/solver/system_solve.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Of a line search.
+/// Most halvings of the interval in a line search.
 constexpr int kMaxHalvings = 20;
 constexpr double kFlat = 0.05;
 
 }  // namespace
 
-/// Of the energy of which the solve seeks the least, along the pass's step.
-double SystemSolve::slope(btScalar share, double linear, double quadratic) const {
-  double sum = linear + static_cast<double>(share) * quadratic;
+/// The derivative, along the pass's step, of the energy that the solve minimizes.
+double SystemSolve::slope(btScalar fraction, double linear, double quadratic) const {
+  assert(before_.size() == system_.rows.size() && stepped_.size() == system_.rows.size());
+  double sum = linear + static_cast<double>(fraction) * quadratic;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
     ContactRow::State state{};
-    const btVector3 impulse = impulseAt(row, before_[r] + share * stepped_[r], false, state);
+    const btVector3 impulse = impulseAt(row, before_[r] + fraction * stepped_[r], false, state);
     sum -= toEigen(impulse - row.given).dot(toEigen(stepped_[r]));
   }
   return sum;
 }
 
-/// How much of the pass's step to take.
+/// The fraction of the pass's step to take.
 btScalar SystemSolve::searchLine() {
   findResiduals();
   const Vector rigidStep = fewStep_.head(rigidSize_);
@@ -41,14 +43,15 @@ btScalar SystemSolve::searchLine() {
       quadratic += step * (before - static_cast<double>(matrix.residual()[i]));
     }
   }
-  for (const PartUnknown& part : parts_) {
-    const Vector6 step = fewStep_.segment<6>(part.first);
-    const Vector6 grown = momentumOf(part) - partsBefore_.segment<6>(part.first);
-    linear += step.dot(partsBefore_.segment<6>(part.first) - part.began);
+  for (const ComponentUnknown& component : components_) {
+    const Vector6 step = fewStep_.segment<6>(component.first);
+    const Vector6 grown = momentumOf(component) - partsBefore_.segment<6>(component.first);
+    linear += step.dot(partsBefore_.segment<6>(component.first) - component.began);
     quadratic += step.dot(grown);
   }
   const double first = slope(0, linear, quadratic), all = slope(1, linear, quadratic);
-  // A step that does not lead down, by rounding or as bounds are refreshed, has no least on it.
+  // A step along which the energy does not fall, because of rounding or because bounds are refreshed, has no minimum on
+  // it.
   if (!(first < 0.0 && all > -kFlat * first)) return 1;
   double low = 0.0, high = 1.0, atLow = first, atHigh = all;
   for (int k = 0; k < kMaxHalvings; ++k) {
@@ -61,18 +64,19 @@ btScalar SystemSolve::searchLine() {
   return static_cast<btScalar>(0.5 * (low + high));
 }
 
-void SystemSolve::moveBack(btScalar share) {
+void SystemSolve::moveBack(btScalar fraction) {
+  assert(fraction >= 0 && fraction <= 1);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     auto& matrix = bodyAt(k).dynamics->matrix();
     btScalar* solution = matrix.solution();
     for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
-      solution[i] = states_[k].solution[i] + share * (solution[i] - states_[k].solution[i]);
+      solution[i] = states_[k].solution[i] + fraction * (solution[i] - states_[k].solution[i]);
     }
   }
-  const auto rest = static_cast<double>(1 - share);
+  const auto rest = static_cast<double>(1 - fraction);
   few_ -= rest * fewStep_;
   rigidMomentum_ -= rest * rigidPush_;
-  for (btVector3& step : stepped_) step *= share;
+  for (btVector3& step : stepped_) step *= fraction;
 }
 
 }  // namespace tetskin

@@ -12,13 +12,13 @@ namespace tetskin {
 namespace {
 
 constexpr int kMaxPasses = 30;
-/// Passes from which on the derivative of sliding is used, but for a tenth, and from how long a step on.
+/// Passes from which on the derivative of sliding is used, up to a tenth, and the length of a step from which on it is.
 constexpr int kPassesBeforeDerivative = 2;
 constexpr btScalar kKept = btScalar(0.1), kLongStep = btScalar(0.9);
-/// A residual so many times the one aimed at is converged.
+/// A solve has converged if the residual is at most this multiple of the tolerance.
 constexpr double kAccepted = 3.0;
 
-/// The upper triangle.
+/// Adds the upper triangle of the matrix.
 void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
   const btScalar entries[6] = {m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]};
   for (int k = 0; k < 6; ++k) to[k] += factor * entries[k];
@@ -31,22 +31,24 @@ bool sameNodes(const RowEnd& a, const RowEnd& b) {
 
 }  // namespace
 
-SystemSolve::SystemSolve(DeformableSolver::Parts& step, const SolvedSystem& system, ParallelFor* threads)
+SystemSolve::SystemSolve(DeformableSolver::Impl& step, const SolvedSystem& system, ParallelFor* threads)
     : step_(step), system_(system), threads_(threads) {
   assert(!system.bodies.empty());
   states_.resize(system.bodies.size());
   joinsSoft_ = std::any_of(system.rows.begin(), system.rows.end(),
                            [](const ContactRow* row) { return row->ends[0].isSoft() && row->ends[1].isSoft(); });
   numberRigids();
-  collectParts();
-  moveIntoParts();
+  collectComponents();
+  moveIntoComponents();
 }
 
 SolvedBody& SystemSolve::bodyAt(std::size_t k) const {
+  assert(k < system_.bodies.size());
   return step_.bodies.bodies()[system_.bodies[k]];
 }
 
 elastic_detail::BlockMatrix<btScalar>& SystemSolve::matrixOf(const RowEnd& end) const {
+  assert(end.isSoft());
   return step_.bodies.bodies()[end.body].dynamics->matrix();
 }
 
@@ -77,12 +79,12 @@ SolveReport SystemSolve::solve() {
   }
   if (!system_.rows.empty()) settleFew();
   for (std::size_t k = 0; k < states_.size(); ++k) bodyAt(k).dynamics->matrix().free();
-  moveOutOfParts();
+  moveOutOfComponents();
   giveMomentum();
   return report;
 }
 
-/// What a point is pushed with in this step, before anything is known: as if it were alone.
+/// Estimates the impulse on each point in this step, as if there were no other: the first bounds of friction.
 void SystemSolve::beginBounds() {
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
@@ -94,15 +96,15 @@ void SystemSolve::beginBounds() {
 
 // ---- a pass
 
-/// Without rows.
+/// Computes the residuals without rows.
 void SystemSolve::findResiduals() {
   for (std::size_t k = 0; k < states_.size(); ++k) {
     bodyAt(k).dynamics->matrix().free();
-    bodyAt(k).dynamics->startAgain(threads_);
+    bodyAt(k).dynamics->restart(threads_);
   }
   step_.addOtherResiduals(system_);
-  for (const PartUnknown& part : parts_) {
-    part.addImages(-few_.segment<6>(part.first), dynamicsOf(part).matrix().residual());
+  for (const ComponentUnknown& component : components_) {
+    component.addImages(-few_.segment<6>(component.first), dynamicsOf(component).matrix().residual());
   }
 }
 
@@ -137,7 +139,7 @@ btVector3 SystemSolve::velocityOf(std::size_t r) const {
   return system_.rows[r]->relative + nodesOf(*system_.rows[r], false) + fewVelocity(r, few_);
 }
 
-/// to  of the end's body, wide
+/// to  vector of the end's body, in the wide layout
 void SystemSolve::addToNodes(const RowEnd& end, const btVector3& impulse, btScalar* to) const {
   const auto& matrix = matrixOf(end);
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
@@ -189,7 +191,7 @@ void SystemSolve::addImpulses() {
   }
 }
 
-/// Rows of one tet at once.
+/// Rows of the same tet are added together.
 void SystemSolve::addTangents() {
   for (std::size_t e = 0; e < 2; ++e) {
     const auto endAt = [&](std::size_t r) -> const RowEnd& { return system_.rows[r]->ends[e]; };
@@ -202,9 +204,10 @@ void SystemSolve::addTangents() {
   }
 }
 
-/// Of nodes that no tet has both the matrix has no block: they are as stiff each by itself as they are together.
+/// Nodes that no tet connects have no block in the matrix: each gets by itself the stiffness that they have together.
 /// end  of the rows
 void SystemSolve::addBlocks(std::size_t end, std::size_t first, std::size_t last) {
+  assert(first < last && last <= system_.rows.size());
   const RowEnd& any = system_.rows[first]->ends[end];
   auto& matrix = matrixOf(any);
   btScalar blocks[kMaxPointNodes][kMaxPointNodes][6] = {};  // the lower triangle
@@ -243,8 +246,9 @@ void SystemSolve::addApart(std::size_t end, std::size_t first, std::size_t last,
   }
 }
 
-/// Friction is bounded by the normal impulses as the pass has them.
+/// Bounds friction by the normal impulses of the current pass.
 void SystemSolve::refreshBounds() {
+  assert(stepped_.size() == system_.rows.size());
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
     const btVector3 impulse = row.impulse - row.tangent * stepped_[r];
@@ -254,8 +258,8 @@ void SystemSolve::refreshBounds() {
 
 // ---- finish
 
-/// By a joint to what moves as it is prescribed: that takes any momentum, and a point that is as stiff as that feels
-/// where in the step its impulse acts.
+/// True if a joint connects the body to an object whose motion is prescribed. Such an object takes up any momentum, and
+/// a point with a joint of that stiffness depends on where in the step its impulse acts.
 bool SystemSolve::isHung(std::size_t body) const {
   return std::any_of(system_.rows.begin(), system_.rows.end(), [&](const ContactRow* row) {
     const RowEnd& end = row->ends[0];
@@ -263,15 +267,15 @@ bool SystemSolve::isHung(std::size_t body) const {
   });
 }
 
-/// Rigid bodies get the sum of what rows push them with; soft ones lose the momentum that a solve which is cut short
-/// gives them beside it. Where other forces act on the system, their part is not known here.
+/// Adds the sum of the rows' impulses to rigid bodies, and removes from soft ones the momentum error of a solve that is
+/// cut short. Where other forces act on the system, their share is unknown here.
 void SystemSolve::giveMomentum() {
   if (system_.rows.empty()) return;
   Vector push = Vector::Zero(rigidSize_);
   std::vector<std::vector<std::array<double, 3>>> impulses(states_.size());
-  std::vector<std::size_t> places(step_.bodies.bodies().size(), states_.size());
+  std::vector<std::size_t> indices(step_.bodies.bodies().size(), states_.size());
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    places[system_.bodies[k]] = k;
+    indices[system_.bodies[k]] = k;
     impulses[k].assign(bodyAt(k).dynamics->nodeCount(), {0.0, 0.0, 0.0});
   }
   for (const ContactRow* row : system_.rows) {
@@ -281,10 +285,11 @@ void SystemSolve::giveMomentum() {
       const btScalar sign = btScalar(signOf(e));
       step_.rigids.addImpulse(end.rigid, sign * more, push);
       for (std::uint32_t n = 0; n < end.nodeCount; ++n) {
-        auto& to = impulses[places[end.body]][static_cast<std::size_t>(end.nodes[n])];
+        assert(indices[end.body] < impulses.size());
+        auto& to = impulses[indices[end.body]][static_cast<std::size_t>(end.nodes[n])];
         for (int k = 0; k < 3; ++k) {
-          const auto of = static_cast<double>(sign * row->impulse[k]);
-          to[static_cast<std::size_t>(k)] += static_cast<double>(end.weights[n]) * of;
+          const auto value = static_cast<double>(sign * row->impulse[k]);
+          to[static_cast<std::size_t>(k)] += static_cast<double>(end.weights[n]) * value;
         }
       }
     }

@@ -3,14 +3,14 @@
 //
 // Internal to DeformableSolver: the solve of one system under contacts, joints and others' forces.
 //
-// With y the nodes' velocities beside their rigid motions, and V by how much rigid bodies change theirs:
-//   A y = b + sum w f + what others do,    M V = sum J^T (f - given)
+// With y the nodes' velocities relative to their rigid motions, and V the change of the rigid bodies' velocities:
+//   A y = b + sum w f + other forces,    M V = sum J^T (f - given)
 // with f the rows' impulses, which depend on both (contact_row.h). Newton's method: in each pass rows are linear, with
 // H of each in the blocks of its tet, so that sweeps see it; rigid bodies are eliminated; the conjugate gradient solves
 // for the rest. Passes go on until it has converged.
 #pragma once
 
-#include <tetskin/bullet/src/solver/part_unknown.h>
+#include <tetskin/bullet/src/solver/component_unknown.h>
 #include <tetskin/bullet/src/solver/step.h>
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@
 
 namespace tetskin {
 
-/// What came of a solve.
+/// The result of a solve.
 struct SolveReport {
   int iterations = 0;
   int passes = 0;
@@ -27,27 +27,28 @@ struct SolveReport {
 
 class SystemSolve {
  public:
-  SystemSolve(DeformableSolver::Parts& step, const SolvedSystem& system, ParallelFor* threads);
+  SystemSolve(DeformableSolver::Impl& step, const SolvedSystem& system, ParallelFor* threads);
 
-  /// From the solutions as they are. Rows have their impulses afterwards, and rigid bodies in Bullet their velocities.
+  /// Solves, beginning with the current solutions. Afterwards the rows have their impulses, and the rigid bodies in
+  /// Bullet their velocities.
   SolveReport solve();
 
  private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
-  /// The part that an end of a row is of.
+  /// The component of a body on which an end of a row acts.
   struct EndPart {
-    int part = -1;                            ///< in `parts_`; below 0: none that is solved for by itself
-    RowMotions motions = RowMotions::Zero();  ///< Z there
+    int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
+    RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
   };
   struct BodyState {
-    std::vector<btScalar> solution, residual;  ///< wide, when a pass began; of elasticity and others alone
+    std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
   };
 
   SolvedBody& bodyAt(std::size_t k) const;
   elastic_detail::BlockMatrix<btScalar>& matrixOf(const RowEnd& end) const;
 
-  // A pass: system_solve.cpp.
+  // The steps of a pass; implemented in system_solve.cpp.
   void beginBounds();
   void findResiduals();
   void evaluateRows(btScalar kept, bool first);
@@ -66,53 +67,53 @@ class SystemSolve {
   bool isHung(std::size_t body) const;
   void giveMomentum();
 
-  // The few unknowns: system_elimination.cpp.
+  // The few unknowns; implemented in system_elimination.cpp.
   void numberRigids();
-  void collectParts();
+  void collectComponents();
   bool isJoined(std::size_t body) const;
-  void addPart(std::size_t body, std::size_t part);
-  Dynamics& dynamicsOf(const PartUnknown& part) const;
-  void moveIntoParts();
-  void moveOutOfParts();
-  Vector6 momentumOf(const PartUnknown& part) const;
-  void matchParts();
+  void addComponent(std::size_t body, std::size_t component);
+  Dynamics& dynamicsOf(const ComponentUnknown& component) const;
+  void moveIntoComponents();
+  void moveOutOfComponents();
+  Vector6 momentumOf(const ComponentUnknown& component) const;
+  void matchComponents();
   void findFewResiduals();
   Matrix fewMatrix() const;
   void addFewStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h, Matrix& few) const;
-  Eigen::Index firstOf(const EndPart& of) const;
+  Eigen::Index firstOf(const EndPart& end) const;
   void eliminate();
   void addFew(const Vector& few, bool toResiduals);
   Vector fewOf() const;
-  bool meetsFew(std::size_t row) const;
+  bool collidesWithFew(std::size_t row) const;
   void addCrossProducts();
   void addProducts(std::vector<const btScalar*>& added);
   void moveFew();
   void settleFew();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
   btVector3 fewVelocity(std::size_t row, const Vector& few) const;
-  std::size_t placeOf(std::size_t body) const;
+  std::size_t indexOf(std::size_t body) const;
 
-  // How closely, and how far: system_limits.cpp, system_line_search.cpp.
+  // Tolerances and line search; implemented in system_limits.cpp and system_line_search.cpp.
   elastic_detail::SolveLimits limitsWithoutRows() const;
   elastic_detail::SolveLimits limitsOfPass(int pass) const;
   double toleranceWithForces(double tolerance, bool anyElastic) const;
   double massOfAll() const;
   btScalar searchLine();
-  double slope(btScalar share, double linear, double quadratic) const;
-  void moveBack(btScalar share);
+  double slope(btScalar fraction, double linear, double quadratic) const;
+  void moveBack(btScalar fraction);
 
-  DeformableSolver::Parts& step_;
+  DeformableSolver::Impl& step_;
   const SolvedSystem& system_;
   ParallelFor* threads_;
-  bool joinsSoft_ = false;         ///< any row two points of soft bodies
+  bool joinsSoft_ = false;         ///< true if a row connects two points of soft bodies
   std::vector<BodyState> states_;  ///< by body of the system
-  std::vector<PartUnknown> parts_;
+  std::vector<ComponentUnknown> components_;
   std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
-  // Few unknowns: V of rigid bodies, and then q of parts.
+  // The few unknowns: V of rigid bodies, followed by q of components.
   Eigen::Index rigidSize_ = 0, fewSize_ = 0;
-  Vector few_, fewStep_, fewResidual_;  ///< as they are; of the pass, their growth and what is left of their equations
-  Vector partsBefore_;                  ///< momenta of parts when the pass began
-  Vector rigidMomentum_, rigidPush_;    ///< M V, and its growth in the pass
+  Vector few_, fewStep_, fewResidual_;  ///< their values; in the pass, their change and the residual of their equations
+  Vector partsBefore_;                  ///< momenta of the components when the pass began
+  Vector rigidMomentum_, rigidPush_;    ///< M V, and its change in the pass
   Matrix inverseMass_, compliance_;     ///< M^-1; the inverse of the few unknowns' matrix
   std::vector<btVector3> before_, stepped_;  ///< by row: u when the pass began, and by how much it changed
 };

@@ -14,21 +14,23 @@ namespace tetskin::cage_detail {
 namespace {
 
 constexpr int kFull = 255;
-/// Lightest node, over the mean. What it weighs beyond its own is not where the mesh's mass is: a fifth loads thin ends
-/// so that the serpent's sag is wrong by half as much again.
-constexpr double kLightestNode = 0.1;
-/// Light nodes draw on those around so often, and each on so much of what one has to spare, as others may, too.
+/// Mass of the lightest node, relative to the mean. Mass added to reach it is not where the mesh's mass is: with a
+/// fifth, the load of thin ends makes the serpent's sag wrong by half as much again.
+constexpr double kMinNode = 0.1;
+/// Number of rounds in which light nodes take mass from those around them, and the fraction of a node's surplus that
+/// each may take, as others may, too.
 constexpr int kMassRounds = 20;
-constexpr double kMostDrawn = 0.1;
-/// Parts of a tet in one refinement.
+constexpr double kMaxDrawn = 0.1;
+/// Number of small tets of a tet in one refinement.
 constexpr std::size_t kEighths = 8;
-/// Samples of a small tet: near each of its corners, where a quarter of it is.
+/// Samples of a small tet: one near each of its corners, for a quarter of its volume.
 constexpr double kNear = 0.55, kFar = 0.15;
 
 class FillSampler {
  public:
   FillSampler(const CageTets& cage, const LatticeFrame& frame, const LatticeSet& set, const LatticeMesh& lattice)
       : cage_(cage), frame_(frame), set_(set), lattice_(lattice) {
+    assert(cage.latticeTets.size() == cage.mesh.tetCount());
     inLatticeTet_ = packLists(lattice.mesh.tetCount(), [&](auto&& add) {
       for (std::uint32_t t = 0; t < cage.mesh.tetCount(); ++t) {
         add(static_cast<std::size_t>(cage.latticeTets[t]), t);
@@ -36,7 +38,7 @@ class FillSampler {
     });
   }
 
-  /// In 255ths.
+  /// Volume fraction in 255ths.
   std::uint8_t fillOf(std::size_t tet, const TetCorners& small) const {
     const Eigen::Vector3d far = kFar * (small[0] + small[1] + small[2] + small[3]);
     int found = 0;
@@ -46,17 +48,17 @@ class FillSampler {
 
  private:
   bool isMaterial(std::size_t tet, const Eigen::Vector3d& p) const {
-    const CellPlace place = locateCell(frame_.toLattice(p));
-    const int home = lattice_.indexOf(set_, place.tet);
+    const CellPosition position = locateCell(frame_.toLattice(p));
+    const int home = lattice_.indexOf(set_, position.tet);
     if (home < 0) return false;
     for (std::uint32_t k = inLatticeTet_.starts[home]; k < inLatticeTet_.starts[home + 1]; ++k) {
       const std::uint32_t other = inLatticeTet_.values[k];
-      if ((cage_.cells[other] >> place.cell & 1) != 0) return goesWith(tet, other);
+      if ((cage_.cells[other] >> position.cell & 1) != 0) return goesWith(tet, other);
     }
     return false;
   }
 
-  /// Fitting moves tets over the material of those around them, which share a node.
+  /// True if the two tets share a node: fitting moves a tet over the material of those around it.
   bool goesWith(std::size_t tet, std::size_t other) const {
     const Tet &a = cage_.mesh.tets[tet], &b = cage_.mesh.tets[other];
     return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
@@ -75,7 +77,7 @@ double roughFill(const FillSampler& sampler, std::size_t tet, const TetCorners& 
   return static_cast<double>(sum) / (kFull * static_cast<double>(kEighths));
 }
 
-/// Keeps the fill of the tet's small tets.
+/// Computes and stores the volume fractions of the tet's small tets.
 double fineFill(const FillSampler& sampler, std::size_t tet, const TetCorners& corners, std::uint8_t* fine) {
   int sum = 0;
   for (const TetCorners& eighth : refinedTet(corners)) {
@@ -87,7 +89,7 @@ double fineFill(const FillSampler& sampler, std::size_t tet, const TetCorners& c
   return static_cast<double>(sum) / (kFull * static_cast<double>(kFineTets));
 }
 
-/// True for tets with nothing but full tets around their nodes: wherever fitting has moved these.
+/// True for tets whose nodes are in full tets only: these stay full wherever fitting moves the nodes.
 std::vector<char> deepTets(const CageTets& cage) {
   std::vector<char> full(cage.mesh.nodeCount(), 1), deep(cage.mesh.tetCount(), 1);
   for (std::size_t t = 0; t < deep.size(); ++t) {
@@ -100,19 +102,20 @@ std::vector<char> deepTets(const CageTets& cage) {
   return deep;
 }
 
-/// Light nodes take what they miss from those around, in proportion to what these have to spare.
-void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double least, std::vector<double>& masses) {
-  std::vector<double> spare(masses.size(), 0.0);  // around each node
+/// Light nodes take the mass that they lack from those around them, in proportion to the surplus of these.
+void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double minimum, std::vector<double>& masses) {
+  assert(minimum >= 0.0);
+  std::vector<double> spare(masses.size(), 0.0);  // sum around each node
   for (const auto& [a, b] : edges) {
-    spare[a] += std::max(masses[b] - least, 0.0);
-    spare[b] += std::max(masses[a] - least, 0.0);
+    spare[a] += std::max(masses[b] - minimum, 0.0);
+    spare[b] += std::max(masses[a] - minimum, 0.0);
   }
   std::vector<double> change(masses.size(), 0.0);
   for (const auto& [a, b] : edges) {
     for (const auto& [light, heavy] : {std::array<int, 2>{a, b}, std::array<int, 2>{b, a}}) {
-      const double missing = least - masses[light], has = masses[heavy] - least;
+      const double missing = minimum - masses[light], has = masses[heavy] - minimum;
       if (!(missing > 0.0 && has > 0.0)) continue;
-      const double given = has * std::min(missing / spare[light], kMostDrawn);
+      const double given = has * std::min(missing / spare[light], kMaxDrawn);
       change[light] += given;
       change[heavy] -= given;
     }
@@ -120,19 +123,20 @@ void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double lea
   for (std::size_t n = 0; n < masses.size(); ++n) masses[n] += change[n];
 }
 
-/// Raises what is below, at the expense of all that is above.
-void keepAtLeast(double least, std::vector<double>& masses) {
+/// Raises values below the bound, and lowers all above it in return.
+void keepAtLeast(double minimum, std::vector<double>& masses) {
+  assert(!masses.empty() && minimum >= 0.0);
   for (bool changed = true; changed;) {
     changed = false;
     double missing = 0.0, spare = 0.0;
     for (double& mass : masses) {
-      if (mass < least) missing += least - std::exchange(mass, least);
-      spare += mass - least;
+      if (mass < minimum) missing += minimum - std::exchange(mass, minimum);
+      spare += mass - minimum;
     }
     if (!(missing > 0.0 && spare > missing)) return;
     for (double& mass : masses) {
-      mass -= (mass - least) * (missing / spare);
-      changed |= mass < least;
+      mass -= (mass - minimum) * (missing / spare);
+      changed |= mass < minimum;
     }
   }
 }
@@ -145,7 +149,8 @@ CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSe
   const std::vector<char> deep = deepTets(cage);
   CageFill result;
   result.fill.assign(cage.mesh.tetCount(), 1.0);
-  if (kEighths * cage.mesh.tetCount() <= kMostRefinedTets) result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
+  if (kEighths * cage.mesh.tetCount() <= Limits::kMaxRefinedTets)
+    result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
   for (std::size_t t = 0; t < result.fill.size(); ++t) {
     if (deep[t]) continue;
     const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[t]);
@@ -168,11 +173,12 @@ std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& f
     sum += filled;
   }
   if (!fill.empty() && !(sum > 0.0)) return nodeMasses(mesh, {}, volume);
+  assert(sum > 0.0 && volume > 0.0);
   for (double& mass : masses) mass *= volume / sum;
-  const double least = kLightestNode * volume / static_cast<double>(masses.size());
+  const double minimum = kMinNode * volume / static_cast<double>(masses.size());
   const auto edges = uniqueEdges(mesh);
-  for (int round = 0; round < kMassRounds; ++round) drawFromNeighbours(edges, least, masses);
-  keepAtLeast(least, masses);
+  for (int round = 0; round < kMassRounds; ++round) drawFromNeighbours(edges, minimum, masses);
+  keepAtLeast(minimum, masses);
   return masses;
 }
 

@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/fit/cage_binding.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::cage_detail {
@@ -25,7 +26,7 @@ std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const La
       result[p] = tet;
       continue;
     }
-    // On or near a face, an edge or a node: any tet around a node of the home tet may be the one.
+    // A point on or near a face, an edge or a node may be in any tet around a node of its lattice tet.
     for (const LatticeNode& node : nodesOf(home)) {
       for (const LatticeStep& step : latticeTables().star[node.kind]) {
         const int other = indexOf(node.cube + step);
@@ -38,6 +39,7 @@ std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const La
 
 std::size_t countOutside(const std::vector<Eigen::Vector3d>& points, std::size_t count, const TetMesh& mesh,
                          const std::vector<int>& tetOf) {
+  assert(count <= points.size() && count <= tetOf.size());
   std::size_t outside = 0;
   for (std::size_t p = 0; p < count; ++p) outside += tetOf[p] >= 0 && holds(mesh, tetOf[p], points[p]) ? 0 : 1;
   return outside;

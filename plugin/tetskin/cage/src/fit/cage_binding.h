@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which tet of the cage holds which point of the surface, kept up to date while nodes move.
+// Which tet of the cage contains which point of the surface; it is updated as nodes move.
 #pragma once
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
@@ -13,7 +13,7 @@
 namespace tetskin::cage_detail {
 
 /// The tet of every point, evaluated exactly as `embed` does: barycentric distance at most 0 in double. -1 if there is
-/// none, which happens to points within rounding error of a face of the lattice only.
+/// none, which only happens to points within rounding error of a face of the lattice.
 std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const LatticeSet& set,
                             const LatticeFrame& frame, const LatticeMesh& lattice);
 

@@ -3,7 +3,7 @@
 //
 // Node by node: a boundary node steps down the gradient of the cage's volume, an inner one towards the mean of its
 // neighbours. A step changes the shape of the tets around the node only, so it is safe when these keep their shape and
-// still hold all the points that they held together.
+// still contain all the points that they contained together.
 //
 // This work is based on:
 //   Lori Freitag, Carl Ollivier-Gooch, "Tetrahedral Mesh Improvement Using Swapping and Smoothing", 1997 ("smart"
@@ -27,19 +27,20 @@ constexpr double kRadians = 3.14159265358979323846 / 180.0;
 constexpr double kFitMinDihedralDeg = 25.0;
 constexpr double kFitMaxDihedralDeg = 140.0;
 static_assert(kFitMinDihedralDeg > kMinDihedralDeg && kFitMaxDihedralDeg < kMaxDihedralDeg);
-/// Smallest tet as a fraction of the lattice's: small tets with good angles need small time steps too.
-constexpr double kSmallestTet = 0.15;
-/// Margin of the points to the cage's boundary, as a barycentric weight. Keeps them inside when they or the cage are
+/// Smallest tet as a fraction of the lattice's: small tets with good angles also need small time steps.
+constexpr double kMinTet = 0.15;
+/// Margin of the points to the cage's boundary, as a barycentric weight. It keeps them inside when they or the cage are
 /// rounded to single precision. The lattice starts with a margin of kTouch, since its tets are 1.4 high.
 constexpr double kBoundaryMargin = 0.5 * kTouch;
-/// Step of a boundary node, in half cubes: first, grown after success, shrunk after failure, and given up below.
+/// Step of a boundary node, in half cubes: the first one, its growth after success, its reduction after failure, and
+/// the length below which the node stops.
 constexpr double kFirstStep = 0.5;
 constexpr double kGrow = 1.3;
 constexpr double kShrink = 0.5;
 constexpr double kLastStep = 0.02;
-/// Step allowed again to a node whose neighbour has moved out of the way.
+/// Step of a stopped node after a neighbour has moved out of its way.
 constexpr double kRetryStep = 0.05;
-/// An inner node nearer than this to its neighbours' mean, in half cubes, stays.
+/// An inner node nearer than this to its neighbours' mean, in half cubes, does not move.
 constexpr double kNearMean = 0.02;
 /// The volume hardly changes after some twelve sweeps.
 constexpr int kSweeps = 16;
@@ -57,6 +58,7 @@ class PointLists {
   int next(int point) const { return links_[point].next; }
   int tetOf(int point) const { return tetOf_[point]; }
   void move(int point, int tet) {
+    assert(tetOf_[point] >= 0 && tet >= 0 && static_cast<std::size_t>(tet) < head_.size());
     const Link link = links_[point];
     (link.previous >= 0 ? links_[link.previous].next : head_[tetOf_[point]]) = link.next;
     if (link.next >= 0) links_[link.next].previous = link.previous;
@@ -94,7 +96,8 @@ class CageFit {
         boundary_(mesh_.nodeCount(), 0),
         step_(mesh_.nodeCount(), kFirstStep),
         blocker_(mesh_.nodeCount(), -1),
-        smallestVolume_(kSmallestTet * kLatticeTetVolume * half * half * half) {
+        smallestVolume_(kMinTet * kLatticeTetVolume * half * half * half) {
+    assert(openFaces_.size() == mesh_.tetCount() && latticeTets_.size() == mesh_.tetCount());
     for (std::size_t t = 0; t < mesh_.tetCount(); ++t) {
       for (int corner = 0; corner < 4; ++corner) {
         if ((openFaces_[t] >> corner & 1) == 0) continue;
@@ -144,7 +147,7 @@ class CageFit {
     return sum;
   }
 
-  /// One step of a boundary node. True if it moved, or may do so with a smaller step.
+  /// One step of a boundary node. True if it moved, or may move with a smaller step.
   bool pull(int n) {
     if (step_[n] < kLastStep) return false;
     const Eigen::Vector3d gradient = volumeGradient(n);
@@ -156,6 +159,7 @@ class CageFit {
   }
 
   bool smooth(int n) {
+    assert(starSize(n) > 0);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (int k = 0; k < starSize(n); ++k) {
       for (const int other : mesh_.tets[starTet(n, k)]) sum += mesh_.nodes[other] - mesh_.nodes[n];
@@ -163,12 +167,12 @@ class CageFit {
     const Eigen::Vector3d offset = sum / (3.0 * starSize(n));
     if (offset.norm() < kNearMean * half_) return false;
     const Eigen::Vector3d old = mesh_.nodes[n];
-    const Eigen::Vector3d middle = old + 0.5 * offset;
+    const Eigen::Vector3d centroid = old + 0.5 * offset;
     const double before = worstShape(n);
-    mesh_.nodes[n] = middle;
+    mesh_.nodes[n] = centroid;
     const double after = worstShape(n);
     mesh_.nodes[n] = old;
-    if (after <= before || !tryMove(n, middle)) return false;
+    if (after <= before || !tryMove(n, centroid)) return false;
     for (int k = 0; k < starSize(n); ++k) {
       for (const int other : mesh_.tets[starTet(n, k)]) step_[other] = std::max(step_[other], kRetryStep);
     }
@@ -187,15 +191,15 @@ class CageFit {
   }
 
   bool shapeIsGood(int tet) const {
-    static const double least = std::cos(kFitMaxDihedralDeg * kRadians);
-    static const double most = std::cos(kFitMinDihedralDeg * kRadians);
+    static const double minimum = std::cos(kFitMaxDihedralDeg * kRadians);
+    static const double maximum = std::cos(kFitMinDihedralDeg * kRadians);
     const TetCorners p = cornersOf(mesh_, mesh_.tets[tet]);
     if (!(signedVolume(p) > smallestVolume_)) return false;
     const std::array<double, 6> cosines = dihedralCosines(p);
-    return std::all_of(cosines.begin(), cosines.end(), [](double c) { return c > least && c < most; });
+    return std::all_of(cosines.begin(), cosines.end(), [](double c) { return c > minimum && c < maximum; });
   }
 
-  /// Moves the node if the tets around it stay good and go on holding their points; otherwise nothing changes.
+  /// Moves the node if the tets around it stay well-shaped and still contain their points; otherwise nothing changes.
   bool tryMove(int n, const Eigen::Vector3d& position) {
     const Eigen::Vector3d old = mesh_.nodes[n];
     mesh_.nodes[n] = position;
@@ -209,7 +213,7 @@ class CageFit {
     return true;
   }
 
-  /// True if the tets around the node hold all points they held. Those that change tets are in `moved_` then.
+  /// True if the tets around the node still contain all their points. Those that change tets are then in `moved_`.
   bool holdsPoints(int n) {
     maps_.clear();
     for (int k = 0; k < starSize(n); ++k) maps_.emplace_back(cornersOf(mesh_, mesh_.tets[starTet(n, k)]));
@@ -232,8 +236,9 @@ class CageFit {
     return true;
   }
 
-  /// Which tet around the node holds the point, trying number k first; -1 if none does.
+  /// The tet around the node that contains the point, trying number k first; -1 if there is none.
   int holder(int n, int k, int point) const {
+    assert(maps_.size() == static_cast<std::size_t>(starSize(n)));
     if (holds(starTet(n, k), k, point)) return k;
     for (int j = 0; j < starSize(n); ++j) {
       if (j != k && mayTake(starTet(n, j), starTet(n, k)) && holds(starTet(n, j), j, point)) return j;
@@ -241,7 +246,7 @@ class CageFit {
     return -1;
   }
 
-  /// Of several copies at a place, only one that shares a face with the point's tet is known to be of its part.
+  /// Of several duplicates, only one that shares a face with the point's tet is known to belong to its component.
   bool mayTake(int tet, int from) const {
     if (!copied_[tet] && !copied_[from]) return true;
     const Tet& own = mesh_.tets[from];
@@ -253,8 +258,8 @@ class CageFit {
   bool holds(int tet, int k, int point) const {
     const Eigen::Vector4d weights = maps_[k](points_[point]);
     for (int corner = 0; corner < 4; ++corner) {
-      const double least = (openFaces_[tet] >> corner & 1) != 0 ? kBoundaryMargin : 0.0;
-      if (!(weights[corner] >= least)) return false;
+      const double minimum = (openFaces_[tet] >> corner & 1) != 0 ? kBoundaryMargin : 0.0;
+      if (!(weights[corner] >= minimum)) return false;
     }
     return true;
   }
@@ -262,7 +267,7 @@ class CageFit {
   TetMesh& mesh_;
   const std::vector<std::uint8_t>& openFaces_;
   const std::vector<int>& latticeTets_;
-  std::vector<char> copied_;  ///< by tet: it is not the only one of its lattice tet
+  std::vector<char> copied_;  ///< by tet: it has duplicates
   const std::vector<Eigen::Vector3d>& points_;
   double half_;
   Lists<> stars_;  ///< by node: the tets around it
@@ -272,7 +277,7 @@ class CageFit {
   std::vector<int> blocker_;    ///< by node: the point that its last failed move would have lost, or -1
   double smallestVolume_;
   std::vector<BarycentricMap> maps_;       ///< of the tets around the node being moved
-  std::vector<std::array<int, 2>> moved_;  ///< point, new tet
+  std::vector<std::array<int, 2>> moved_;  ///< pairs of point and new tet
 };
 
 }  // namespace

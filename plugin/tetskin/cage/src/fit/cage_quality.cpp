@@ -20,26 +20,26 @@ std::array<double, 6> dihedralCosines(const TetCorners& p) {
   return {cosine(0, 1), cosine(0, 2), cosine(0, 3), cosine(1, 2), cosine(1, 3), cosine(2, 3)};
 }
 
-std::vector<int> partNumbers(const TetMesh& mesh) {
+std::vector<int> componentNumbers(const TetMesh& mesh) {
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
-  std::vector<int> number(mesh.nodeCount(), -1), parts;
+  std::vector<int> number(mesh.nodeCount(), -1), components;
   int count = 0;
   for (const Tet& tet : mesh.tets) {
-    int& part = number[sets.find(tet[0])];
-    if (part < 0) part = count++;
-    parts.push_back(part);
+    int& component = number[sets.find(tet[0])];
+    if (component < 0) component = count++;
+    components.push_back(component);
   }
-  return parts;
+  return components;
 }
 
 }  // namespace cage_detail
 
 DihedralRange dihedralRange(const TetMesh& mesh) {
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-  double smallest = 1.0, largest = -1.0;  // cosines
+  double smallest = 1.0, largest = -1.0;  // cosines of the angles
   for (const Tet& tet : mesh.tets) {
     for (const double c : cage_detail::dihedralCosines(cornersOf(mesh, tet))) {
       smallest = std::min(smallest, c);

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <cstddef>
 #include <vector>
@@ -20,17 +20,17 @@ struct DihedralRange {
   double minDeg = 180.0;
   double maxDeg = 0.0;
 };
-/// Over all tets of a mesh, none of them flat. Cost O(tets).
+/// The range over all tets of a mesh, none of them flat. Cost O(tets).
 DihedralRange dihedralRange(const TetMesh& mesh);
 
 namespace cage_detail {
 
-/// Cosines of the six dihedral angles of a positive tet: of the edges between each two faces, in the order (0,1) (0,2)
+/// Cosines of the six dihedral angles of a positive tet, at the edges between any two faces, in the order (0,1) (0,2)
 /// (0,3) (1,2) (1,3) (2,3) of the corners opposite to the faces.
 std::array<double, 6> dihedralCosines(const TetCorners& p);
 
-/// By tet, the number of its part: tets that are connected by nodes. Cost O(tets).
-std::vector<int> partNumbers(const TetMesh& mesh);
+/// By tet, the number of its component; tets of a component are connected by nodes. Cost O(tets).
+std::vector<int> componentNumbers(const TetMesh& mesh);
 
 }  // namespace cage_detail
 }  // namespace tetskin

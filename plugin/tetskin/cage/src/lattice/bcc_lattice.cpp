@@ -24,6 +24,7 @@ int localOf(int b, int u, int sign) {
 
 /// Corners 0 and 1: centres of the two cubes. Corners 2 and 3: ends of an edge of the face between them.
 std::array<Point, 4> cornersOf(int local) {
+  assert(local >= 0 && local < kTetsPerCube);
   const int b = local / 4;
   const int u = (local % 4 < 2) ? (b + 1) % 3 : (b + 2) % 3;
   const int w = 3 - b - u;
@@ -145,6 +146,7 @@ const LatticeTables& latticeTables() {
 }
 
 LatticeTet locate(const Eigen::Vector3d& p) {
+  assert(p.cwiseAbs().maxCoeff() < 8.0 * kMaxCube);
   LatticeTet tet;
   Eigen::Vector3d r;
   for (int axis = 0; axis < 3; ++axis) {
@@ -211,6 +213,7 @@ bool LatticeSet::contains(const LatticeTet& tet) const {
 }
 
 void LatticeSet::add(std::size_t i, std::uint16_t tets) {
+  assert(i < masks_.size() && (tets & ~kAllTets) == 0);
   for (unsigned fresh = tets & static_cast<unsigned>(~masks_[i]); fresh != 0; fresh &= fresh - 1) ++tetCount_;
   masks_[i] |= tets;
 }
@@ -252,6 +255,7 @@ LatticeMesh meshOf(const LatticeSet& set, const LatticeFrame& frame) {
       result.mesh.tets.push_back({nodeIndex(nodes[0]), nodeIndex(nodes[1]), nodeIndex(nodes[2]), nodeIndex(nodes[3])});
     }
   }
+  assert(result.mesh.tetCount() == set.tetCount());
   return result;
 }
 

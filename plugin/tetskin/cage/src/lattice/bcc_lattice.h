@@ -9,9 +9,10 @@
 // even, which makes finding a point's tet, and most tests against one, a matter of comparing six numbers.
 #pragma once
 
-#include <tetskin/core/tet_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -28,7 +29,7 @@ constexpr int kStarSize = 24;
 /// Volume of a tet in lattice coordinates: two edges of length 2, crossing at distance 1.
 constexpr double kLatticeTetVolume = 2.0 / 3.0;
 /// Largest coordinate of a cube: leaves room for doubling and for the steps to neighbours in 32 bits.
-constexpr double kLargestCube = 1 << 29;
+constexpr double kMaxCube = 1 << 29;
 
 struct LatticeTet {
   Cube cube{};
@@ -41,19 +42,19 @@ struct LatticeNode {
   int kind = 0;
 };
 
-/// Where a tet lies, relative to a cube.
+/// The position of a tet relative to a cube.
 struct LatticeStep {
   std::array<std::int8_t, 3> cube{};
   std::int8_t local = 0;
 };
 
-/// Everything there is to know about the twelve tets and two nodes of a cube.
+/// All tables about the twelve tets and two nodes of a cube.
 struct LatticeTables {
   std::array<std::array<std::array<int, 3>, 4>, kTetsPerCube> corners;  ///< relative to 2 * cube, positive orientation
   std::array<std::array<int, 6>, kTetsPerCube> floors;  ///< each tet spans [f, f+2] along each plane direction
   std::array<std::array<LatticeStep, 4>, kTetsPerCube> neighbours;  ///< across the face opposite to each corner
   std::array<std::array<LatticeStep, kStarSize>, 2> star;           ///< tets around a node of each kind
-  std::array<std::array<std::uint32_t, kStarSize>, 2> starLinks;    ///< bits of those sharing a face and that node
+  std::array<std::array<std::uint32_t, kStarSize>, 2> starLinks;    ///< bits of those that share a face and that node
 };
 const LatticeTables& latticeTables();
 
@@ -81,17 +82,17 @@ Eigen::Vector3d centroid(const LatticeTet& tet);
 /// The four nodes of a tet.
 std::array<LatticeNode, 4> nodesOf(const LatticeTet& tet);
 
-/// Places the lattice in the mesh's space.
+/// The position and size of the lattice in the mesh's space.
 struct LatticeFrame {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< where lattice coordinates are 0, rest space
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< position of lattice coordinates 0, rest space
   double half = 1.0;                                 ///< length of one lattice coordinate: half a cube
 
   Eigen::Vector3d toLattice(const Eigen::Vector3d& p) const { return (p - origin) / half; }
   Eigen::Vector3d toRest(const Eigen::Vector3d& x) const { return origin + half * x; }
 };
 
-/// A set of tets, sparse: memory is proportional to the cubes that were ever touched, wherever they lie. Cubes keep the
-/// order in which they were inserted, so that everything built from a set is reproducible.
+/// A sparse set of tets: memory is proportional to the number of cubes that were ever inserted, wherever they are.
+/// Cubes keep the order in which they were inserted, so that everything built from a set is reproducible.
 class LatticeSet {
  public:
   LatticeSet() : slots_(64, -1) {}
@@ -103,7 +104,7 @@ class LatticeSet {
   std::uint16_t mask(std::size_t i) const { return masks_[i]; }
   /// Index of a cube, or -1.
   int find(const Cube& cube) const;
-  /// Index of a cube, which is added without tets if it is not there yet.
+  /// Index of a cube, which is added without tets if it is not in the set yet.
   int insert(const Cube& cube);
   bool contains(const LatticeTet& tet) const;
   /// Adds tets of cube i.
@@ -123,18 +124,20 @@ class LatticeSet {
 /// The tets of a set as a mesh with shared nodes. Tets are sorted by cube (z, y, x) for locality.
 struct LatticeMesh {
   TetMesh mesh;
-  std::vector<std::int32_t> tetOf;      ///< 12 a cube of the set: index of its tet t at 12 i + t, or -1
-  std::vector<std::uint8_t> openFaces;  ///< one a tet: bit c is set if no tet lies beyond the face opposite to corner c
+  std::vector<std::int32_t> tetOf;  ///< 12 per cube of the set: index of its tet t at 12 i + t, or -1
+  std::vector<std::uint8_t>
+      openFaces;  ///< one per tet: bit c is set if no tet lies beyond the face opposite to corner c
 
-  /// Of a tet of the set that the mesh was made of, or -1 if it is not in it.
+  /// Index of a tet of the set that the mesh was made of, or -1 if the tet is not in it.
   int indexOf(const LatticeSet& set, const LatticeTet& tet) const {
+    assert(tet.local >= 0 && tet.local < kTetsPerCube && tetOf.size() == kTetsPerCube * set.cubeCount());
     const int cube = set.find(tet.cube);
     return cube < 0 ? -1 : tetOf[kTetsPerCube * static_cast<std::size_t>(cube) + static_cast<std::size_t>(tet.local)];
   }
 };
 LatticeMesh meshOf(const LatticeSet& set, const LatticeFrame& frame);
 
-/// Cubes sorted by (z, y, x): the columns along x one after the other.
+/// Cubes sorted by (z, y, x): one column along x after the other.
 std::vector<std::int32_t> columnOrder(const LatticeSet& set);
 
 }  // namespace tetskin::cage_detail

@@ -7,6 +7,7 @@
 #include <tetskin/cage/src/lattice/cage_joints.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::cage_detail {
 namespace {
@@ -30,28 +31,30 @@ std::uint32_t neighboursOf(std::uint32_t tets, const Links& links) {
   return result;
 }
 
-/// The connected part of `within` that holds its lowest tet.
-std::uint32_t firstPart(std::uint32_t within, const Links& links) {
-  std::uint32_t part = 0;
+/// The connected component of `within` that contains its lowest tet.
+std::uint32_t firstComponent(std::uint32_t within, const Links& links) {
+  assert(within != 0);
+  std::uint32_t component = 0;
   std::uint32_t grown = within & (~within + 1);
-  while (grown != part) {
-    part = grown;
-    grown = (part | neighboursOf(part, links)) & within;
+  while (grown != component) {
+    component = grown;
+    grown = (component | neighboursOf(component, links)) & within;
   }
-  return part;
+  return component;
 }
 
-/// Fewest missing tets that connect one part of the kept ones with another.
-std::uint32_t shortestBridge(std::uint32_t kept, std::uint32_t part, const Links& links) {
-  std::array<std::uint32_t, kStarSize> rings{};  // rings[k]: tets at distance k from the part
-  std::uint32_t reached = part;
+/// The fewest missing tets that connect one component of the kept tets with another.
+std::uint32_t shortestBridge(std::uint32_t kept, std::uint32_t component, const Links& links) {
+  assert(component != 0 && (kept & component) == component && kept != component);
+  std::array<std::uint32_t, kStarSize> rings{};  // rings[k]: tets at distance k from the component
+  std::uint32_t reached = component;
   int k = 0;
-  for (rings[0] = part; (rings[k] & kept & ~part) == 0; ++k) {
+  for (rings[0] = component; (rings[k] & kept & ~component) == 0; ++k) {
     rings[k + 1] = neighboursOf(rings[k], links) & ~reached;
     reached |= rings[k + 1];
   }
   std::uint32_t bridge = 0;
-  std::uint32_t step = rings[k] & kept & ~part;
+  std::uint32_t step = rings[k] & kept & ~component;
   for (--k; k > 0; --k) {
     step = neighboursOf(step & (~step + 1), links) & rings[k];
     step &= ~step + 1;
@@ -60,15 +63,16 @@ std::uint32_t shortestBridge(std::uint32_t kept, std::uint32_t part, const Links
   return bridge;
 }
 
-/// Tets of the star to add so that it becomes one part with one complement; 0 if it is.
+/// Tets of the star to add so that it becomes one component with one complement; 0 if it already is.
 std::uint32_t missingTets(std::uint32_t kept, const Links& links) {
+  assert((kept & ~kWholeStar) == 0);
   if (kept == 0 || kept == kWholeStar) return 0;
-  const std::uint32_t part = firstPart(kept, links);
-  if (part != kept) return shortestBridge(kept, part, links);
+  const std::uint32_t component = firstComponent(kept, links);
+  if (component != kept) return shortestBridge(kept, component, links);
   std::uint32_t largest = 0;
   const std::uint32_t missing = kWholeStar & ~kept;
   for (std::uint32_t rest = missing; rest != 0;) {
-    const std::uint32_t hole = firstPart(rest, links);
+    const std::uint32_t hole = firstComponent(rest, links);
     if (bitCount(hole) > bitCount(largest)) largest = hole;
     rest &= ~hole;
   }
@@ -96,7 +100,7 @@ class Joiner {
   }
 
  private:
-  /// Which nodes are in the queue.
+  /// The set of nodes in the queue.
   class NodeSet {
    public:
     bool add(const LatticeNode& node) {

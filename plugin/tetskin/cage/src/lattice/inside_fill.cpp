@@ -4,18 +4,19 @@
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::cage_detail {
 namespace {
 
-/// Samples that vote on a region: enough for one that comes too near a fold to be overruled.
+/// Number of samples that vote on a region: enough to overrule one that is too near to a fold.
 constexpr std::size_t kVotes = 5;
 
-/// Cubes whose tets can be numbered in 31 bits.
-constexpr std::size_t kMostCubes = 150'000'000;
+/// Largest number of cubes whose tets can be numbered in 31 bits.
+constexpr std::size_t kMaxCubes = 150'000'000;
 
-/// Cubes next to each other along the axes.
+/// Steps to the neighbouring cubes along the axes.
 constexpr std::array<std::array<std::int8_t, 3>, 6> kSteps = {
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
@@ -36,7 +37,7 @@ class InsideFill {
     const int outsideRoot = regions.find(outside);
     for (std::size_t i = 0; i < entries; ++i) addRegionTets(i, regions, inside);
     if (!addGaps(gaps, regions, inside)) return false;
-    // Without open edges nothing leaks in from outside; without orientation there is no telling.
+    // Without open edges nothing leaks in from outside; without orientation the winding number cannot decide.
     if (surface_.openEdges == 0 || !surface_.oriented) return true;
     return growThroughHoles(entries, regions, outsideRoot);
   }
@@ -55,7 +56,7 @@ class InsideFill {
     for (std::size_t i = 0; i < touched; ++i) {
       const Cube c = set_.cube(i);
       for (int n = 0; n < 27; ++n) set_.insert({c[0] + n % 3 - 1, c[1] + n / 3 % 3 - 1, c[2] + n / 9 - 1});
-      if (set_.cubeCount() > kMostCubes) return false;
+      if (set_.cubeCount() > kMaxCubes) return false;
     }
     wasTouched_.resize(set_.cubeCount(), 0);
     touchedMask_.resize(set_.cubeCount());
@@ -65,6 +66,7 @@ class InsideFill {
 
   /// Name of an untouched tet: the tets of a cube that is untouched as a whole share one.
   int nameOf(std::size_t entry, int local) const {
+    assert(entry < wasTouched_.size() && local >= 0 && local < kTetsPerCube);
     return static_cast<int>(kTetsPerCube * entry) + (wasTouched_[entry] ? local : 0);
   }
   bool untouched(std::size_t entry, int local) const { return (touchedMask_[entry] >> local & 1) == 0; }
@@ -88,9 +90,9 @@ class InsideFill {
     }
   }
 
-  /// Connects what lies at both ends of every gap along x, and the ends of every column with the outside. That connects
-  /// all of a region: each of its rims is connected in itself, and from the last cube of a rim along x a gap leads on
-  /// to a rim farther out.
+  /// Connects the regions at both ends of every gap along x, and the ends of every column with the outside. That
+  /// connects all of a region: each of its rims is connected in itself, and from the last cube of a rim along x a gap
+  /// leads on to a rim farther out.
   std::vector<Gap> connectColumns(DisjointSets& regions, int outside) const {
     const std::vector<std::int32_t> order = columnOrder(set_);
     std::vector<Gap> gaps;
@@ -116,10 +118,10 @@ class InsideFill {
   }
 
   Eigen::Vector3d sampleOf(std::size_t entry, int local) const {
-    return wasTouched_[entry] ? centroid({set_.cube(entry), local}) : middleOf(set_.cube(entry));
+    return wasTouched_[entry] ? centroid({set_.cube(entry), local}) : centroidOf(set_.cube(entry));
   }
   /// Mean of the centroids of a cube's tets, which lie around its upper faces.
-  static Eigen::Vector3d middleOf(const Cube& cube) {
+  static Eigen::Vector3d centroidOf(const Cube& cube) {
     return cubeOrigin(cube) + Eigen::Vector3d::Constant(1.0 + 1.0 / 3.0);
   }
 
@@ -154,6 +156,7 @@ class InsideFill {
   }
 
   bool vote(const std::vector<std::array<int, 2>>& members, std::size_t first, std::size_t last) const {
+    assert(first < last && last <= members.size());
     if (!surface_.oriented) return true;
     const std::size_t count = std::min(kVotes, last - first);
     std::size_t yes = 0;
@@ -186,7 +189,7 @@ class InsideFill {
   }
 
   bool growThroughHoles(std::size_t entries, DisjointSets& regions, int outsideRoot) {
-    std::vector<Cube> fresh;  // whole cubes found inside
+    std::vector<Cube> fresh;  // whole cubes that are inside
     forUntouched([&](std::size_t i, int local) {
       if (regions.find(nameOf(i, local)) != outsideRoot || !insideAt(sampleOf(i, local))) return;
       set_.add(i, wasTouched_[i] ? static_cast<std::uint16_t>(1u << local) : kAllTets);
@@ -198,7 +201,7 @@ class InsideFill {
       for (const auto& step : kSteps) {
         const Cube next = cube + step;
         if (static_cast<std::size_t>(set_.insert(next)) < entries) continue;
-        if (set_.contains({next, 0}) || !insideAt(middleOf(next))) continue;
+        if (set_.contains({next, 0}) || !insideAt(centroidOf(next))) continue;
         set_.add(set_.insert(next), kAllTets);
         fresh.push_back(next);
         if (set_.tetCount() > limit_) return false;

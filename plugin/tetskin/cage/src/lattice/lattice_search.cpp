@@ -9,13 +9,14 @@
 #include <tetskin/cage/src/lattice/surface_cover.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace tetskin::cage_detail {
 namespace {
 
-/// A count this near the target ends the search at once. Nearer would cost more lattices than it is worth.
+/// A count this near the target ends the search at once. A closer one would cost more lattices than it is worth.
 constexpr double kGoodCount = 0.03;
 /// Spacings tried at one origin before a count within kCountTolerance is accepted, and before the next origin is tried.
 constexpr std::size_t kSpacingsPerOrigin = 7;
@@ -52,21 +53,22 @@ Eigen::Vector3d originOf(std::size_t i) {
   return origin;
 }
 
-/// Estimated tets at a spacing: the volume, and half the tets that touch the surface; whole for sheets, whose area
-/// counts once.
+/// Estimated number of tets at a spacing: those in the volume, and half of those that touch the surface; all of the
+/// latter for sheets, whose area counts once.
 double estimatedCount(const Surface& surface, double half) {
   const double volume = surface.volume + 0.5 * kMeanWidth * half * surface.area;
   return volume / (kLatticeTetVolume * half * half * half);
 }
 
 double firstSpacing(const Surface& surface, double target) {
+  assert(target > 0.0);
   const double size = surface.box.sizes().maxCoeff();
-  // Of a wire, each tet covers a good part of its size.
+  // For a wire, each tet covers a length comparable to its own size.
   if (!(surface.area > 0.0)) return 3.0 * size / target;
   double low = 1e-9 * size, high = 10.0 * size;
   for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(low * high);
-    (estimatedCount(surface, middle) > target ? low : high) = middle;
+    const double centroid = std::sqrt(low * high);
+    (estimatedCount(surface, centroid) > target ? low : high) = centroid;
   }
   return high;
 }
@@ -100,7 +102,7 @@ class Search {
     return count > 0.0 ? std::abs(count - target_) / target_ : std::numeric_limits<double>::infinity();
   }
 
-  /// Searches the spacing at one origin; returns the one to start with at the next.
+  /// Searches the spacing at one origin; returns the initial one for the next origin.
   double bracket(const Eigen::Vector3d& origin, double half) {
     Sample low, high;  // of the spacing: low has too many tets, high too few
     for (std::size_t i = 0; i < kSpacingsPerOrigin; ++i) {
@@ -115,6 +117,7 @@ class Search {
   }
 
   double nextSpacing(const Sample& low, const Sample& high, double half, double count, bool stopped) const {
+    assert(half > 0.0 && count > 0.0);
     if (!low.known || !high.known) {
       const double factor = std::pow(count / target_, 1.0 / kCountPower);
       return half * (stopped ? kStoppedFactor : factor * (count > target_ ? kOvershoot : 1.0 / kOvershoot));
@@ -122,13 +125,14 @@ class Search {
     const double slope = (high.logCount - low.logCount) / (high.logHalf - low.logHalf);
     const double guess = slope < 0.0 ? low.logHalf + (std::log(target_) - low.logCount) / slope : low.logHalf;
     const double margin = kBracketMargin * (high.logHalf - low.logHalf);
-    const double least = std::min(low.logHalf, high.logHalf) + std::abs(margin);
-    const double most = std::max(low.logHalf, high.logHalf) - std::abs(margin);
-    return std::exp(std::clamp(guess, least, most));
+    const double minimum = std::min(low.logHalf, high.logHalf) + std::abs(margin);
+    const double maximum = std::max(low.logHalf, high.logHalf) - std::abs(margin);
+    return std::exp(std::clamp(guess, minimum, maximum));
   }
 
-  /// Builds the cage of one lattice and remembers it if it is the best. Returns its count.
+  /// Builds the cage of one lattice and keeps it if it is the best so far. Returns its count.
   double keepTets(const Eigen::Vector3d& origin, double half) {
+    assert(half >= smallestSpacing(surface_));
     ++lattices_;
     LatticeCage cage;
     cage.frame.half = half;
@@ -155,7 +159,7 @@ class Search {
 double smallestSpacing(const Surface& surface) {
   const double farthest = std::max(surface.box.min().cwiseAbs().maxCoeff(), surface.box.max().cwiseAbs().maxCoeff());
   return std::max(kRoundingRoom * std::numeric_limits<double>::epsilon() * farthest,
-                  surface.box.sizes().maxCoeff() / kLargestCube);
+                  surface.box.sizes().maxCoeff() / kMaxCube);
 }
 
 LatticeCage searchLattice(const Surface& surface, const WindingTree& winding, std::size_t target,

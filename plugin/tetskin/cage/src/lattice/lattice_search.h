@@ -8,21 +8,21 @@
 
 namespace tetskin::cage_detail {
 
-/// A count within this fraction of the target is what the search is for.
+/// The search aims at a count within this fraction of the target.
 constexpr double kCountTolerance = 0.10;
 
 /// One lattice and the tets it keeps.
 struct LatticeCage {
   LatticeFrame frame;
   LatticeSet set;               ///< touching the surface, inside it, or joining pinched parts
-  std::size_t joiningTets = 0;  ///< of these, how many only join
-  std::size_t lattices = 0;     ///< how many lattices were tried to find this one
+  std::size_t joiningTets = 0;  ///< number of these that only join pinched parts
+  std::size_t lattices = 0;     ///< number of lattices tried to find this one
 };
 
 /// Finds the spacing, and the lattice's origin along each axis, for which about `target` tets are kept.
 /// The count is not a continuous function of the spacing: on flat faces it jumps by whole layers. So the spacing is
 /// bracketed at one origin first, then at others, until the count is good; the best is returned in any case.
-/// firstOrigin  where to start in the sequence of origins: another one gives another lattice
+/// firstOrigin  index of the first origin in the sequence: another one gives another lattice
 /// Cost: lattices * O(triangles + target). Spacings never fall below `smallestSpacing`, even if that means fewer tets.
 LatticeCage searchLattice(const Surface& surface, const WindingTree& winding, std::size_t target,
                           std::size_t firstOrigin);

@@ -7,6 +7,7 @@
 #include <tetskin/cage/src/lattice/surface_cover.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -64,7 +65,7 @@ class TriangleProbe {
   }
 
  private:
-  /// The normals of the tet's faces, and two more plane directions that do no harm.
+  /// Tests the normals of the tet's faces; two more plane directions are included, which is harmless.
   bool outsidePlanes(const LatticeTet& tet, const Eigen::Vector3d& base) const {
     const std::array<double, 6> offset = planeCoordinates(base);
     const std::array<int, 6>& floors = latticeTables().floors[tet.local];
@@ -106,13 +107,13 @@ class Cover {
     std::uint32_t triangle = 0;
   };
 
-  /// touches  if given, receives all of them
+  /// touches  if given, receives all touches
   Cover(LatticeSet& set, std::size_t limit, std::vector<Touch>* touches = nullptr)
       : set_(set), limit_(limit), touches_(touches) {}
 
   bool full() const { return set_.tetCount() > limit_; }
 
-  /// Of the triangles to come.
+  /// Sets the number of the triangles that follow.
   void setTriangle(std::uint32_t triangle) { triangle_ = triangle; }
 
   void addTriangle(const Corners& corners, const LatticeTet& start) {
@@ -203,16 +204,18 @@ bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
 }  // namespace
 
 bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set) {
+  assert(set.tetCount() == 0 && frame.half > 0.0);
   Cover cover(set, limit);
   return coverAll(surface, frame, cover);
 }
 
 Lists<> trianglesByTet(const Surface& surface, const LatticeFrame& frame, const LatticeSet& set,
                        const LatticeMesh& lattice) {
+  assert(lattice.mesh.tetCount() == set.tetCount());
   std::vector<Cover::Touch> touches;
   LatticeSet touched;
   Cover cover(touched, std::numeric_limits<std::size_t>::max(), &touches);
-  Surface solid;  // loose points are no triangles
+  Surface solid;  // loose points form no triangles
   solid.points = surface.points;
   solid.triangles = surface.triangles;
   (void)coverAll(solid, frame, cover);

@@ -13,15 +13,14 @@ namespace tetskin::cage_detail {
 /// when they or the cage are rounded to single precision; far below anything that would show in the count.
 constexpr double kTouch = 2e-5;
 
-/// Adds to an empty set all tets that a triangle or a loose point of the surface touches. Triangle by triangle: from
-/// the tet of a corner to its neighbours, as long as they are touched too; so the cost is proportional to the number of
-/// pairs of triangle and touched tet, whatever the triangles' size.
-/// limit   stop at more tets than that
-/// Returns false if stopped.
+/// Adds to an empty set all tets that a triangle or a loose point of the surface touches. Each triangle is followed
+/// from the tet of a corner to its neighbours, as long as they are touched too; so the cost is proportional to the
+/// number of pairs of triangle and touched tet, whatever the triangles' size.
+/// limit   the cover stops when there are more tets than this; it then returns false
 bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set);
 
-/// The same triangles by tet of a lattice mesh that was made of such a set: which of them touch it, ascending. Tets
-/// that are not in the mesh are passed over.
+/// By tet of a lattice mesh that was made of such a set: the triangles that touch it, ascending. Tets that are not in
+/// the mesh are skipped.
 Lists<> trianglesByTet(const Surface& surface, const LatticeFrame& frame, const LatticeSet& set,
                        const LatticeMesh& lattice);
 

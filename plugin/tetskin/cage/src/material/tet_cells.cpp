@@ -8,8 +8,8 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Cubes of cells along each axis around a cube of the lattice that its tets may reach, and how far below it they
-/// begin.
+/// Number of cubes of cells along each axis around a cube of the lattice that its tets may reach, and how far below it
+/// they begin.
 constexpr int kReach = 3 * kCellDivision;
 constexpr int kBelow = kCellDivision;
 
@@ -22,7 +22,7 @@ LatticeTet tetOfCell(const LatticeTet& cell) {
   return locate(centroid(cell) / kCellDivision);
 }
 
-/// Numbers of cells by their place around the cube of their tet.
+/// Numbers of cells by their position around the cube of their tet.
 class CellNumbers {
  public:
   CellNumbers() {
@@ -52,6 +52,7 @@ class CellNumbers {
 
  private:
   static std::size_t place(const LatticeTet& cell, const Cube& cube) {
+    assert(cell.local >= 0 && cell.local < kTetsPerCube);
     std::size_t index = 0;
     for (int axis = 2; axis >= 0; --axis) {
       index = kReach * index + static_cast<std::size_t>(cell.cube[axis] - kCellDivision * cube[axis] + kBelow);
@@ -103,6 +104,7 @@ CellTables makeTables() {
 }
 
 int lowestCell(CellMask cells) {
+  assert(cells != 0);
   return countCells((cells & (~cells + 1)) - 1);
 }
 
@@ -113,9 +115,10 @@ const CellTables& cellTables() {
   return tables;
 }
 
-CellPlace locateCell(const Eigen::Vector3d& p) {
+CellPosition locateCell(const Eigen::Vector3d& p) {
   const LatticeTet cell = locate(p * kCellDivision);
   const LatticeTet tet = tetOfCell(cell);
+  assert(cellNumbers().numberOf(cell, tet) >= 0);
   return {tet, cellNumbers().numberOf(cell, tet)};
 }
 

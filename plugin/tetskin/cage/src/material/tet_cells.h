@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A tet of the lattice cut into 64 cells: the tets of the same lattice at a quarter of the spacing, which nest in it.
-// Which of them a body fills is one 64-bit word.
+// A tet of the lattice is divided into 64 cells: the tets of the same lattice at a quarter of the spacing, which nest
+// in it. One 64-bit word stores which of them are inside a body.
 #pragma once
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
@@ -15,7 +15,7 @@ namespace tetskin::cage_detail {
 constexpr int kCellsPerTet = 64;
 /// Cells along a face of a tet.
 constexpr int kCellsPerFace = 16;
-/// Of the lattice over that of the cells.
+/// Spacing of the lattice divided by that of the cells.
 constexpr int kCellDivision = 4;
 
 /// Bit k is set for cell k of a tet.
@@ -35,20 +35,22 @@ struct CellTables {
     std::uint8_t beyond = 0;  ///< cell of the tet beyond, on the other side of the same face of a cell
   };
 
-  std::array<std::array<Eigen::Vector3d, kCellsPerTet>, kTetsPerCube> centroids;  ///< lattice, relative to the cube
+  std::array<std::array<Eigen::Vector3d, kCellsPerTet>, kTetsPerCube>
+      centroids;  ///< lattice coordinates relative to the cube
   std::array<CellGraph, kTetsPerCube> adjacent;
-  std::array<std::array<std::array<Crossing, kCellsPerFace>, 4>, kTetsPerCube> crossings;  ///< by corner opposite
+  std::array<std::array<std::array<Crossing, kCellsPerFace>, 4>, kTetsPerCube>
+      crossings;  ///< by the corner opposite to the face
 };
 const CellTables& cellTables();
 
-struct CellPlace {
+struct CellPosition {
   LatticeTet tet;
   int cell = 0;
 };
 /// The cell that holds a point in lattice coordinates. O(1)
-CellPlace locateCell(const Eigen::Vector3d& p);
+CellPosition locateCell(const Eigen::Vector3d& p);
 
-/// The cells of a mask that hang together with the lowest one.
+/// The cells of a mask that are connected with the lowest one.
 CellMask componentOf(CellMask cells, const CellGraph& graph);
 
 int countCells(CellMask cells);

@@ -11,17 +11,18 @@
 namespace tetskin::cage_detail {
 namespace {
 
-constexpr double kMostWinding = 100.0;
+constexpr double kMaxWinding = 100.0;
 
 class MaterialFinder {
  public:
   MaterialFinder(const Surface& surface, const WindingTree& winding, const LatticeFrame& frame)
       : surface_(surface), winding_(winding), frame_(frame) {}
 
-  /// Of a tet that these triangles touch.
+  /// The cells of a tet that these triangles touch.
   CellMask cellsOf(const LatticeTet& tet, const std::uint32_t* begin, const std::uint32_t* end,
                    std::array<std::int16_t, kCellsPerTet>& windings) {
-    // Off the centroid, which is where a lattice's planes and a mesh's may meet.
+    assert(begin != end);
+    // The point is off the centroid, where planes of the lattice and of the mesh may coincide.
     const Eigen::Vector3d offset = centroid(tet) - cubeOrigin(tet.cube) + Eigen::Vector3d(0.0131, 0.0173, -0.0117);
     const Eigen::Vector3d from = frame_.toRest(cubeOrigin(tet.cube) + offset);
     seen_.clear();
@@ -32,10 +33,10 @@ class MaterialFinder {
     const double number = winding_.windingNumber(from);
     CellMask cells = 0;
     for (int k = 0; k < kCellsPerTet; ++k) {
-      const Eigen::Vector3d way = frame_.half * (cellTables().centroids[tet.local][k] - offset);
+      const Eigen::Vector3d direction = frame_.half * (cellTables().centroids[tet.local][k] - offset);
       double there = number;
-      for (const SeenTriangle& triangle : seen_) there += triangle.crossing(way).change();
-      windings[k] = static_cast<std::int16_t>(std::clamp(std::round(there), -kMostWinding, kMostWinding));
+      for (const SeenTriangle& triangle : seen_) there += triangle.crossing(direction).change();
+      windings[k] = static_cast<std::int16_t>(std::clamp(std::round(there), -kMaxWinding, kMaxWinding));
       if (std::abs(there) >= kInside) cells |= cellBit(k);
     }
     return cells;
@@ -80,7 +81,7 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
         material.windingsAt[t] = static_cast<int>(material.windings.size());
         material.cells[t] = finder.cellsOf(tet, values + first, values + last, material.windings.emplace_back());
       } else if (lattice.openFaces[t] != 0 && !finder.inside(tet)) {
-        material.cells[t] = 0;  // it joins others
+        material.cells[t] = 0;  // the tet only joins others
       }
     }
   }

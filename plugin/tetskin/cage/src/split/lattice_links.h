@@ -9,11 +9,11 @@
 
 namespace tetskin::cage_detail {
 
-/// A lattice mesh by the numbers of its tets.
+/// The adjacency of a lattice mesh, by the numbers of its tets.
 struct LatticeLinks {
   LatticeLinks(const LatticeSet& set, const LatticeMesh& lattice);
 
-  std::vector<LatticeTet> tets;            ///< by tet: where it is in the lattice
+  std::vector<LatticeTet> tets;            ///< by tet: its position in the lattice
   std::vector<std::array<int, 4>> beyond;  ///< by tet: the tets beyond the faces opposite to its corners, or -1
 
   /// The corner of `tet` opposite to the face that it shares with another, or -1.

@@ -12,7 +12,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// A copy without a point, of so many cells at most, is left out where nothing but one other hangs on it.
+/// A duplicate that contains no point, and at most this many cells, is removed if at most one other is connected to it.
 constexpr int kNextToNothing = 1;
 
 class Splitter {
@@ -25,16 +25,16 @@ class Splitter {
         links_(links),
         kept_(copies.copies.size(), 1),
         nodes_(4 * copies.copies.size()),
-        parts_(copies.copies.size()) {}
+        components_(copies.copies.size()) {}
 
   CageTets run() {
-    leaveOutScraps();
+    skipScraps();
     for (const auto& [a, b] : copies_.links) {
       if (kept_[a] && kept_[b]) joinNodes(a, b);
     }
-    joinTornParts();
-    joinThinParts();
-    leaveOutEmptyParts();
+    joinTornComponents();
+    joinThinComponents();
+    skipEmptyComponents();
     return result();
   }
 
@@ -42,7 +42,7 @@ class Splitter {
   int tet(int copy) const { return copies_.copies[copy].tet; }
   const Tet& corners(int copy) const { return lattice_.mesh.tets[tet(copy)]; }
 
-  void leaveOutScraps() {
+  void skipScraps() {
     std::vector<int> neighbours(kept_.size(), 0), points(kept_.size(), 0);
     for (const auto& [a, b] : copies_.links) ++neighbours[a], ++neighbours[b];
     for (const int copy : copies_.copyOf) {
@@ -53,26 +53,28 @@ class Splitter {
     }
   }
 
-  /// The corners that two copies have in common become the same nodes.
+  /// Unites the corners that two duplicates have in common into the same nodes.
   void joinNodes(int a, int b) {
+    assert(kept_[a] && kept_[b]);
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) {
         if (corners(a)[i] == corners(b)[j]) nodes_.unite(4 * a + i, 4 * b + j);
       }
     }
-    parts_.unite(a, b);
+    components_.unite(a, b);
   }
 
-  /// Where what the surface joins has come apart all the same, it is joined again: tets with their copies, or with a
-  /// neighbour's. The surface's part with the most points is the one that the others go to.
-  void joinTornParts() {
+  /// Where components of the surface have been separated in spite of this, they are joined again, by tets with their
+  /// duplicates or with those of a neighbour. The component with the most points is the one that the others join.
+  void joinTornComponents() {
     DisjointSets components(samples_.points.size());
     for (const auto& [a, b] : samples_.steps) components.unite(a, b);
-    std::map<std::array<int, 2>, int> pointsIn;  // component, part
+    std::map<std::array<int, 2>, int> pointsIn;  // component of the surface, component of the cage
     for (std::size_t p = 0; p < copies_.copyOf.size(); ++p) {
-      if (copies_.copyOf[p] >= 0) ++pointsIn[{components.find(static_cast<int>(p)), parts_.find(copies_.copyOf[p])}];
+      if (copies_.copyOf[p] >= 0)
+        ++pointsIn[{components.find(static_cast<int>(p)), components_.find(copies_.copyOf[p])}];
     }
-    std::map<int, std::array<int, 2>> main;  // by component: its points in a part, a copy of it
+    std::map<int, std::array<int, 2>> main;  // by component of the surface: most points, their component
     for (const auto& [where, count] : pointsIn) {
       std::array<int, 2>& largest = main.try_emplace(where[0], std::array<int, 2>{0, -1}).first->second;
       if (count > largest[0]) largest = {count, where[1]};
@@ -81,7 +83,7 @@ class Splitter {
     for (std::size_t p = 0; p < copies_.copyOf.size(); ++p) {
       if (copies_.copyOf[p] < 0) continue;
       const int target = main.at(components.find(static_cast<int>(p)))[1];
-      if (parts_.find(copies_.copyOf[p]) != parts_.find(target)) joinTo(target, copies_.copyOf[p], inTet);
+      if (components_.find(copies_.copyOf[p]) != components_.find(target)) joinTo(target, copies_.copyOf[p], inTet);
     }
   }
 
@@ -93,60 +95,60 @@ class Splitter {
     });
   }
 
-  /// Joins a copy to a part, if it has a copy of the same tet or of one beside it.
-  void joinTo(int part, int copy, const Lists<>& inTet) {
+  /// Joins a duplicate to a component that has a duplicate of the same tet or of a neighbouring one.
+  void joinTo(int component, int copy, const Lists<>& inTet) {
     const std::array<int, 4>& beyond = links_.beyond[tet(copy)];
-    for (const int place : {tet(copy), beyond[0], beyond[1], beyond[2], beyond[3]}) {
-      if (place < 0) continue;
-      for (std::uint32_t k = inTet.starts[place]; k < inTet.starts[place + 1]; ++k) {
+    for (const int index : {tet(copy), beyond[0], beyond[1], beyond[2], beyond[3]}) {
+      if (index < 0) continue;
+      for (std::uint32_t k = inTet.starts[index]; k < inTet.starts[index + 1]; ++k) {
         const int other = static_cast<int>(inTet.values[k]);
-        if (parts_.find(other) == parts_.find(part)) return joinNodes(copy, other);
+        if (components_.find(other) == components_.find(component)) return joinNodes(copy, other);
       }
     }
   }
 
-  /// A part that is nowhere thick enough for material goes with another that shares a tet with it, as what grows out of
-  /// a body does.
-  void joinThinParts() {
+  /// A component that is nowhere thick enough for material joins another with which it shares a tet, like something
+  /// that grows out of a body.
+  void joinThinComponents() {
     std::vector<char> thick(kept_.size(), 0);
     for (std::size_t k = 0; k < kept_.size(); ++k) {
-      if (kept_[k] && copies_.copies[k].cells != 0) thick[parts_.find(static_cast<int>(k))] = 1;
+      if (kept_[k] && copies_.copies[k].cells != 0) thick[components_.find(static_cast<int>(k))] = 1;
     }
     const Lists<> inTet = copiesInTets();
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       const int copy = static_cast<int>(k);
-      if (!kept_[k] || thick[parts_.find(copy)]) continue;
+      if (!kept_[k] || thick[components_.find(copy)]) continue;
       for (std::uint32_t n = inTet.starts[tet(copy)]; n < inTet.starts[tet(copy) + 1]; ++n) {
         const int other = static_cast<int>(inTet.values[n]);
-        if (copies_.copies[other].cells == 0 || parts_.find(other) == parts_.find(copy)) continue;
+        if (copies_.copies[other].cells == 0 || components_.find(other) == components_.find(copy)) continue;
         joinNodes(copy, other);
-        thick[parts_.find(copy)] = 1;
+        thick[components_.find(copy)] = 1;
         break;
       }
     }
   }
 
-  void leaveOutEmptyParts() {
+  void skipEmptyComponents() {
     std::vector<char> holds(kept_.size(), 0);
     for (const int copy : copies_.copyOf) {
-      if (copy >= 0) holds[parts_.find(copy)] = 1;
+      if (copy >= 0) holds[components_.find(copy)] = 1;
     }
-    for (std::size_t k = 0; k < kept_.size(); ++k) kept_[k] = kept_[k] && holds[parts_.find(static_cast<int>(k))];
+    for (std::size_t k = 0; k < kept_.size(); ++k) kept_[k] = kept_[k] && holds[components_.find(static_cast<int>(k))];
   }
 
   CageTets result() {
     CageTets cage;
     std::vector<int> nodeOf(4 * kept_.size(), -1), tetOf(kept_.size(), -1);
-    std::map<Tet, int> made;  // copies of the same nodes are one tet
+    std::map<Tet, int> made;  // duplicates with the same nodes are one tet
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       if (!kept_[k]) continue;
       const int copy = static_cast<int>(k);
       Tet nodes{};
       for (int i = 0; i < 4; ++i) nodes[i] = nodes_.find(4 * copy + i);
-      const auto [place, isNew] = made.try_emplace(nodes, static_cast<int>(cage.mesh.tets.size()));
-      tetOf[k] = place->second;
+      const auto [entry, isNew] = made.try_emplace(nodes, static_cast<int>(cage.mesh.tets.size()));
+      tetOf[k] = entry->second;
       if (!isNew) {
-        cage.cells[place->second] |= copies_.copies[k].cells;
+        cage.cells[entry->second] |= copies_.copies[k].cells;
         continue;
       }
       cage.mesh.tets.push_back(numbered(nodes, corners(copy), nodeOf, cage.mesh.nodes));
@@ -155,10 +157,11 @@ class Splitter {
     }
     for (const int copy : copies_.copyOf) cage.tetOf.push_back(copy < 0 ? -1 : tetOf[copy]);
     cage.split = cage.mesh.nodeCount() > nodesUsed(cage.latticeTets);
+    assert(cage.cells.size() == cage.mesh.tetCount() && cage.tetOf.size() == samples_.points.size());
     return cage;
   }
 
-  /// How many nodes of the lattice these tets of it have.
+  /// The number of lattice nodes that these lattice tets use.
   std::size_t nodesUsed(const std::vector<int>& tets) const {
     std::vector<char> used(lattice_.mesh.nodeCount(), 0);
     for (const int t : tets) {
@@ -167,14 +170,14 @@ class Splitter {
     return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   }
 
-  Tet numbered(const Tet& sets, const Tet& places, std::vector<int>& nodeOf,
+  Tet numbered(const Tet& sets, const Tet& indices, std::vector<int>& nodeOf,
                std::vector<Eigen::Vector3d>& nodes) const {
     Tet numbers{};
     for (int i = 0; i < 4; ++i) {
       int& number = nodeOf[sets[i]];
       if (number < 0) {
         number = static_cast<int>(nodes.size());
-        nodes.push_back(lattice_.mesh.nodes[places[i]]);
+        nodes.push_back(lattice_.mesh.nodes[indices[i]]);
       }
       numbers[i] = number;
     }
@@ -185,12 +188,12 @@ class Splitter {
   const SurfaceSamples& samples_;
   const LatticeMesh& lattice_;
   const LatticeLinks& links_;
-  std::vector<char> kept_;  ///< by copy
-  DisjointSets nodes_;      ///< 4 a copy
-  DisjointSets parts_;      ///< of copies
+  std::vector<char> kept_;   ///< by duplicate
+  DisjointSets nodes_;       ///< 4 per duplicate
+  DisjointSets components_;  ///< of duplicates
 };
 
-/// Copies of one tet do not close each other's faces.
+/// Duplicates of one tet do not close each other's faces.
 std::vector<std::uint8_t> openFacesOf(const CageTets& cage) {
   const Lists<> beyond = faceNeighbours(cage.mesh);
   std::vector<std::uint8_t> open(cage.mesh.tetCount(), 0);
@@ -215,6 +218,7 @@ std::size_t CageTets::copies() const {
 }
 
 CageTets wholeLattice(const LatticeMesh& lattice, const TetMaterial& material, const std::vector<int>& tetOf) {
+  assert(lattice.openFaces.size() == lattice.mesh.tetCount() && material.cells.size() == lattice.mesh.tetCount());
   CageTets cage;
   cage.mesh = lattice.mesh;
   cage.openFaces = lattice.openFaces;

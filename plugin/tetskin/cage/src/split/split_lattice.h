@@ -9,25 +9,26 @@
 
 namespace tetskin::cage_detail {
 
-/// A cage on the lattice, whose tets may be copies of each other, with the points that it holds.
+/// A cage on the lattice, which may contain duplicate tets, with the points that it contains.
 struct CageTets {
   TetMesh mesh;
   std::vector<std::uint8_t>
       openFaces;                 ///< by tet: bit c is set if no other tet lies beyond the face opposite to corner c
-  std::vector<int> latticeTets;  ///< by tet: of the lattice mesh it was made of; copies share it
+  std::vector<int> latticeTets;  ///< by tet: its tet in the lattice mesh; duplicates share it
   std::vector<CellMask> cells;   ///< by tet: its own material
-  std::vector<int> tetOf;        ///< by point: the tet that holds it, or -1
-  bool split = false;            ///< some node is not the only one at its place in the lattice
+  std::vector<int> tetOf;        ///< by point: the tet that contains it, or -1
+  bool split = false;            ///< some node has a duplicate at the same lattice position
 
-  /// Tets beyond the first of those that share a lattice tet.
+  /// The number of tets in addition to the first one of each lattice tet.
   std::size_t copies() const;
 };
 
-/// The lattice as it is: every tet once.
+/// The lattice without duplicates: every tet once.
 CageTets wholeLattice(const LatticeMesh& lattice, const TetMaterial& material, const std::vector<int>& tetOf);
 
-/// The copies, joined face to face where they hang together: by nodes that they share. What the surface joins is one
-/// part in any case; parts without a point are left out, and so are copies that hold next to nothing.
+/// The duplicates, joined face to face where they are connected: by nodes that they share. Each component of the
+/// surface ends up in one component; components without a point are removed, and so are duplicates that contain next to
+/// nothing.
 CageTets splitLattice(const TetCopies& copies, const SurfaceSamples& samples, const LatticeMesh& lattice,
                       const LatticeLinks& links);
 

@@ -6,23 +6,27 @@
 #include <tetskin/cage/src/split/tet_clip.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::cage_detail {
 namespace {
 
-/// Barycentric distance within which an edge touches a tet: triangles do within about as much, see kTouch.
+/// Barycentric distance within which an edge touches a tet: about as large as for triangles, see kTouch.
 constexpr double kTouches = 1e-4;
-/// A triangle has three corners, and each of four cuts adds one at most.
-constexpr std::size_t kMostCorners = 7;
+/// A triangle has three corners, and each of four cuts adds at most one.
+constexpr std::size_t kMaxCorners = 7;
 
 struct Polygon {
-  std::array<Eigen::Vector4d, kMostCorners> corners;
+  std::array<Eigen::Vector4d, kMaxCorners> corners;
   std::size_t count = 0;
 
-  void add(const Eigen::Vector4d& corner) { corners[count++] = corner; }
+  void add(const Eigen::Vector4d& corner) {
+    assert(count < kMaxCorners);
+    corners[count++] = corner;
+  }
 };
 
-/// What is not below 0 of one weight.
+/// The part of the polygon where one weight is not below 0.
 Polygon cut(const Polygon& polygon, int weight) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.count; ++k) {
@@ -47,7 +51,7 @@ bool passesThrough(const Eigen::Vector4d& from, const Eigen::Vector4d& to) {
   return first <= last;
 }
 
-Eigen::Vector4d middleWithin(const std::array<Eigen::Vector4d, 3>& triangle) {
+Eigen::Vector4d centroidWithin(const std::array<Eigen::Vector4d, 3>& triangle) {
   Polygon polygon;
   for (const Eigen::Vector4d& corner : triangle) polygon.add(corner);
   for (int weight = 0; weight < 4; ++weight) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What of edges and triangles is in a tet, by the barycentric weights of their corners.
+// Clips edges and triangles to a tet, in barycentric weights.
 #pragma once
 
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
@@ -10,10 +10,12 @@
 
 namespace tetskin::cage_detail {
 
-/// True if the straight way between two points passes through the tet, or by it within the rounding of lattices.
+/// True if the segment between two points passes through the tet, or passes it within the rounding of lattice
+/// coordinates.
 bool passesThrough(const Eigen::Vector4d& from, const Eigen::Vector4d& to);
 
-/// Middle of the corners of what of a triangle is in the tet, as weights; of one that only touches it, near by.
-Eigen::Vector4d middleWithin(const std::array<Eigen::Vector4d, 3>& triangle);
+/// Mean of the corners of the part of a triangle in the tet, as weights; for a triangle that only touches the tet, a
+/// point near by.
+Eigen::Vector4d centroidWithin(const std::array<Eigen::Vector4d, 3>& triangle);
 
 }  // namespace tetskin::cage_detail

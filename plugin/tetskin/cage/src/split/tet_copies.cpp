@@ -10,10 +10,10 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Copies looked at around a tet, which has some seventy neighbours.
-constexpr std::size_t kMostAround = 200;
+/// Most duplicates that are visited around a tet, which has some seventy neighbours.
+constexpr std::size_t kMaxAround = 200;
 
-/// Each pair once, the lower one first.
+/// Keeps each pair once, with the lower number first.
 void sortUnique(std::vector<std::array<int, 2>>& pairs) {
   for (auto& [a, b] : pairs) {
     if (a > b) std::swap(a, b);
@@ -25,26 +25,31 @@ void sortUnique(std::vector<std::array<int, 2>>& pairs) {
 class CopyLinks {
  public:
   CopyLinks(TetPieces& pieces, const Surface& surface, const TetMaterial& material, const LatticeMesh& lattice,
-            const LatticeLinks& links, const BodyWays& ways)
-      : pieces_(pieces), surface_(surface), material_(material), lattice_(lattice), links_(links), ways_(ways) {}
+            const LatticeLinks& links, const SegmentQueries& directions)
+      : pieces_(pieces),
+        surface_(surface),
+        material_(material),
+        lattice_(lattice),
+        links_(links),
+        queries_(directions) {}
 
-  /// The links; the pieces that are one for all that are united on the way.
+  /// Finds the links; returns them with the pieces of a tet united that are found to be one.
   std::vector<std::array<int, 2>> run() {
     linkTriangles();
     linkMaterial();
     sortUnique(found_);
-    uniteLightPieces();
+    mergeLightPieces();
     return std::move(found_);
   }
 
  private:
   const TetPiece& piece(int k) const { return pieces_.pieces[k]; }
 
-  /// A triangle in two tets that share a face passes through the face.
+  /// A triangle in two tets that share a face passes through that face.
   void linkTriangles() {
     const Lists<> elements = packLists(surface_.triangles.size(), [&](auto&& add) {
       for (std::size_t e = 0; e < material_.triangles.values.size(); ++e) {
-        add(static_cast<std::size_t>(ways_.triangleOf(e)), static_cast<std::uint32_t>(e));
+        add(static_cast<std::size_t>(queries_.triangleOf(e)), static_cast<std::uint32_t>(e));
       }
     });
     const auto tetOf = [&](std::uint32_t e) { return piece(pieces_.pieceOf[e]).tet; };
@@ -53,7 +58,7 @@ class CopyLinks {
       const auto last = elements.values.begin() + elements.starts[t + 1];
       for (auto e = first; e != last; ++e) {
         for (const int beyond : links_.beyond[tetOf(*e)]) {
-          if (beyond <= tetOf(*e)) continue;  // elements are in the order of tets
+          if (beyond <= tetOf(*e)) continue;  // elements are sorted by tet
           const auto other =
               std::lower_bound(e, last, beyond, [&](std::uint32_t x, int tet) { return tetOf(x) < tet; });
           if (other == last || tetOf(*other) != beyond) continue;
@@ -76,22 +81,23 @@ class CopyLinks {
     }
   }
 
-  /// Cells beyond a face that no surface keeps from those of a piece.
+  /// The cells beyond a face that no surface separates from those of a piece.
   CellMask cellsAgainst(const TetPiece& own, int corner) const {
+    assert(links_.beyond[own.tet][corner] >= 0);
     const int beyond = links_.beyond[own.tet][corner];
     const bool layered = pieces_.layered[own.tet] || pieces_.layered[beyond];
     CellMask against = 0;
     for (const CellTables::Crossing& crossing : cellTables().crossings[links_.tets[own.tet].local][corner]) {
       if ((own.cells >> crossing.own & 1) == 0 || (material_.cells[beyond] >> crossing.beyond & 1) == 0) continue;
-      if (layered && ways_.isBlocked({own.tet, crossing.own}, {beyond, crossing.beyond})) continue;
+      if (layered && queries_.isBlocked({own.tet, crossing.own}, {beyond, crossing.beyond})) continue;
       against |= cellBit(crossing.beyond);
     }
     return against;
   }
 
-  /// A piece without material goes with another of its tet that hangs together with it around the tet: both are the
-  /// brim of one part.
-  void uniteLightPieces() {
+  /// A piece without material is united with another piece of its tet if the two are connected in the tets around: both
+  /// then belong to the rim of one part.
+  void mergeLightPieces() {
     DisjointSets same(pieces_.pieces.size());
     const Lists<> neighbours = packLists(pieces_.pieces.size(), [&](auto&& add) {
       for (const auto& [a, b] : found_) {
@@ -106,14 +112,14 @@ class CopyLinks {
     renumber(same);
   }
 
-  /// With those of its tet to which a way of links leads that does not leave the tets around it.
+  /// Unites it with those of its tet to which a path of links leads that does not leave the tets around it.
   void uniteAround(int light, const Lists<>& neighbours, DisjointSets& same) const {
     const int tet = piece(light).tet;
     std::vector<int> reached = {light};
-    for (std::size_t k = 0; k < reached.size() && reached.size() < kMostAround; ++k) {
+    for (std::size_t k = 0; k < reached.size() && reached.size() < kMaxAround; ++k) {
       for (std::uint32_t n = neighbours.starts[reached[k]]; n < neighbours.starts[reached[k] + 1]; ++n) {
         const int other = static_cast<int>(neighbours.values[n]);
-        if (!shareNode(tet, piece(other).tet)) continue;
+        if (!sharedNode(tet, piece(other).tet)) continue;
         if (std::find(reached.begin(), reached.end(), other) == reached.end()) reached.push_back(other);
       }
     }
@@ -122,7 +128,7 @@ class CopyLinks {
     }
   }
 
-  bool shareNode(int a, int b) const {
+  bool sharedNode(int a, int b) const {
     const Tet &one = lattice_.mesh.tets[a], &other = lattice_.mesh.tets[b];
     return std::any_of(one.begin(), one.end(),
                        [&](int n) { return std::find(other.begin(), other.end(), n) != other.end(); });
@@ -132,13 +138,13 @@ class CopyLinks {
     std::vector<TetPiece> kept;
     std::vector<int> number(pieces_.pieces.size(), -1);
     for (int k = 0; k < static_cast<int>(number.size()); ++k) {
-      int& of = number[same.find(k)];
-      if (of < 0) {
-        of = static_cast<int>(kept.size());
+      int& index = number[same.find(k)];
+      if (index < 0) {
+        index = static_cast<int>(kept.size());
         kept.push_back({piece(k).tet, 0});
       }
-      number[k] = of;
-      kept[of].cells |= piece(k).cells;
+      number[k] = index;
+      kept[index].cells |= piece(k).cells;
     }
     pieces_.pieces = std::move(kept);
     for (int& k : pieces_.pieceOf) k = number[k];
@@ -151,11 +157,11 @@ class CopyLinks {
   const TetMaterial& material_;
   const LatticeMesh& lattice_;
   const LatticeLinks& links_;
-  const BodyWays& ways_;
-  std::vector<std::array<int, 2>> found_;  ///< links
+  const SegmentQueries& queries_;
+  std::vector<std::array<int, 2>> found_;  ///< links that have been found
 };
 
-/// The piece of a tet that a triangle is in, or -1.
+/// The piece of a tet that contains a triangle, or -1.
 int pieceWith(const TetPieces& pieces, const TetMaterial& material, int triangle, int tet) {
   if (tet < 0) return -1;
   const auto begin = material.triangles.values.begin();
@@ -166,15 +172,15 @@ int pieceWith(const TetPieces& pieces, const TetMaterial& material, int triangle
   return pieces.pieceOf[static_cast<std::size_t>(found - begin)];
 }
 
-/// Loose points belong to nothing: to the first copy of their tet, or one of its own.
+/// Loose points belong to no piece: they get the first duplicate of their tet, or a new one.
 void placeLoosePoints(const Surface& surface, const std::vector<int>& tetOf, TetCopies& made) {
   std::map<int, int> firstIn;
   for (int k = static_cast<int>(made.copies.size()); k-- > 0;) firstIn[made.copies[k].tet] = k;
   for (const int p : surface.loosePoints) {
     if (tetOf[p] < 0) continue;
-    const auto [place, isNew] = firstIn.try_emplace(tetOf[p], static_cast<int>(made.copies.size()));
+    const auto [entry, isNew] = firstIn.try_emplace(tetOf[p], static_cast<int>(made.copies.size()));
     if (isNew) made.copies.push_back({tetOf[p], 0});
-    made.copyOf[p] = place->second;
+    made.copyOf[p] = entry->second;
   }
 }
 
@@ -184,18 +190,20 @@ TetCopies copyTets(const Surface& surface, const WindingTree& winding, const Sur
                    const std::vector<int>& tetOf, const TetMaterial& material, const LatticeFrame& frame,
                    const LatticeMesh& lattice, const LatticeLinks& links) {
   assert(tetOf.size() == samples.points.size() && material.cells.size() == lattice.mesh.tetCount());
-  const BodyWays ways(surface, material, frame, links);
-  TetPieces pieces = piecesIn(surface, winding, tetOf, material, frame, lattice, links, ways);
+  const SegmentQueries directions(surface, material, frame, links);
+  TetPieces pieces = piecesIn(surface, winding, tetOf, material, frame, lattice, links, directions);
   TetCopies made;
-  made.links = CopyLinks(pieces, surface, material, lattice, links, ways).run();
+  made.links = CopyLinks(pieces, surface, material, lattice, links, directions).run();
   made.copyOf.assign(tetOf.size(), -1);
-  const auto place = [&](std::size_t point, int triangle) {
+  const auto toPosition = [&](std::size_t point, int triangle) {
     if (made.copyOf[point] < 0) made.copyOf[point] = pieceWith(pieces, material, triangle, tetOf[point]);
   };
   for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
-    for (const int p : surface.triangles[t]) place(static_cast<std::size_t>(p), t);
+    for (const int p : surface.triangles[t]) toPosition(static_cast<std::size_t>(p), t);
   }
-  for (std::size_t k = 0; k < samples.triangleOf.size(); ++k) place(surface.points.size() + k, samples.triangleOf[k]);
+  for (std::size_t k = 0; k < samples.triangleOf.size(); ++k)
+    toPosition(surface.points.size() + k, samples.triangleOf[k]);
+  assert(surface.points.size() + samples.triangleOf.size() == tetOf.size());
   made.copies = std::move(pieces.pieces);
   if (!surface.loosePoints.empty()) placeLoosePoints(surface, tetOf, made);
   return made;

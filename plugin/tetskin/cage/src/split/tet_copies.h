@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which parts of a body meet in a tet of the lattice: each gets a copy of the tet (a "virtual node" method).
+// Duplicate elements with virtual nodes: each connected part of a body in a tet of the lattice gets its own duplicate.
 //
 // This work is based on:
 //   Neil Molino, Zhaosheng Bao, Ron Fedkiw, "A Virtual Node Algorithm for Changing Mesh Topology During Simulation",
-//   SIGGRAPH 2004 (a copy of an element for each piece of material in it)
+//   SIGGRAPH 2004 (a duplicate of an element for each piece of material in it)
 #pragma once
 
 #include <tetskin/cage/src/split/tet_pieces.h>
@@ -16,17 +16,18 @@
 
 namespace tetskin::cage_detail {
 
-/// Each piece has a copy of its tet.
+/// One duplicate of a tet for each piece.
 struct TetCopies {
   std::vector<TetPiece> copies;
-  std::vector<int> copyOf;                ///< by point: a copy of the tet that holds it; -1 if none does
-  std::vector<std::array<int, 2>> links;  ///< pairs of copies of tets that share a face, that hang together there
+  std::vector<int> copyOf;                ///< by point: a duplicate of the tet that contains it; -1 if none does
+  std::vector<std::array<int, 2>> links;  ///< pairs of duplicates, of tets that share a face, that are connected there
 };
 
-/// What hangs together within a tet (see `piecesIn`) is a copy, so that a point's copy is one of the tet that holds it,
-/// whatever the shape. From tet to tet, copies hang together where cells share faces, or a triangle passes through.
+/// Each connected piece within a tet (see `piecesIn`) becomes a duplicate, so that a point's duplicate is one of the
+/// tet that contains it, whatever the shape. Between tets, duplicates are connected where cells share faces, or where a
+/// triangle passes through.
 ///
-/// tetOf  by point: the tet that holds it, or -1
+/// tetOf  by point: the tet that contains it, or -1
 TetCopies copyTets(const Surface& surface, const WindingTree& winding, const SurfaceSamples& samples,
                    const std::vector<int>& tetOf, const TetMaterial& material, const LatticeFrame& frame,
                    const LatticeMesh& lattice, const LatticeLinks& links);

@@ -10,23 +10,23 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// How deep under a triangle its material is looked for, in altitudes of a cell.
+/// Depths below a triangle at which its material is searched for, in altitudes of a cell.
 constexpr std::array<double, 4> kProbeDepths = {0.3, 0.6, 1.0, 1.5};
-/// Of a lattice tet, in lattice coordinates.
+/// Altitude of a lattice tet, in lattice coordinates.
 constexpr double kAltitude = 1.4142135623730951;
-/// How far outside a triangle its surroundings are asked for, in altitudes of a cell.
+/// Distance outside of a triangle at which its surroundings are determined, in altitudes of a cell.
 constexpr double kJustOutside = 1e-3;
-/// An eighth of a tet's longest edge, in half cubes: components nearer than that are joined.
+/// An eighth of a tet's longest edge, in half cubes: components nearer to each other than this are joined.
 constexpr double kNearComponents = 0.25;
-/// Ways between two pieces of material that are tried.
+/// Most segments between two pieces of material that are tested.
 constexpr std::size_t kSights = 24;
 
-/// Elements of surface first, see BodyWays, then connected cells of material.
+/// Finds the pieces. The elements of surface come first, see SegmentQueries, then the connected cells of material.
 class PieceFinder {
  public:
   PieceFinder(const Surface& surface, const WindingTree& winding, const std::vector<int>& tetOf,
               const TetMaterial& material, const LatticeFrame& frame, const LatticeMesh& lattice,
-              const LatticeLinks& links, const BodyWays& ways)
+              const LatticeLinks& links, const SegmentQueries& directions)
       : surface_(surface),
         winding_(winding),
         tetOf_(tetOf),
@@ -34,7 +34,7 @@ class PieceFinder {
         frame_(frame),
         lattice_(lattice),
         links_(links),
-        ways_(ways),
+        queries_(directions),
         cell_(kAltitude / kCellDivision * frame.half),
         sets_(material.triangles.values.size()),
         layered_(lattice.mesh.tetCount(), 0) {
@@ -53,12 +53,12 @@ class PieceFinder {
  private:
   std::size_t tetCount() const { return lattice_.mesh.tetCount(); }
   std::size_t surfaceElements() const { return material_.triangles.values.size(); }
-  std::size_t first(std::size_t tet) const { return ways_.firstElement(tet); }
-  std::size_t last(std::size_t tet) const { return ways_.lastElement(tet); }
+  std::size_t first(std::size_t tet) const { return queries_.firstElement(tet); }
+  std::size_t last(std::size_t tet) const { return queries_.lastElement(tet); }
   const std::array<int, 3>& triangle(std::size_t element) const {
-    return surface_.triangles[ways_.triangleOf(element)];
+    return surface_.triangles[queries_.triangleOf(element)];
   }
-  int component(std::size_t element) const { return componentOf_[ways_.triangleOf(element)]; }
+  int component(std::size_t element) const { return componentOf_[queries_.triangleOf(element)]; }
   BarycentricMap mapOf(std::size_t tet) const {
     return BarycentricMap(cornersOf(lattice_.mesh, lattice_.mesh.tets[tet]));
   }
@@ -82,7 +82,7 @@ class PieceFinder {
     }
   }
 
-  /// Those whose common edge, or corner, is in the tet.
+  /// Unites triangles whose common edge, or corner, is in the tet.
   void joinTriangles(int tet, const BarycentricMap& map) {
     shared_.clear();
     for (std::size_t e = first(tet); e < last(tet); ++e) {
@@ -99,7 +99,7 @@ class PieceFinder {
     }
   }
 
-  /// By tet: its material in elements that hang together by faces of cells.
+  /// By tet: divides its material into elements that are connected by faces of cells.
   void findMaterial() {
     materialStarts_.push_back(surfaceElements());
     cells_.assign(surfaceElements(), 0);
@@ -114,16 +114,19 @@ class PieceFinder {
     ofMaterial_.assign(cells_.begin() + static_cast<std::ptrdiff_t>(surfaceElements()), cells_.end());
     sets_.grow(cells_.size());
   }
-  CellMask materialOf(std::size_t element) const { return ofMaterial_[element - surfaceElements()]; }
+  CellMask materialOf(std::size_t element) const {
+    assert(element >= surfaceElements() && element - surfaceElements() < ofMaterial_.size());
+    return ofMaterial_[element - surfaceElements()];
+  }
 
-  /// The faces of a tet's material cells that no surface lies in: a gap may be narrower than a cell.
+  /// The faces of a tet's material cells in which no surface lies: a gap may be narrower than a cell.
   CellGraph openFaces(int tet) const {
     CellGraph open{};
     for (int a = 0; a < kCellsPerTet; ++a) {
       if ((material_.cells[tet] >> a & 1) == 0) continue;
       const CellMask beside = cellTables().adjacent[links_.tets[tet].local][a] & material_.cells[tet];
       for (int b = a + 1; b < kCellsPerTet; ++b) {
-        if ((beside >> b & 1) == 0 || ways_.isBlocked({tet, a}, {tet, b})) continue;
+        if ((beside >> b & 1) == 0 || queries_.isBlocked({tet, a}, {tet, b})) continue;
         open[a] |= cellBit(b);
         open[b] |= cellBit(a);
       }
@@ -139,48 +142,48 @@ class PieceFinder {
     joinMaterialInSight(tet);
   }
 
-  /// A connected surface has the same material under all of it: one triangle that finds it will do.
+  /// A connected surface has the same material below all of it: the first triangle that finds it suffices.
   void joinSurfaceAndMaterial(int tet) {
     forEmpty(tet, [&](std::size_t e, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
       const auto [found, depth] = materialAlong(tet, from, -outward);
-      if (found > 0 && ways_.firstExit(tet, from, -depth * cell_ * outward) < 0) unite(e, found);
+      if (found > 0 && queries_.firstExit(tet, from, -depth * cell_ * outward) < 0) unite(e, found);
     });
     forEmpty(tet, [&](std::size_t e, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
-      const int other = ways_.firstExit(tet, from, -kProbeDepths.back() * cell_ * outward);
+      const int other = queries_.firstExit(tet, from, -kProbeDepths.back() * cell_ * outward);
       if (other >= 0) unite(e, static_cast<std::size_t>(other));
     });
   }
 
-  /// Calls visit(element, a point of it, unit normal) for the surface in a tet that no material goes with yet.
+  /// Calls visit(element, a point of it, unit normal) for the surface in a tet that is not united with material yet.
   template <class Visit>
   void forEmpty(int tet, Visit&& visit) {
     for (std::size_t e = first(tet); e < last(tet); ++e) {
       if (cellsWith(e) == 0) withNormal(tet, e, visit);
     }
   }
-  /// The same of one, if it has a normal.
+  /// Calls visit for one element, if it has a normal.
   template <class Visit>
   void withNormal(int tet, std::size_t element, Visit&& visit) const {
     const Eigen::Vector3d outward = areaVector(surface_, triangle(element)).normalized();
-    if (outward.allFinite()) visit(element, middleOf(tet, element), outward);
+    if (outward.allFinite()) visit(element, centroidOf(tet, element), outward);
   }
-  Eigen::Vector3d middleOf(int tet, std::size_t element) const {
+  Eigen::Vector3d centroidOf(int tet, std::size_t element) const {
     const BarycentricMap map = mapOf(static_cast<std::size_t>(tet));
     const auto& [a, b, c] = triangle(element);
     const Eigen::Vector4d weights =
-        middleWithin({map(surface_.points[a]), map(surface_.points[b]), map(surface_.points[c])});
+        centroidWithin({map(surface_.points[a]), map(surface_.points[b]), map(surface_.points[c])});
     const TetCorners corners = cornersOf(lattice_.mesh, lattice_.mesh.tets[tet]);
     return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2] + weights[3] * corners[3];
   }
 
-  /// The element of material, in the tet, that is first met along a unit direction, and how deep; or 0.
+  /// The element of material in the tet that a ray first reaches, and at what depth; or 0.
   std::pair<std::size_t, double> materialAlong(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     const LatticeTet& own = links_.tets[tet];
     for (const double depth : kProbeDepths) {
-      const CellPlace place = locateCell(frame_.toLattice(from + depth * cell_ * to));
-      if (place.tet.cube != own.cube || place.tet.local != own.local) break;
+      const CellPosition position = locateCell(frame_.toLattice(from + depth * cell_ * to));
+      if (position.tet.cube != own.cube || position.tet.local != own.local) break;
       for (std::size_t e = materialStarts_[tet]; e < materialStarts_[tet + 1]; ++e) {
-        if ((materialOf(e) >> place.cell & 1) != 0) return {e, depth};
+        if ((materialOf(e) >> position.cell & 1) != 0) return {e, depth};
       }
     }
     return {0, 0.0};
@@ -193,11 +196,11 @@ class PieceFinder {
     return false;
   }
 
-  /// Components that lie in each other, or near: what is put on a body, or into it, stays there.
+  /// Unites components that lie in each other, or near: something placed on a body, or in it, stays attached.
   void joinComponents(int tet) {
     for (std::size_t k = first(tet); k < last(tet); ++k) {
       withNormal(tet, k, [&](std::size_t e, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
-        const int other = ways_.firstEntry(tet, from, kNearComponents * frame_.half * outward);
+        const int other = queries_.firstEntry(tet, from, kNearComponents * frame_.half * outward);
         if (other >= 0 && component(static_cast<std::size_t>(other)) != component(e)) {
           unite(e, static_cast<std::size_t>(other));
         }
@@ -206,11 +209,11 @@ class PieceFinder {
     }
   }
 
-  /// With the material on the outside of a triangle, if it lies within another component.
+  /// Unites an element with the material outside of its triangle, if that lies within another component.
   void joinSurroundings(int tet, std::size_t element, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
     const std::size_t found = materialAlong(tet, from, outward).first;
     if (found == 0) return;
-    // Last, because it takes far longer than all else that is asked of a triangle.
+    // Tested last, because it takes far longer than the other tests of a triangle.
     if (std::abs(winding_.windingNumber(from + kJustOutside * cell_ * outward)) >= kInside) unite(element, found);
   }
 
@@ -223,7 +226,7 @@ class PieceFinder {
     }
   }
 
-  /// By the ways between their nearest cells.
+  /// Tests the segments between their nearest cells.
   bool inSight(int tet, CellMask one, CellMask other) const {
     const auto& centroids = cellTables().centroids[links_.tets[tet].local];
     std::vector<std::pair<double, std::array<int, 2>>> pairs;
@@ -236,7 +239,7 @@ class PieceFinder {
     const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), kSights));
     std::partial_sort(pairs.begin(), end, pairs.end());
     return std::any_of(pairs.begin(), end, [&](const auto& pair) {
-      return !ways_.isBlocked({tet, pair.second[0]}, {tet, pair.second[1]});
+      return !queries_.isBlocked({tet, pair.second[0]}, {tet, pair.second[1]});
     });
   }
 
@@ -259,6 +262,7 @@ class PieceFinder {
     made.starts.push_back(static_cast<int>(made.pieces.size()));
     numberOf.resize(surfaceElements());
     made.pieceOf = std::move(numberOf);
+    assert(made.starts.size() == tetCount() + 1 && made.pieceOf.size() == surfaceElements());
     made.layered = std::move(layered_);
     return made;
   }
@@ -270,14 +274,14 @@ class PieceFinder {
   const LatticeFrame& frame_;
   const LatticeMesh& lattice_;
   const LatticeLinks& links_;
-  const BodyWays& ways_;
+  const SegmentQueries& queries_;
   double cell_;                              ///< altitude of a cell
   std::vector<int> componentOf_;             ///< by triangle
   DisjointSets sets_;                        ///< of elements
   std::vector<char> layered_;                ///< by tet
-  std::vector<std::size_t> materialStarts_;  ///< by tet, and one more: its first element of material
+  std::vector<std::size_t> materialStarts_;  ///< by tet, and the end: its first element of material
   std::vector<CellMask> ofMaterial_;         ///< by element of material
-  std::vector<CellMask> cells_;              ///< of all that is united, at a set's representative
+  std::vector<CellMask> cells_;              ///< by representative of a set: all its cells
   std::vector<std::pair<std::array<int, 2>, std::size_t>> shared_;  ///< scratch memory
 };
 
@@ -285,9 +289,9 @@ class PieceFinder {
 
 TetPieces piecesIn(const Surface& surface, const WindingTree& winding, const std::vector<int>& tetOf,
                    const TetMaterial& material, const LatticeFrame& frame, const LatticeMesh& lattice,
-                   const LatticeLinks& links, const BodyWays& ways) {
+                   const LatticeLinks& links, const SegmentQueries& directions) {
   assert(tetOf.size() >= surface.points.size() && material.cells.size() == lattice.mesh.tetCount());
-  return PieceFinder(surface, winding, tetOf, material, frame, lattice, links, ways).run();
+  return PieceFinder(surface, winding, tetOf, material, frame, lattice, links, directions).run();
 }
 
 }  // namespace tetskin::cage_detail

@@ -6,6 +6,7 @@
 #include <tetskin/core/src/shared/mesh/winding_tree.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -15,7 +16,7 @@ namespace {
 /// Fraction of the half-edges that must have an opposite partner before the surface counts as oriented. Small scans
 /// with holes stay far above, a soup of unconnected triangles has none.
 constexpr double kOrientedFraction = 0.8;
-/// Triangles of a patch that are asked whether they lie within other patches.
+/// Number of triangles of a patch for which it is tested whether they lie within other patches.
 constexpr std::size_t kCavitySamples = 9;
 /// How far below its surface a patch is sampled, as a fraction of the sampled triangle's size: near enough to stay
 /// inside thin patches, far enough for the winding number not to drown in rounding.
@@ -66,11 +67,11 @@ class Sides {
   Lists<Side> byLow_;
 };
 
-/// What is known about a patch; indexed by its representative triangle.
+/// Properties of a patch, indexed by its representative triangle.
 struct Patch {
   bool mixed = false;  ///< neighbours disagreed
   bool open = false;
-  double volume = 0.0;  ///< about a point of its own, which for an open patch is the best there is
+  double volume = 0.0;  ///< about a point of its own, which is the best choice for an open patch
   double area = 0.0;
   std::vector<int> triangles;
 };
@@ -80,6 +81,7 @@ void turn(Surface& surface, const Patch& patch) {
 }
 
 void measurePatch(const Surface& surface, Patch& patch) {
+  assert(!patch.triangles.empty());
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const int t : patch.triangles) centre += surface.points[surface.triangles[t][0]];
   centre /= static_cast<double>(patch.triangles.size());
@@ -94,7 +96,7 @@ bool isSheet(const Patch& patch) {
   return std::abs(patch.volume) <= kSheetVolume * patch.area * std::sqrt(patch.area);
 }
 
-/// Groups the triangles into patches and makes the triangles of each agree.
+/// Groups the triangles into patches and makes the orientations within each agree.
 std::vector<Patch> makePatches(Surface& surface, const Sides& sides) {
   DisjointSets sets(surface.solidCount);
   sides.forEdges([&](auto first, auto last) {
@@ -125,15 +127,15 @@ std::vector<Patch> makePatches(Surface& surface, const Sides& sides) {
 }
 
 /// True if the patch, closed and of negative volume, lies within others: just inside itself it contributes -1 to the
-/// winding number, so anything above -1/2 comes from others around it.
+/// winding number, so that anything above -1/2 comes from others around it.
 bool isCavity(const Surface& surface, const WindingTree& tree, const Patch& patch) {
   const std::size_t step = std::max<std::size_t>(1, patch.triangles.size() / kCavitySamples);
   for (std::size_t i = 0; i < patch.triangles.size(); i += step) {
     const std::array<int, 3>& t = surface.triangles[patch.triangles[i]];
     const Eigen::Vector3d normal = areaVector(surface, t);
-    const Eigen::Vector3d middle = (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3.0;
+    const Eigen::Vector3d centroid = (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3.0;
     // The normal of a patch of negative volume points into it.
-    const Eigen::Vector3d inside = middle + normal.normalized() * (kCavityDepth * std::sqrt(normal.norm()));
+    const Eigen::Vector3d inside = centroid + normal.normalized() * (kCavityDepth * std::sqrt(normal.norm()));
     if (tree.windingNumber(inside) < -0.5) return false;
   }
   return true;
@@ -156,6 +158,7 @@ void turnInsideOut(Surface& surface, std::vector<Patch>& patches) {
 }  // namespace
 
 void orient(Surface& surface) {
+  assert(surface.solidCount <= surface.triangles.size());
   std::vector<Patch> patches = makePatches(surface, Sides(surface));
   turnInsideOut(surface, patches);
   std::size_t open = 0;

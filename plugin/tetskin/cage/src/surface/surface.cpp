@@ -7,6 +7,7 @@
 #include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -113,6 +114,7 @@ Surface prepareSurface(const TriangleMesh& mesh) {
   addDistinct(triangles, surface);
   const auto solidEnd = std::stable_partition(surface.triangles.begin(), surface.triangles.end(),
                                               [&](const auto& t) { return hasArea(surface, t); });
+  assert(surface.pointOf.size() == mesh.vertexCount() && surface.triangles.size() <= mesh.triangleCount());
   surface.solidCount = static_cast<std::size_t>(solidEnd - surface.triangles.begin());
   findLoosePoints(surface);
   surface.components = countComponents(surface);

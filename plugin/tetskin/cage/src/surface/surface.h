@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The mesh as the later stages want it: welded, without repeated triangles, consistently oriented where it can be.
+// The mesh in the form that the later stages need: welded, without repeated triangles, consistently oriented where
+// possible.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/winding_tree.h>
-#include <tetskin/core/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>
@@ -24,17 +25,18 @@ struct Surface {
   std::vector<std::array<int, 3>> triangles;  ///< distinct ones; the first `solidCount` of them have an area
   std::size_t solidCount = 0;
   std::vector<int> loosePoints;  ///< points that no triangle uses
-  Box3 box;                      ///< of all points
+  Box3 box;                      ///< box of all points
 
-  std::size_t components = 0;  ///< sets of triangles connected by points
-  std::size_t openEdges = 0;   ///< edges without a partner triangle that runs along them the other way
-  bool oriented = false;       ///< most edges have such partners, so that winding numbers can be believed
+  std::size_t components = 0;  ///< number of sets of triangles connected by points
+  std::size_t openEdges =
+      0;                  ///< number of edges without a partner triangle that runs along them in the opposite direction
+  bool oriented = false;  ///< most edges have such partners, so that winding numbers are reliable
   double area = 0.0;
-  double volume = 0.0;  ///< enclosed, by the divergence theorem about the box's centre; 0 for a sheet
+  double volume = 0.0;  ///< enclosed volume, by the divergence theorem about the box's centre; 0 for a sheet
 };
 
 /// Welds coincident vertices, drops repeated triangles (double-sided faces are one face), makes the orientation of
-/// neighbours agree, and measures. The mesh must have passed `checkTriangleMesh`. Cost O(n log n) at worst, in practice
+/// neighbours agree, and measures. The mesh must have passed `validate`. Cost O(n log n) at worst, in practice
 /// linear in vertices and triangles.
 Surface prepareSurface(const TriangleMesh& mesh);
 

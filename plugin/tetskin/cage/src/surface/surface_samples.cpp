@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/surface/surface_samples.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::cage_detail {
@@ -13,7 +14,8 @@ class TriangleRows {
   TriangleRows(const Surface& surface, double step, SurfaceSamples& samples)
       : surface_(surface), step_(step), samples_(samples) {}
 
-  /// Rows of points parallel to the longest edge, rows and points at most a step apart; none if that edge is shorter.
+  /// Adds rows of points parallel to the longest edge, with rows and points at most a step apart; none if that edge is
+  /// shorter.
   void add(int triangle) {
     const std::array<int, 3>& t = surface_.triangles[triangle];
     int longest = 0;
@@ -59,7 +61,7 @@ class TriangleRows {
     return row;
   }
 
-  /// Each point of the longer row with the one beside it in the other.
+  /// Joins each point of the longer row with the one beside it in the other row.
   void joinRows(const std::vector<int>& before, const std::vector<int>& row) {
     if (before.empty()) return;
     for (std::size_t k = 0; k < before.size(); ++k) {
@@ -77,6 +79,7 @@ class TriangleRows {
 }  // namespace
 
 SurfaceSamples sampleSurface(const Surface& surface, double step) {
+  assert(step > 0.0);
   SurfaceSamples samples;
   samples.points = surface.points;
   TriangleRows rows(surface, step, samples);
@@ -84,6 +87,7 @@ SurfaceSamples sampleSurface(const Surface& surface, double step) {
     for (int k = 0; k < 3; ++k) samples.steps.push_back({surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]});
     rows.add(static_cast<int>(t));
   }
+  assert(samples.points.size() == surface.points.size() + samples.triangleOf.size());
   return samples;
 }
 

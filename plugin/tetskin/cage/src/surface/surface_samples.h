@@ -9,17 +9,18 @@
 
 namespace tetskin::cage_detail {
 
-/// Points of a surface that stand for all of it. Not those of core's `forEachSample`, which know no neighbours, and of
-/// which a long thin triangle takes many more.
+/// Points of a surface that represent all of it. Core's `forEachSample` does not know which points are neighbours, and
+/// takes many more of a long thin triangle.
 struct SurfaceSamples {
-  /// Those of the surface first, then points on those of its triangles that are longer than a step, in rows a step
+  /// The surface's own points first, then points on those of its triangles that are longer than a step, in rows a step
   /// apart.
   std::vector<Eigen::Vector3d> points;
-  std::vector<int> triangleOf;            ///< by point beyond the surface's own: its triangle
-  std::vector<std::array<int, 2>> steps;  ///< pairs of points that the surface joins on a way of some two steps at most
+  std::vector<int> triangleOf;  ///< by point after the surface's own: its triangle
+  std::vector<std::array<int, 2>>
+      steps;  ///< pairs of points that the surface connects over a distance of at most some two steps
 };
 
-/// Count: O(points + area / step^2 + length / step).
+/// The number of points is O(points + area / step^2 + length / step).
 SurfaceSamples sampleSurface(const Surface& surface, double step);
 
 }  // namespace tetskin::cage_detail

@@ -6,6 +6,7 @@
 #include <tetskin/contact/src/rigid/body_contacts.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -13,9 +14,9 @@
 namespace tetskin {
 namespace {
 
-/// Shapes near the body are remembered, each with some 100 bytes per tet, as far as these bytes suffice, and this many
-/// of them in any case. Of more, those that came first: each is asked for once per step, so that the least recently
-/// used would be dropped just before its turn.
+/// Results for shapes near the body are kept, with some 100 bytes per tet and shape, as far as these bytes suffice, and
+/// for at least this many shapes. If there are more, those that came first are kept: each is asked for once per step,
+/// so that a least recently used rule would drop each one just before its turn.
 constexpr std::size_t kMaxMemoryBytes = std::size_t(32) << 20;
 constexpr std::size_t kMinRemembered = 64;
 /// Steps after which a shape that was not near is forgotten.
@@ -27,8 +28,9 @@ std::size_t maxRemembered(const ContactPatches& patches) {
   return std::max(kMinRemembered, kMaxMemoryBytes / std::max(bytes, std::size_t(1)));
 }
 
-/// Of a child among all shapes of an object, however deep compounds are nested; the same in each step, as memory is
-/// kept by it. A hash: two are the same as rarely as two random numbers of 64 bits are.
+/// The number of a child shape among all shapes of an object, however deep compounds are nested. It is the same in each
+/// step, as results are kept by it. It is a hash: two children have the same number as rarely as two random numbers of
+/// 64 bits are equal.
 std::uint64_t numberOfChild(std::uint64_t compound, int child) {
   return compound * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(child) + 1;
 }
@@ -39,22 +41,24 @@ struct LeafGatherer : btDbvt::ICollide {
   std::vector<int> items;
 };
 
-/// Where an object goes in this step. Of those that do not move by themselves, or sleep, nobody keeps that up to date.
+/// The transform of an object at the end of the step. Bullet does not update its predicted transform if the object does
+/// not move by itself, or sleeps.
 btTransform predictedOf(const btCollisionObject& object) {
   const bool moves = object.isActive() && !object.isStaticOrKinematicObject();
   return moves ? object.getInterpolationWorldTransform() : object.getWorldTransform();
 }
 
-/// Of a shape on the object: a child of a compound has a place there.
+/// The path of a shape on the object: a child of a compound has a transform within it.
 ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
-  const btTransform place = object.getWorldTransform().inverse() * rigid.getWorldTransform();
-  return {rigid.getWorldTransform(), predictedOf(object) * place};
+  const btTransform position = object.getWorldTransform().inverse() * rigid.getWorldTransform();
+  return {rigid.getWorldTransform(), predictedOf(object) * position};
 }
 
 }  // namespace
 
-BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, TouchSearch search, btScalar thickness)
+BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, SurfaceCollider search,
+                           btScalar thickness)
     : dispatcher_(&dispatcher),
       body_(body),
       lifetime_(body.lifetime()),
@@ -63,8 +67,9 @@ BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, 
       maxRemembered_(maxRemembered(search_.patches())) {}
 
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
+  assert(bodyLives());
   const btCollisionObject& object = *rigid.getCollisionObject();
-  if (!body_.isActive() || !meetsRigid(body_, object)) return;
+  if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   nodesRead_ = false;
   KnownObject& known = known_[&object];
   ++known.step;
@@ -83,7 +88,7 @@ void BodyContacts::readNodes() {
   search_.begin(nodes_, body_.speculation());
 }
 
-/// By the boxes that Bullet keeps, and for shapes of one piece by the distance of the body's.
+/// Tests the boxes that Bullet keeps, and, for shapes without children, the distance of the body's box.
 bool BodyContacts::isNear(const btCollisionShape& shape, const ShapePath& path) const {
   btVector3 low, high, laterLow, laterHigh;
   shape.getAabb(path.now, low, high);
@@ -114,14 +119,16 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   ShapeProbe* probe = probeOf(shape, known);
   if (!probe) return;
   readNodes();
-  const std::vector<PointTouch>& touches = search_.find(*probe, path, memoryOf(known));
-  for (const PointTouch& touch : touches) addContact(touch, object);
+  const std::vector<ContactCandidate>& touches = search_.find(*probe, path, memoryOf(known));
+  for (const ContactCandidate& touch : touches) addContact(touch, object);
   if (!touches.empty() && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
 }
 
-void BodyContacts::addContact(const PointTouch& touch, const btCollisionObject& object) {
+void BodyContacts::addContact(const ContactCandidate& touch, const btCollisionObject& object) {
+  assert(touch.patch < search_.patches().patches.size());
   const ContactPatches& patches = search_.patches();
   const ContactPatch& patch = patches.patches[touch.patch];
+  assert(touch.point >= patch.firstPoint && touch.point - patch.firstPoint < patch.pointCount);
   PointContact contact;
   contact.point = touch.point;
   contact.object = &object;
@@ -136,8 +143,8 @@ void BodyContacts::addContact(const PointTouch& touch, const btCollisionObject& 
   body_.pointContacts().push_back(contact);
 }
 
-/// Ascending. In the compound's space the paths of all the body's points lie in the box around where the body's box is
-/// now and where it would be: children outside of it meet nothing.
+/// The numbers of the children near the body, ascending. In the compound's space, the paths of all the body's points
+/// lie in the box around the body's current and predicted boxes: children outside of it touch nothing.
 std::vector<int> BodyContacts::childrenNear(const btCompoundShape& compound, const ShapePath& path) const {
   LeafGatherer children;
   const btDbvt* tree = compound.getDynamicAabbTree();
@@ -164,7 +171,7 @@ void BodyContacts::forget(const btCollisionObject& object) {
     known_.erase(found);
   }
   if (!bodyLives()) return;
-  // The last step's are told of until the next one.
+  // Contacts of the last step are reported until the next one.
   for (PointContact& contact : body_.pointContacts()) {
     if (contact.object == &object) contact.object = nullptr;
   }
@@ -204,7 +211,7 @@ ShapeMemory& BodyContacts::memoryOf(KnownShape& known) {
 }
 
 ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& known) {
-  if (const std::optional<ExactShape> exact = ExactShape::of(shape)) {
+  if (const std::optional<ExactShape> exact = ExactShape::exactShape(shape)) {
     exact_.take(*exact);
     return &exact_;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: one body and all that it meets.
+// Internal to SurfaceContact: the contacts of one body with everything that it touches.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
@@ -11,7 +11,7 @@
 #include <tetskin/contact/src/rigid/convex_probe.h>
 #include <tetskin/contact/src/rigid/hull_probe.h>
 #include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/contact/src/rigid/touch_search.h>
+#include <tetskin/contact/src/rigid/surface_collider.h>
 
 #include <cstdint>
 #include <memory>
@@ -20,47 +20,47 @@
 
 namespace tetskin {
 
-/// What is known of one shape of one object.
+/// What is stored about one shape of one object.
 struct KnownShape {
   const btCollisionShape* shape = nullptr;
-  btVector3 low = {0, 0, 0}, high = {0, 0, 0};  ///< its box: another one is of another shape
-  std::shared_ptr<const HullFaces> hull;        ///< of a convex hull: kept for the probe
-  unsigned lastStep = 0;                        ///< in which it was near
-  bool isRemembered = false;                    ///< in `memory`
+  btVector3 low = {0, 0, 0}, high = {0, 0, 0};  ///< its box: if it differs, the shape is another one
+  std::shared_ptr<const HullFaces> hull;        ///< of a convex hull: its faces, kept for the probe
+  unsigned lastStep = 0;                        ///< last step in which it was near
+  bool isRemembered = false;                    ///< it has an entry in `memory`
   ShapeMemory memory;
 };
 
 struct KnownObject {
-  std::unordered_map<std::uint64_t, KnownShape> shapes;  ///< by number
-  unsigned step = 0;                                     ///< counts those in which it was met
+  std::unordered_map<std::uint64_t, KnownShape> shapes;  ///< by number of the shape
+  unsigned step = 0;                                     ///< number of the last step in which the object was met
 };
 
 class BodyContacts {
  public:
-  /// dispatcher  whose pairs are met; only compared
-  /// body        one that `makeSoftBody` has made
-  /// thickness   how deep in a mesh a point still belongs to it
-  BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, TouchSearch search, btScalar thickness);
+  /// dispatcher  the one whose pairs are handled; only compared
+  /// body        created by `createSoftBody`
+  /// thickness   depth up to which a point behind a mesh's surface still belongs to it
+  BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, SurfaceCollider search, btScalar thickness);
 
   const btDispatcher* dispatcher() const { return dispatcher_; }
-  /// If not, nothing else may be called but `forget` and the accessors.
+  /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
 
-  /// Adds the contacts with an object, shape by shape, to the body's.
+  /// Adds the contacts with an object to the body's, shape by shape.
   void collide(const btCollisionObjectWrapper& rigid);
 
-  /// An object that is met no more, or not for now.
+  /// Forgets an object that is not met any more, or not at present.
   void forget(const btCollisionObject& object);
 
   BodyWithTrees& body() const { return body_; }
-  const TouchSearch& search() const { return search_; }
+  const SurfaceCollider& search() const { return search_; }
 
  private:
   void readNodes();
   void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                     const btCollisionObject& object);
   std::vector<int> childrenNear(const btCompoundShape& compound, const ShapePath& path) const;
-  void addContact(const PointTouch& touch, const btCollisionObject& object);
+  void addContact(const ContactCandidate& touch, const btCollisionObject& object);
   bool isNear(const btCollisionShape& shape, const ShapePath& path) const;
   KnownShape& knownShape(const btCollisionShape& shape, std::uint64_t number, const btCollisionObject& object);
   ShapeMemory& memoryOf(KnownShape& known);
@@ -69,18 +69,18 @@ class BodyContacts {
 
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;
-  std::weak_ptr<const void> lifetime_;  ///< the body's: another one may have its address afterwards
-  TouchSearch search_;
+  std::weak_ptr<const void> lifetime_;  ///< of the body: afterwards, another one may have its address
+  SurfaceCollider search_;
   btScalar thickness_;
   std::vector<NodePath> nodes_;
-  bool nodesRead_ = false;  ///< in this call
+  bool nodesRead_ = false;  ///< by this call
   ExactProbe exact_;
   HullProbe hull_;
   ConvexProbe convex_;
   MeshProbe mesh_;
   std::unordered_map<const btCollisionObject*, KnownObject> known_;
-  std::size_t remembered_ = 0, maxRemembered_;  ///< shapes
-  ShapeMemory overflow_;                        ///< of a shape too many: nothing is remembered of it
+  std::size_t remembered_ = 0, maxRemembered_;  ///< numbers of shapes
+  ShapeMemory overflow_;                        ///< used for shapes beyond the limit, of which nothing is kept
 };
 
 }  // namespace tetskin

@@ -14,10 +14,10 @@ namespace {
 
 using Point = EmbeddedPoint<btScalar>;
 
-/// Patches in a cluster: enough that passing over it pays, few enough that it is small.
+/// Patches per cluster: enough that skipping a cluster pays, few enough that it is small.
 constexpr int kPatchesPerCluster = 12;
 
-/// Points that the same nodes carry, while patches are collected.
+/// The points carried by the same nodes, while patches are collected.
 struct LoosePatch {
   std::vector<int> nodes;
   std::vector<btScalar> weights;                       ///< of the nodes, point by point
@@ -32,8 +32,9 @@ void dropRepeated(std::vector<Point>& points) {
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
 }
 
-/// points  of one tet
+/// points  all in one tet
 LoosePatch patchOf(std::vector<Point> points) {
+  assert(!points.empty());
   LoosePatch patch;
   patch.nodes.assign(points.front().nodes.begin(), points.front().nodes.end());
   dropRepeated(points);
@@ -43,7 +44,7 @@ LoosePatch patchOf(std::vector<Point> points) {
   return patch;
 }
 
-/// One for each tet with vertices inside, and one for each with vertices outside.
+/// One patch for each tet with vertices inside, and one for each tet with vertices outside.
 std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const TriangleMesh& mesh) {
   std::vector<LoosePatch> patches;
   const std::vector<std::uint32_t>& vertices = embedding.slotVertices();
@@ -64,11 +65,11 @@ std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const Triangle
   return patches;
 }
 
-/// A triangle's corners, and the nodes of them all.
+/// A triangle's corners, and the nodes of all their tets.
 struct EmbeddedTriangle {
   std::array<Point, 3> corners;
   std::vector<int> nodes;
-  std::array<std::array<std::size_t, 4>, 3> indices{};  ///< by corner and node of its tet: in `nodes`
+  std::array<std::array<std::size_t, 4>, 3> indices{};  ///< by corner and node of its tet: index in `nodes`
 };
 
 EmbeddedTriangle embeddedTriangle(const Embedding& embedding, const std::array<int, 3>& vertices) {
@@ -85,18 +86,21 @@ EmbeddedTriangle embeddedTriangle(const Embedding& embedding, const std::array<i
   return triangle;
 }
 
-/// shares  of the corners
-void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3>& shares, LoosePatch& patch) {
+/// shares  weights of the corners
+void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3>& weights, LoosePatch& patch) {
+  assert(btFabs(weights[0] + weights[1] + weights[2] - 1) < btScalar(1e-5));
+  assert(!triangle.nodes.empty() && triangle.nodes.size() <= kMaxCarriers);
   const std::size_t first = patch.weights.size();
   patch.weights.resize(first + triangle.nodes.size(), 0);
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < 4; ++k) {
-      patch.weights[first + triangle.indices[c][k]] += shares[c] * triangle.corners[c].weights[k];
+      patch.weights[first + triangle.indices[c][k]] += weights[c] * triangle.corners[c].weights[k];
     }
   }
 }
 
-/// At the corners of the small triangles into which each edge's `steps` cut it, but not at its own.
+/// Appends the corners of the small triangles into which `steps` cuts per edge divide the triangle, without its own
+/// corners.
 void appendSamples(const EmbeddedTriangle& triangle, int steps, LoosePatch& patch) {
   const auto weight = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
   forEachSample(steps, [&](int i, int j, int k) {
@@ -118,7 +122,7 @@ void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh,
   }
 }
 
-/// Neighbouring patches are in one leaf.
+/// A hierarchy whose leaves are clusters of neighbouring patches.
 Bvh clustersOf(const std::vector<LoosePatch>& patches) {
   Bvh::Centroids<double> centroids;
   centroids.reserve(patches.size());
@@ -127,6 +131,7 @@ Bvh clustersOf(const std::vector<LoosePatch>& patches) {
 }
 
 btScalar spreadOf(const LoosePatch& patch) {
+  assert(!patch.nodes.empty() && patch.weights.size() % patch.nodes.size() == 0);
   btScalar spread = 1;
   for (std::size_t p = 0; p < patch.weights.size(); p += patch.nodes.size()) {
     btScalar sum = 0;
@@ -137,6 +142,7 @@ btScalar spreadOf(const LoosePatch& patch) {
 }
 
 void append(const LoosePatch& loose, ContactPatches& to) {
+  assert(loose.nodes.size() <= kMaxCarriers && loose.pointCount() > 0);
   ContactPatch patch;
   patch.firstNode = static_cast<std::uint32_t>(to.nodes.size());
   patch.nodeCount = static_cast<std::uint32_t>(loose.nodes.size());
@@ -151,6 +157,7 @@ void append(const LoosePatch& loose, ContactPatches& to) {
 }
 
 void closeCluster(std::size_t firstPatch, ContactPatches& to) {
+  assert(firstPatch < to.patches.size());
   PatchCluster cluster;
   cluster.firstPatch = static_cast<std::uint32_t>(firstPatch);
   cluster.patchCount = static_cast<std::uint32_t>(to.patches.size() - firstPatch);
@@ -185,6 +192,7 @@ ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh
   ContactPatches result;
   for (const Bvh::Node& node : clusters.nodes()) {
     if (!node.isLeaf()) continue;
+    assert(result.patches.size() == static_cast<std::size_t>(node.first));
     for (int k = node.first; k < node.last; ++k) append(loose[static_cast<std::size_t>(clusters.item(k))], result);
     closeCluster(static_cast<std::size_t>(node.first), result);
   }

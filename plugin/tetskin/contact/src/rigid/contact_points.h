@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: what is told of the contacts of a step.
+// Internal to SurfaceContact: the report of the contacts of a step.
 #pragma once
 
 #include <tetskin/contact/src/rigid/body_contacts.h>
@@ -11,7 +11,7 @@
 
 namespace tetskin {
 
-/// One for each point and object. The body must live.
+/// Appends one entry for each point and object. The body must exist.
 void addContactPoints(const BodyContacts& contacts, std::vector<SurfaceContactPoint>& points);
 
 }  // namespace tetskin

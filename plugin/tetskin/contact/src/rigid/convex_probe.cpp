@@ -3,17 +3,19 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <tetskin/contact/src/rigid/convex_probe.h>
 
+#include <cassert>
+
 namespace tetskin {
 namespace {
 
-/// What Bullet adds around a shape as it is drawn: not those in which the margin is made room for.
+/// The margin that Bullet adds around a shape as it is drawn; 0 for shapes that are shrunk to make room for the margin.
 btScalar addedMargin(const btConvexShape& shape) {
   const int type = shape.getShapeType();
   const bool within = type == MULTI_SPHERE_SHAPE_PROXYTYPE || type == CYLINDER_SHAPE_PROXYTYPE;
   return within ? btScalar(0) : shape.getMargin();
 }
 
-/// Where Bullet finds none, nothing is near.
+/// If Bullet finds no distance, nothing is near.
 ShapeDistance gjkDistance(const btConvexShape& shape, const btVector3& point) {
   btGjkEpaSolver2::sResults results;
   const btScalar distance = btGjkEpaSolver2::SignedDistance(point, 0, &shape, btTransform::getIdentity(), results);
@@ -25,6 +27,7 @@ ShapeDistance gjkDistance(const btConvexShape& shape, const btVector3& point) {
 }  // namespace
 
 bool ConvexProbe::enter(const Ball& ball, btScalar reach) {
+  assert(shape_);
   const ShapeDistance centre = gjkDistance(*shape_, ball.centre);
   reach_ = reach;
   bound_ = ShapeBound::behind(centre, ball.centre);
@@ -32,6 +35,7 @@ bool ConvexProbe::enter(const Ball& ball, btScalar reach) {
 }
 
 ShapeDistance ConvexProbe::at(const btVector3& point) const {
+  assert(shape_);
   const btScalar atLeast = bound_(point);
   if (atLeast > reach_) return {atLeast, bound_.normal};
   return gjkDistance(*shape_, point);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: convex shapes by Bullet's GJK.
+// Internal to SurfaceContact: distances to convex shapes by Bullet's GJK.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
@@ -9,8 +9,8 @@
 
 namespace tetskin {
 
-/// Shapes as they are drawn: without a margin around them. A point costs a microsecond or two, but only where the plane
-/// that parts the ball's centre from the shape does not tell that it is far.
+/// Distances to shapes as they are drawn, without a margin around them. A point costs a microsecond or two, but GJK
+/// only runs if the plane that separates the ball's centre from the shape does not already show that the point is far.
 class ConvexProbe : public ShapeProbe {
  public:
   void take(const btConvexShape& shape) { shape_ = &shape; }

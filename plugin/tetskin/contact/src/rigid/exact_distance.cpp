@@ -8,6 +8,7 @@
 #include <tetskin/contact/src/rigid/exact_distance.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
@@ -28,7 +29,7 @@ bool isRound(const btCylinderShape& cylinder) {
 
 }  // namespace
 
-std::optional<ExactShape> ExactShape::of(const btCollisionShape& shape) {
+std::optional<ExactShape> ExactShape::exactShape(const btCollisionShape& shape) {
   ExactShape exact;
   switch (shape.getShapeType()) {
     case STATIC_PLANE_PROXYTYPE: {
@@ -82,7 +83,7 @@ ShapeDistance ExactShape::distance(const btVector3& point) const {
   }
 }
 
-/// The centre has no direction: any serves.
+/// At the centre, no direction is distinguished: any one is valid.
 ShapeDistance ExactShape::fromBall(const btVector3& point) const {
   const btScalar length = point.length();
   return {length - radius_, length > SIMD_EPSILON * radius_ ? point / length : alongAxis((axis_ + 1) % 3, 1)};
@@ -94,20 +95,22 @@ ShapeDistance ExactShape::fromBox(const btVector3& point) const {
   btVector3 outside = beyond;
   outside.setMax(btVector3(0, 0, 0));
   const btScalar length = outside.length();
-  // Up to rounding on a face or inside; there it is the nearest face's.
+  // The point is on a face or inside, up to rounding; then the nearest face determines the result.
   if (!(length > SIMD_EPSILON * extents_[side])) return {beyond[side], alongAxis(side, point[side] < 0 ? -1 : 1)};
   for (int k = 0; k < 3; ++k) outside[k] = std::copysign(outside[k], point[k]);
   return {length, outside / length};
 }
 
 ShapeDistance ExactShape::fromCapsule(const btVector3& point) const {
+  assert(axis_ >= 0 && axis_ < 3 && half_ >= 0);
   btVector3 fromAxis = point;
   fromAxis[axis_] -= std::clamp(point[axis_], -half_, half_);
   return fromBall(fromAxis);
 }
 
-/// In the half-plane of the axis and the point, where the cylinder is a rectangle.
+/// Computed in the half-plane of the axis and the point, in which the cylinder is a rectangle.
 ShapeDistance ExactShape::fromCylinder(const btVector3& point) const {
+  assert(axis_ >= 0 && axis_ < 3 && half_ >= 0);
   btVector3 outwards = point;
   outwards[axis_] = 0;
   const btScalar fromAxis = outwards.length();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: how far a point is from the shapes that have formulas.
+// Internal to SurfaceContact: the distances of points from shapes for which there are formulas.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -10,20 +10,21 @@
 
 namespace tetskin {
 
-/// Of a point from a shape, in the shape's space.
+/// The distance of a point from a shape, in the shape's space.
 struct ShapeDistance {
   btScalar distance = BT_LARGE_FLOAT;  ///< below 0 inside
   btVector3 normal{0, 1, 0};           ///< of unit length, the direction in which the distance grows
 };
 
-/// A plane, a box, a sphere, a capsule or a cylinder whose section is a circle, as Bullet collides with it, its own
-/// margin included.
+/// A plane, a box, a sphere, a capsule or a cylinder with a circular section, as Bullet collides with it, including its
+/// own margin.
 class ExactShape {
  public:
-  /// Nothing for another shape.
-  static std::optional<ExactShape> of(const btCollisionShape& shape);
+  /// Empty for any other shape.
+  static std::optional<ExactShape> exactShape(const btCollisionShape& shape);
 
-  /// Inside, to the nearest point of the surface; where there are several, to one of them. Cost O(1)
+  /// The signed distance. A point inside gets the distance to the nearest point of the surface; if there are several
+  /// nearest points, to one of them. Cost O(1)
   ShapeDistance distance(const btVector3& point) const;
 
  private:
@@ -35,9 +36,9 @@ class ExactShape {
   ShapeDistance fromCylinder(const btVector3& point) const;
 
   Kind kind_ = Kind::Ball;
-  int axis_ = 1;         ///< that of a capsule or cylinder
-  btScalar radius_ = 0;  ///< of all that are round
-  btScalar half_ = 0;    ///< of their length along the axis, without a capsule's caps; a plane's constant
+  int axis_ = 1;         ///< axis of a capsule or cylinder
+  btScalar radius_ = 0;  ///< radius of a round shape
+  btScalar half_ = 0;    ///< half the length along the axis, without a capsule's caps; a plane's constant
   btVector3 extents_{};  ///< half the sides of a box; a plane's normal
 };
 

@@ -5,6 +5,7 @@
 #include <tetskin/contact/src/rigid/hull_probe.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -23,7 +24,7 @@ std::vector<btVector3> cornersOfFace(const btConvexHullComputer& hull, int face)
   return corners;
 }
 
-/// Twice the area, as a vector.
+/// The area vector of a polygon, times two.
 btVector3 areaOf(const std::vector<btVector3>& corners) {
   btVector3 area(0, 0, 0);
   for (std::size_t k = 2; k < corners.size(); ++k) {
@@ -56,7 +57,7 @@ HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalSc
   hull.compute(scaled[0].m_floats, sizeof(btVector3), count, 0, 0);
   const btVector3 inside = std::accumulate(scaled.begin(), scaled.end(), btVector3(0, 0, 0)) / btScalar(count);
   for (int f = 0; f < hull.faces.size(); ++f) addFace(cornersOfFace(hull, f));
-  // Of points in a plane Bullet makes two faces, back to back.
+  // For points in a plane, Bullet makes two faces, back to back.
   for (std::size_t f = 0; f < planes_.size(); ++f) {
     if (planes_.height(f, inside) < -SIMD_EPSILON) continue;
     planes_.clear();
@@ -76,6 +77,7 @@ void HullFaces::addFace(const std::vector<btVector3>& corners) {
     triangles_.push_back({toEigen(corners[0]), toEigen(corners[k - 1]), toEigen(corners[k])});
   }
   firstTriangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+  assert(firstTriangle_.size() == planes_.size() + 1);
 }
 
 bool HullFaces::fits(const btConvexHullShape& shape) const {
@@ -86,6 +88,7 @@ bool HullFaces::fits(const btConvexHullShape& shape) const {
 }
 
 btVector3 HullFaces::offsetFrom(std::size_t face, const btVector3& point) const {
+  assert(face < planes_.size() && firstTriangle_[face] < firstTriangle_[face + 1]);
   const Eigen::Vector3d p = toEigen(point);
   Eigen::Vector3d nearest = Eigen::Vector3d::Constant(static_cast<double>(BT_LARGE_FLOAT));
   for (std::uint32_t t = firstTriangle_[face]; t < firstTriangle_[face + 1]; ++t) {
@@ -95,7 +98,7 @@ btVector3 HullFaces::offsetFrom(std::size_t face, const btVector3& point) const 
   return toBullet(nearest);
 }
 
-/// Several objects may have one shape, and shapes may be changed in place.
+/// Several objects may share one shape, and shapes may be changed in place.
 std::shared_ptr<const HullFaces> HullProbe::find(const btConvexHullShape& shape) {
   const auto found = known_.find(&shape);
   std::shared_ptr<const HullFaces> faces = found == known_.end() ? nullptr : found->second.lock();
@@ -116,6 +119,7 @@ bool HullProbe::take(const btConvexHullShape& shape) {
 }
 
 bool HullProbe::enter(const Ball& ball, btScalar reach) {
+  assert(faces_ && !faces_->empty());
   if (!keepNear(all_, ball, reach, entered_)) return false;
   narrowed_ = entered_;
   return true;
@@ -125,10 +129,12 @@ bool HullProbe::narrow(const CarrierPaths&, const Ball& ball, btScalar reach) {
   return keepNear(entered_, ball, reach, narrowed_);
 }
 
-/// A face whose plane is lower under the centre than the highest by more than the ball's diameter is never the highest
-/// within the ball. Points beside an edge are nearest to faces that are lower than the highest, but look to them.
+/// Keeps the faces that can be the nearest of a point in the ball. A face whose plane is lower below the centre than
+/// the highest one by more than the ball's diameter is never the highest within the ball. Points beside an edge are
+/// nearest to faces that are lower than the highest, but face the points.
 bool HullProbe::keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach,
                          std::vector<std::size_t>& kept) {
+  assert(!from.empty() && &from != &kept);
   const FacePlanes& planes = faces_->planes();
   heights_.resize(from.size());
   for (std::size_t k = 0; k < from.size(); ++k) heights_[k] = planes.height(from[k], ball.centre);
@@ -146,6 +152,7 @@ bool HullProbe::keepNear(const std::vector<std::size_t>& from, const Ball& ball,
 }
 
 ShapeDistance HullProbe::at(const btVector3& point) const {
+  assert(!narrowed_.empty());
   const FacePlanes& planes = faces_->planes();
   btScalar height = -BT_LARGE_FLOAT;
   std::size_t top = 0;
@@ -160,17 +167,17 @@ ShapeDistance HullProbe::at(const btVector3& point) const {
 }
 
 ShapeDistance HullProbe::outside(const btVector3& point, const ShapeDistance& highest) const {
-  btScalar least = BT_LARGE_FLOAT;
+  btScalar minimum = BT_LARGE_FLOAT;
   btVector3 away = highest.normal;
   for (const std::size_t face : narrowed_) {
     if (!(faces_->planes().height(face, point) > 0)) continue;
     const btVector3 from = faces_->offsetFrom(face, point);
-    if (from.length2() < least) {
-      least = from.length2();
+    if (from.length2() < minimum) {
+      minimum = from.length2();
       away = from;
     }
   }
-  const btScalar distance = btSqrt(least);
+  const btScalar distance = btSqrt(minimum);
   return distance > SIMD_EPSILON ? ShapeDistance{distance, away / distance} : highest;
 }
 

@@ -7,11 +7,12 @@
 #include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
-/// Keeps the triangles that meet a box; Bullet's own test is of coarse boxes.
+/// Collects the triangles that meet a box; Bullet's own test uses coarse boxes.
 class TriangleGatherer : public btTriangleCallback {
  public:
   TriangleGatherer(const btVector3& low, const btVector3& high, const OutwardSide& outward,
@@ -25,19 +26,19 @@ class TriangleGatherer : public btTriangleCallback {
   std::vector<ProbeTriangle>& out_;
 };
 
-/// Below 0: mirrored.
+/// Below 0: the scaling mirrors.
 btScalar handedness(const btVector3& scaling) {
   return scaling.x() * scaling.y() * scaling.z();
 }
 
-bool boxesMeet(const ProbeTriangle& triangle, const btVector3& low, const btVector3& high) {
+bool boxesOverlap(const ProbeTriangle& triangle, const btVector3& low, const btVector3& high) {
   for (int k = 0; k < 3; ++k) {
     if (triangle.low[k] > high[k] || triangle.high[k] < low[k]) return false;
   }
   return true;
 }
 
-/// Whether the point is in the triangle's box, or no farther from it.
+/// True if the point is in the triangle's box, or within a distance of it.
 bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar distance) {
   for (int k = 0; k < 3; ++k) {
     if (triangle.low[k] - point[k] > distance || point[k] - triangle.high[k] > distance) return false;
@@ -45,7 +46,8 @@ bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar di
   return true;
 }
 
-/// From the closest point of the triangle. In double: near the triangle little is left of it.
+/// The offset of a point from the closest point of the triangle. Computed in double, as near the triangle few digits
+/// are left.
 btVector3 offsetFrom(const ProbeTriangle& triangle, const btVector3& point) {
   const Eigen::Vector3d p = toEigen(point);
   const auto& [a, b, c] = triangle.corners;
@@ -64,7 +66,7 @@ void TriangleGatherer::processTriangle(btVector3* corners, int, int) {
     triangle.low.setMin(corners[k]);
     triangle.high.setMax(corners[k]);
   }
-  if (boxesMeet(triangle, low_, high_)) out_.push_back(triangle);
+  if (boxesOverlap(triangle, low_, high_)) out_.push_back(triangle);
 }
 
 }  // namespace
@@ -81,12 +83,14 @@ OutwardSide::OutwardSide(const btConcaveShape& shape) : sign_(handedness(shape.g
 }
 
 void MeshProbe::take(const btConcaveShape& shape, btScalar thickness) {
+  assert(!(thickness < 0));
   shape_ = &shape;
   outward_ = OutwardSide(shape);
   thickness_ = thickness;
 }
 
 bool MeshProbe::enter(const Ball& ball, btScalar reach) {
+  assert(shape_);
   reach_ = reach;
   const btScalar side = ball.radius + std::max(reach, thickness_);
   const btVector3 half(side, side, side);
@@ -103,7 +107,7 @@ bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar 
   const btVector3 low = ball.centre - btVector3(side, side, side), high = ball.centre + btVector3(side, side, side);
   narrowed_.clear();
   for (const ProbeTriangle& triangle : entered_) {
-    if (!boxesMeet(triangle, low, high)) continue;
+    if (!boxesOverlap(triangle, low, high)) continue;
     const btScalar plane = triangle.normal.dot(triangle.corners[0]);
     if (carriers.lowest(triangle.normal) - plane > reach || carriers.highest(triangle.normal) - plane < -thickness_) {
       continue;
@@ -113,22 +117,22 @@ bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar 
   return !narrowed_.empty();
 }
 
-/// Where several triangles are equally near, at an edge or a corner, the one that looks most directly to or from the
-/// point tells the side.
+/// If several triangles are equally near, at an edge or a corner, the one whose normal is most nearly along the offset
+/// determines the side.
 ShapeDistance MeshProbe::at(const btVector3& point) const {
-  constexpr btScalar kSame = btScalar(1e-4);  // of the distance
+  constexpr btScalar kSame = btScalar(1e-4);  // relative to the distance
   ShapeDistance found{reach_, btVector3(0, 1, 0)};
-  btScalar least = std::max(reach_, thickness_), facing = 0;
+  btScalar minimum = std::max(reach_, thickness_), facing = 0;
   for (const ProbeTriangle& triangle : narrowed_) {
     const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
-    if (height > std::min(least, reach_) || -height > std::min(least, thickness_)) continue;
-    if (!isBeside(triangle, point, height < 0 ? std::min(least, thickness_) : std::min(least, reach_))) continue;
+    if (height > std::min(minimum, reach_) || -height > std::min(minimum, thickness_)) continue;
+    if (!isBeside(triangle, point, height < 0 ? std::min(minimum, thickness_) : std::min(minimum, reach_))) continue;
     const btVector3 away = offsetFrom(triangle, point);
     const btScalar distance = away.length();
-    if (distance > least * (1 + kSame) || (distance > least * (1 - kSame) && btFabs(height) <= facing)) continue;
-    least = std::min(least, distance);
+    if (distance > minimum * (1 + kSame) || (distance > minimum * (1 - kSame) && btFabs(height) <= facing)) continue;
+    minimum = std::min(minimum, distance);
     facing = btFabs(height);
-    // On the triangle itself the way off it has no direction but the normal's.
+    // For a point on the triangle itself, the offset has no direction, and the normal is used.
     const bool on = !(distance > SIMD_EPSILON);
     found = {height < 0 ? -distance : distance, on ? triangle.normal : (height < 0 ? -away : away) / distance};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: concave shapes by their triangles.
+// Internal to SurfaceContact: distances to concave shapes by their triangles.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -12,29 +12,29 @@
 
 namespace tetskin {
 
-/// A triangle, with what tells quickly that it is far.
+/// A triangle, with a box that quickly shows whether it is far.
 struct ProbeTriangle {
   std::array<btVector3, 3> corners;
   btVector3 normal;  ///< of unit length, outwards
   btVector3 low, high;
 };
 
-/// Which side of a shape's triangles is outside: where their corners are counter-clockwise, mirrored with the shape. Of
-/// terrain, whose winding is another along each axis, it is the side of its up axis.
+/// Which side of a shape's triangles is outside: the one from which their corners are counter-clockwise, with mirroring
+/// taken into account. Terrain is wound differently along each axis, so that outside is the side of its up axis.
 class OutwardSide {
  public:
   OutwardSide() = default;
   explicit OutwardSide(const btConcaveShape& shape);
-  /// normal  where the corners are counter-clockwise
+  /// normal  of the side from which the corners are counter-clockwise
   bool isBehind(const btVector3& normal) const { return (upAxis_ < 0 ? btScalar(1) : normal[upAxis_]) * sign_ < 0; }
 
  private:
   btScalar sign_ = 1;
-  int upAxis_ = -1;  ///< of terrain
+  int upAxis_ = -1;  ///< up axis of terrain; otherwise -1
 };
 
-/// Points behind a triangle are inside, as far as `thickness`; farther, they belong to something else. Asks the shape
-/// once for each ball entered.
+/// Points behind a triangle count as inside up to the depth `thickness`; deeper points belong to something else.
+/// Queries the shape once for each ball entered.
 class MeshProbe : public ShapeProbe {
  public:
   void take(const btConcaveShape& shape, btScalar thickness);

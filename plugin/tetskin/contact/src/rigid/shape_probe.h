@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: how far points are from one rigid shape, asked ball by ball, so that most of the shape,
-// and most points, are passed over.
+// Internal to SurfaceContact: the distances of points from one rigid shape. Callers ask ball by ball, so that most of
+// the shape, and most points, are skipped.
 #pragma once
 
 #include <tetskin/contact/src/rigid/exact_distance.h>
 
+#include <cassert>
 #include <cstddef>
 
 namespace tetskin {
@@ -16,20 +17,22 @@ struct Ball {
   btScalar radius = 0;
 };
 
-/// Where a node or a point is when the step begins, and where it would go without contact.
+/// The position of a node or a point when the step begins, and the one that it would reach without contact.
 struct NodePath {
   btVector3 now, predicted;
 };
 
-/// Points are on the ways of these nodes, weighted; if some weights are negative, beyond them by the spread.
+/// The paths of the nodes that carry some points. The points are on weighted means of these paths; if some weights are
+/// negative, outside of them by up to the spread.
 struct CarrierPaths {
   const NodePath* paths = nullptr;
   std::size_t count = 0;
   btScalar spread = 1;
 
-  /// Of the points' heights in a direction no less than the least, and no more than the most.
+  /// Bounds of the points' heights along a direction.
   btScalar lowest(const btVector3& direction) const { return -highest(-direction); }
   btScalar highest(const btVector3& direction) const {
+    assert(paths && count > 0);
     btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
     for (std::size_t k = 0; k < count; ++k) {
       const btScalar now = direction.dot(paths[k].now), predicted = direction.dot(paths[k].predicted);
@@ -40,35 +43,36 @@ struct CarrierPaths {
   }
 };
 
-/// A lower bound of distances: no point is nearer than it is above the plane.
+/// A lower bound of distances: no point is nearer than its height above the plane.
 struct ShapeBound {
   btVector3 normal{0, 0, 0};
   btScalar offset = -BT_LARGE_FLOAT;
 
   btScalar operator()(const btVector3& point) const { return normal.dot(point) + offset; }
-  /// A convex shape is behind the plane through its point that is nearest to another one.
+  /// The bound of a convex shape: the shape is behind the plane through its point that is nearest to another point.
   static ShapeBound behind(const ShapeDistance& at, const btVector3& point) {
     return {at.normal, at.distance - at.normal.dot(point)};
   }
 };
 
-/// All in the shape's own space.
+/// Distances to one shape; all positions are in the shape's own space.
 class ShapeProbe {
  public:
   virtual ~ShapeProbe() = default;
-  /// Shapes of the kind with the same box are the same: none changes in place unseen.
+  /// True if shapes of this type with the same box are equal, so that a change in place is always noticed by the box.
   virtual bool isKnownByItsBox() const { return false; }
-  /// Whether anything of the shape may be within `reach` of the ball. Then points in the ball may be asked for.
+  /// True if anything of the shape may be within `reach` of the ball. Then distances of points in the ball may be asked
+  /// for.
   virtual bool enter(const Ball& ball, btScalar reach) = 0;
-  /// The same for a ball in the last one entered, around these.
+  /// Like `enter`, for a ball within the last one entered that contains these carriers' points.
   virtual bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) = 0;
-  /// For all points, by the last ball.
+  /// A bound for all points in the last ball.
   virtual ShapeBound bound() const = 0;
-  /// For points within reach, how far they are; for others no more than that, and at least the reach.
+  /// For points within reach, their distance; for others a value between the reach and their distance.
   virtual ShapeDistance at(const btVector3& point) const = 0;
 };
 
-/// Of shapes with formulas.
+/// Probe of shapes for which there are formulas.
 class ExactProbe : public ShapeProbe {
  public:
   void take(const ExactShape& shape) { shape_ = shape; }

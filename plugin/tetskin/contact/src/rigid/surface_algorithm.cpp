@@ -7,17 +7,18 @@
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/contact/src/rigid/surface_algorithm.h>
 
+#include <cassert>
 #include <utility>
 
 namespace tetskin {
 namespace {
 
-/// Those whose shapes a soft body meets.
+/// True for types of rigid objects with whose shapes a soft body collides.
 bool isRigidType(int type) {
   return btBroadphaseProxy::isConvex(type) || btBroadphaseProxy::isConcave(type) || btBroadphaseProxy::isCompound(type);
 }
 
-/// Bullet's own for the pair.
+/// Bullet's own algorithm for the pair.
 btCollisionAlgorithm* makeBullets(btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* first,
                                   const btCollisionObjectWrapper* second, bool closestPoints) {
   auto& dispatcher = static_cast<btCollisionDispatcher&>(*info.m_dispatcher1);
@@ -25,10 +26,11 @@ btCollisionAlgorithm* makeBullets(btCollisionAlgorithmConstructionInfo& info, co
   const int a = first->getCollisionShape()->getShapeType(), b = second->getCollisionShape()->getShapeType();
   btCollisionAlgorithmCreateFunc* maker =
       closestPoints ? bullets.getClosestPointsAlgorithmCreateFunc(a, b) : bullets.getCollisionAlgorithmCreateFunc(a, b);
+  assert(maker);
   return maker->CreateCollisionAlgorithm(info, first, second);
 }
 
-/// Of one pair. Once the body's contacts are gone, it is Bullet's.
+/// The algorithm of one pair. When the body's contacts have been destroyed, it calls Bullet's.
 class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
  public:
   SurfaceAlgorithm(std::weak_ptr<BodyContacts> contacts, const btCollisionAlgorithmConstructionInfo& info,
@@ -60,10 +62,11 @@ class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
   bool softIsSecond_;
 };
 
-// The pool's elements, whose size it does not check, are at least as large as the largest of Bullet's own.
+// The elements of the pool, whose size Bullet does not check, are at least as large as the largest of Bullet's own
+// algorithms.
 static_assert(sizeof(SurfaceAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgorithm), "no room in Bullet's pool");
 
-/// Makes the algorithms for pairs of which the soft body is the first, or the second.
+/// Creates the algorithms for pairs in which the soft body is the first, or the second.
 class Maker : public btCollisionAlgorithmCreateFunc {
  public:
   Maker(bool softIsSecond, bool closestPoints) : closestPoints_(closestPoints) { m_swapped = softIsSecond; }
@@ -78,12 +81,13 @@ class Maker : public btCollisionAlgorithmCreateFunc {
 btCollisionAlgorithm* Maker::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                       const btCollisionObjectWrapper* first,
                                                       const btCollisionObjectWrapper* second) {
+  assert(info.m_dispatcher1 && first && second);
   const btSoftBody* soft = btSoftBody::upcast((m_swapped ? second : first)->getCollisionObject());
   const std::shared_ptr<BodyContacts> contacts = soft ? contactsOf(*soft) : nullptr;
   if (!contacts || contacts->dispatcher() != info.m_dispatcher1)
     return makeBullets(info, first, second, closestPoints_);
   if (closestPoints_) {
-    // Of a query, as contactTest: Bullet's would add contacts to those of the step.
+    // A query such as contactTest: Bullet's algorithm would add its contacts to those of the step.
     void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(btEmptyAlgorithm));
     return new (memory) btEmptyAlgorithm(info);
   }
@@ -96,7 +100,7 @@ struct Makers {
   Maker closestFirst{false, true}, closestSecond{true, true};
 };
 
-/// Not destroyed at the end of the program: dispatchers that are held by globals may go later than any static of ours.
+/// Never destroyed: dispatchers in global variables may be destroyed later than any static object of this file.
 Makers& makers() {
   static auto* const all = new Makers;
   return *all;

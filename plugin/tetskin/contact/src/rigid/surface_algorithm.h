@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: where Bullet asks who finds the contacts of a pair.
+// Internal to SurfaceContact: the hook by which Bullet asks for the contacts of a pair.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -12,12 +12,12 @@
 
 namespace tetskin {
 
-/// From now on the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see
-/// `contactsOf`. Bodies without get Bullet's algorithms. What the dispatcher is given has no state and is never
-/// destroyed, so that nothing need be taken back. May be called again.
+/// From now on, the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see
+/// `contactsOf`. Bodies without contacts of this kind get Bullet's algorithms. The object that is registered has no
+/// state and is never destroyed, so that nothing need be unregistered. May be called repeatedly.
 void registerSurfaceAlgorithms(btCollisionDispatcher& dispatcher);
 
-/// Null where the body has none, or they are gone.
+/// Null if the body has none, or they have been destroyed.
 std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body);
 
 }  // namespace tetskin

@@ -12,7 +12,7 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Along which the boxes lie farthest apart.
+/// The axis along which the boxes are spread most.
 int widestAxis(const std::vector<ContactBox>& boxes) {
   ContactBox corners;
   for (const ContactBox& box : boxes) corners.extend(box.low, box.low);
@@ -25,7 +25,7 @@ int widestAxis(const std::vector<ContactBox>& boxes) {
 
 }  // namespace
 
-std::vector<std::pair<std::size_t, std::size_t>> pairsOfBoxesThatMeet(const std::vector<ContactBox>& boxes) {
+std::vector<std::pair<std::size_t, std::size_t>> overlappingBoxPairs(const std::vector<ContactBox>& boxes) {
   const int axis = widestAxis(boxes);
   std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -36,7 +36,7 @@ std::vector<std::pair<std::size_t, std::size_t>> pairsOfBoxesThatMeet(const std:
     const ContactBox& box = boxes[order[k]];
     pairs.emplace_back(order[k], order[k]);
     for (std::size_t next = k + 1; next < order.size() && boxes[order[next]].low[axis] <= box.high[axis]; ++next) {
-      if (!box.meets(boxes[order[next]])) continue;
+      if (!box.collides(boxes[order[next]])) continue;
       pairs.push_back(std::minmax(order[k], order[next]));
     }
   }

@@ -9,6 +9,7 @@
 namespace tetskin::contact_detail {
 
 void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
+  assert(!flat);
   const btVector3 r = p - origin;
   for (int k = 0; k < 3; ++k) weights[k] = rows[k].dot(r);
   weights[3] = 1 - weights[0] - weights[1] - weights[2];
@@ -16,7 +17,7 @@ void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
 
 bool ContactBody::fits() const {
   const auto tets = static_cast<std::size_t>(body->m_tetras.size());
-  // In a step, elastic forces keep them from Bullet for a while.
+  // While a step is solved, the elastic force hides the tets from Bullet.
   const bool hasTets = tets == data().tets.size() || tets == 0;
   return static_cast<std::size_t>(body->m_nodes.size()) == data().nodes.size() && hasTets;
 }
@@ -37,8 +38,8 @@ void ContactBody::read() {
     sum += positions[n];
   }
   const btScalar size = box.diagonal();
-  // Comparisons pass over what is not a number; sums do not.
-  readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(kLargestCoordinate);
+  // Comparisons skip NaN values; the sum does not.
+  readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(Limits::kMaxCoordinate);
   measureTravel(sum / static_cast<btScalar>(positions.size()));
   measureSpeed();
 }
@@ -52,31 +53,33 @@ void ContactBody::measureSpeed() {
   fastest = btSqrt(squared);
 }
 
-void ContactBody::measureTravel(const btVector3& newMiddle) {
+void ContactBody::measureTravel(const btVector3& newCentroid) {
   btScalar squared = 0;
-  read_.resize(positions.size(), newMiddle);
+  read_.resize(positions.size(), newCentroid);
   for (std::size_t n = 0; n < positions.size(); ++n) {
-    squared = std::max(squared, (positions[n] - read_[n] - (newMiddle - middle)).length2());
+    squared = std::max(squared, (positions[n] - read_[n] - (newCentroid - centroid)).length2());
   }
   travelled += std::sqrt(static_cast<double>(squared));
-  middle = newMiddle;
+  centroid = newCentroid;
   read_ = positions;
 }
 
 const ContactBox& ContactBody::carry(int run) {
-  const ShapeData& of = data();
+  assert(run >= 0 && static_cast<std::size_t>(run) < isCarried_.size());
+  const ShapeData& shapeData = data();
   const auto r = static_cast<std::size_t>(run);
-  runBoxes_.resize(of.runs.size());
-  for (auto& coordinates : samples) coordinates.resize(of.samples.size());
-  if (!isCarried_[r]) carryRun(of.runs[r], runBoxes_[r]);
+  runBoxes_.resize(shapeData.runs.size());
+  for (auto& coordinates : samples) coordinates.resize(shapeData.samples.size());
+  if (!isCarried_[r]) carryRun(shapeData.runs[r], runBoxes_[r]);
   isCarried_[r] = 1;
   return runBoxes_[r];
 }
 
-/// Where its samples are, and a box around them: tighter than the tet's.
+/// Computes the positions of a run's samples, and a box around them that is tighter than the tet's.
 void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
-  const ShapeData& of = data();
-  const Tet& n = of.tets[static_cast<std::size_t>(run.tet)];
+  assert(run.first < run.last && static_cast<std::size_t>(run.last) <= samples[0].size());
+  const ShapeData& shapeData = data();
+  const Tet& n = shapeData.tets[static_cast<std::size_t>(run.tet)];
   around = {};
   for (int axis = 0; axis < 3; ++axis) {
     btScalar at[4];
@@ -84,8 +87,8 @@ void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
     btScalar* out = samples[axis].data();
     btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
     for (auto s = static_cast<std::size_t>(run.first); s < static_cast<std::size_t>(run.last); ++s) {
-      out[s] =
-          of.weights[0][s] * at[0] + of.weights[1][s] * at[1] + of.weights[2][s] * at[2] + of.weights[3][s] * at[3];
+      out[s] = shapeData.weights[0][s] * at[0] + shapeData.weights[1][s] * at[1] + shapeData.weights[2][s] * at[2] +
+               shapeData.weights[3][s] * at[3];
       low = std::min(low, out[s]);
       high = std::max(high, out[s]);
     }
@@ -95,26 +98,28 @@ void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
 }
 
 ContactBox ContactBody::filledBox(int tet) const {
+  assert(data().filled.size() == data().tets.size() && positions.size() == data().nodes.size());
   const Tet& n = data().tets[static_cast<std::size_t>(tet)];
-  const FilledPart& part = data().filled[static_cast<std::size_t>(tet)];
+  const FilledComponent& component = data().filled[static_cast<std::size_t>(tet)];
   btVector3 base(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) base += part.least[k] * positions[static_cast<std::size_t>(n[k])];
+  for (std::size_t k = 0; k < 4; ++k) base += component.minimum[k] * positions[static_cast<std::size_t>(n[k])];
   ContactBox around;
-  for (const int node : n) around.extend(base + part.left * positions[static_cast<std::size_t>(node)]);
+  for (const int node : n) around.extend(base + component.left * positions[static_cast<std::size_t>(node)]);
   return around;
 }
 
 void ContactBody::fit() {
   if (fitted_) return;
   fitted_ = true;
-  const ShapeData& of = data();
-  for (std::size_t t = 0; t < of.tets.size(); ++t) around(static_cast<int>(t));
-  for (std::size_t r = 0; r < of.runs.size(); ++r) carry(static_cast<int>(r));
-  of.runTree.fit(runTreeBoxes, [&](int index) { return runBox(of.runTree.item(index)); });
-  of.tetTree.fit(tetTreeBoxes, [&](int index) { return tetBox(of.tetTree.item(index)); });
+  const ShapeData& shapeData = data();
+  for (std::size_t t = 0; t < shapeData.tets.size(); ++t) around(static_cast<int>(t));
+  for (std::size_t r = 0; r < shapeData.runs.size(); ++r) carry(static_cast<int>(r));
+  shapeData.runTree.fit(runTreeBoxes, [&](int index) { return runBox(shapeData.runTree.item(index)); });
+  shapeData.tetTree.fit(tetTreeBoxes, [&](int index) { return tetBox(shapeData.tetTree.item(index)); });
 }
 
 const ContactBox& ContactBody::around(int tet) {
+  assert(tet >= 0 && static_cast<std::size_t>(tet) < isBoxed_.size());
   const auto t = static_cast<std::size_t>(tet);
   boxes_.resize(data().tets.size());
   if (!isBoxed_[t]) boxes_[t] = filledBox(tet);
@@ -123,40 +128,44 @@ const ContactBox& ContactBody::around(int tet) {
 }
 
 const DeformedTet& ContactBody::deformed(int tet) {
+  assert(tet >= 0 && static_cast<std::size_t>(tet) < isDeformed_.size());
   deformed_.resize(data().tets.size());
-  DeformedTet& of = deformed_[static_cast<std::size_t>(tet)];
-  if (isDeformed_[static_cast<std::size_t>(tet)]) return of;
+  DeformedTet& deformed = deformed_[static_cast<std::size_t>(tet)];
+  if (isDeformed_[static_cast<std::size_t>(tet)]) return deformed;
   isDeformed_[static_cast<std::size_t>(tet)] = 1;
   const Tet& n = data().tets[static_cast<std::size_t>(tet)];
-  of.origin = positions[static_cast<std::size_t>(n[3])];
+  deformed.origin = positions[static_cast<std::size_t>(n[3])];
   btVector3 edge[3];
-  for (int k = 0; k < 3; ++k) edge[k] = positions[static_cast<std::size_t>(n[static_cast<std::size_t>(k)])] - of.origin;
+  for (int k = 0; k < 3; ++k)
+    edge[k] = positions[static_cast<std::size_t>(n[static_cast<std::size_t>(k)])] - deformed.origin;
   const btVector3 normal = edge[1].cross(edge[2]);
   const btScalar volume = edge[0].dot(normal);
   const btScalar size = std::max({edge[0].length(), edge[1].length(), edge[2].length()});
-  of.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
-  if (of.flat) return of;
-  of.rows[0] = normal / volume;
-  of.rows[1] = edge[2].cross(edge[0]) / volume;
-  of.rows[2] = edge[0].cross(edge[1]) / volume;
-  measure(of, n);
-  return of;
+  deformed.flat = !(std::abs(volume) > btScalar(1e-6) * size * size * size);
+  if (deformed.flat) return deformed;
+  deformed.rows[0] = normal / volume;
+  deformed.rows[1] = edge[2].cross(edge[0]) / volume;
+  deformed.rows[2] = edge[0].cross(edge[1]) / volume;
+  measure(deformed, n);
+  return deformed;
 }
 
-void ContactBody::measure(DeformedTet& of, const Tet& n) const {
-  const btVector3 fourth = -(of.rows[0] + of.rows[1] + of.rows[2]);
-  of.steepest = btSqrt(std::max({of.rows[0].length2(), of.rows[1].length2(), of.rows[2].length2(), fourth.length2()}));
-  // Of the map from the world to rest, all singular values together.
+void ContactBody::measure(DeformedTet& tet, const Tet& n) const {
+  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
+  tet.steepest =
+      btSqrt(std::max({tet.rows[0].length2(), tet.rows[1].length2(), tet.rows[2].length2(), fourth.length2()}));
+  // The map from world to rest space: its Frobenius norm bounds all singular values.
   btVector3 map[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   const auto rest = [&](std::size_t k) -> const btVector3& { return data().nodes[static_cast<std::size_t>(n[k])]; };
   for (std::size_t k = 0; k < 3; ++k) {
     const btVector3 edge = rest(k) - rest(3);
-    for (int axis = 0; axis < 3; ++axis) map[axis] += edge[axis] * of.rows[k];
+    for (int axis = 0; axis < 3; ++axis) map[axis] += edge[axis] * tet.rows[k];
   }
-  of.restPerWorld = btSqrt(map[0].length2() + map[1].length2() + map[2].length2());
+  tet.restPerWorld = btSqrt(map[0].length2() + map[1].length2() + map[2].length2());
 }
 
 btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
+  assert(tet >= 0 && static_cast<std::size_t>(tet) < data().tets.size());
   const Tet& n = data().tets[static_cast<std::size_t>(tet)];
   btVector3 v(0, 0, 0);
   for (std::size_t k = 0; k < 4; ++k) v += weights[k] * body->m_nodes[n[k]].m_v;
@@ -164,12 +173,14 @@ btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
 }
 
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet) {
+  assert(!tet.flat && tet.steepest > 0);
   const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
-  const btVector3 middle = (low + high) / 2 - tet.origin, half = (high - low) / 2;
+  const btVector3 centroid = (low + high) / 2 - tet.origin, half = (high - low) / 2;
   const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
-  const auto most = [&](const btVector3& row) { return row.dot(middle) + row.absolute().dot(half); };
-  const btScalar least = std::min({most(tet.rows[0]), most(tet.rows[1]), most(tet.rows[2]), 1 + most(fourth)});
-  return (kLeastWeight - least) / tet.steepest;
+  const auto maximum = [&](const btVector3& row) { return row.dot(centroid) + row.absolute().dot(half); };
+  const btScalar minimum =
+      std::min({maximum(tet.rows[0]), maximum(tet.rows[1]), maximum(tet.rows[2]), 1 + maximum(fourth)});
+  return (kMinWeight - minimum) / tet.steepest;
 }
 
 }  // namespace tetskin::contact_detail

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/soft/other_parts.h>
+#include <tetskin/contact/src/soft/other_components.h>
 #include <tetskin/contact/src/soft/surface_samples.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -14,38 +16,41 @@ namespace tetskin {
 namespace contact_detail {
 namespace {
 
-/// How far over a triangle it is looked whether that is inside another part, in sides of the mesh's box.
+/// Height above a triangle at which it is tested whether it is inside another component, in sides of the mesh's box.
 constexpr double kOverTriangle = 1e-4;
-/// Parts of a tet along each weight: 64 cells.
+/// Divisions of a tet along each weight: 64 cells.
 constexpr int kCellsAlong = 4;
-/// Of the trees: few enough that a leaf's box is tight, many enough that fitting is cheap.
+static_assert(kCellsAlong * kCellsAlong * kCellsAlong <= 64, "CarriedCells has 64 bits");
+/// Elements per leaf of the trees: few enough that a leaf's box is tight, many enough that fitting is cheap.
 constexpr int kLeafSize = 4;
 
 Status checkOptions(const ContactShapeOptions& options) {
-  if (options.samples < 1 || options.samples > 10'000'000) {
-    return {StatusCode::InvalidOption, "a contact shape takes 1 to 10,000,000 samples"};
+  if (options.sampleCount < 1 || options.sampleCount > 10'000'000) {
+    return {StatusCode::InvalidOption, "the number of samples of a contact shape must be between 1 and 10,000,000"};
   }
-  if (options.cells < 4 || options.cells > 1024) {
-    return {StatusCode::InvalidOption, "a contact shape's grid takes 4 to 1,024 cells"};
+  if (options.gridResolution < 4 || options.gridResolution > 1024) {
+    return {StatusCode::InvalidOption, "the number of cells of a contact shape's grid must be between 4 and 1,024"};
   }
   return {};
 }
 
 Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options) {
   if (Status status = checkOptions(options); !status.ok()) return status;
-  if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
-  if (mesh.triangles.empty()) return {StatusCode::Empty, "the mesh has no triangles, and so no surface to touch"};
-  if (Status status = usable(cage, checkForUse(cage)); !status.ok()) return status;
-  if (Status status = cage.check(); !status.ok()) return status;
+  if (Status status = validate(mesh); !status.ok()) return status;
+  if (mesh.triangles.empty()) return {StatusCode::Empty, "the mesh has no triangles; contact needs a surface"};
+  if (Status status = validate(cage.mesh); !status.ok()) return status;
+  if (Status status = checkKnowledge(cage); !status.ok()) return status;
   if (!cage.vertexTets.empty() && cage.vertexTets.size() != mesh.vertexCount()) {
     return {StatusCode::SizeMismatch, "the cage was built for a mesh of " + std::to_string(cage.vertexTets.size()) +
-                                          " vertices, not for one of " + std::to_string(mesh.vertexCount())};
+                                          " vertices, not of " + std::to_string(mesh.vertexCount())};
   }
   return {};
 }
 
-/// By the volume that they enclose, each with the first vertex.
+/// True if the normals point inwards, by the sign of the enclosed volume; the volume is taken relative to the first
+/// vertex.
 bool facesInwards(const TriangleMesh& mesh) {
+  assert(!mesh.positions.empty());
   double volume = 0.0;
   const Eigen::Vector3d& origin = mesh.positions[0];
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -55,7 +60,7 @@ bool facesInwards(const TriangleMesh& mesh) {
   return volume < 0.0;
 }
 
-/// Triangles of which at least one corner, or the middle, is not within the solid that all of them bound.
+/// Triangles with at least one corner, or the centroid, outside of the solid that all triangles bound.
 std::vector<int> visibleTriangles(const TriangleMesh& mesh, const WindingTree& solid) {
   const double over = kOverTriangle * boundingBox(mesh.positions).sizes().maxCoeff();
   std::vector<int> visible;
@@ -65,14 +70,14 @@ std::vector<int> visibleTriangles(const TriangleMesh& mesh, const WindingTree& s
     const Eigen::Vector3d normal = (q - p).cross(r - p);
     if (!(normal.norm() > 0.0)) continue;
     const Eigen::Vector3d step = over * normal.normalized();
-    const Eigen::Vector3d middle = (p + q + r) / 3.0;
+    const Eigen::Vector3d centroid = (p + q + r) / 3.0;
     const auto isOut = [&](const Eigen::Vector3d& at) { return solid.windingNumber(at + step) < kInside; };
-    if (isOut(middle) || isOut(p) || isOut(q) || isOut(r)) visible.push_back(static_cast<int>(t));
+    if (isOut(centroid) || isOut(p) || isOut(q) || isOut(r)) visible.push_back(static_cast<int>(t));
   }
   return visible;
 }
 
-/// By sample.
+/// By sample: the tet that carries it.
 std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samples, Status& status) {
   std::vector<int> tets(samples.size());
   if (!cage.vertexTets.empty()) {
@@ -85,7 +90,7 @@ std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samp
   std::vector<Eigen::Vector3d> points;
   points.reserve(samples.size());
   for (const SurfaceSample& s : samples) points.push_back(s.point);
-  const Result<Embedding> embedded = embed(static_cast<const TetMesh&>(cage), viewOf(points));
+  const Result<Embedding> embedded = embed(static_cast<const TetMesh&>(cage.mesh), viewOf(points));
   status = embedded.status();
   if (!status.ok()) return tets;
   const std::vector<VertexBinding> bindings = embedded.value().bindings();
@@ -94,6 +99,7 @@ std::vector<int> tetsOf(const Cage& cage, const std::vector<SurfaceSample>& samp
 }
 
 void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, ShapeData& data) {
+  assert(tet >= 0 && static_cast<std::size_t>(tet) < cage.tetCount());
   EmbeddedPoint<btScalar>& point = data.samples.emplace_back();
   point.tet = tet;
   point.nodes = cage.tets[static_cast<std::size_t>(tet)];
@@ -105,7 +111,7 @@ void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, Sha
   for (int k = 0; k < 4; ++k) {
     const auto i = static_cast<std::size_t>(k);
     point.weights[i] = static_cast<btScalar>(weights[k]);
-    point.clamped[i] = static_cast<btScalar>(clamped[k] / clamped.sum());
+    point.clampedWeights[i] = static_cast<btScalar>(clamped[k] / clamped.sum());
     data.weights[i].push_back(point.weights[i]);
   }
   int main = 0;
@@ -117,18 +123,19 @@ void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, Sha
   data.sampleNormals.push_back(known ? at.gradient : btVector3(0, 0, 0));
 }
 
-/// Samples tet by tet; those of flat tets, which nothing is known of, are left out.
+/// Sorts the samples by tet; those of flat tets, in which no weights can be computed, are left out.
 void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, const std::vector<int>& tets,
               ShapeData& data) {
+  assert(tets.size() == samples.size());
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tets[a] < tets[b]; });
   for (const std::size_t s : order) {
     if (isFlat(cornersOf(cage, cage.tets[static_cast<std::size_t>(tets[s])]))) continue;
-    const int place = static_cast<int>(data.samples.size());
-    if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], place, place});
+    const int index = static_cast<int>(data.samples.size());
+    if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], index, index});
     appendSample(cage, tets[s], samples[s].point, data);
-    data.runs.back().last = place + 1;
+    data.runs.back().last = index + 1;
   }
 }
 
@@ -138,13 +145,14 @@ ContactBox restBox(const ShapeData& data, int tet) {
   return box;
 }
 
-/// From points of the tet, so close that the distance cannot change by much between them.
-FilledPart filledPart(const ShapeData& data, const Tet& nodes, btScalar size) {
+/// Computed from points of the tet that are so close to each other that the distance can hardly change between them.
+FilledComponent filledComponent(const ShapeData& data, const Tet& nodes, btScalar size) {
+  assert(data.grid.spacing() > 0 && size >= 0);
   const int along = 2 + static_cast<int>(size / data.grid.spacing());
   const btScalar step = 1 / static_cast<btScalar>(along);
   const btScalar reach = kReachCubes * data.grid.spacing() + size * step;
-  FilledPart part;
-  std::fill(part.least, part.least + 4, btScalar(1));
+  FilledComponent component;
+  std::fill(component.minimum, component.minimum + 4, btScalar(1));
   for (int i = 0; i <= along; ++i) {
     for (int j = 0; i + j <= along; ++j) {
       for (int k = 0; i + j + k <= along; ++k) {
@@ -153,23 +161,25 @@ FilledPart filledPart(const ShapeData& data, const Tet& nodes, btScalar size) {
         for (std::size_t n = 0; n < 4; ++n) p += w[n] * data.nodes[static_cast<std::size_t>(nodes[n])];
         GridDistance known;
         if (data.grid.at(p, known) && known.distance > reach) continue;
-        for (int n = 0; n < 4; ++n) part.least[n] = std::min(part.least[n], std::max(w[n] - step, btScalar(0)));
+        for (int n = 0; n < 4; ++n)
+          component.minimum[n] = std::min(component.minimum[n], std::max(w[n] - step, btScalar(0)));
       }
     }
   }
-  part.left = 1 - part.least[0] - part.least[1] - part.least[2] - part.least[3];
-  return part;
+  component.left = 1 - component.minimum[0] - component.minimum[1] - component.minimum[2] - component.minimum[3];
+  return component;
 }
 
 void makeTrees(const TetMesh& cage, ShapeData& data) {
+  assert(data.nodes.size() == cage.nodeCount() && data.tets.size() == cage.tetCount());
   std::vector<ContactBox> tetBoxes, runBoxes;
   std::vector<int> filled, runs(data.runs.size());
   for (std::size_t t = 0; t < data.tets.size(); ++t) {
     tetBoxes.push_back(restBox(data, static_cast<int>(t)));
     const Tet& n = data.tets[t];
-    data.middles.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
+    data.centroids.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
     const TetCorners corners = cornersOf(cage, cage.tets[t]);
-    data.filled.push_back(filledPart(data, n, static_cast<btScalar>(tetSize(corners))));
+    data.filled.push_back(filledComponent(data, n, static_cast<btScalar>(tetSize(corners))));
     if (!isFlat(corners) && data.filled.back().left > 0) filled.push_back(static_cast<int>(t));
   }
   for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
@@ -178,19 +188,20 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
   data.tetTree = Bvh(tetBoxes, filled, kLeafSize);
 }
 
-/// The numbers of tets that are at one place with others.
+/// The numbers of tets that have duplicates.
 std::vector<int> copiedTets(const Cage& cage) {
   std::map<int, std::vector<int>> atPlace;
-  for (std::size_t t = 0; t < cage.latticeTets.size(); ++t) atPlace[cage.latticeTets[t]].push_back(static_cast<int>(t));
+  for (std::size_t t = 0; t < cage.sourceTet.size(); ++t) atPlace[cage.sourceTet[t]].push_back(static_cast<int>(t));
   std::vector<int> copied;
-  for (const auto& [place, tets] : atPlace) {
+  for (const auto& [index, tets] : atPlace) {
     if (tets.size() > 1) copied.insert(copied.end(), tets.begin(), tets.end());
   }
   return copied;
 }
 
-/// A point of a cell: `along` from 0 to 1 in each direction.
+/// A point of a cell; `along` is from 0 to 1 in each direction.
 Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Vector3d& along) {
+  assert(cell >= 0 && cell < kCellsAlong * kCellsAlong * kCellsAlong);
   const Eigen::Vector3i at(cell % kCellsAlong, cell / kCellsAlong % kCellsAlong, cell / kCellsAlong / kCellsAlong);
   const Eigen::Vector3d low = at.cast<double>();
   Eigen::Vector3d w = (low + along) / kCellsAlong;
@@ -198,16 +209,17 @@ Eigen::Vector3d pointOfCell(const TetCorners& corners, int cell, const Eigen::Ve
   return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + (1.0 - w.sum()) * corners[3];
 }
 
-/// The cells of a tet in some point of which the nearest triangle hangs together with the tet.
+/// The cells of a tet that contain a point whose nearest triangle is connected with the tet.
 CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator, const TriangleMesh& mesh,
                           const TriangleBvh& surface) {
   CarriedCells cells{0};
-  const TetCorners corners = cornersOf(cage, cage.tets[static_cast<std::size_t>(tet)]);
+  const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[static_cast<std::size_t>(tet)]);
   for (int cell = 0; cell < kCellsAlong * kCellsAlong * kCellsAlong; ++cell) {
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d along(corner & 1 ? 0.9 : 0.1, corner & 2 ? 0.9 : 0.1, corner & 4 ? 0.9 : 0.1);
       const Eigen::Vector3d p = pointOfCell(corners, cell, along);
       const int triangle = surface.nearest(p).triangle;
+      assert(triangle >= 0);
       if (locator.locate(p, mesh.triangles[static_cast<std::size_t>(triangle)]) != tet) continue;
       cells.bits |= std::uint64_t{1} << cell;
       break;
@@ -217,9 +229,9 @@ CarriedCells carriedCells(const Cage& cage, int tet, const CageLocator& locator,
 }
 
 void findCopies(const Cage& cage, const TriangleMesh& mesh, const TriangleBvh& surface, ShapeData& data) {
-  if (cage.vertexTets.empty() || !cage.split()) return;
+  if (cage.vertexTets.empty() || !cage.hasDuplicates()) return;
   const CageLocator locator(cage);
-  data.carried.assign(cage.tetCount(), {});
+  data.carried.assign(cage.mesh.tetCount(), {});
   for (const int tet : copiedTets(cage)) {
     data.carried[static_cast<std::size_t>(tet)] = carriedCells(cage, tet, locator, mesh, surface);
   }
@@ -253,33 +265,35 @@ std::size_t ContactShape::sampleCount() const {
   return data_->samples.size();
 }
 
-Result<std::shared_ptr<const ContactShape>> makeContactShape(const Cage& cage, const TriangleMesh& mesh,
-                                                             const ContactShapeOptions& options) {
+Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cage, const TriangleMesh& mesh,
+                                                                 const ContactShapeOptions& options) {
   using namespace contact_detail;
   if (Status status = checkInput(cage, mesh, options); !status.ok()) return status;
   const WindingTree solid(mesh);
   const std::vector<int> visible = visibleTriangles(mesh, solid);
   const TriangleBvh surface(mesh, visible);
   auto data = std::make_unique<ShapeData>();
-  if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.nodes), options.cells);
+  if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.mesh.nodes), options.gridResolution);
   if (!data->grid.hasInside()) {
     return Status{StatusCode::Degenerate,
-                  facesInwards(mesh) ? "the mesh's triangles face inwards; turn them around"
-                                     : "the mesh encloses nothing that the grid would see; close it, or give the "
-                                       "shape more cells"};
+                  facesInwards(mesh)
+                      ? "the mesh's triangles face inwards; reverse their orientation"
+                      : "the mesh encloses no volume that the grid resolves; close the mesh, or give the "
+                        "shape more cells"};
   }
-  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.samples);
+  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount);
   Status status;
   const std::vector<int> tets = tetsOf(cage, samples, status);
   if (!status.ok()) return status;
-  for (const Eigen::Vector3d& p : cage.nodes) data->nodes.push_back(toBullet(p));
-  data->tets = cage.tets;
-  data->edge = static_cast<btScalar>(meanEdge(cage));
-  makeRuns(cage, samples, tets, *data);
-  makeTrees(cage, *data);
+  for (const Eigen::Vector3d& p : cage.mesh.nodes) data->nodes.push_back(toBullet(p));
+  data->tets = cage.mesh.tets;
+  data->edge = static_cast<btScalar>(meanEdge(cage.mesh));
+  makeRuns(cage.mesh, samples, tets, *data);
+  makeTrees(cage.mesh, *data);
   findCopies(cage, mesh, surface, *data);
-  data->otherParts = tetsOfOtherParts(*data);
-  return std::shared_ptr<const ContactShape>(std::make_shared<ContactShape>(std::move(data)));
+  data->otherComponents = tetsOfOtherComponents(*data);
+  assert(data->otherComponents.size() == data->runs.size() && data->sampleNodes.size() == data->samples.size());
+  return Access<ContactShape>::create(std::move(data));
 }
 
 }  // namespace tetskin

@@ -3,17 +3,18 @@
 #include <tetskin/contact/src/soft/contact_sides.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::contact_detail {
 namespace {
 
-/// Cosine from which two normals are of one side: edges may be rounded while a sample slides over them.
+/// Cosine from which on two normals belong to one side: edges may be rounded while a sample slides over them.
 constexpr btScalar kSameSide = btScalar(0.5);
-/// A side follows its sample along the surface by so many projections.
+/// Number of projections by which a side follows its sample along the surface.
 constexpr int kProjections = 2;
-/// Steps back along its motion in which the way is looked for that a sample has come.
+/// Steps by which a sample's motion is traced back to find where it has entered.
 constexpr int kStepsBack = 4;
-/// A sample is deeper in a part than grid's cubes can be wrong by: so many of them.
+/// Depth, in cubes of the grid, that is larger than the error of the grid.
 constexpr btScalar kDeepCubes = 2;
 
 bool unitNormal(const GridDistance& at, btVector3& normal) {
@@ -23,7 +24,7 @@ bool unitNormal(const GridDistance& at, btVector3& normal) {
   return true;
 }
 
-/// The surface's point nearest to one near it, and its normal there.
+/// Finds the point of the surface nearest to a point close to it, and its normal there.
 bool project(const DistanceGrid& grid, const btVector3& near, ContactSide& side) {
   GridDistance at;
   btVector3 normal;
@@ -33,20 +34,21 @@ bool project(const DistanceGrid& grid, const btVector3& near, ContactSide& side)
   return true;
 }
 
-/// Where the side is that a sample has come through, now that the sample has moved on.
+/// The side through which a sample has entered, moved along the surface as the sample has moved.
 ContactSide followed(const DistanceGrid& grid, const btVector3& rest, const ContactSide& before) {
   ContactSide side = before;
   for (int k = 0; k < kProjections; ++k) {
-    const btVector3 way = rest - side.point;
+    const btVector3 direction = rest - side.point;
     ContactSide next = side;
-    if (!project(grid, side.point + way - way.dot(side.normal) * side.normal, next)) break;
-    if (next.normal.dot(side.normal) < kSameSide) break;  // over an edge, or onto another part
+    if (!project(grid, side.point + direction - direction.dot(side.normal) * side.normal, next)) break;
+    if (next.normal.dot(side.normal) < kSameSide) break;  // across an edge, or onto another part of the surface
     side = next;
   }
   return side;
 }
 
-/// Of a sample that is seen for the first time when it is deep already, and on its way out: it has come from behind.
+/// Finds the side through which a sample has entered that is already deep when it is first seen, by tracing its motion
+/// back.
 bool entered(const DistanceGrid& grid, const btVector3& rest, const btVector3& motion, ContactSide& side) {
   for (int k = 1; k <= kStepsBack; ++k) {
     GridDistance at;
@@ -67,12 +69,13 @@ void ContactSides::beginStep() {
 
 const ContactSide* ContactSides::find(int sample, const btVector3& rest, btScalar within) {
   while (next_ < before_.size() && before_[next_].sample < sample) ++next_;
+  assert(next_ == 0 || before_[next_ - 1].sample < sample);
   const ContactSide* nearest = nullptr;
-  btScalar least = within * within;
+  btScalar minimum = within * within;
   for (std::size_t k = next_; k < before_.size() && before_[k].sample == sample; ++k) {
     const btScalar squared = (before_[k].point - rest).length2();
-    if (squared < least) nearest = &before_[k];
-    least = std::min(least, squared);
+    if (squared < minimum) nearest = &before_[k];
+    minimum = std::min(minimum, squared);
   }
   return nearest;
 }
@@ -85,6 +88,7 @@ void ContactSides::clear() {
 
 bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistance& nearest, const btVector3& motion,
               const ContactSide* before, SideDistance& result) {
+  assert(grid.spacing() > 0);
   btVector3 normal(0, 0, 0);
   const bool known = unitNormal(nearest, normal);
   result.distance = nearest.distance;
@@ -101,7 +105,7 @@ bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistanc
   const ContactSide side = followed(grid, rest, *before);
   if (known && normal.dot(side.normal) > kSameSide) return true;
   const btScalar distance = (rest - side.point).dot(side.normal);
-  // Outside, and not behind: whatever side is nearer is right.
+  // The sample is outside, and not behind its side: the nearest surface is the correct one.
   if (known && nearest.distance >= 0 && distance >= 0) return true;
   result.side = side;
   result.distance = distance;

@@ -10,7 +10,7 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Cubes around the box.
+/// Number of cubes added around the box.
 constexpr int kGridBorder = 2;
 
 btScalar between(btScalar a, btScalar b, btScalar t) {
@@ -39,8 +39,8 @@ DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid,
   }
 }
 
-/// From one corner to the next, the nearest triangle is the same or near it; and the distance changes by a step at
-/// most, and so the sign only near the surface.
+/// From one corner to the next, the nearest triangle is the same one or near it. The distance changes by at most the
+/// spacing, so that the sign can only change near the surface.
 void DistanceGrid::fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first,
                            double spacing, float* row) const {
   NearestPoint nearest;
@@ -59,12 +59,13 @@ bool DistanceGrid::at(const btVector3& point, GridDistance& result) const {
   int cell[3];
   btScalar t[3];
   for (int k = 0; k < 3; ++k) {
-    const btScalar place = (point[k] - low_[k]) * inverseSpacing_;
-    if (!(place >= 0 && place < static_cast<btScalar>(counts_[k] - 1))) return false;
-    cell[k] = static_cast<int>(place);
-    t[k] = place - static_cast<btScalar>(cell[k]);
+    const btScalar position = (point[k] - low_[k]) * inverseSpacing_;
+    if (!(position >= 0 && position < static_cast<btScalar>(counts_[k] - 1))) return false;
+    cell[k] = static_cast<int>(position);
+    t[k] = position - static_cast<btScalar>(cell[k]);
   }
   const float* d = &distances_[indexOf(cell[0], cell[1], cell[2])];
+  assert(indexOf(cell[0] + 1, cell[1] + 1, cell[2] + 1) < distances_.size());
   const std::size_t y = stride_[1], z = stride_[2];
   const btScalar x00 = between(d[0], d[1], t[0]), x10 = between(d[y], d[y + 1], t[0]);
   const btScalar x01 = between(d[z], d[z + 1], t[0]), x11 = between(d[y + z], d[y + z + 1], t[0]);

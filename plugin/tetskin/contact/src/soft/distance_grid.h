@@ -13,31 +13,32 @@
 
 namespace tetskin::contact_detail {
 
-/// What the grid tells at a point.
-/// Length of a gradient below which it has no direction: on the middle of a thin part.
+/// Length of a gradient below which it has no direction, as in the middle of a thin part.
 constexpr btScalar kNoDirection = btScalar(0.1);
 
+/// The result of the grid at a point.
 struct GridDistance {
   btScalar distance = 0;  ///< below 0 inside
   btVector3 gradient{0, 0, 0};
 };
 
-/// Distances at the corners of cubes; between them trilinear, with the gradient of that.
+/// Signed distances at the corners of cubes. Between the corners they are interpolated trilinearly; the gradient is
+/// that of the interpolation.
 class DistanceGrid {
  public:
   DistanceGrid() = default;
-  /// outside  the triangles that are not within the solid that they bound with others; distances are from them
-  /// solid    all triangles: what is inside
-  /// box      to be covered, a few cubes around it too
-  /// cells    along its longest side, at least 1
-  /// Cost     some microseconds a corner
+  /// outside  the triangles that bound the union of all components; distances are measured from them
+  /// solid    all triangles, which determine what is inside
+  /// box      to be covered; a few cubes around it are added
+  /// cells    number of cubes along its longest side, at least 1
+  /// Cost     some microseconds per corner
   DistanceGrid(const TriangleBvh& outside, const WindingTree& solid, const Box3& box, int cells);
 
-  /// False, and nothing written, beyond the grid.
+  /// Returns false, and writes nothing, outside of the grid.
   bool at(const btVector3& point, GridDistance& result) const;
   /// Side of a cube.
   btScalar spacing() const { return spacing_; }
-  /// Whether any corner is inside.
+  /// True if any corner is inside.
   bool hasInside() const;
 
  private:
@@ -50,8 +51,8 @@ class DistanceGrid {
 
   btVector3 low_{0, 0, 0};
   btScalar spacing_ = 1, inverseSpacing_ = 1;
-  std::array<int, 3> counts_{};          ///< of corners
-  std::array<std::size_t, 3> stride_{};  ///< of corners
+  std::array<int, 3> counts_{};          ///< number of corners along each axis
+  std::array<std::size_t, 3> stride_{};  ///< distance in the array between neighbouring corners, by axis
   std::vector<float> distances_;
 };
 

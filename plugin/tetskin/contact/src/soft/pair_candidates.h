@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftContacts: which samples of one body may be in which tets of another.
+// Internal to SoftContacts: finds which samples of one body may be in which tets of another.
 #pragma once
 
 #include <tetskin/contact/src/soft/contact_body.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <vector>
 
 namespace tetskin::contact_detail {
 
-/// How far samples may move before one of them is within a tet that was not, or at the surface; no more than that,
+/// A lower bound of the distance by which samples may move before one of them enters a tet, or reaches the surface;
 /// world space.
 struct Clearance {
   double outside = std::numeric_limits<double>::infinity();
-  double distance = std::numeric_limits<double>::infinity();  ///< of those within, from the surface; below 0 inside
+  double distance = std::numeric_limits<double>::infinity();  ///< from the surface, the least of the samples within the
+                                                              ///< tet; below 0 inside
 
   void cut(const Clearance& other) {
     outside = std::min(outside, other.outside);
@@ -24,39 +26,41 @@ struct Clearance {
   }
 };
 
-/// Runs of samples of the first body, each with the tets of the second that it may be in.
+/// Runs of samples of the first body, each with the tets of the second that may contain samples.
 class PairCandidates {
  public:
-  /// Both read: a step has moved them.
+  /// Records the motion of a step. Both bodies have been read.
   void advance(const ContactBody& first, const ContactBody& second);
-  /// In the last step, as `advance` has it.
+  /// The motion in the last step, as `advance` has recorded it.
   btScalar moved() const { return static_cast<btScalar>(moved_); }
-  /// Whether those found before are still all there are.
+  /// True if the candidates found before are still complete.
   bool hold() const { return path_ <= slack_; }
 
-  /// Both read. `first` and `second` may be one body: then tets near to each other at rest are no candidates.
-  /// slack  how far nodes may move against each other before it is to be done again, world space
+  /// Finds the candidates. Both bodies have been read. `first` and `second` may be the same body: then tets near to
+  /// each other at rest are no candidates.
+  /// slack  relative motion of nodes up to which the candidates stay complete, world space
   /// Cost   about O(number of runs and tets, and of candidates)
   void find(ContactBody& first, ContactBody& second, btScalar slack);
 
-  /// Calls begin(run), then test(tet) for its tets, and end(run), for runs that have any, in ascending order. `test`
-  /// returns a Clearance: it is not called again while bodies have moved too little to end it.
+  /// Calls begin(run), then test(tet) for its tets, and end(run), for the runs that have candidates, in ascending
+  /// order. `test` returns a Clearance: the tet is not tested again until the bodies have moved enough to exceed it.
   template <class Begin, class Test, class End>
   void visit(btScalar reach, Begin&& begin, Test&& test, End&& end) {
-    for (Run& of : runs_) {
-      if (isClear(of.until, reach)) continue;
-      begin(of.run);
-      of.until = {};
-      for (std::size_t c = of.first; c < of.last; ++c) {
+    assert(hold());
+    for (Run& run : runs_) {
+      if (isClear(run.until, reach)) continue;
+      begin(run.run);
+      run.until = {};
+      for (std::size_t c = run.first; c < run.last; ++c) {
         Link& link = links_[c];
         if (!isClear(link.until, reach)) {
           link.until = test(link.tet);
           link.until.outside += path_;
           link.until.distance += path_;
         }
-        of.until.cut(link.until);
+        run.until.cut(link.until);
       }
-      end(of.run);
+      end(run.run);
     }
   }
   bool empty() const { return runs_.empty(); }
@@ -64,12 +68,12 @@ class PairCandidates {
  private:
   struct Link {
     int run = 0, tet = 0;
-    Clearance until{0, 0};  ///< of the path
+    Clearance until{0, 0};  ///< value of the path at which it ends
   };
   struct Run {
     int run = 0;
     std::size_t first = 0, last = 0;  ///< in `links_`
-    Clearance until{0, 0};            ///< the least of its links'
+    Clearance until{0, 0};            ///< the least of its links' values
   };
   struct Pair {
     const ContactBody* first;
@@ -81,15 +85,16 @@ class PairCandidates {
     return path_ < until.outside && path_ + static_cast<double>(reach) < until.distance;
   }
   void gatherRuns();
-  void meetLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets);
+  void overlapLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets);
 
-  btVector3 apart_{0, 0, 0};  ///< the bodies' centroids, when last looked at; and what nodes had travelled by then
+  btVector3 apart_{0, 0,
+                   0};  ///< difference of the bodies' centroids when last read, and the paths of their nodes until then
   double travelled_ = 0;
-  double path_ = 0;  ///< since candidates were found: no less than any two nodes of the bodies have moved to each other
-  double moved_ = 0;  ///< of that, in the last step
+  double path_ = 0;   ///< bound of the relative motion of any two nodes since candidates were found
+  double moved_ = 0;  ///< path of the last step
   double slack_ = -1;
   std::vector<Run> runs_;
-  std::vector<Link> links_;  ///< by run
+  std::vector<Link> links_;  ///< sorted by run
 };
 
 }  // namespace tetskin::contact_detail

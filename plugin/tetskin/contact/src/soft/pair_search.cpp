@@ -3,35 +3,38 @@
 #include <tetskin/contact/src/soft/pair_search.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::contact_detail {
 namespace {
 
-/// Places of a sample nearer to each other at rest than so many mean edges are one: on the face between two tets.
+/// Positions of a sample that are nearer to each other at rest than this many mean edges are one, found on the face
+/// between two tets.
 constexpr btScalar kOnePlace = btScalar(0.3);
-/// In cubes of the grid: what of a body has moved no farther in its rest space than this is where it was, in the tets
-/// of another part that are at one place with its own.
+/// For contacts of a body with itself, in cubes of the grid: a sample whose rest position, as a tet maps it, differs
+/// from its own by less than this is where it belongs, and does not touch there.
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
-/// So far bodies may move against each other before candidates are looked for anew: as far as they do in some steps,
-/// and in cubes of the grid.
-constexpr btScalar kSlackSteps = 8, kSlackCubes = 1, kMostSlackCubes = 4;
+/// Relative motion of the bodies up to which candidates stay complete: that of this many steps, in cubes of the grid
+/// bounded as given.
+constexpr btScalar kSlackSteps = 8, kSlackCubes = 1, kMaxSlackCubes = 4;
 /// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
 constexpr btScalar kKeptCubes = btScalar(0.1);
-/// Cosine between normals from which two contacts of a node are one.
+/// Cosine between normals from which on two contacts of a node count as one.
 constexpr btScalar kOneWay = btScalar(0.7);
-/// Cosine between the normals of two surfaces below which they can touch, where the sample is on an edge, and where
-/// not.
+/// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
+/// face.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
-/// Deeper than so many cubes of the grid what is no side of the own surface that slides along is held, too, unless the
-/// normals agree by this cosine.
+/// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
+/// the other one, unless the normals agree by this cosine.
 constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
-/// Of a gradient's length, from which on the sample is on no edge.
+/// Length of the gradient from which on the sample is on no edge.
 constexpr btScalar kOnFace = btScalar(0.9);
-/// A side that is farther away at rest, in mean edges, is of another part.
+/// A side that is farther away at rest than this many mean edges belongs to another part.
 constexpr btScalar kOneSide = 1;
 
-/// Rest space to world: a covector, by the gradients of a deformed tet's weights.
+/// Maps a covector from rest space to the world, by the gradients of a deformed tet's weights.
 btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& deformed, const btVector3& gradient) {
+  assert(!deformed.flat);
   const Tet& n = data.tets[static_cast<std::size_t>(tet)];
   const btVector3& origin = data.nodes[static_cast<std::size_t>(n[3])];
   btVector3 carried(0, 0, 0);
@@ -48,7 +51,7 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
   return p;
 }
 
-/// Of boxes; 0 or below if they meet.
+/// The distance between two boxes; 0 or below if they overlap.
 btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
   btScalar gap = -BT_LARGE_FLOAT;
   for (int axis = 0; axis < 3; ++axis) {
@@ -79,6 +82,7 @@ Clearance atSurface() {
 
 Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
                          btScalar deep, PairMemory& memory, std::vector<Touch>& touches) {
+  assert(reach > 0 && dt > 0 && deep >= 0);
   now_ = {&first, &second, reach, dt, apart, deep, &memory.sides};
   overlap_ = {};
   touches_ = &touches;
@@ -89,7 +93,7 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   const btScalar cube = second.data().grid.spacing();
   memory.candidates.advance(first, second);
   const btScalar slack =
-      std::min(std::max(kSlackCubes * cube, kSlackSteps * memory.candidates.moved()), kMostSlackCubes * cube);
+      std::min(std::max(kSlackCubes * cube, kSlackSteps * memory.candidates.moved()), kMaxSlackCubes * cube);
   if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
   memory.candidates.visit(
       reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
@@ -97,7 +101,7 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   return overlap_;
 }
 
-/// A node that touches nothing in this step goes on by the sample that it touched with before.
+/// A node that touches nothing in this step keeps the sample with which it touched before.
 void PairSearch::remember(PairMemory& memory) const {
   memory.touched.clear();
   memory.pierced.clear();
@@ -115,28 +119,29 @@ void PairSearch::remember(PairMemory& memory) const {
 
 void PairSearch::beginRun(int run) {
   run_ = now_.first->data().runs[static_cast<std::size_t>(run)];
+  assert(run_.first < run_.last);
   around_ = now_.first->carry(run);
   const auto count = static_cast<std::size_t>(run_.last - run_.first);
   inside_.resize(count);
   heads_.assign(count, -1);
-  places_.clear();
+  positions_.clear();
 }
 
 void PairSearch::touchRun(int run) {
   for (std::size_t k = 0; k < heads_.size(); ++k) {
-    for (int p = heads_[k]; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-      touch(run_.first + static_cast<int>(k), run, places_[static_cast<std::size_t>(p)]);
+    for (int p = heads_[k]; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
+      touch(run_.first + static_cast<int>(k), run, positions_[static_cast<std::size_t>(p)]);
     }
   }
 }
 
-/// Of the run's samples.
+/// Tests the samples of the run.
 Clearance PairSearch::testTet(int tet) {
   if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return outside(gap);
-  const DeformedTet& of = now_.second->deformed(tet);
-  if (of.flat) return outside(0);
-  if (const btScalar gap = gapTo(around_, of); gap > 0) return outside(gap);
-  const btVector3 &o = of.origin, &a = of.rows[0], &b = of.rows[1], &c = of.rows[2];
+  const DeformedTet& deformed = now_.second->deformed(tet);
+  if (deformed.flat) return outside(0);
+  if (const btScalar gap = gapTo(around_, deformed); gap > 0) return outside(gap);
+  const btVector3 &o = deformed.origin, &a = deformed.rows[0], &b = deformed.rows[1], &c = deformed.rows[2];
   const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run_.first)],
                  *ys = &now_.first->samples[1][static_cast<std::size_t>(run_.first)],
                  *zs = &now_.first->samples[2][static_cast<std::size_t>(run_.first)];
@@ -149,55 +154,56 @@ Clearance PairSearch::testTet(int tet) {
     inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
   }
   Clearance clear;
-  btScalar most = -BT_LARGE_FLOAT;
+  btScalar maximum = -BT_LARGE_FLOAT;
   for (int k = 0; k < count; ++k) {
     const btScalar weight = inside_[static_cast<std::size_t>(k)];
-    if (weight >= kLeastWeight) {
+    if (weight >= kMinWeight) {
       clear.cut(offer(tet, run_.first + k, k));
     } else {
-      most = std::max(most, weight);
+      maximum = std::max(maximum, weight);
     }
   }
-  clear.cut(outside((kLeastWeight - most) / of.steepest));
+  clear.cut(outside((kMinWeight - maximum) / deformed.steepest));
   return clear;
 }
 
-/// But for places that are known from a tet beside this one.
+/// Skips positions that are already known from a neighbouring tet.
 Clearance PairSearch::offer(int tet, int sample, int k) {
+  assert(k >= 0 && static_cast<std::size_t>(k) < heads_.size());
   const ShapeData& data = now_.second->data();
   const DeformedTet& deformed = now_.second->deformed(tet);
-  Place place;
-  deformed.weightsAt(now_.first->sampleAt(sample), place.weights);
-  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(place.weights)) return atSurface();
-  place.rest = restPoint(data, tet, place.weights);
+  Position position;
+  deformed.weightsAt(now_.first->sampleAt(sample), position.weights);
+  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(position.weights)) return atSurface();
+  position.rest = restPoint(data, tet, position.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
-    const btScalar moved = (place.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
+    const btScalar moved = (position.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
     if (moved < own) return outside((own - moved) / deformed.restPerWorld);
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
-  for (int p = head; p >= 0; p = places_[static_cast<std::size_t>(p)].next) {
-    if ((places_[static_cast<std::size_t>(p)].rest - place.rest).length2() < apart * apart) return atSurface();
+  for (int p = head; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
+    if ((positions_[static_cast<std::size_t>(p)].rest - position.rest).length2() < apart * apart) return atSurface();
   }
-  if (!data.grid.at(place.rest, place.nearest)) return atSurface();
-  const btScalar distance = place.nearest.distance / deformed.restPerWorld;
+  if (!data.grid.at(position.rest, position.nearest)) return atSurface();
+  const btScalar distance = position.nearest.distance / deformed.restPerWorld;
   if (distance > now_.reach) return away(distance);
-  place.tet = tet;
-  place.next = head;
-  head = static_cast<int>(places_.size());
-  places_.push_back(place);
+  position.tet = tet;
+  position.next = head;
+  head = static_cast<int>(positions_.size());
+  positions_.push_back(position);
   return atSurface();
 }
 
-/// By which the sample has moved in the body's rest space.
-btVector3 PairSearch::restMotion(int sample, const Place& place) const {
+/// The motion of the sample in the body's rest space.
+btVector3 PairSearch::restMotion(int sample, const Position& position) const {
   const ShapeData& in = now_.second->data();
   const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
   const btVector3 velocity =
-      point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(place.tet, place.weights);
-  const DeformedTet& deformed = now_.second->deformed(place.tet);
-  const Tet& n = in.tets[static_cast<std::size_t>(place.tet)];
+      point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(position.tet, position.weights);
+  const DeformedTet& deformed = now_.second->deformed(position.tet);
+  const Tet& n = in.tets[static_cast<std::size_t>(position.tet)];
   btVector3 motion(0, 0, 0);
   for (std::size_t k = 0; k < 3; ++k) {
     const btVector3 edge = in.nodes[static_cast<std::size_t>(n[k])] - in.nodes[static_cast<std::size_t>(n[3])];
@@ -206,23 +212,25 @@ btVector3 PairSearch::restMotion(int sample, const Place& place) const {
   return motion;
 }
 
-/// Of the sample's own surface, world space; 0 where it is not known.
+/// The normal of the sample's own surface, world space; 0 if it is not known.
 btVector3 PairSearch::ownNormal(int sample, int run) const {
-  const ShapeData& of = now_.first->data();
-  const int tet = of.runs[static_cast<std::size_t>(run)].tet;
+  const ShapeData& shapeData = now_.first->data();
+  const int tet = shapeData.runs[static_cast<std::size_t>(run)].tet;
   const DeformedTet& deformed = now_.first->deformed(tet);
   if (deformed.flat) return {0, 0, 0};
-  const btVector3 own = carriedGradient(of, tet, deformed, of.sampleNormals[static_cast<std::size_t>(sample)]);
+  const btVector3 own =
+      carriedGradient(shapeData, tet, deformed, shapeData.sampleNormals[static_cast<std::size_t>(sample)]);
   const btScalar length = own.length();
   return length > SIMD_EPSILON ? own / length : btVector3(0, 0, 0);
 }
 
-/// Which way the touch pushes; false: none. Surfaces touch that look against each other: what slides along another one
-/// does not catch on its edges by the sides of its own. What is deep inside leaves by one way for all of it, as the
-/// nearest ones would tear it; what is less deep beside it does not hold it back.
+/// Determines the direction in which the contact pushes; returns false if it is no contact. Surfaces touch whose
+/// normals oppose each other: a surface that slides along another one does not catch on its edges by the sides of its
+/// own. All deep samples leave in one direction, since pushing each to its nearest surface would tear the body; less
+/// deep samples beside them do not hold it back.
 bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   const bool overlaps = !now_.apart.isZero();
-  // Where bodies are in one place, their surfaces are, too.
+  // Where bodies coincide, their surfaces do, too.
   if (overlaps && own.dot(touch.normal) > kAgreeing) touch.distance = std::min(touch.distance, -2 * now_.deep);
   const bool deep = overlaps && touch.distance < -now_.deep;
   if (deep) touch.normal = now_.apart;
@@ -242,13 +250,13 @@ void PairSearch::count(const btVector3& own, const Touch& touch) {
   ++overlap_.inside;
 }
 
-void PairSearch::touch(int sample, int run, const Place& place) {
+void PairSearch::touch(int sample, int run, const Position& position) {
   const ShapeData& in = now_.second->data();
-  const ContactSide* before = now_.sides->find(sample, place.rest, kOneSide * in.edge);
-  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, place);
+  const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
+  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, position);
   SideDistance found;
-  if (!findSide(in.grid, place.rest, place.nearest, motion, before, found)) return;
-  const btVector3 normal = carriedGradient(in, place.tet, now_.second->deformed(place.tet), found.side.normal);
+  if (!findSide(in.grid, position.rest, position.nearest, motion, before, found)) return;
+  const btVector3 normal = carriedGradient(in, position.tet, now_.second->deformed(position.tet), found.side.normal);
   const btScalar length = normal.length();
   if (!(length > SIMD_EPSILON)) return;
   Touch made;
@@ -258,8 +266,8 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   now_.sides->keep(found.side);
   made.sample = sample;
   made.run = run;
-  made.tet = place.tet;
-  std::copy(place.weights, place.weights + 4, made.weights);
+  made.tet = position.tet;
+  std::copy(position.weights, position.weights + 4, made.weights);
   made.normal = normal / length;
   const btVector3 own = ownNormal(sample, run);
   count(own, made);
@@ -268,13 +276,15 @@ void PairSearch::touch(int sample, int run, const Place& place) {
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 
-/// Those that touched in the step before count as deeper: what rests would be held by others in each step, and shake.
+/// Samples that touched in the step before count as deeper: otherwise a resting body would be supported by other
+/// samples in each step, and jitter.
 btScalar PairSearch::rankOf(const Touch& touch) const {
   return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
                                           : touch.distance;
 }
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {
+  assert(node >= 0 && static_cast<std::size_t>(node) < touchOfNode_.size());
   int& head = touchOfNode_[static_cast<std::size_t>(node)];
   for (int t = head; t >= 0; t = (*touches_)[static_cast<std::size_t>(t)].next) {
     Touch& other = (*touches_)[static_cast<std::size_t>(t)];

@@ -13,19 +13,19 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Cubes that a flat surface passes through, over its area in faces of a cube: 1 along the axes, 1.73 across.
+/// Number of cubes that a flat surface passes through, per face area of a cube: 1 along the axes, 1.73 diagonally.
 constexpr double kCubesPerFace = 1.3;
-/// A triangle is divided so often at most: one as long as the whole model has no need of more.
+/// Largest number of divisions of a triangle's edges, enough for a triangle as long as the whole model.
 constexpr int kMaxDivisions = 256;
 
-/// Keeps the first point that comes to each cube of a lattice.
+/// Keeps the first point in each cube of a lattice.
 class CubeSieve {
  public:
-  explicit CubeSieve(double side) : inverse_(1.0 / side) {}
+  explicit CubeSieve(double side) : inverse_(1.0 / side) { assert(side > 0.0); }
   bool takes(const Eigen::Vector3d& p) {
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k) {
-      // 21 bits a coordinate: beyond, cubes would share a key, and lose a sample.
+      // 21 bits per coordinate: with more, cubes would share a key, and lose a sample.
       const auto cube = static_cast<std::int64_t>(std::floor(p[k] * inverse_));
       key = (key << 21) | (static_cast<std::uint64_t>(cube) & 0x1FFFFF);
     }
@@ -54,11 +54,11 @@ void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, doubl
   });
 }
 
-/// By vertex: how far it stands out from its neighbours in these triangles, over their distance.
+/// By vertex: its height above its neighbours in these triangles, relative to their distance.
 std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   // Seams and tips have several vertices at a position.
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
-  std::vector<Eigen::Vector3d> way(mesh.vertexCount(), Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> direction(mesh.vertexCount(), Eigen::Vector3d::Zero());
   std::vector<Eigen::Vector3d> area(mesh.vertexCount(), Eigen::Vector3d::Zero());
   std::vector<double> length(mesh.vertexCount(), 0.0);
   for (const int t : triangles) {
@@ -69,7 +69,7 @@ std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>&
       const std::uint32_t v = first[corners[k]];
       area[v] += normal;
       for (const int other : {corners[(k + 1) % 3], corners[(k + 2) % 3]}) {
-        way[v] += mesh.positions[v] - mesh.positions[other];
+        direction[v] += mesh.positions[v] - mesh.positions[other];
         length[v] += (mesh.positions[v] - mesh.positions[other]).norm();
       }
     }
@@ -77,13 +77,13 @@ std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>&
   std::vector<double> out(mesh.vertexCount(), 0.0);
   for (std::size_t v = 0; v < out.size(); ++v) {
     const double size = area[v].norm() * length[v];
-    if (size > 0.0) out[v] = way[v].dot(area[v]) / size;
+    if (size > 0.0) out[v] = direction[v].dot(area[v]) / size;
   }
   for (std::size_t v = 0; v < out.size(); ++v) out[v] = out[first[v]];
   return out;
 }
 
-/// Tips first: they touch before anything around them does.
+/// Tips come first: they touch before anything around them does.
 std::vector<SurfaceSample> verticesByProminence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   const std::vector<double> out = prominence(mesh, triangles);
   std::vector<SurfaceSample> vertices;

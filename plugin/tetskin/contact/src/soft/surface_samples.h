@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ContactShape: points spread over a surface.
+// Internal to ContactShape: points distributed over a surface.
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <array>
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace tetskin::contact_detail {
 
-/// A point of a mesh at rest: a vertex, or one on a triangle.
+/// A point of a mesh at rest: a vertex, or a point on a triangle.
 struct SurfaceSample {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   int vertex = -1;                         ///< -1: none
   std::array<int, 3> corners{-1, -1, -1};  ///< vertices of a triangle that it is on
 };
 
-/// About so many points of these triangles, evenly spread: vertices as far as there are any, and of
-/// those that are near to each other the ones that stand out most.
+/// About this many points of these triangles, evenly distributed: vertices if there are enough, and of vertices that
+/// are near to each other those that stand out most.
 /// mesh   indices in range
 /// Cost   O(n log n + count) for n triangles
 std::vector<SurfaceSample> sampleSurface(const TriangleMesh& mesh, const std::vector<int>& triangles,

@@ -11,6 +11,7 @@
 #include <tetskin/core/src/search/tolerances.h>
 #include <tetskin/core/src/shared/base/instantiate.h>
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/src/shared/mesh/weld.h>
 
@@ -24,23 +25,24 @@ namespace {
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Names the first point beyond kLargestCoordinate; there must be one.
+/// Names the first point beyond Limits::kMaxCoordinate; there must be one.
 Status tooLarge(const char* point, const char* owner, PointReader points) {
   std::size_t p = 0;
-  while (points[p].lpNorm<Eigen::Infinity>() <= kLargestCoordinate) ++p;
+  while (points[p].lpNorm<Eigen::Infinity>() <= Limits::kMaxCoordinate) ++p;
   char text[160];
   std::snprintf(text, sizeof text,
-                "%s %zu of the %s has a coordinate beyond %g, the largest that is possible; is the file damaged?",
-                point, p, owner, kLargestCoordinate);
+                "%s %zu of the %s has a coordinate beyond %g, the largest that is supported; is the file damaged?",
+                point, p, owner, Limits::kMaxCoordinate);
   return {StatusCode::NonFinite, text};
 }
 
-/// Everything that can be known before the search. Boxes too, so that they are reported even for a mesh that fails.
+/// All checks that are possible before the search. The boxes are computed as well, so that they are reported even for a
+/// mesh that fails.
 Status checkInputs(const TetMesh& cage, PointReader vertices, const EmbedOptions& options, EmbedReport& report) {
   report.vertexCount = report.unbound = vertices.size();
   if (!(options.maxDistance >= 0.0)) {
     return {StatusCode::InvalidOption, "maxDistance is " + std::to_string(options.maxDistance) +
-                                           "; it must be 0 or more (infinity: any distance)"};
+                                           "; it must be 0 or more (infinity allows any distance)"};
   }
   if (vertices.empty()) return {StatusCode::Empty, "the mesh has no vertices"};
   if (vertices.size() >= 0xFFFFFFFFu) return {StatusCode::SizeMismatch, "the mesh has more than 2^32 - 2 vertices"};
@@ -53,19 +55,19 @@ Status checkInputs(const TetMesh& cage, PointReader vertices, const EmbedOptions
     }
     meshBox.extend(vertex);
   }
-  if (Status cageStatus = usable(cage, checkForUse(cage)); !cageStatus.ok()) return cageStatus;
+  if (Status cageStatus = validate(cage); !cageStatus.ok()) return cageStatus;
   report.meshBox = meshBox;
   report.cageBox = boundingBox(cage.nodes);
-  if (largestCoordinate(meshBox) > kLargestCoordinate) return tooLarge("vertex", "mesh", vertices);
-  if (largestCoordinate(report.cageBox) > kLargestCoordinate) return tooLarge("node", "cage", viewOf(cage.nodes));
+  if (maxCoordinate(meshBox) > Limits::kMaxCoordinate) return tooLarge("vertex", "mesh", vertices);
+  if (maxCoordinate(report.cageBox) > Limits::kMaxCoordinate) return tooLarge("node", "cage", viewOf(cage.nodes));
   return {};
 }
 
 void reportFit(const EmbeddingFit& fit, EmbedReport& report) {
-  report.largestWeight = fit.largestWeight;
-  report.worstBarycentric = fit.worstBarycentric;
+  report.maxWeight = fit.largestWeight;
+  report.maxBarycentricDistance = fit.worstBarycentric;
   const double diagonal = report.meshBox.diagonal().norm(), restError = std::sqrt(fit.restErrorSquared);
-  // One point, or all at one place: compare with the cage instead of dividing by nothing.
+  // With one point, or all points at one position, the error is relative to the cage: the mesh's own diagonal is 0.
   report.restErrorMax = restError / (diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm());
 }
 
@@ -73,14 +75,14 @@ Status tooFar(const EmbedReport& report, double maxDistance) {
   char text[256];
   std::snprintf(
       text, sizeof text,
-      "vertex %zu at (%.6g, %.6g, %.6g) lies %.4g outside the cage, more than the %.4g allowed; enlarge the cage "
-      "or allow more",
-      report.worstVertex, report.worstPosition.x(), report.worstPosition.y(), report.worstPosition.z(),
-      report.worstDistance, maxDistance);
+      "vertex %zu at (%.6g, %.6g, %.6g) lies %.4g outside the cage, more than the maximum of %.4g; enlarge the cage "
+      "or allow a larger distance",
+      report.maxDistanceVertex, report.maxDistancePosition.x(), report.maxDistancePosition.y(),
+      report.maxDistancePosition.z(), report.maxDistance, maxDistance);
   return {StatusCode::OutsideCage, text};
 }
 
-/// The tet of every vertex, by `fromTets`' convention; with what the search has to report.
+/// The tet of every vertex, by the convention of `fromTets`, and the search's entries of the report.
 /// triangles  of the mesh, or null if they are not known
 std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, const Triangles* triangles,
                                  OutsideRule rule, EmbedReport& report) {
@@ -91,12 +93,14 @@ std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, cons
   report.flatTets = mesh.tetCount() - cage.size();
   report.overlapping = search.overlapping;
   report.candidates = search.candidates;
-  report.rescued = static_cast<std::size_t>(std::count(search.rescued.begin(), search.rescued.end(), true));
-  report.worstDistance = search.farthestDistance;
-  report.worstVertex = search.farthest;
-  report.worstPosition = vertices[search.farthest];
+  report.reassignedByWeight =
+      static_cast<std::size_t>(std::count(search.reassigned.begin(), search.reassigned.end(), true));
+  report.maxDistance = search.farthestDistance;
+  report.maxDistanceVertex = search.farthest;
+  report.maxDistancePosition = vertices[search.farthest];
   if (triangles && rule == OutsideRule::Nearest) {
-    report.keptWithNeighbours = keepWithNeighbours(mesh, vertices, first, *triangles, search.rescued, search.tetOf);
+    report.reassignedByConnectivity =
+        reassignByConnectivity(mesh, vertices, first, *triangles, search.reassigned, search.tetOf);
   }
   return std::move(search.tetOf);
 }
@@ -104,15 +108,16 @@ std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, cons
 /// The embedding of vertices whose tets are known.
 Result<Embedding> embedIn(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
                           const EmbedOptions& options, EmbedReport& report) {
+  assert(tetOf.size() == vertices.size() && tetOf.size() == report.vertexCount);
   EmbeddingFit fit;
   Embedding made = embeddingFromTets(cage, vertices, tetOf, &fit);
   reportFit(fit, report);
-  if (!std::isfinite(report.restErrorMax) || !(report.worstBarycentric <= kLargestBarycentric)) {
+  if (!std::isfinite(report.restErrorMax) || !(report.maxBarycentricDistance <= Limits::kMaxBarycentric)) {
     return Status{StatusCode::Degenerate,
-                  "some vertices are so many times the size of their tet away from it that weighted sums would "
+                  "some vertices are so far from their tet, in relation to its size, that weighted sums would "
                   "overflow; are mesh and cage in the same unit?"};
   }
-  if (report.worstDistance > options.maxDistance) return tooFar(report, options.maxDistance);
+  if (report.maxDistance > options.maxDistance) return tooFar(report, options.maxDistance);
   report.inside = made.insideCount();
   report.outside = made.vertexCount() - made.insideCount();
   report.unbound = 0;
@@ -128,13 +133,13 @@ Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const
 Result<Embedding> embedMapped(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options,
                               EmbedReport& report) {
   const PointReader vertices = viewOf(mesh.positions);
-  if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
+  if (Status status = checkInputs(cage.mesh, vertices, options, report); !status.ok()) return status;
   const auto tetOf = mappedTets(cage, mesh, report);
   if (!tetOf.ok()) return tetOf.status();
-  return embedIn(cage, vertices, tetOf.value(), options, report);
+  return embedIn(cage.mesh, vertices, tetOf.value(), options, report);
 }
 
-/// make  does the embedding, and writes the report
+/// make  creates the embedding, and writes the report
 template <class Make>
 Result<Embedding> timed(EmbedReport* report, Make&& make) {
   const auto start = std::chrono::steady_clock::now();
@@ -146,7 +151,7 @@ Result<Embedding> timed(EmbedReport* report, Make&& make) {
   return made;
 }
 
-/// Of planes of three weights; the fourth is what they leave of 1.
+/// Reads the weights of a slot: three are stored, and the fourth is 1 minus their sum.
 template <class Scalar>
 std::array<Scalar, 4> weightsAt(const std::array<std::vector<float>, 3>& planes, std::size_t index) {
   const Scalar a = planes[0][index], b = planes[1][index], c = planes[2][index];
@@ -158,15 +163,16 @@ std::array<Scalar, 4> weightsAt(const std::array<std::vector<float>, 3>& planes,
 bool EmbedReport::unitsDiffer() const {
   if (meshBox.isEmpty() || cageBox.isEmpty()) return false;
   const double mesh = meshBox.diagonal().norm(), cage = cageBox.diagonal().norm();
-  return !meshBox.intersects(cageBox) || (mesh > 0.0 && (mesh > kUnitRatio * cage || cage > kUnitRatio * mesh));
+  return !meshBox.intersects(cageBox) ||
+         (mesh > 0.0 && (mesh > Limits::kMaxUnitRatio * cage || cage > Limits::kMaxUnitRatio * mesh));
 }
 
-std::string EmbedReport::unitsFault() const {
+std::string EmbedReport::unitsMessage() const {
   if (!unitsDiffer()) return {};
   char text[160];
-  std::snprintf(text, sizeof text, "their boxes have diagonals of %.4g and %.4g and %s; are they in different units?",
-                meshBox.diagonal().norm(), cageBox.diagonal().norm(),
-                meshBox.intersects(cageBox) ? "overlap" : "lie apart");
+  std::snprintf(
+      text, sizeof text, "their bounding boxes have diagonals of %.4g and %.4g and %s; are they in different units?",
+      meshBox.diagonal().norm(), cageBox.diagonal().norm(), meshBox.intersects(cageBox) ? "overlap" : "do not overlap");
   return text;
 }
 
@@ -176,37 +182,43 @@ std::string EmbedReport::describe() const {
   std::snprintf(text, sizeof text, "%zu vertices: %zu inside, %zu outside the cage", vertexCount, inside, outside);
   std::string result = text;
   if (outside > 0) {
-    std::snprintf(text, sizeof text, "; the farthest, vertex %zu at (%.4g, %.4g, %.4g), by %.3g", worstVertex,
-                  worstPosition.x(), worstPosition.y(), worstPosition.z(), worstDistance);
+    std::snprintf(text, sizeof text, "; the farthest is vertex %zu at (%.4g, %.4g, %.4g), at a distance of %.3g",
+                  maxDistanceVertex, maxDistancePosition.x(), maxDistancePosition.y(), maxDistancePosition.z(),
+                  maxDistance);
     result += text;
   }
   std::snprintf(text, sizeof text,
                 "\n%zu coincident vertices, %zu vertices where the cage overlaps itself, %zu flat tets\n"
-                "rest error %.2g box diagonals, %.1f candidates a vertex, %.2f ms\n",
+                "rest error %.2g of the bounding box's diagonal, %.1f candidates per vertex, %.2f ms\n",
                 coincident, overlapping, flatTets, restErrorMax,
                 static_cast<double>(candidates) / static_cast<double>(vertexCount), milliseconds);
   result += text;
-  if (keptWithNeighbours > 0) {
-    std::snprintf(text, sizeof text, "%zu vertices outside kept from another part of the cage, nearer than their own\n",
-                  keptWithNeighbours);
-    result += text;
-  }
-  if (rescued > 0 || largestWeight > kLargestWeight) {
+  if (reassignedByConnectivity > 0) {
     std::snprintf(
         text, sizeof text,
-        "%zu vertices outside taken from a nearest tet that would extrapolate them more than %g times; largest "
-        "weight %.3g\n",
-        rescued, kLargestWeight, largestWeight);
+        "%zu vertices outside the cage were reassigned by connectivity: another component of the cage was closer than "
+        "their own\n",
+        reassignedByConnectivity);
     result += text;
   }
-  if (overlapping > 0) result += "where a cage of copies overlaps itself, only a Cage with its map tells them apart\n";
-  if (unitsDiffer()) result += "mesh and cage do not fit: " + unitsFault() + "\n";
+  if (reassignedByWeight > 0 || maxWeight > kMaxWeight) {
+    std::snprintf(text, sizeof text,
+                  "%zu vertices outside the cage were reassigned by weight: their nearest tet would extrapolate them "
+                  "by more than %g "
+                  "times its size; largest "
+                  "weight %.3g\n",
+                  reassignedByWeight, kMaxWeight, maxWeight);
+    result += text;
+  }
+  if (overlapping > 0)
+    result += "where a cage with duplicate elements overlaps itself, only a Cage with its map distinguishes them\n";
+  if (unitsDiffer()) result += "mesh and cage do not match: " + unitsMessage() + "\n";
   return result;
 }
 
 Embedding::Embedding() {
   static const EmbeddingData empty;
-  data_ = {std::shared_ptr<const EmbeddingData>(), &empty};  // owned by nobody
+  data_ = {std::shared_ptr<const EmbeddingData>(), &empty};  // with no owner
 }
 
 Embedding::Embedding(std::shared_ptr<const EmbeddingData> data) : data_(std::move(data)) {
@@ -231,6 +243,7 @@ const std::vector<std::uint32_t>& Embedding::vertexSlots() const {
 
 std::vector<VertexBinding> Embedding::bindings() const {
   std::vector<VertexBinding> result(vertexCount());
+  assert(data_->vertexSlots.size() == data_->slotVertices.size());
   const EmbeddingData& d = *data_;
   for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
     for (std::uint32_t slot = d.runs[r].firstSlot; slot < d.runs[r + 1].firstSlot; ++slot) {
@@ -249,13 +262,14 @@ EmbeddedPoint<Scalar> Embedding::at(std::size_t vertex) const {
   const auto next = std::upper_bound(d.runs.begin(), d.runs.end(), slot,
                                      [](std::uint32_t s, const EmbeddingData::Run& run) { return s < run.firstSlot; });
   const EmbeddingData::Run& run = *std::prev(next);
+  assert(slot >= run.firstSlot && run.tet < d.tetCount);
   EmbeddedPoint<Scalar> point;
   point.tet = static_cast<int>(run.tet);
   std::copy_n(run.nodes, 4, point.nodes.begin());
   point.inside = slot < d.insideCount;
   point.weights = weightsAt<Scalar>(d.weights, slot);
-  point.clamped = point.inside ? point.weights : weightsAt<Scalar>(d.closestWeights, slot - d.insideCount);
-  for (Scalar& weight : point.clamped) weight = std::max(weight, Scalar(0));  // below it by rounding alone
+  point.clampedWeights = point.inside ? point.weights : weightsAt<Scalar>(d.closestWeights, slot - d.insideCount);
+  for (Scalar& weight : point.clampedWeights) weight = std::max(weight, Scalar(0));  // below 0 because of rounding
   return point;
 }
 
@@ -275,13 +289,13 @@ Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices, co
 }
 
 Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options, EmbedReport* report) {
-  if (Status status = checkTriangleMesh(mesh); !status.ok()) {
+  if (Status status = validate(mesh); !status.ok()) {
     if (report) *report = notEmbedded(mesh);
     return status;
   }
   return timed(report, [&](EmbedReport& now) {
     if (!cage.vertexTets.empty()) return embedMapped(cage, mesh, options, now);
-    return embedVertices(cage, viewOf(mesh.positions), &mesh.triangles, options, now);
+    return embedVertices(cage.mesh, viewOf(mesh.positions), &mesh.triangles, options, now);
   });
 }
 

@@ -3,20 +3,22 @@
 //
 // An embedding as bytes, little-endian on every machine:
 //
-//   bytes               what
-//   8                   "tetskemb"
-//   8                   version
-//   8                   hash of the cage, see hashOf
-//   6 x 8               nodeCount, tetCount, vertexCount, insideCount, number of runs, insideRunCount
-//   8 a run             tet, first slot
-//   4 a vertex          by slot: which vertex it is
-//   12 a vertex         by slot: weights of nodes 0, 1, 2, one plane after the other
-//   12 a vertex outside closest weights, likewise
-//   8                   hash of all that precedes
+//   bytes                  what
+//   8                      "tetskemb"
+//   8                      version
+//   8                      hash of the cage, see hashOf
+//   6 x 8                  nodeCount, tetCount, vertexCount, insideCount, number of runs, insideRunCount
+//   8 per run              tet, first slot
+//   4 per vertex           by slot: index of the vertex
+//   12 per vertex          by slot: weights of nodes 0, 1, 2, one plane after the other
+//   12 per vertex outside  by slot: closest weights, one plane after the other
+//   8                      hash of all that precedes
 #include <tetskin/core/src/shared/base/bytes.h>
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 namespace tetskin {
@@ -30,7 +32,7 @@ struct Header {
   std::uint64_t cageHash = 0;
   std::uint64_t nodeCount = 0, tetCount = 0, vertexCount = 0, insideCount = 0, runCount = 0, insideRunCount = 0;
 
-  /// Of everything. The counts must have passed `plausible`: then nothing overflows.
+  /// The size of all data. The counts must have passed `plausible`: then nothing overflows.
   std::uint64_t bytes() const {
     return kHeaderBytes + 8 * runCount + 16 * vertexCount + 12 * (vertexCount - insideCount) + kHashBytes;
   }
@@ -44,25 +46,25 @@ Status damaged(const std::string& how) {
   return {StatusCode::Malformed, "the saved embedding " + how + "; embed again"};
 }
 
-/// Up to the counts, which then belong to as many bytes as there are.
+/// Reads everything up to the counts, and checks them against the number of bytes.
 Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
   const std::size_t tagBytes = sizeof kMagic - 1;
   if (count < tagBytes || std::memcmp(bytes, kMagic, tagBytes) != 0) {
-    return {StatusCode::UnsupportedFormat, "these bytes are no embedding that tetskin has saved"};
+    return {StatusCode::UnsupportedFormat, "these bytes are not an embedding saved by tetskin"};
   }
   if (count < kHeaderBytes + kHashBytes) return damaged("ends within its header");
   ByteReader reader(bytes + tagBytes);
   if (const std::uint64_t version = reader.u64(); version != kVersion) {
-    return {StatusCode::UnsupportedFormat, "the saved embedding is of version " + std::to_string(version) +
+    return {StatusCode::UnsupportedFormat, "the saved embedding has version " + std::to_string(version) +
                                                ", but this library reads version " + std::to_string(kVersion) +
-                                               " alone; embed again"};
+                                               " only; embed again"};
   }
   header.cageHash = reader.u64();
   for (std::uint64_t* value : {&header.nodeCount, &header.tetCount, &header.vertexCount, &header.insideCount,
                                &header.runCount, &header.insideRunCount}) {
     *value = reader.u64();
   }
-  if (!header.plausible()) return damaged("has counts that do not go together");
+  if (!header.plausible()) return damaged("has inconsistent counts");
   if (header.bytes() != count) {
     return damaged("should have " + std::to_string(header.bytes()) + " bytes, but has " + std::to_string(count));
   }
@@ -73,19 +75,20 @@ Status readHeader(const unsigned char* bytes, std::size_t count, Header& header)
 Status checkCage(const Header& header, const TetMesh& cage) {
   if (header.nodeCount != cage.nodeCount() || header.tetCount != cage.tetCount()) {
     return {StatusCode::CageMismatch, "the embedding was saved with a cage of " + std::to_string(header.nodeCount) +
-                                          " nodes and " + std::to_string(header.tetCount) + " tets, this one has " +
+                                          " nodes and " + std::to_string(header.tetCount) + " tets, but this one has " +
                                           std::to_string(cage.nodeCount()) + " and " + std::to_string(cage.tetCount()) +
                                           "; embed again"};
   }
   if (header.cageHash != hashOf(cage)) {
     return {StatusCode::CageMismatch,
-            "the embedding was saved with a cage whose rest nodes or tets differ from this one's; embed again"};
+            "the embedding was saved with a cage whose rest nodes or tets differ from those of this one; embed again"};
   }
-  return usable(cage, checkForUse(cage));
+  return validate(cage);
 }
 
-/// Whether the runs are as promised.
+/// True if the runs are consistent.
 bool runsAreSound(const EmbeddingData& d) {
+  assert(!d.runs.empty() && d.insideRunCount < d.runs.size());
   if (d.runs.front().firstSlot != 0 || d.runs[d.insideRunCount].firstSlot != d.insideCount) return false;
   for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
     if (d.runs[r].firstSlot >= d.runs[r + 1].firstSlot) return false;
@@ -94,8 +97,9 @@ bool runsAreSound(const EmbeddingData& d) {
   return true;
 }
 
-/// Makes vertexSlots from slotVertices. Returns whether these are a permutation, and ascending in every run.
+/// Makes vertexSlots from slotVertices. Returns true if these are a permutation, and ascending in every run.
 bool orderVertices(EmbeddingData& d) {
+  assert(d.runs.back().firstSlot == d.slotVertices.size());
   constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   d.vertexSlots.assign(d.slotVertices.size(), kNone);
   for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {
@@ -148,7 +152,7 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
     EmbeddingData::Run& run = e->runs[r];
     run.tet = reader.u32();
     run.firstSlot = reader.u32();
-    if (run.tet >= cage.tetCount()) return damaged("names a tet that does not exist");
+    if (run.tet >= cage.tetCount()) return damaged("refers to a tet that does not exist");
     std::copy_n(cage.tets[run.tet].begin(), 4, run.nodes);
   }
   e->runs.back() = {{}, static_cast<std::uint32_t>(header.vertexCount), static_cast<std::uint32_t>(e->tetCount)};
@@ -166,7 +170,7 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
   }
   if (!finite) return damaged("has weights that are not finite");
   if (!runsAreSound(*e)) return damaged("has runs out of order");
-  if (!orderVertices(*e)) return damaged("has vertices twice, or out of order");
+  if (!orderVertices(*e)) return damaged("has vertices repeated, or out of order");
   return Embedding(e);
 }
 

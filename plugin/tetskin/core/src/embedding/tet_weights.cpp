@@ -8,17 +8,18 @@
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
 namespace {
 
-/// Some vertices of one tet, coordinate by coordinate, so that loops take several at a time.
+/// Some vertices of one tet, stored by coordinate, so that loops process several at a time.
 struct VertexBlock {
   static constexpr std::size_t kSize = 16;
   double x[kSize], y[kSize], z[kSize];
-  double smallest[kSize];  ///< weight
-  double error[kSize];     ///< squared distance of what the rounded weights give
+  double smallest[kSize];  ///< smallest weight
+  double error[kSize];     ///< squared distance of the point that the rounded weights give
 
   void set(std::size_t k, const Eigen::Vector3d& vertex) {
     x[k] = vertex.x();
@@ -26,6 +27,7 @@ struct VertexBlock {
     z[k] = vertex.z();
   }
   void weigh(const BarycentricMap& map, std::size_t count, const std::array<float*, 3>& weights) {
+    assert(count <= kSize);
     for (std::size_t k = 0; k < count; ++k) {
       double b[4];
       map.weightsAt(x[k], y[k], z[k], b[0], b[1], b[2], b[3]);
@@ -35,6 +37,7 @@ struct VertexBlock {
     }
   }
   void measure(const TetCorners& p, std::size_t count, const std::array<float*, 3>& weights) {
+    assert(count <= kSize);
     const Eigen::Vector3d edges[3] = {p[0] - p[3], p[1] - p[3], p[2] - p[3]};
     for (std::size_t k = 0; k < count; ++k) {
       const double b0 = weights[0][k], b1 = weights[1][k], b2 = weights[2][k];
@@ -46,21 +49,24 @@ struct VertexBlock {
   }
 };
 
-/// What a vertex outside has besides: its closest point.
+/// Computes the closest point of a vertex outside.
 void bindOutside(std::uint32_t slot, const TetCorners& corners, const BarycentricMap& map,
                  const Eigen::Vector3d& vertex, EmbeddingData& data, EmbeddingFit& fit) {
+  assert(slot >= data.insideCount && slot < data.vertexCount());
   const Eigen::Vector4d weights = map(vertex);
   fit.largestWeight = std::max(fit.largestWeight, largestWeight(weights));
   const Eigen::Vector3d closest = closestPointInTet(vertex, corners, weights);
   const Eigen::Vector4d c = map(closest);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double clamped = std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding is a hair off the face
+    const double clamped =
+        std::min(std::max(c[static_cast<int>(k)], 0.0), 1.0);  // rounding may put it slightly off the face
     data.closestWeights[k][slot - data.insideCount] = static_cast<float>(clamped);
   }
 }
 
 /// Computes the weights of the vertices of one run, and how well they fit.
 void bindRun(std::size_t run, const TetCorners& corners, PointReader vertices, EmbeddingData& data, EmbeddingFit& fit) {
+  assert(run + 1 < data.runs.size() && data.runs[run].firstSlot < data.runs[run + 1].firstSlot);
   const BarycentricMap map(corners);
   VertexBlock block;
   const std::uint32_t last = data.runs[run + 1].firstSlot;
@@ -82,7 +88,7 @@ void bindRun(std::size_t run, const TetCorners& corners, PointReader vertices, E
   }
 }
 
-/// Into two lists a tet: the vertices inside, and after those of all tets the ones outside.
+/// Makes two lists per tet: the vertices inside, and, after those of all tets, the ones outside.
 void sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf, EmbeddingData& data) {
   const std::size_t tets = cage.tetCount();
   Lists<> lists = packLists(2 * tets, [&](auto&& add) {
@@ -105,6 +111,7 @@ void sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf, Embe
   }
   data.runs.push_back({{}, static_cast<std::uint32_t>(tetOf.size()), static_cast<std::uint32_t>(tets)});
   data.insideCount = lists.starts[tets];
+  assert(lists.values.size() == tetOf.size());
   data.slotVertices = std::move(lists.values);
   data.vertexSlots.resize(tetOf.size());
   for (std::uint32_t slot = 0; slot < tetOf.size(); ++slot) data.vertexSlots[data.slotVertices[slot]] = slot;
@@ -127,7 +134,7 @@ Embedding embeddingFromTets(const TetMesh& cage, PointReader vertices, const std
   for (std::size_t r = 0; r + 1 < data->runs.size(); ++r) {
     bindRun(r, cornersOf(cage, cage.tets[data->runs[r].tet]), vertices, *data, fit ? *fit : unread);
   }
-  return Embedding(std::move(data));
+  return Access<Embedding>::create(std::move(data));
 }
 
 }  // namespace tetskin

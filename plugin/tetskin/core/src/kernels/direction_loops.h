@@ -8,8 +8,9 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// The three vectors of which a direction is a sum, in place of the gradient's columns; for normals: the cross products
-/// of two columns each, which are the columns of the gradient's cofactor matrix in the tet's own coordinates.
+/// The three vectors whose weighted sum is a direction. For tangents they are the gradient's columns; for normals they
+/// are the cross products of two columns each, which are the columns of the gradient's cofactor matrix in the tet's own
+/// coordinates.
 template <class S, int P>
 void makeVectorsFor(Direction kind, Points<S, P> column[3]) {
   if (kind != Direction::Normal) return;
@@ -19,7 +20,7 @@ void makeVectorsFor(Direction kind, Points<S, P> column[3]) {
   column[1] = second;
 }
 
-/// Those of a linear tet are the same for all its vertices.
+/// The vectors of a linear tet are the same for all its vertices.
 template <class S, int P>
 struct LinearDirections {
   Points<S, P> vector[3];
@@ -48,20 +49,20 @@ struct QuadraticDirections {
   }
 };
 
-/// Shorter than this there is no direction, only rounding; at rest the length is 1.
+/// A shorter sum is rounding, and has no direction; at rest its length is 1.
 template <class S>
-constexpr S kShortestSquared = S(1e-20);
+constexpr S kMinSquared = S(1e-20);
 template <class S>
-constexpr S kLargestSquared = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
+constexpr S kMaxSquared = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
 
-/// The first `count` of four times P unit vectors, without those that are none. Out of the way, and with its arguments
-/// in registers, as their addresses would have the loop around it store them each time.
+/// Writes the first `count` of four times P unit vectors, skipping those without a direction. It is not inlined, and
+/// its arguments are in registers: if their addresses were taken, the loop around the call would store them each time.
 template <class S, int P>
 TETSKIN_NOINLINE void storeChosen(const S* sums, Points<S, P> squared, Points<S, P> inverse, std::size_t count,
                                   float* out) {
   for (int i = 0; i < atMost<4 * P>(count); ++i) {
     const int lane = i % P * 4 + i / P;
-    if (!(squared[lane] > kShortestSquared<S> && squared[lane] < kLargestSquared<S>)) continue;
+    if (!(squared[lane] > kMinSquared<S> && squared[lane] < kMaxSquared<S>)) continue;
     for (int k = 0; k < 3; ++k) out[3 * i + k] = static_cast<float>(sums[4 * i + k] * inverse[lane]);
   }
 }
@@ -71,7 +72,7 @@ void storeUnit(const Points<S, P> d[4], const Points<S, P>& inverse, float* out)
   storeExactly<P>(toFloats<S, P>(d[K] * turned<K, K, K, K, S, P>(inverse)), out + 3 * K * P);
 }
 
-/// Writes unit vectors; leaves what is there where there is no direction any more. sums: count x 4, and memory for 4 P.
+/// Writes unit vectors; a direction that has vanished leaves the previous value. sums: count x 4, and memory for 4 P.
 template <class S, int P>
 void normalise(const S* sums, std::size_t count, float* out) {
   for (std::size_t i = 0; i < count; i += 4 * P) {
@@ -80,7 +81,7 @@ void normalise(const S* sums, std::size_t count, float* out) {
                                loadPoints<S, P>(from + 12 * P)};
     const Points<S, P> squared = squaredLengths<S, P>(d);
     const Points<S, P> inverse = inverseSquareRoots<S, P>(squared);
-    if (count - i >= 4 * P && allBetween<S, P>(squared, kShortestSquared<S>, kLargestSquared<S>)) {
+    if (count - i >= 4 * P && allBetween<S, P>(squared, kMinSquared<S>, kMaxSquared<S>)) {
       storeUnit<0, S, P>(d, inverse, out + 3 * i);
       storeUnit<1, S, P>(d, inverse, out + 3 * i);
       storeUnit<2, S, P>(d, inverse, out + 3 * i);
@@ -93,20 +94,20 @@ void normalise(const S* sums, std::size_t count, float* out) {
 
 template <class S, int P, class Directions>
 void directionsOf(const Work<S>& given, const DirectionPlanes& givenPlanes, float* out) {
-  const Work<S> work = given;  // copies, as in positionsOf
+  const Work<S> work = given;  // copied, as in positionsOf
   const DirectionPlanes planes = givenPlanes;
-  // Runs are short: their sums are collected, and made unit vectors four registers at a time.
-  constexpr std::size_t kMost = 64 * P;
-  alignas(64) S sums[4 * (kMost + 4 * P)] = {};
-  std::size_t first = work.runs[work.firstRun].firstSlot;  // of which there is a sum
+  // Runs are short: their sums are collected, and normalised four registers at a time.
+  constexpr std::size_t kMax = 64 * P;
+  alignas(64) S sums[4 * (kMax + 4 * P)] = {};
+  std::size_t first = work.runs[work.firstRun].firstSlot;  // first slot for which there is a sum
   for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
     const Directions tet(work, planes.kind, r);
     const std::size_t runEnd = work.runs[r + 1].firstSlot;
     for (std::size_t slot = work.runs[r].firstSlot; slot < runEnd; slot += P) {
-      if (slot - first >= kMost) {
-        normalise<S, P>(sums, kMost, out + 3 * first);
-        ::memcpy(sums, sums + 4 * kMost, 4 * P * sizeof(S));
-        first += kMost;
+      if (slot - first >= kMax) {
+        normalise<S, P>(sums, kMax, out + 3 * first);
+        ::memcpy(sums, sums + 4 * kMax, 4 * P * sizeof(S));
+        first += kMax;
       }
       const Points<S, P> d = tet.sum(work, planes.kind, slot, Weights<S, P>(planes.factors, slot));
       ::memcpy(sums + 4 * (slot - first), &d, sizeof d);

@@ -40,7 +40,7 @@ TETSKIN_INLINE std::uint32_t* appendNotNegative(const Lanes<float, W>& v, std::u
 
 template <int W>
 std::size_t selectEntries(const FilterWork& work, std::uint32_t* selected) {
-  static_assert(W <= kMostLanes, "so many may be read and written beyond the end");
+  static_assert(W <= kMaxLanes, "so many may be read and written beyond the end");
   WidePlane<W> planes[4];
   for (int i = 0; i < 4; ++i) planes[i] = {work.normal[i][0], work.normal[i][1], work.normal[i][2], work.constant[i]};
   std::uint32_t* out = selected;

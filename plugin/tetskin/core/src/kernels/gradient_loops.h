@@ -9,17 +9,17 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// Columns of a gradient, P in a register, and perhaps one that means nothing.
+/// Columns of a gradient, P in a register, the last of which may be meaningless.
 template <class S, int P>
 struct Columns {
   static constexpr int kRegisters = (3 + P - 1) / P;
-  Points<S, P> of[kRegisters] = {};
+  Points<S, P> item[kRegisters] = {};
 
-  /// One neighbour's part: its position times its factor's three coordinates.
+  /// Adds one neighbour's contribution: its position times its factor's three coordinates.
   void add(const GradientWork<S>& work, std::size_t entry) {
     const Points<S, P> x = repeated<S, P>(work.nodes + 4 * static_cast<std::size_t>(work.neighbours[entry]));
     const S* factor = work.factors + 3 * entry;
-    for (int i = 0; i < kRegisters; ++i) of[i] += x * spread<S, P>(factor + P * i);
+    for (int i = 0; i < kRegisters; ++i) item[i] += x * spread<S, P>(factor + P * i);
   }
 };
 
@@ -27,7 +27,7 @@ template <class S, int P>
 void gradients(const GradientWork<S>& given) {
   const GradientWork<S> work = given;
   for (std::size_t n = work.firstNode; n < work.lastNode; ++n) {
-    // Two sums, as an addition has to wait for the one before.
+    // Two sums are used, as an addition has to wait for the one before.
     Columns<S, P> even, odd;
     std::size_t e = work.starts[n];
     const std::size_t end = work.starts[n + 1];
@@ -37,7 +37,7 @@ void gradients(const GradientWork<S>& given) {
     }
     if (e < end) even.add(work, e);
     S* out = work.gradients + kGradientStride * n;
-    for (int i = 0; i < Columns<S, P>::kRegisters; ++i) storeWhole<S, P>(even.of[i] + odd.of[i], out + 4 * P * i);
+    for (int i = 0; i < Columns<S, P>::kRegisters; ++i) storeWhole<S, P>(even.item[i] + odd.item[i], out + 4 * P * i);
   }
 }
 
@@ -46,8 +46,8 @@ S squaredLength(const Lanes<S, 4>& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-/// e = (F_i - F_j) (X_j - X_i) / 2, no longer than half the edge's rest length: on a crumpled cage the gradients mean
-/// nothing any more, and must not throw the surface out of it.
+/// e = (F_i - F_j) (X_j - X_i) / 2, no longer than half the edge's rest length: on a crumpled cage the gradients are
+/// meaningless, and must not throw the surface out of the cage.
 template <class S>
 void edges(const EdgeWork<S>& given) {
   const EdgeWork<S> work = given;
@@ -59,14 +59,14 @@ void edges(const EdgeWork<S>& given) {
     for (int c = 1; c < 3; ++c) e += (loadPadded(a + 4 * c) - loadPadded(b + 4 * c)) * half[c];
     const S length = squaredLength<S>(e), limit = half[3];
     if (!(length <= limit)) {
-      // Nodes so far apart that the length overflows leave no vector worth having.
+      // For nodes so far apart that the length overflows, the vector is 0.
       if (length * 0 == 0) {
         e = e * (squareRoot(limit) / squareRoot(length));
       } else {
         e = Lanes<S, 4>{};
       }
     }
-    // The fourth number is the rest length, which stays.
+    // The fourth number is the rest length, which stays unchanged.
     S* out = work.edges + 4 * i;
     for (int k = 0; k < 3; ++k) out[k] = e[k];
   }

@@ -10,22 +10,23 @@
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S>
-Lanes<S, 4> pointAt(const PathWork<S>& work, std::uint32_t place) {
-  return loadPadded(work.points + 4 * static_cast<std::size_t>(place));
+Lanes<S, 4> pointAt(const PathWork<S>& work, std::uint32_t index) {
+  return loadPadded(work.points + 4 * static_cast<std::size_t>(index));
 }
 
-/// The sum of the cross products of consecutive points of the path, seen from its centre: twice the triangles' areas.
+/// The sum of the cross products of consecutive points of the path, relative to its centre: twice the triangles' area
+/// vectors.
 template <class S>
 Lanes<S, 4> areaVector(const PathWork<S>& work, std::size_t group) {
   // With r turning x y z into y z x, a x b = r(a r(b) - r(a) b); r is linear, so it comes last.
   Lanes<S, 4> forward = {}, backward = {};
-  const std::uint32_t* place = work.paths + work.groupPaths[group];
+  const std::uint32_t* index = work.paths + work.groupPaths[group];
   const std::uint32_t* end = work.paths + work.groupPaths[group + 1];
-  if (place == end) return forward;
-  const Lanes<S, 4> centre = pointAt(work, work.places[work.groupPlaces[group]]);
-  Lanes<S, 4> a = pointAt(work, *place) - centre, turnedA = turned<1, 2, 0, 3, S, 1>(a);
-  while (++place != end) {
-    const Lanes<S, 4> b = pointAt(work, *place) - centre, turnedB = turned<1, 2, 0, 3, S, 1>(b);
+  if (index == end) return forward;
+  const Lanes<S, 4> centre = pointAt(work, work.indices[work.groupPositions[group]]);
+  Lanes<S, 4> a = pointAt(work, *index) - centre, turnedA = turned<1, 2, 0, 3, S, 1>(a);
+  while (++index != end) {
+    const Lanes<S, 4> b = pointAt(work, *index) - centre, turnedB = turned<1, 2, 0, 3, S, 1>(b);
     forward += a * turnedB;
     backward += turnedA * b;
     a = b;
@@ -35,14 +36,14 @@ Lanes<S, 4> areaVector(const PathWork<S>& work, std::size_t group) {
 }
 
 template <class S>
-void writeToPlaces(const PathWork<S>& work, std::size_t group, const Lanes<float, 4>& normal) {
-  for (std::uint32_t k = work.groupPlaces[group]; k < work.groupPlaces[group + 1]; ++k) {
-    const std::size_t offset = work.places[k] * work.outStride;
+void writeToPositions(const PathWork<S>& work, std::size_t group, const Lanes<float, 4>& normal) {
+  for (std::uint32_t k = work.groupPositions[group]; k < work.groupPositions[group + 1]; ++k) {
+    const std::size_t offset = work.indices[k] * work.outStride;
     storeExactly<1>(normal, reinterpret_cast<float*>(reinterpret_cast<char*>(work.out) + offset));
   }
 }
 
-/// Tiny or huge triangles are scaled first, where there is anything to scale; false where there is not.
+/// Tiny or huge sums are scaled first, if they are finite and not 0; otherwise returns false.
 template <class S>
 TETSKIN_NOINLINE bool normaliseScaled(Lanes<S, 4>& v) {
   S size = 0;
@@ -58,19 +59,19 @@ TETSKIN_NOINLINE bool normaliseScaled(Lanes<S, 4>& v) {
   return true;
 }
 
-/// Squares between this and its inverse are far from the ends of float's range.
+/// Squares between this and its inverse are far from the limits of float's range.
 constexpr float kOrdinary = 1e-30f;
 
 template <int K, class S>
 void writeUnit(const PathWork<S>& work, std::size_t group, const Lanes<S, 4>& sum, const Lanes<S, 4>& inverse) {
-  writeToPlaces(work, group + K, toFloats<S, 1>(sum * turned<K, K, K, K, S, 1>(inverse)));
+  writeToPositions(work, group + K, toFloats<S, 1>(sum * turned<K, K, K, K, S, 1>(inverse)));
 }
 
 template <class S>
 TETSKIN_NOINLINE void pathNormalsOneByOne(const PathWork<S>& work, std::size_t firstGroup, std::size_t lastGroup) {
   for (std::size_t group = firstGroup; group < lastGroup; ++group) {
     Lanes<S, 4> normal = areaVector(work, group);
-    if (normaliseScaled<S>(normal)) writeToPlaces(work, group, toFloats<S, 1>(normal));
+    if (normaliseScaled<S>(normal)) writeToPositions(work, group, toFloats<S, 1>(normal));
   }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: points as they are read, computed and written. A point is four numbers, x y z and one that
-// means nothing; P of them fill a register. A tet's coefficients are then used as they lie in memory, and a run of few
-// vertices, as most are, costs little more than its vertices.
+// Internal to the kernels: points as they are read, computed and written. A point is four numbers, x y z and one
+// without meaning; P of them fill a register. A tet's coefficients are then used in the layout that they have in
+// memory, and a run of few vertices, as most are, costs little more than its vertices.
 #pragma once
 
 #include <tetskin/core/src/shared/kernels/lanes.h>
@@ -13,7 +13,7 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 template <class S, int P>
 using Points = Lanes<S, 4 * P>;
 
-/// Points as they lie in memory, four scalars each: one, and P.
+/// Points in their memory layout, four scalars each: one point, and P points.
 template <class S>
 Lanes<S, 4> loadPadded(const S* from) {
   Lanes<S, 4> v;
@@ -83,7 +83,7 @@ TETSKIN_INLINE Points<double, P> spread(const double* from) {
   if constexpr (P == 1) return Points<double, P>{*from, *from, *from, *from};
 }
 
-/// Of every point numbers A and B of v, C and D of w.
+/// Of every point: components A and B of v, followed by C and D of w.
 template <int A, int B, int C, int D, class S, int P>
 TETSKIN_INLINE Points<S, P> mixed(const Points<S, P>& v, const Points<S, P>& w) {
 #if defined(__SSE2__) && defined(TETSKIN_VECTOR_TYPES)
@@ -118,7 +118,7 @@ TETSKIN_INLINE Points<S, P> squaredLengths(const Points<S, P>& v) {
   const Points<S, P> q = v * v;
   return turned<0, 0, 0, 0, S, P>(q) + turned<1, 1, 1, 1, S, P>(q) + turned<2, 2, 2, 2, S, P>(q);
 }
-/// The same of four times P points, in one register: those of v[k] in the lanes k of its points.
+/// The squared lengths of four times P points, in one register: those of v[k] are in lanes k of its points.
 template <class S, int P>
 TETSKIN_INLINE Points<S, P> squaredLengths(const Points<S, P> v[4]) {
   const Points<S, P> xy01 = mixed<0, 1, 0, 1, S, P>(v[0], v[1]), xy23 = mixed<0, 1, 0, 1, S, P>(v[2], v[3]);
@@ -134,7 +134,7 @@ TETSKIN_INLINE Points<S, P> cross(const Points<S, P>& a, const Points<S, P>& b) 
   return turned<1, 2, 0, 3, S, P>(a * turned<1, 2, 0, 3, S, P>(b) - turned<1, 2, 0, 3, S, P>(a) * b);
 }
 
-/// Whether all lanes lie between two numbers.
+/// True if all lanes lie between two numbers.
 template <class S, int P>
 TETSKIN_INLINE bool allBetween(const Points<S, P>& v, S low, S high) {
 #if defined(__AVX512F__)
@@ -144,7 +144,7 @@ TETSKIN_INLINE bool allBetween(const Points<S, P>& v, S low, S high) {
   }
 #endif
 #if defined(TETSKIN_VECTOR_TYPES)
-  const auto between = (v > low) & (v < high);  // all bits set where it holds
+  const auto between = (v > low) & (v < high);  // all bits set where it is true
 #if defined(__AVX2__)
   if constexpr (P == 2 && sizeof(S) == sizeof(float))
     return _mm256_movemask_ps(reinterpret_cast<__m256>(between)) == 0xff;
@@ -200,7 +200,7 @@ TETSKIN_INLINE Points<S, P> inverseSquareRoots(const Points<S, P>& v) {
   return inverse;
 }
 
-/// x0 y0 z0 x1 y1 z1 ... and P numbers that mean nothing.
+/// x0 y0 z0 x1 y1 z1 ... and P numbers without meaning.
 template <class S, int P>
 TETSKIN_INLINE Points<S, P> sideBySide(const Points<S, P>& v) {
 #if defined(__AVX512F__)
@@ -216,24 +216,24 @@ TETSKIN_INLINE Points<S, P> sideBySide(const Points<S, P>& v) {
   if constexpr (P == 1) return v;
 }
 
-/// Writes P points side by side, and up to P numbers more.
+/// Writes P points contiguously; up to P further numbers may be overwritten.
 template <class S, int P>
 TETSKIN_INLINE void storePoints(const Points<S, P>& v, S* out) {
   const Points<S, P> points = sideBySide<S, P>(v);
 #if defined(__AVX512F__)
   if constexpr (P == 4) {
-    // Exactly these: 64 bytes would straddle two cache lines most of the time.
+    // Exactly these bytes: a store of 64 bytes would straddle two cache lines most of the time.
     _mm256_storeu_ps(out, _mm512_castps512_ps256(points));
     return _mm_storeu_ps(out + 8, _mm512_extractf32x4_ps(points, 2));
   }
 #endif
   ::memcpy(out, &points, sizeof points);
 }
-/// Points from a slot on whose memory storePoints may touch.
+/// First slot from which on storePoints may write past the points.
 template <int P>
 constexpr std::uint32_t kSlotsTouched = (4 * P + 2) / 3;
 
-/// Writes P points side by side, and nothing else.
+/// Writes P points contiguously, and nothing else.
 template <int P>
 TETSKIN_INLINE void storeExactly(const Points<float, P>& v, float* out) {
   if constexpr (P == 4) return storePoints<float, P>(v, out);

@@ -18,7 +18,7 @@ struct WideExtent {
     low = repeated<S, P>(lowest);
     high = repeated<S, P>(highest);
   }
-  /// Of the first `count` points, if there are not more: the others belong to other tets.
+  /// Adds the first `count` points: any further ones belong to other tets.
   void add(const Points<S, P>& x, std::size_t count) {
     if constexpr (P == 1) {
       low = smaller(x, low);
@@ -39,11 +39,11 @@ struct WideExtent {
   }
 };
 
-/// kSpill  what is beyond a run's end goes into slots that the next run writes again: cheaper than to hold it back
+/// kSpill  points past a run's end are written into slots that the next run overwrites: cheaper than masking them
 template <class S, int P, class Tet, bool kExtent, bool kSpill>
 TETSKIN_NOINLINE void positionsOfRuns(const Work<S>& given, std::size_t firstRun, std::size_t lastRun, const S shift[4],
                                       S* out, WideExtent<S, P>& extent) {
-  const Work<S> work = given;  // copies, which the compiler knows that no store to `out` can change
+  const Work<S> work = given;  // copies, so that the compiler knows that no store to `out` changes them
   WideExtent<S, P> reached = extent;
   const Points<S, P> shifts = repeated<S, P>(shift);
   for (std::size_t r = firstRun; r < lastRun; ++r) {
@@ -69,7 +69,7 @@ void positionsOf(const Work<S>& work, const S shift[3], S* out, Extent<S>* exten
   WideExtent<S, P> reached(kExtent ? *extent : Extent<S>{});
   constexpr std::size_t kTouched = kSlotsTouched<P>;
   const std::size_t end = work.runs[work.lastRun].firstSlot;
-  std::size_t spilling = work.lastRun;  // runs before this one may
+  std::size_t spilling = work.lastRun;  // runs before this one may write past their end
   while (spilling > work.firstRun && work.runs[spilling].firstSlot + kTouched > end) --spilling;
   positionsOfRuns<S, P, Tet, kExtent, true>(work, work.firstRun, spilling, padded, out, reached);
   positionsOfRuns<S, P, Tet, kExtent, false>(work, spilling, work.lastRun, padded, out, reached);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to embedding: the inner loop of the search, compiled once for each instruction set and chosen at run time;
-// what skinning_kernels.h says of its header holds for this one too.
+// the restrictions of skinning_kernels.h apply to this header, too.
 #pragma once
 
 #include <tetskin/core/src/shared/kernels/dispatch.h>
@@ -17,19 +17,19 @@ struct EntryRange {
   std::uint32_t first, last;
 };
 
-/// Which entries are not beyond any of four planes?
+/// Input of the filter that finds the entries that are not beyond any of four planes.
 struct FilterWork {
   const EntryRange* ranges = nullptr;
   std::size_t rangeCount = 0;
-  const float* points[3] = {};    ///< planes of coordinates, by entry; kMostLanes may be read beyond the last
-  const float* limits = nullptr;  ///< by entry, likewise: how far beyond a plane counts as not beyond; null: not at all
+  const float* points[3] = {};    ///< arrays of coordinates, by entry; kMaxLanes more may be read
+  const float* limits = nullptr;  ///< by entry, padded: tolerance of the planes; null: 0
   float normal[4][3] = {};
   float constant[4] = {};
 };
-constexpr std::size_t kMostLanes = 16;
+constexpr std::size_t kMaxLanes = 16;
 
 /// Writes the entries for which no normal . point + constant + limit is below 0, in order, and returns their number.
-/// kMostLanes more may be written.
+/// kMaxLanes more may be written.
 using SelectEntries = std::size_t (*)(const FilterWork&, std::uint32_t* selected);
 
 TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const SelectEntries select;)

@@ -10,7 +10,7 @@
 //
 // With b the weights of a tet's first three nodes, b3 = 1 - b0 - b1 - b2, and e_ij the vector of its edge (i, j):
 //   x(b) = x3 + sum_k b_k (x_k - x3) + sum_{i<j} b_i b_j e_ij
-// is a polynomial of degree 2 in b, whose ten coefficients are made once a run:
+// is a polynomial of degree 2 in b, whose ten coefficients are computed once per run:
 //   constant   x3
 //   b_k        x_k - x3 + e_k3
 //   b_k b_k    -e_k3
@@ -34,21 +34,21 @@ const S* edgeAt(const Work<S>& work, std::uint32_t edge) {
   return work.edges + 4 * static_cast<std::size_t>(edge);
 }
 
-/// The numbers of P vertices in three planes.
+/// The values of P vertices in three arrays.
 template <class S, int P>
 struct Weights {
-  Points<S, P> of[3];
+  Points<S, P> item[3];
 
   Weights(const float* const planes[3], std::size_t slot)
-      : of{spread<S, P>(planes[0] + slot), spread<S, P>(planes[1] + slot), spread<S, P>(planes[2] + slot)} {}
-  const Points<S, P>& operator[](int k) const { return of[k]; }
+      : item{spread<S, P>(planes[0] + slot), spread<S, P>(planes[1] + slot), spread<S, P>(planes[2] + slot)} {}
+  const Points<S, P>& operator[](int k) const { return item[k]; }
 };
 
-// One tet under each kind of surface: made once a run, then x(b) - x3 of its points, and the columns of the gradient
-// (derivatives by b0, b1 and b2) for normals and tangents. The differences are summed before x3 is added, which may be
-// far from the origin.
+// One tet under each kind of surface: computed once per run, then x(b) - x3 of its points, and the columns of the
+// gradient (derivatives by b0, b1 and b2) for normals and tangents. The differences are summed before x3 is added,
+// which may be far from the origin.
 
-/// x(b) without the edges' vectors.
+/// x(b) of the linear map, without the edges' vectors.
 template <class S, int P>
 struct LinearTet {
   Points<S, P> last, slope[3];
@@ -64,13 +64,13 @@ struct LinearTet {
   }
 };
 
-/// The polynomial of the head of this file.
+/// The polynomial given at the beginning of this file.
 template <class S, int P>
 struct QuadraticMap {
   Points<S, P> last;
-  Points<S, P> slope[3];    ///< of b_k: x_k - x3 + e_k3
-  Points<S, P> bend[3];     ///< of -b_k b_k: e_k3
-  Points<S, P> product[3];  ///< of b1 b2, b0 b2, b0 b1: the one without k
+  Points<S, P> slope[3];    ///< coefficients of b_k: x_k - x3 + e_k3
+  Points<S, P> bend[3];     ///< coefficients of -b_k b_k: e_k3
+  Points<S, P> product[3];  ///< coefficients of b1 b2, b0 b2, b0 b1: entry k is that without b_k
 
   QuadraticMap(const Work<S>& work, std::size_t run) {
     const Run& r = work.runs[run];
@@ -110,7 +110,7 @@ struct QuadraticTet : QuadraticMap<S, P> {
 
 template <class S, int P>
 struct QuadraticTetOutside : QuadraticMap<S, P> {
-  S longestSquared;  ///< of what the quadratic part may add: the shortest edge at rest
+  S longestSquared;  ///< bound of the quadratic part: the squared length of the shortest edge at rest
 
   QuadraticTetOutside(const Work<S>& work, std::size_t run) : QuadraticMap<S, P>(work, run) {
     const std::uint32_t* ids = work.runEdges + 6 * run;
@@ -122,8 +122,8 @@ struct QuadraticTetOutside : QuadraticMap<S, P> {
     longestSquared = shortest * shortest;
   }
 
-  /// What the quadratic part adds is taken, with its derivatives, at the closest point, and continued to first order. A
-  /// crumpled cage would carry it far away: it is never longer than the tet's shortest edge at rest.
+  /// The quadratic part, with its derivatives, is evaluated at the closest point, and continued to first order. On a
+  /// crumpled cage it would become very long: it is limited to the length of the tet's shortest edge at rest.
   Points<S, P> fromLast(const Work<S>& work, std::size_t slot) const {
     const Weights<S, P> b(work.weights, slot), c(work.closest, slot - work.closestBase);
     Points<S, P> linear = {}, added = QuadraticMap<S, P>::fromLast(c);
@@ -142,7 +142,7 @@ struct QuadraticTetOutside : QuadraticMap<S, P> {
   }
 
  private:
-  /// Nodes so far apart that the length overflows leave no correction worth having.
+  /// For nodes so far apart that the length overflows, the correction is 0.
   TETSKIN_NOINLINE Points<S, P> shortened(Points<S, P> added, Points<S, P> squared) const {
     for (int i = 0; i < 4 * P; ++i) {
       const S q = squared[i];

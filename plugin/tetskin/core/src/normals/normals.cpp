@@ -5,14 +5,16 @@
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
+#include <cassert>
+
 namespace tetskin {
 template <class Factor>
 DirectionFactors::DirectionFactors(const TetMesh& cage, const Embedding& embedding, bool normals, Factor&& factor)
     : normals_(normals) {
   for (std::vector<float>& plane : planes_) plane.resize(embedding.vertexCount() + EmbeddingData::kPadding);
-  for (std::size_t r = 0; r + 1 < embedding.data().runs.size(); ++r) {
-    const TetCorners p = cornersOf(cage, cage.tets[embedding.data().runs[r].tet]);
-    for (std::uint32_t slot = embedding.data().runs[r].firstSlot; slot < embedding.data().runs[r + 1].firstSlot;
+  for (std::size_t r = 0; r + 1 < dataOf(embedding).runs.size(); ++r) {
+    const TetCorners p = cornersOf(cage, cage.tets[dataOf(embedding).runs[r].tet]);
+    for (std::uint32_t slot = dataOf(embedding).runs[r].firstSlot; slot < dataOf(embedding).runs[r + 1].firstSlot;
          ++slot) {
       const Eigen::Vector3d m = factor(p, embedding.slotVertices()[slot]);
       for (int k = 0; k < 3; ++k) planes_[static_cast<std::size_t>(k)][slot] = static_cast<float>(m[k]);
@@ -51,7 +53,7 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   assert(out.size() == embedding.vertexCount());
   assert(!stencils == !edges);
   if (embedding.empty()) return;
-  auto work = skin_tasks::workFor(embedding.data(), nodes);
+  auto work = skin_tasks::workFor(dataOf(embedding), nodes);
   work.surface = stencils ? kernels::Surface::Quadratic : kernels::Surface::Linear;
   if (stencils) {
     work.edges = edges->data();
@@ -59,20 +61,21 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   }
   kernels::DirectionPlanes planes;
   planes.kind = factors.areNormals() ? kernels::Direction::Normal : kernels::Direction::Tangent;
+  assert(factors.plane(0));
   for (int k = 0; k < 3; ++k) planes.factors[k] = factors.plane(k);
   const bool direct = skin_tasks::isDirect<float>(out, order);
   std::vector<float> ownScratch;
   if (!direct && !scratch) {
     ownScratch.resize(scratchSize(out.size()));
     scratch = ownScratch.data();
-    skin_tasks::collect(embedding.data(), out, order, scratch);
+    skin_tasks::collect(dataOf(embedding), out, order, scratch);
   }
   float* sorted = direct ? out.data() : scratch;
   const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
-  skin_tasks::forAllRuns(embedding.data(), work, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {
+  skin_tasks::forAllRuns(dataOf(embedding), work, threads, [&](const kernels::Work<Scalar>& part, std::size_t) {
     table.directions(part, planes, sorted);
   });
-  if (!direct) skin_tasks::place(embedding.data(), sorted, out, order, threads);
+  if (!direct) skin_tasks::place(dataOf(embedding), sorted, out, order, threads);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)                                                                              \

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 #include <tetskin/core/src/skinning/skinning.h>
-#include <tetskin/core/triangle_mesh.h>
 
 #include <array>
 #include <cstdint>
@@ -13,8 +13,8 @@
 namespace tetskin {
 
 /// Directions on the rest surface, prepared to be carried by the map's gradient G: normals by its cofactor matrix (not
-/// its inverse transpose: no division, and the right side out when a tet is inverted), tangents by G itself.
-/// Immutable, shared like an Embedding. Memory: 12 bytes a vertex.
+/// its inverse transpose: no division, and the right side out when a tet is inverted), tangents by G itself. Immutable,
+/// shared like an Embedding. Memory: 12 bytes per vertex.
 class DirectionFactors {
  public:
   DirectionFactors() = default;
@@ -22,12 +22,12 @@ class DirectionFactors {
   /// normals    vertexCount unit vectors, rest space
   static DirectionFactors ofNormals(const TetMesh& cage, const Embedding& embedding,
                                     const std::vector<Eigen::Vector3d>& normals);
-  /// tangents   likewise, tangent to the surface
+  /// tangents   vertexCount unit vectors, rest space, tangent to the surface
   static DirectionFactors ofTangents(const TetMesh& cage, const Embedding& embedding,
                                      const std::vector<Eigen::Vector3d>& tangents);
 
   bool areNormals() const { return normals_; }
-  /// By slot, padded like the weights.
+  /// By slot, padded as the weights are.
   const float* plane(int k) const { return planes_[static_cast<std::size_t>(k)].data(); }
 
  private:

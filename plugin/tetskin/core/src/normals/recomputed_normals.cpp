@@ -7,6 +7,7 @@
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -22,10 +23,10 @@ constexpr std::size_t kWindow = 256;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
-/// Of the cosine of an angle between two floats' directions.
+/// Rounding of the cosine of an angle between two directions given as floats.
 constexpr double kRounding = 1e-12;
 
-/// Of the rest normal, whatever its length; zero where there is none, or one without a direction.
+/// The direction of the rest normal, whatever its length; zero if there is none, or it has no direction.
 Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
   if (mesh.normals.size() != mesh.vertexCount()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d normal = mesh.normals[v].cast<double>();
@@ -36,6 +37,7 @@ Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
 /// Vertices that share a normal, as lists: those at one position whose rest normals are within an angle of each other.
 std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first,
                                         double hardEdgeDegrees, std::size_t& groupCount) {
+  assert(first.size() == mesh.vertexCount() && hardEdgeDegrees >= 0.0);
   const double limit = std::cos(std::min(hardEdgeDegrees, 180.0) * kDegree) - kRounding;
   // The groups at one position are chained by their first vertices.
   std::vector<std::uint32_t> groupOf(mesh.vertexCount(), kNoGroup), firstGroup(groupOf), next(groupOf);
@@ -56,7 +58,8 @@ std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vec
     join(v, [&](std::uint32_t other) { return direction.dot(restDirection(mesh, other)) >= limit; });
   }
   for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
-    if (groupOf[v] == kNoGroup) join(v, [](std::uint32_t) { return true; });  // after those that know where they belong
+    if (groupOf[v] == kNoGroup)
+      join(v, [](std::uint32_t) { return true; });  // processed after those with a normal, which determine the groups
   }
   return groupOf;
 }
@@ -67,24 +70,26 @@ struct FarSide {
   std::uint32_t fromPosition, toPosition;
 };
 
-/// Appends the sides as one path, from each into one that goes on where it ends; `centre` where there is none. It
-/// begins with the first, and prefers earlier ones: the same path for a mesh whatever its vertices' numbers.
+/// Appends the sides as one path, in which each side is followed by one that begins where it ends; `centre` is inserted
+/// where there is none. The path begins with the first side, and prefers earlier ones: it does not depend on the
+/// numbering of the vertices.
 void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::vector<std::uint32_t>& path) {
   std::vector<std::size_t> byStart(sides.size());
   std::iota(byStart.begin(), byStart.end(), std::size_t{0});
   std::stable_sort(byStart.begin(), byStart.end(),
                    [&](auto a, auto b) { return sides[a].fromPosition < sides[b].fromPosition; });
-  // Of the sides that begin at one position the first is taken first: how many are, is counted at its place.
+  // Of the sides that begin at one position, the first is used first; this counts how many have been used, at the first
+  // one's index.
   std::vector<std::size_t> taken(sides.size(), 0);
   std::vector<bool> used(sides.size(), false);
   const auto take = [&](std::uint32_t position) -> const FarSide* {
     const auto first = std::partition_point(byStart.begin(), byStart.end(),
                                             [&](std::size_t s) { return sides[s].fromPosition < position; });
     if (first == byStart.end()) return nullptr;
-    const auto place = static_cast<std::size_t>(first - byStart.begin());
-    const std::size_t next = place + taken[place];
+    const auto index = static_cast<std::size_t>(first - byStart.begin());
+    const std::size_t next = index + taken[index];
     if (next == sides.size() || sides[byStart[next]].fromPosition != position) return nullptr;
-    ++taken[place];
+    ++taken[index];
     used[byStart[next]] = true;
     return &sides[byStart[next]];
   };
@@ -98,10 +103,12 @@ void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::ve
   }
 }
 
-/// Numbers groups in the order of their places, so that neighbours in memory are mostly neighbours on the surface; but
-/// within a window by their triangles, as a loop of another length each time is mispredicted each time.
+/// Numbers groups in the order of their indices in the output, so that neighbours in memory are mostly neighbours on
+/// the surface. Within a window they are sorted by their number of triangles, as the branch at the end of a loop is
+/// mispredicted whenever its length changes.
 void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& mesh, std::size_t groups,
               std::vector<std::uint32_t>& groupOf) {
+  assert(vertexAt.size() == mesh.vertexCount() && groupOf.size() == mesh.vertexCount());
   std::vector<std::uint32_t> triangles(groups, 0), order, numberOf(groups, kNoGroup);
   for (const auto& t : mesh.triangles) {
     for (const int v : t) ++triangles[groupOf[static_cast<std::size_t>(v)]];
@@ -111,6 +118,7 @@ void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& me
     numberOf[groupOf[v]] = 0;
     order.push_back(groupOf[v]);
   }
+  assert(order.size() == groups);
   for (std::size_t first = 0; first < groups; first += kWindow) {
     const std::size_t last = std::min(first + kWindow, groups);
     std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
@@ -121,7 +129,7 @@ void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& me
   for (std::uint32_t& group : groupOf) group = numberOf[group];
 }
 
-/// Points [first, last), each to four scalars; the fourth stays as it is where it is not another point's.
+/// Copies points [first, last) to four scalars each; the fourth scalar of the last point stays unchanged.
 template <class Scalar>
 void pad(PointView<const Scalar> points, std::size_t first, std::size_t last, Scalar* to) {
   std::size_t k = first;
@@ -133,30 +141,32 @@ void pad(PointView<const Scalar> points, std::size_t first, std::size_t last, Sc
 
 }  // namespace
 
-NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places,
+NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& indices,
                                double hardEdgeDegrees) {
-  assert(places.empty() || places.size() == mesh.vertexCount());
+  assert(indices.empty() || indices.size() == mesh.vertexCount());
   const std::size_t count = mesh.vertexCount();
-  const auto placeOf = [&](std::size_t v) { return places.empty() ? static_cast<std::uint32_t>(v) : places[v]; };
+  const auto toPositionOf = [&](std::size_t v) { return indices.empty() ? static_cast<std::uint32_t>(v) : indices[v]; };
   const std::vector<std::uint32_t> firstAt = weldCoincident(viewOf(mesh.positions));
   std::size_t groups = 0;
   std::vector<std::uint32_t> groupOf = smoothGroups(mesh, firstAt, hardEdgeDegrees, groups);
 
   std::vector<std::uint32_t> vertexAt(count);
-  for (std::size_t v = 0; v < count; ++v) vertexAt[placeOf(v)] = static_cast<std::uint32_t>(v);
+  for (std::size_t v = 0; v < count; ++v) vertexAt[toPositionOf(v)] = static_cast<std::uint32_t>(v);
   renumber(vertexAt, mesh, groups, groupOf);
 
   Lists<> placesOf = packLists(groups, [&](auto&& add) {
-    for (const std::uint32_t v : vertexAt) add(groupOf[v], placeOf(v));
+    for (const std::uint32_t v : vertexAt) add(groupOf[v], toPositionOf(v));
   });
-  groupPlaces_ = std::move(placesOf.starts);
-  places_ = std::move(placesOf.values);
+  groupPositions_ = std::move(placesOf.starts);
+  indices_ = std::move(placesOf.values);
+  assert(indices_.size() == count);
 
   const Lists<FarSide> sides = packLists<FarSide>(groups, [&](auto&& add) {
     for (const auto& t : mesh.triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto from = static_cast<std::size_t>(t[(k + 1) % 3]), to = static_cast<std::size_t>(t[(k + 2) % 3]);
-        add(groupOf[static_cast<std::size_t>(t[k])], FarSide{placeOf(from), placeOf(to), firstAt[from], firstAt[to]});
+        add(groupOf[static_cast<std::size_t>(t[k])],
+            FarSide{toPositionOf(from), toPositionOf(to), firstAt[from], firstAt[to]});
       }
     }
   });
@@ -164,7 +174,7 @@ NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::
   paths_.reserve(sides.values.size() + 2 * groups);
   for (std::size_t g = 0; g < groups; ++g) {
     ofGroup.assign(sides.values.begin() + sides.starts[g], sides.values.begin() + sides.starts[g + 1]);
-    appendPath(ofGroup, places_[groupPlaces_[g]], paths_);
+    appendPath(ofGroup, indices_[groupPositions_[g]], paths_);
     groupPaths_.push_back(static_cast<std::uint32_t>(paths_.size()));
   }
 }
@@ -182,13 +192,14 @@ void padPoints(PointView<const Scalar> points, std::vector<Scalar>& padded, Para
 template <class Scalar>
 void recomputeNormals(const NormalTopology& topology, const std::vector<Scalar>& padded, PointView<float> out,
                       ParallelFor* threads) {
-  assert(out.size() == topology.places().size() && padded.size() == 4 * out.size());
+  assert(out.size() == topology.indices().size() && padded.size() == 4 * out.size());
   if (out.empty()) return;
   kernels::PathWork<Scalar> work;
+  assert(topology.groupPaths().size() == topology.groupPositions().size());
   work.groupPaths = topology.groupPaths().data();
   work.paths = topology.paths().data();
-  work.groupPlaces = topology.groupPlaces().data();
-  work.places = topology.places().data();
+  work.groupPositions = topology.groupPositions().data();
+  work.indices = topology.indices().data();
   work.points = padded.data();
   work.out = out.data();
   work.outStride = out.strideBytes();

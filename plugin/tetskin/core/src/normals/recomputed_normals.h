@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/triangle_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <cstdint>
@@ -13,40 +13,43 @@ namespace tetskin {
 
 /// Which vertices around make the normal of which vertices: vertices at one position share theirs, unless their rest
 /// normals differ by more than an angle (a hard edge), whatever their lengths; one that is zero or not finite counts as
-/// absent, and makes no edge. A group of vertices that share a normal has a path: around them,
-/// from each of their triangles into the next. Immutable, shared like an Embedding.
-/// Memory: some 40 bytes a vertex of a closed surface.
+/// absent, and makes no edge. A group of vertices that share a normal has a path: around them, from each of their
+/// triangles into the next. Immutable, shared like an Embedding.
+/// Memory: some 40 bytes per vertex of a closed surface.
 class NormalTopology {
  public:
   NormalTopology() = default;
-  /// places           by vertex, where it is written (its slot, for VertexOrder::Sorted); empty for the mesh's order
+  /// places           by vertex: its index in the output (its slot, for VertexOrder::Sorted); empty for the mesh's
+  ///                  order
   /// hardEdgeDegrees  not below 0; from 180 on there is no hard edge
-  NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& places, double hardEdgeDegrees);
+  NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& indices, double hardEdgeDegrees);
 
-  std::size_t groupCount() const { return groupPlaces_.size() - 1; }
-  const std::vector<std::uint32_t>& groupPlaces() const { return groupPlaces_; }  ///< by group, and one more
-  const std::vector<std::uint32_t>& places() const { return places_; }            ///< places, group by group, ascending
-  const std::vector<std::uint32_t>& groupPaths() const { return groupPaths_; }    ///< by group, and one more
-  /// Places, group by group. Two that follow each other are the far side of a triangle, or one of them is at the
-  /// group's own position: the path continues elsewhere.
+  std::size_t groupCount() const { return groupPositions_.size() - 1; }
+  const std::vector<std::uint32_t>& groupPositions() const { return groupPositions_; }  ///< by group, and the end
+  const std::vector<std::uint32_t>& indices() const {
+    return indices_;
+  }  ///< indices in the output, group by group, ascending
+  const std::vector<std::uint32_t>& groupPaths() const { return groupPaths_; }  ///< by group, and the end
+  /// Indices in the output, group by group. Two that follow each other are the far side of a triangle, unless one of
+  /// them is at the group's own position, which means that the path continues elsewhere.
   const std::vector<std::uint32_t>& paths() const { return paths_; }
 
  private:
-  std::vector<std::uint32_t> groupPlaces_ = {0};
-  std::vector<std::uint32_t> places_;
+  std::vector<std::uint32_t> groupPositions_ = {0};
+  std::vector<std::uint32_t> indices_;
   std::vector<std::uint32_t> groupPaths_ = {0};
   std::vector<std::uint32_t> paths_;
 };
 
-/// Copies points to four scalars each, of which the last means nothing.
+/// Copies points to four scalars each, of which the last has no meaning.
 /// points  vertexCount x 3, read
 /// padded  vertexCount x 4
 template <class Scalar>
 void padPoints(PointView<const Scalar> points, std::vector<Scalar>& padded, ParallelFor* threads = nullptr);
 
 /// Writes the unit normals of the deformed triangles, weighted by area: for a vertex at x with p_i and p_i+1 the far
-/// side of a triangle, the sum of (p_i - x) x (p_i+1 - x). Gathered per vertex in a fixed order, so that the bits
-/// depend on no number of threads. Where all triangles have collapsed, what is there is left.
+/// side of a triangle, the sum of (p_i - x) x (p_i+1 - x). Gathered per vertex in a fixed order, so that the bits do
+/// not depend on the number of threads. Where all triangles have collapsed, the previous value stays.
 ///
 /// padded  vertexCount x 4, current positions; those of vertices at one position in the mesh are the same
 /// out     vertexCount x 3, caller-owned, any stride; never read

@@ -6,6 +6,7 @@
 #include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
 
 #include <algorithm>
+#include <cassert>
 #include <queue>
 #include <tuple>
 
@@ -16,24 +17,24 @@ std::int32_t indexOf(std::int32_t tet) {
   return tet >= 0 ? tet : ~tet;
 }
 
-bool shareNode(const Tet& a, const Tet& b) {
+bool sharedNode(const Tet& a, const Tet& b) {
   return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
 }
 
 /// Edges from vertices outside, by the first vertex at a position.
 struct OutsideEdges {
-  std::vector<std::uint32_t> vertices;  ///< outside, ascending, one a position
-  Lists<> ends;                        ///< by place among these: the other ends of its edges, each from either triangle
-  std::vector<std::uint32_t> placeOf;  ///< by vertex; kInside if it is not outside
+  std::vector<std::uint32_t> vertices;  ///< vertices outside, ascending, one per position
+  Lists<> ends;  ///< by index in `vertices`: the other ends of its edges, each from either triangle
+  std::vector<std::uint32_t> indexOf;  ///< by vertex: its index in `vertices`; kInside if it is not outside
 
   static constexpr std::uint32_t kInside = 0xFFFFFFFFu;
 
   OutsideEdges(const std::vector<std::uint32_t>& first, const std::vector<std::array<int, 3>>& triangles,
                const std::vector<std::int32_t>& tetOf)
-      : placeOf(tetOf.size(), kInside) {
+      : indexOf(tetOf.size(), kInside) {
     for (std::uint32_t v = 0; v < tetOf.size(); ++v) {
       if (tetOf[v] >= 0 || first[v] != v) continue;
-      placeOf[v] = static_cast<std::uint32_t>(vertices.size());
+      indexOf[v] = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(v);
     }
     ends = packLists(vertices.size(), [&](auto&& add) {
@@ -43,7 +44,7 @@ struct OutsideEdges {
           const std::uint32_t a = first[static_cast<std::size_t>(t[k])];
           for (int step = 1; step <= 2; ++step) {
             const std::uint32_t b = first[static_cast<std::size_t>(t[(k + step) % 3])];
-            if (b != a) add(placeOf[a], b);
+            if (b != a) add(indexOf[a], b);
           }
         }
       }
@@ -51,12 +52,12 @@ struct OutsideEdges {
   }
 };
 
-/// A tet as a vertex sees it.
+/// A tet near a vertex, with the vertex's weights in it.
 struct Seen {
   std::int32_t tet;
   double size;
   double distance;
-  double weight;  ///< largest absolute
+  double weight;  ///< largest absolute weight
 };
 
 /// One vertex and the tets around it that are connected to its neighbours'.
@@ -68,15 +69,16 @@ class LocalSearch {
   /// `reach` away.
   std::int32_t tetFor(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
                       double reach) {
+    assert(nearest >= 0 && static_cast<std::size_t>(nearest) < cage_.tetCount() && reach >= 0.0);
     const Seen theirs = look(v, cornersOf(cage_, cage_.tets[nearest]), nearest);
     if (connects(v, nearest, others, std::max(reach, theirs.distance + theirs.size)) || seen_.empty()) return nearest;
     const Seen own = *std::min_element(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
       return std::tie(a.distance, a.tet) < std::tie(b.distance, b.tet);
     });
     if (own.distance > theirs.distance + own.size) return nearest;
-    if (own.weight <= kLargestWeight) return own.tet;
-    const Seen rescuer = leastWeightWithin(own.distance + reachOfRescues());
-    return rescuer.weight <= kLargestWeight * std::max(1.0, theirs.weight) ? rescuer.tet : nearest;
+    if (own.weight <= kMaxWeight) return own.tet;
+    const Seen rescuer = minWeightWithin(own.distance + reassignmentReach());
+    return rescuer.weight <= kMaxWeight * std::max(1.0, theirs.weight) ? rescuer.tet : nearest;
   }
 
  private:
@@ -85,8 +87,8 @@ class LocalSearch {
     return {tet, tetSize(corners), distanceToTet(v, corners, weights), largestWeight(weights)};
   }
 
-  /// Goes from the tets `others` to what is connected to them within a radius. Returns whether that includes `nearest`;
-  /// if not, all of it is in `seen_`.
+  /// Visits the tets that are connected to `others` within a radius. Returns true if these include `nearest`; if not,
+  /// all of them are in `seen_`.
   bool connects(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
                 double radius) {
     ++round_;
@@ -106,7 +108,7 @@ class LocalSearch {
     return false;
   }
 
-  Seen leastWeightWithin(double distance) const {
+  Seen minWeightWithin(double distance) const {
     Seen least{-1, 0.0, 0.0, std::numeric_limits<double>::infinity()};
     for (const Seen& s : seen_) {
       if (s.distance <= distance && std::tie(s.weight, s.tet) < std::tie(least.weight, least.tet)) least = s;
@@ -114,8 +116,8 @@ class LocalSearch {
     return least;
   }
 
-  /// Made when first asked for, like the tets around nodes.
-  double reachOfRescues() {
+  /// Computed at the first call, like the tets around nodes.
+  double reassignmentReach() {
     if (meanEdge_ == 0.0) meanEdge_ = meanEdge(cage_);
     return meanEdge_;
   }
@@ -130,13 +132,14 @@ class LocalSearch {
   }
 
   void push(std::int32_t tet) {
+    assert(tet >= 0 && static_cast<std::size_t>(tet) < visited_.size());
     if (visited_[tet] == round_) return;
     visited_[tet] = round_;
     open_.push_back(tet);
   }
 
   const TetMesh& cage_;
-  Lists<> tetsAround_;  ///< by node; made when first asked for: most meshes never need them
+  Lists<> tetsAround_;  ///< by node; computed when first needed: most meshes never need it
   double meanEdge_ = 0.0;
   std::vector<std::uint32_t> visited_;
   std::uint32_t round_ = 0;
@@ -144,7 +147,7 @@ class LocalSearch {
   std::vector<Seen> seen_;
 };
 
-/// Goes through the vertices outside, ring by ring.
+/// Visits the vertices outside, ring by ring.
 class Walk {
  public:
   Walk(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
@@ -156,23 +159,25 @@ class Walk {
         search_(cage),
         state_(edges_.vertices.size(), State::Untouched) {}
 
-  /// From what is settled outwards, to all that is connected. Returns how many vertices changed their tet.
+  /// Proceeds from the settled vertices outwards, to all that are connected. Returns how many vertices changed their
+  /// tet.
   std::size_t run() {
-    for (std::uint32_t place = 0; place < state_.size(); ++place) {
-      if (state_[place] != State::Untouched) continue;
-      const auto begin = edges_.ends.values.begin() + edges_.ends.starts[place],
-                 end = edges_.ends.values.begin() + edges_.ends.starts[place + 1];
-      if (std::any_of(begin, end, [&](std::uint32_t v) { return settled(v); })) push(place);
+    for (std::uint32_t index = 0; index < state_.size(); ++index) {
+      if (state_[index] != State::Untouched) continue;
+      const auto begin = edges_.ends.values.begin() + edges_.ends.starts[index],
+                 end = edges_.ends.values.begin() + edges_.ends.starts[index + 1];
+      if (std::any_of(begin, end, [&](std::uint32_t v) { return settled(v); })) push(index);
     }
     std::size_t changed = 0;
     for (; !queue_.empty(); queue_.pop()) changed += settle(queue_.front());
     return changed;
   }
 
-  /// Settles what no run has reached, where it is, but for some vertices.
+  /// Settles the vertices that no run has reached, with their present tets, except for some of them.
   void settleAllBut(const std::vector<bool>& excepted) {
-    for (std::size_t place = 0; place < state_.size(); ++place) {
-      if (state_[place] == State::Untouched && !excepted[edges_.vertices[place]]) state_[place] = State::Settled;
+    assert(excepted.size() == tetOf_.size());
+    for (std::size_t index = 0; index < state_.size(); ++index) {
+      if (state_[index] == State::Untouched && !excepted[edges_.vertices[index]]) state_[index] = State::Settled;
     }
   }
 
@@ -180,33 +185,34 @@ class Walk {
   enum class State : char { Untouched, Queued, Settled };
 
   bool settled(std::uint32_t v) const {
-    const std::uint32_t place = edges_.placeOf[v];
-    return place == OutsideEdges::kInside || state_[place] == State::Settled;
+    const std::uint32_t index = edges_.indexOf[v];
+    return index == OutsideEdges::kInside || state_[index] == State::Settled;
   }
-  void push(std::uint32_t place) {
-    state_[place] = State::Queued;
-    queue_.push(place);
+  void push(std::uint32_t index) {
+    state_[index] = State::Queued;
+    queue_.push(index);
   }
 
   /// Returns whether the vertex changes its tet.
-  bool settle(std::uint32_t place) {
-    const std::uint32_t v = edges_.vertices[place];
+  bool settle(std::uint32_t index) {
+    const std::uint32_t v = edges_.vertices[index];
+    assert(tetOf_[v] < 0 && state_[index] != State::Settled);
     const std::int32_t nearest = ~tetOf_[v];
     const Eigen::Vector3d point = vertices_[v];
     others_.clear();
     double reach = 0.0;
     bool local = false;
-    for (std::uint32_t k = edges_.ends.starts[place]; k < edges_.ends.starts[place + 1]; ++k) {
+    for (std::uint32_t k = edges_.ends.starts[index]; k < edges_.ends.starts[index + 1]; ++k) {
       const std::uint32_t other = edges_.ends.values[k];
       if (settled(other)) {
         others_.push_back(indexOf(tetOf_[other]));
         reach = std::max(reach, (vertices_[other] - point).norm());
-        local = local || shareNode(cage_.tets[others_.back()], cage_.tets[nearest]);
-      } else if (state_[edges_.placeOf[other]] == State::Untouched) {
-        push(edges_.placeOf[other]);
+        local = local || sharedNode(cage_.tets[others_.back()], cage_.tets[nearest]);
+      } else if (state_[edges_.indexOf[other]] == State::Untouched) {
+        push(edges_.indexOf[other]);
       }
     }
-    state_[place] = State::Settled;
+    state_[index] = State::Settled;
     if (local) return false;
     const std::int32_t tet = search_.tetFor(point, nearest, others_, reach);
     tetOf_[v] = ~tet;
@@ -218,23 +224,23 @@ class Walk {
   std::vector<std::int32_t>& tetOf_;
   OutsideEdges edges_;
   LocalSearch search_;
-  std::vector<State> state_;          ///< by place
-  std::queue<std::uint32_t> queue_;   ///< of places
+  std::vector<State> state_;          ///< by index in `vertices`
+  std::queue<std::uint32_t> queue_;   ///< indices in `vertices`
   std::vector<std::int32_t> others_;  ///< scratch memory
 };
 
 }  // namespace
 
-std::size_t keepWithNeighbours(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
-                               const std::vector<std::array<int, 3>>& triangles, const std::vector<bool>& rescued,
-                               std::vector<std::int32_t>& tetOf) {
+std::size_t reassignByConnectivity(const TetMesh& cage, PointReader vertices, const std::vector<std::uint32_t>& first,
+                                   const std::vector<std::array<int, 3>>& triangles,
+                                   const std::vector<bool>& reassigned, std::vector<std::int32_t>& tetOf) {
   assert(first.size() == vertices.size() && tetOf.size() == vertices.size());
-  assert(rescued.empty() || rescued.size() == vertices.size());
+  assert(reassigned.empty() || reassigned.size() == vertices.size());
   if (std::all_of(tetOf.begin(), tetOf.end(), [](std::int32_t tet) { return tet >= 0; })) return 0;
   Walk walk(cage, vertices, first, triangles, tetOf);
   std::size_t changed = walk.run();
-  if (!rescued.empty()) {
-    walk.settleAllBut(rescued);
+  if (!reassigned.empty()) {
+    walk.settleAllBut(reassigned);
     changed += walk.run();
   }
   for (std::size_t v = 0; v < first.size(); ++v) {

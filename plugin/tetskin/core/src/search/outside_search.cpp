@@ -6,28 +6,28 @@
 #include <tetskin/core/src/search/outside_search.h>
 #include <tetskin/core/src/search/spatial_hash.h>
 #include <tetskin/core/src/search/tet_filter.h>
-
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace tetskin {
 namespace {
 
-/// First border around the tets' boxes, over their median side; then grown by a factor: most points outside are near,
-/// and each round costs a look at all tets.
+/// First border around the tets' boxes, relative to the median of their sides, and its growth factor: most points
+/// outside are near, and each round has to visit all tets.
 constexpr double kFirstBorder = 0.2;
 constexpr double kGrowth = 4.0;
-/// A barycentric distance d that makes no weight larger than kLargestWeight: no weight is below -d, so none is above
+/// A barycentric distance d that makes no weight larger than kMaxWeight: no weight is below -d, so none is above
 /// 1 + 3 d, either.
-constexpr double kSafeDistance = 0.999 * (kLargestWeight - 1.0) / 3.0;
-/// First barycentric border; then doubled.
+constexpr double kSafeDistance = 0.999 * (kMaxWeight - 1.0) / 3.0;
+/// First barycentric border, which is doubled in each round.
 constexpr double kFirstBarycentricBorder = 0.25;
-/// Points are searched this many at a time, or an eighth of all if that is more: what is known of a point that is not
+/// Points are searched this many at a time, or an eighth of all if that is more: the data of a point that is not
 /// settled takes many times the memory of its result.
-constexpr std::size_t kSmallestBatch = 65536;
+constexpr std::size_t kMinBatch = 65536;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The points still without a tet, and what is known of them so far.
+/// The points still without a tet, with their best results so far.
 struct OpenPoints {
   std::vector<std::uint32_t> ids;
   std::vector<Eigen::Vector3d> positions;
@@ -50,14 +50,15 @@ OpenPoints above(const OpenPoints& open, double limit) {
   return rest;
 }
 
-/// No open point can have its tet farther than this; infinite while one has met no tet at all.
+/// No open point can have its tet farther away than this; infinite while a point has met no tet at all.
 double farthestBest(const OpenPoints& open) {
   return open.best.empty() ? 0.0 : *std::max_element(open.best.begin(), open.best.end());
 }
 
 /// A point whose tet was found outside of it is inside if it is as near as rounding errors are large.
 void settle(const SearchCage& cage, std::uint32_t point, double distance, TetSearch& search) {
-  if (distance <= kInsideTolerance * largestCoordinate(cage.box())) {
+  assert(search.tetOf[point] < 0 && search.tetOf[point] != TetSearch::kNone);
+  if (distance <= kInsideTolerance * maxCoordinate(cage.box())) {
     search.tetOf[point] = ~search.tetOf[point];
   } else if (distance > search.farthestDistance || (distance == search.farthestDistance && point < search.farthest)) {
     search.farthestDistance = distance;
@@ -65,7 +66,7 @@ void settle(const SearchCage& cage, std::uint32_t point, double distance, TetSea
   }
 }
 
-/// A tet, and an open point that is perhaps within its limit of it.
+/// A tet, and an open point that may be within its limit of the tet.
 struct NearPair {
   int tet;
   double tetSize;
@@ -75,10 +76,10 @@ struct NearPair {
   double distance;
 };
 
-/// One round of a search by distance: all tets whose boxes, grown by a border, hold the point.
+/// One round of a search by distance: all tets whose boxes, grown by a border, contain the point.
 class DistanceRound {
  public:
-  /// limitOf  of an open point: a distance; what is beyond the border may be missed
+  /// limitOf  of an open point: a distance; tets beyond the border may be missed
   template <class LimitOf>
   DistanceRound(const SearchCage& cage, const OpenPoints& open, double border, double cellSize, std::size_t tableSize,
                 LimitOf&& limitOf)
@@ -124,11 +125,11 @@ class DistanceRound {
   std::vector<std::uint32_t> passed_;
 };
 
-/// A tet that may be the nearest of an open point.
+/// A tet that may be the nearest one of an open point.
 struct NearTet {
   std::uint32_t open;
   int tet;
-  double tie;  ///< distances this much longer are as near
+  double tie;  ///< distances that exceed this one by no more count as equal
   double barycentric;
   double distance;
 };
@@ -155,6 +156,7 @@ std::vector<NearTet> nearTets(const SearchCage& cage, OpenPoints& open, double b
 /// Returns the points that would be extrapolated too far.
 OpenPoints settleNearest(const SearchCage& cage, const OpenPoints& open, double searched,
                          const std::vector<NearTet>& near, TetSearch& search) {
+  assert(open.best.size() == open.ids.size() && open.positions.size() == open.ids.size());
   std::vector<double> barycentric(open.size(), kInfinity);
   for (const NearTet& n : near) {
     if (open.best[n.open] > searched) continue;
@@ -169,16 +171,15 @@ OpenPoints settleNearest(const SearchCage& cage, const OpenPoints& open, double 
     settle(cage, open.ids[k], open.best[k], search);
     const std::int32_t tet = search.tetOf[open.ids[k]];
     if (tet >= 0 || barycentric[k] <= kSafeDistance) continue;
-    if (largestWeight(BarycentricMap(cage.corners(~tet))(open.positions[k])) <= kLargestWeight) continue;
+    if (largestWeight(BarycentricMap(cage.corners(~tet))(open.positions[k])) <= kMaxWeight) continue;
     extrapolated.add(open.ids[k], open.positions[k], open.best[k]);
   }
   return extrapolated;
 }
 
-/// Gives points whose nearest tets, at their best distances, would extrapolate them too far the tets near them that do
-/// so least.
-void rescue(const SearchCage& cage, const OpenPoints& points, double cellSize, std::size_t tableSize,
-            TetSearch& search) {
+/// Points whose nearest tets would extrapolate them too far get, of the tets near them, those that extrapolate least.
+void reassignByWeight(const SearchCage& cage, const OpenPoints& points, double cellSize, std::size_t tableSize,
+                      TetSearch& search) {
   if (points.size() == 0) return;
   const double reach = meanEdge(cage.mesh());
   DistanceRound round(cage, points, farthestBest(points) + reach, cellSize, tableSize,
@@ -194,9 +195,10 @@ void rescue(const SearchCage& cage, const OpenPoints& points, double cellSize, s
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::int32_t& tet = search.tetOf[points.ids[k]];
     if (tet == tets[k]) continue;
+    assert(tets[k] != TetSearch::kNone);
     tet = tets[k];
-    search.rescued.resize(search.tetOf.size());
-    search.rescued[points.ids[k]] = true;
+    search.reassigned.resize(search.tetOf.size());
+    search.reassigned[points.ids[k]] = true;
   }
 }
 
@@ -208,8 +210,9 @@ void findNearest(const SearchCage& cage, OpenPoints open, double cellSize, std::
     const OpenPoints extrapolated = settleNearest(
         cage, open, searched, nearTets(cage, open, border, cellSize, tableSize, search.candidates), search);
     open = above(open, searched);
-    rescue(cage, extrapolated, cellSize, tableSize, search);
-    // If all that is left is far away, go there at once; if it is known to be near, no farther than that.
+    reassignByWeight(cage, extrapolated, cellSize, tableSize, search);
+    // If all remaining points are far away, the border grows to them at once; if they are known to be near, it grows no
+    // farther.
     double nearestLeft = kInfinity;
     for (const Eigen::Vector3d& v : open.positions) nearestLeft = std::min(nearestLeft, cage.box().exteriorDistance(v));
     border = std::min(std::max(kGrowth * border, nearestLeft), farthestBest(open) + 2.0 * widestTie);
@@ -256,7 +259,8 @@ void findBarycentric(const SearchCage& cage, OpenPoints open, double cellSize, s
 
 void findOutside(const SearchCage& cage, PointReader points, const std::vector<std::uint32_t>& first, OutsideRule rule,
                  double cellSize, std::size_t tableSize, TetSearch& search) {
-  const std::size_t batch = std::max(kSmallestBatch, points.size() / 8);
+  assert(first.size() == points.size() && search.tetOf.size() == points.size() && cellSize > 0.0);
+  const std::size_t batch = std::max(kMinBatch, points.size() / 8);
   OpenPoints open;
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     if (first[p] == p && search.tetOf[p] == TetSearch::kNone) open.add(p, points[p], kInfinity);

@@ -4,11 +4,12 @@
 #include <tetskin/core/src/shared/base/median.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
-/// Tets that the median is taken of, about. It decides on cost only.
+/// Number of tets whose median is computed, approximately. It affects only the cost.
 constexpr std::size_t kSample = 1000;
 
 }  // namespace
@@ -33,6 +34,7 @@ SearchCage::SearchCage(const TetMesh& mesh) : mesh_(mesh) {
   std::vector<double> sides;
   for (std::size_t i = 0; i < size(); i += size() / kSample + 1) sides.push_back((*this)[i].box.sizes().maxCoeff());
   medianSide_ = median(std::move(sides));
+  assert(medianSide_ > 0.0 && medianSide_ <= box_.sizes().maxCoeff());
 }
 
 }  // namespace tetskin

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to embedding: the cage as the searches see it.
+// Internal to embedding: the cage in the form that the searches use.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <cstddef>
@@ -24,9 +24,9 @@ inline Box3 grown(const Box3& box, double border) {
 /// inside.
 constexpr double kBoxSlack = 1e-6;
 
-/// A tet with what every search needs of it.
+/// A tet with the data that every search needs.
 struct SearchTet {
-  int index;           ///< in the cage
+  int index;           ///< index in the cage
   TetCorners corners;  ///< rest space
   Box3 box;            ///< of the corners
 
@@ -44,11 +44,11 @@ class SearchCage {
   const TetMesh& mesh() const { return mesh_; }
   std::size_t size() const { return solid_.size(); }
   SearchTet operator[](std::size_t i) const { return {mesh_, solid_[i]}; }
-  /// Of any tet of the cage's, by its index there.
+  /// The corners of any tet of the cage, by its index there.
   TetCorners corners(std::int32_t tet) const { return cornersOf(mesh_, mesh_.tets[static_cast<std::size_t>(tet)]); }
 
   const Box3& box() const { return box_; }
-  /// Of all tets.
+  /// The largest size of all tets.
   double largestSize() const { return largestSize_; }
   double largestSlack() const { return largestSlack_; }
   /// Median of the longest sides of the tets' boxes, of a sample if there are many.

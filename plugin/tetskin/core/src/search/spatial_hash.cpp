@@ -6,6 +6,7 @@
 #include <tetskin/core/src/search/spatial_hash.h>
 #include <tetskin/core/src/shared/base/lists.h>
 
+#include <cassert>
 #include <limits>
 
 namespace tetskin {
@@ -27,43 +28,45 @@ SpatialHash::SpatialHash(PointReader points, const Box3& box, double cellSize, c
   assert(cellSize > 0.0 && std::isfinite(inverseCellSize_) && std::isfinite(frame_.scale));
   assert(points.size() < kNoCell);
   assert(first.empty() || first.size() == points.size());
-  const std::size_t most = tableSize > 0 ? tableSize : std::max(kCellsPerPoint * points.size(), kFewestCells);
-  chooseTable(std::min<std::size_t>(most, kNoCell));
+  const std::size_t maximum = tableSize > 0 ? tableSize : std::max(kCellsPerPoint * points.size(), kMinCells);
+  chooseTable(std::min<std::size_t>(maximum, kNoCell));
   placePoints(points, first);
   copyCoordinates(points);
 }
 
-void SpatialHash::chooseTable(std::size_t mostCells) {
+void SpatialHash::chooseTable(std::size_t maxCells) {
   if (box_.isEmpty()) return;
   const Cell last = cellOf(box_.max());
   std::array<double, 3> edges;  // as double: their product may be far beyond any integer
   for (std::size_t k = 0; k < 3; ++k) edges[k] = static_cast<double>(last[k] + 1);
-  while (edges[0] * edges[1] * edges[2] > static_cast<double>(mostCells)) {
+  while (edges[0] * edges[1] * edges[2] > static_cast<double>(maxCells)) {
     double& longest = *std::max_element(edges.begin(), edges.end());
     longest = std::ceil(0.5 * longest);
   }
   for (std::size_t k = 0; k < 3; ++k) table_[k] = static_cast<std::uint32_t>(edges[k]);
+  assert(table_[0] > 0 && table_[1] > 0 && table_[2] > 0);
 }
 
 void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_t>& first) {
-  const auto placeOf = [&](std::uint32_t i) {
+  const auto toPositionOf = [&](std::uint32_t i) {
     if (!first.empty() && first[i] != i) return kNoCell;
     const Eigen::Vector3d p = points[i];
     if (!box_.contains(p)) return kNoCell;
     const Cell cell = cellOf(p);
     return (wrapped(cell[2], 2) * table_[1] + wrapped(cell[1], 1)) * table_[0] + wrapped(cell[0], 0);
   };
-  std::vector<std::uint32_t> places(points.size());
+  std::vector<std::uint32_t> indices(points.size());
   bool known = false;  // from the second time on
   Lists<> cells = packLists(std::size_t{table_[0]} * table_[1] * table_[2], [&](auto&& add) {
-    for (std::uint32_t i = 0; i < places.size(); ++i) {
-      if (!known) places[i] = placeOf(i);
-      if (places[i] != kNoCell) add(places[i], i);
+    for (std::uint32_t i = 0; i < indices.size(); ++i) {
+      if (!known) indices[i] = toPositionOf(i);
+      if (indices[i] != kNoCell) add(indices[i], i);
     }
     known = true;
   });
   cellStart_ = std::move(cells.starts);
   ids_ = std::move(cells.values);
+  assert(cellStart_.back() == ids_.size());
 }
 
 void SpatialHash::copyCoordinates(PointReader points) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -32,13 +33,13 @@ class SpatialHash {
   };
   using Range = kernels::EntryRange;
   /// Entry coordinates are followed by this many zeros, so that kernels may read whole blocks.
-  static constexpr std::size_t kPadding = kernels::kMostLanes;
+  static constexpr std::size_t kPadding = kernels::kMaxLanes;
 
   /// points     finite, any number
   /// box        points outside of it are left out
   /// cellSize   edge of a cell, in the points' unit, above 0
   /// first      by point; those that are not their own first are left out, see `weldCoincident`; empty: all are in
-  /// tableSize  most cells of the table; 0 chooses kCellsPerPoint a point, or kFewestCells if that is more
+  /// tableSize  most cells of the table; 0 chooses kCellsPerPoint a point, or kMinCells if that is more
   SpatialHash(PointReader points, const Box3& box, double cellSize, const std::vector<std::uint32_t>& first = {},
               std::size_t tableSize = 0);
 
@@ -61,14 +62,14 @@ class SpatialHash {
 
  private:
   using Cell = std::array<std::int64_t, 3>;
-  /// Places along one edge of the table: `count` from `first`, going round its end.
+  /// A range of cells along one edge of the table: `count` cells from `first`, wrapping around at its end.
   struct Span {
     std::uint32_t first;
     std::uint32_t count;
   };
-  static constexpr std::size_t kCellsPerPoint = 4, kFewestCells = 4096;
+  static constexpr std::size_t kCellsPerPoint = 4, kMinCells = 4096;
 
-  void chooseTable(std::size_t mostCells);
+  void chooseTable(std::size_t maxCells);
   void placePoints(PointReader points, const std::vector<std::uint32_t>& first);
   void copyCoordinates(PointReader points);
   Cell cellOf(const Eigen::Vector3d& p) const;
@@ -89,11 +90,11 @@ class SpatialHash {
 inline SpatialHash::Cell SpatialHash::cellOf(const Eigen::Vector3d& p) const {
   // Far beyond any sensible grid, but it still fits 64 bits. Every step keeps the order of points, so a box covers the
   // cells of the points in it.
-  constexpr double kFarthest = 1e15;
+  constexpr double kMax = 1e15;
   Cell cell;
   for (int k = 0; k < 3; ++k) {
     cell[static_cast<std::size_t>(k)] =
-        static_cast<std::int64_t>(std::min((p[k] - box_.min()[k]) * inverseCellSize_, kFarthest));
+        static_cast<std::int64_t>(std::min((p[k] - box_.min()[k]) * inverseCellSize_, kMax));
   }
   return cell;
 }
@@ -104,6 +105,7 @@ inline std::uint32_t SpatialHash::wrapped(std::int64_t cell, int axis) const {
 }
 
 inline SpatialHash::Span SpatialHash::spanOf(std::int64_t lo, std::int64_t hi, int axis) const {
+  assert(lo >= 0 && lo <= hi);
   const std::uint32_t size = table_[static_cast<std::size_t>(axis)];
   if (hi - lo + 1 >= static_cast<std::int64_t>(size)) return {0, size};
   return {wrapped(lo, axis), static_cast<std::uint32_t>(hi - lo + 1)};

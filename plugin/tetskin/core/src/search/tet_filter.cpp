@@ -3,6 +3,9 @@
 #include <tetskin/core/src/kernels/kernel_tables.h>
 #include <tetskin/core/src/search/tet_filter.h>
 
+#include <algorithm>
+#include <cassert>
+
 namespace tetskin {
 namespace {
 
@@ -10,11 +13,11 @@ namespace {
 /// coordinates, n and c are rounded once each, three products and three sums as well, which makes less than 8 times
 /// 2^-24. The rest is for planes of tets just above kFlatTet, whose own direction is known to some 1e-7 only.
 constexpr double kFloatError = 0x1p-19;
-/// The same for what the double decision itself loses: its fourth weight is what the others leave of 1, so it has the
-/// rounding errors of the largest.
+/// The same bound for the rounding errors of the decision in double: its fourth weight is 1 minus the others, so that
+/// it has the rounding errors of the largest.
 constexpr double kDoubleError = 0x1p-48;
-/// Planes beyond this could overflow a float; the filter then lets everything pass.
-constexpr double kLargest = 1e30;
+/// Planes with larger coefficients could overflow a float; the filter then passes all points.
+constexpr double kMax = 1e30;
 
 }  // namespace
 
@@ -28,6 +31,7 @@ TetFilter TetFilter::ofDistance(const BarycentricMap& map, const SpatialHash::Fr
 }
 
 TetFilter::TetFilter(const BarycentricMap& map, const SpatialHash::Frame& frame, const Eigen::Vector4d& lengths) {
+  assert(frame.scale > 0.0);
   // Weight i at a point of the frame is n[i] . point + c[i].
   double n[4][3], c[4], size[4];
   const double unit = 1.0 / frame.scale;
@@ -39,7 +43,7 @@ TetFilter::TetFilter(const BarycentricMap& map, const SpatialHash::Frame& frame,
   }
   for (int i = 0; i < 4; ++i) size[i] = std::abs(n[i][0]) + std::abs(n[i][1]) + std::abs(n[i][2]) + std::abs(c[i]);
   const double sum = size[0] + size[1] + size[2] + size[3];
-  const bool usable = sum < kLargest;
+  const bool usable = sum < kMax;
   for (int i = 0; i < 4; ++i) {
     const double inverse = usable ? 1.0 / lengths[i] : 0.0;
     for (int k = 0; k < 3; ++k) planes_.normal[i][k] = static_cast<float>(n[i][k] * inverse);
@@ -50,9 +54,10 @@ TetFilter::TetFilter(const BarycentricMap& map, const SpatialHash::Frame& frame,
 
 std::size_t TetFilter::select(const SpatialHash& hash, const std::vector<SpatialHash::Range>& ranges,
                               const float* limits, std::vector<std::uint32_t>& passed) const {
-  std::size_t most = kernels::kMostLanes;
-  for (const SpatialHash::Range& range : ranges) most += range.last - range.first;
-  if (passed.size() < most) passed.resize(2 * most);
+  assert(std::all_of(ranges.begin(), ranges.end(), [&](const auto& r) { return r.last <= hash.size(); }));
+  std::size_t maximum = kernels::kMaxLanes;
+  for (const SpatialHash::Range& range : ranges) maximum += range.last - range.first;
+  if (passed.size() < maximum) passed.resize(2 * maximum);
   kernels::FilterWork work = planes_;
   work.ranges = ranges.data();
   work.rangeCount = ranges.size();

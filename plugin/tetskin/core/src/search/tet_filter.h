@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to embedding: a quick test in float that drops most points that cannot belong to a tet, and none that can.
-// What is left is decided in double.
+// The remaining points are decided in double.
 #pragma once
 
 #include <tetskin/core/src/kernels/search_kernels.h>
@@ -24,7 +24,7 @@ class TetFilter {
   static TetFilter ofDistance(const BarycentricMap& map, const SpatialHash::Frame& frame);
 
   /// Writes those entries in the ranges whose bound is not below -limits[entry], or not below 0 where there are no
-  /// limits. Returns how many; `passed` is as large as it ever had to be.
+  /// limits. Returns how many; `passed` only ever grows.
   std::size_t select(const SpatialHash& hash, const std::vector<SpatialHash::Range>& ranges, const float* limits,
                      std::vector<std::uint32_t>& passed) const;
 

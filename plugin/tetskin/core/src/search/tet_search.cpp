@@ -12,6 +12,7 @@
 #include <tetskin/core/src/search/tet_search.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kFinestCells = 0.4;
 constexpr double kCoarsestCells = 0.7;
 
 double cellSizeFor(const SearchCage& cage, std::size_t pointCount) {
+  assert(pointCount > 0 && cage.size() > 0);
   // In a graded cage the median may be tiny beside the largest tets. Cells finer than this would make a box across the
   // cage look up more rows than there are points.
   const double finest = cage.box().sizes().maxCoeff() / (2.0 * std::sqrt(static_cast<double>(pointCount)));

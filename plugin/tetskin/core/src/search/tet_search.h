@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to embedding: which tet carries which point.
+// Internal to embedding: finds which tet carries which point.
 #pragma once
 
 #include <tetskin/core/src/search/search_cage.h>
@@ -22,8 +22,9 @@ struct TetSearch {
   std::size_t overlapping = 0;      ///< points deeper than kOverlapDepth in two tets or more
   std::size_t candidates = 0;       ///< pairs tested
   double farthestDistance = 0.0;    ///< longest distance of a point outside to the nearest tet; see `worstDistance`
-  std::uint32_t farthest = 0;       ///< which point that is: the first, if there are several
-  std::vector<bool> rescued;  ///< by point: outside, and not in the nearest tet because of its weights; empty if none
+  std::uint32_t farthest = 0;       ///< index of that point: the first, if there are several
+  std::vector<bool> reassigned;     ///< by point: true if it is outside, and not in the nearest tet because of its
+                                    ///< weights; empty if there is none
 };
 
 /// Finds the tet of every point by the rule that `embed` states. There must be a tet; points must be finite.

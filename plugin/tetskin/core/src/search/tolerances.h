@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The numbers by which the search decides.
+// The tolerances of the search.
 #pragma once
 
 namespace tetskin {
@@ -14,6 +14,6 @@ constexpr double kNearestTie = 1e-6;
 /// in its last place) is inside: one computed to lie on a face is as far off.
 constexpr double kInsideTolerance = 0x1p-49;
 /// Absolute weight above which a vertex outside looks for a better tet than the nearest, which is thin or far away.
-constexpr double kLargestWeight = 4.0;
+constexpr double kMaxWeight = 4.0;
 
 }  // namespace tetskin

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/shared/base/instantiate.h>
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/skin_binding.h>
 
+#include <cassert>
 #include <chrono>
 #include <cstdio>
 
@@ -30,8 +32,8 @@ std::vector<Eigen::Vector3d> directionsOf(const std::vector<Tangent>& tangents) 
 Status checkBinding(const TriangleMesh& mesh, const BindingOptions& options) {
   if (Status status = checkAttributes(mesh); !status.ok()) return status;
   if (options.hardEdgeDegrees >= 0.0) return {};
-  return {StatusCode::InvalidOption,
-          "hardEdgeDegrees is " + std::to_string(options.hardEdgeDegrees) + "; give an angle of 0 or more, in degrees"};
+  return {StatusCode::InvalidOption, "hardEdgeDegrees is " + std::to_string(options.hardEdgeDegrees) +
+                                         "; it must be an angle of 0 or more, in degrees"};
 }
 
 Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedding& embedding) {
@@ -46,13 +48,13 @@ Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedd
 }
 
 template <class Scalar>
-void addQuadratic(const Cage& cage, SkinParts<Scalar>& parts) {
+void addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
   const auto start = std::chrono::steady_clock::now();
-  const QuadraticStencils<Scalar>& made = parts.quadratic.emplace(cage, parts.embedding, cage.latticeTets);
-  QuadraticReport& report = parts.quadraticReport;
+  const QuadraticStencils<Scalar>& made = data.quadratic.emplace(cage.mesh, data.embedding, cage.sourceTet);
+  QuadraticReport& report = data.quadraticReport;
   report.nodes = made.gradientCount();
-  report.thinNodes = made.thinCount();
-  report.plainNodes = made.plainCount();
+  report.underdeterminedNodes = made.thinCount();
+  report.averagedNodes = made.plainCount();
   report.edges = made.edgeCount();
   if (report.nodes > 0) {
     report.meanNeighbours = static_cast<double>(made.entryNodes().size()) / static_cast<double>(report.nodes) - 1.0;
@@ -60,18 +62,19 @@ void addQuadratic(const Cage& cage, SkinParts<Scalar>& parts) {
   report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What the options ask for beyond the embedding that is there.
+/// Computes what the options ask for in addition to the embedding.
 template <class Scalar>
-std::unique_ptr<const SkinParts<Scalar>> partsFor(const Cage& cage, const TriangleMesh& mesh,
-                                                  const BindingOptions& options, const Embedding& embedding) {
-  auto made = std::make_unique<SkinParts<Scalar>>();
+std::unique_ptr<const SkinData<Scalar>> componentsFor(const Cage& cage, const TriangleMesh& mesh,
+                                                      const BindingOptions& options, const Embedding& embedding) {
+  assert(embedding.vertexCount() == mesh.vertexCount() && embedding.tetCount() == cage.mesh.tetCount());
+  auto made = std::make_unique<SkinData<Scalar>>();
   made->options = options;
   made->embedding = embedding;
   if (options.interpolation == Interpolation::Quadratic) addQuadratic(cage, *made);
   if (options.normals == Normals::Transformed) {
-    made->normals = DirectionFactors::ofNormals(cage, made->embedding, restNormals(mesh));
+    made->normals = DirectionFactors::ofNormals(cage.mesh, made->embedding, restNormals(mesh));
     if (!mesh.tangents.empty()) {
-      made->tangents = DirectionFactors::ofTangents(cage, made->embedding, directionsOf(mesh.tangents));
+      made->tangents = DirectionFactors::ofTangents(cage.mesh, made->embedding, directionsOf(mesh.tangents));
     }
   } else if (options.normals == Normals::Recomputed) {
     const bool sorted = options.order == VertexOrder::Sorted;
@@ -87,9 +90,9 @@ std::string QuadraticReport::describe() const {
   char text[256];
   std::snprintf(
       text, sizeof text,
-      "quadratic: %zu nodes with %.1f neighbours on average, %zu edges; %zu nodes in thin places, %zu without "
+      "quadratic: %zu nodes with %.1f neighbours on average, %zu edges; %zu nodes in thin regions, %zu without "
       "a fit; %.1f ms",
-      nodes, meanNeighbours, edges, thinNodes, plainNodes, milliseconds);
+      nodes, meanNeighbours, edges, underdeterminedNodes, averagedNodes, milliseconds);
   return text;
 }
 
@@ -104,14 +107,14 @@ Status checkNodes(PointView<const Scalar> nodes) {
 
 Status checkOrigin(const Eigen::Vector3d& origin) {
   if (firstUnusable(PointView<const double>(origin.data(), 1)) == 1) return {};
-  return {StatusCode::InvalidOption, "the origin is not finite, or farther than 1e18 from the world's"};
+  return {StatusCode::InvalidOption, "the origin is not finite, or farther than 1e18 from that of the world"};
 }
 
 Status checkInstance(const InstanceOptions& options, std::size_t vertexCount) {
   if (Status status = checkOrigin(options.origin); !status.ok()) return status;
   if (options.previousPositions && !std::holds_alternative<std::monostate>(options.target)) {
     return {StatusCode::InvalidOption,
-            "previous positions are kept of the skin's own array only; leave out the target, or keep them yourself"};
+            "previous positions are available only in the skin's own array; remove the target, or keep them yourself"};
   }
   const auto check = [&](std::size_t size, const char* what) -> Status {
     if (size == vertexCount) return {};
@@ -128,14 +131,14 @@ Status checkInstance(const InstanceOptions& options, std::size_t vertexCount) {
 }
 
 template <class Scalar>
-SkinBinding<Scalar>::SkinBinding(std::unique_ptr<const SkinParts<Scalar>> parts) : parts_(std::move(parts)) {}
+SkinBinding<Scalar>::SkinBinding(std::unique_ptr<const SkinData<Scalar>> data) : data_(std::move(data)) {}
 
 template <class Scalar>
 SkinBinding<Scalar>::~SkinBinding() = default;
 
 template <class Scalar>
-auto SkinBinding<Scalar>::make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
-                               EmbedReport* report) -> Result<Pointer> {
+auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
+                                 EmbedReport* report) -> Result<Pointer> {
   if (Status status = checkBinding(mesh, options); !status.ok()) {
     if (report) *report = notEmbedded(mesh);
     return status;
@@ -145,30 +148,30 @@ auto SkinBinding<Scalar>::make(const Cage& cage, const TriangleMesh& mesh, const
   embedOptions.maxDistance = options.maxDistance;
   const Result<Embedding> embedding = embed(cage, mesh, embedOptions, report);
   if (!embedding.ok()) return embedding.status();
-  return Pointer(new SkinBinding(partsFor<Scalar>(cage, mesh, options, embedding.value())));
+  return Pointer(new SkinBinding(componentsFor<Scalar>(cage, mesh, options, embedding.value())));
 }
 
 template <class Scalar>
-auto SkinBinding<Scalar>::make(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
-                               const Embedding& embedding) -> Result<Pointer> {
-  if (Status status = checkTriangleMesh(mesh); !status.ok()) return status;
+auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
+                                 const Embedding& embedding) -> Result<Pointer> {
+  if (Status status = validate(mesh); !status.ok()) return status;
   if (Status status = checkBinding(mesh, options); !status.ok()) return status;
-  if (Status status = usable(cage, checkForUse(cage)); !status.ok()) return status;
-  if (Status status = checkEmbedded(cage, mesh, embedding); !status.ok()) return status;
-  return Pointer(new SkinBinding(partsFor<Scalar>(cage, mesh, options, embedding)));
+  if (Status status = validate(cage.mesh); !status.ok()) return status;
+  if (Status status = checkEmbedded(cage.mesh, mesh, embedding); !status.ok()) return status;
+  return Pointer(new SkinBinding(componentsFor<Scalar>(cage, mesh, options, embedding)));
 }
 
 template <class Scalar>
 const BindingOptions& SkinBinding<Scalar>::options() const {
-  return parts_->options;
+  return data_->options;
 }
 template <class Scalar>
 const Embedding& SkinBinding<Scalar>::embedding() const {
-  return parts_->embedding;
+  return data_->embedding;
 }
 template <class Scalar>
 const QuadraticReport& SkinBinding<Scalar>::quadraticReport() const {
-  return parts_->quadraticReport;
+  return data_->quadraticReport;
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)   \

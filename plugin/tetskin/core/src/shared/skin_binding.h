@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a SkinBinding holds, and the checks that skins share.
+// The data of a SkinBinding, and the checks that skins share.
 #pragma once
 
 #include <tetskin/core/mesh_skin.h>
@@ -14,24 +14,36 @@
 namespace tetskin {
 
 template <class Scalar>
-struct SkinParts {
+struct SkinData {
   BindingOptions options;
   Embedding embedding;
   std::optional<QuadraticStencils<Scalar>> quadratic;
   QuadraticReport quadraticReport;
-  std::optional<DirectionFactors> normals;   ///< of transformed normals
-  std::optional<DirectionFactors> tangents;  ///< likewise, if the mesh has tangents
-  std::optional<NormalTopology> recomputed;  ///< of recomputed normals
+  std::optional<DirectionFactors> normals;   ///< for transformed normals
+  std::optional<DirectionFactors> tangents;  ///< for tangents, if the mesh has any
+  std::optional<NormalTopology> recomputed;  ///< for recomputed normals
 };
 
-/// Ok if a surface can follow these nodes: NonFinite names the first that is not finite, or beyond kLargestCoordinate.
+template <class Scalar>
+struct Access<SkinBinding<Scalar>> {
+  static const SkinData<Scalar>& data(const SkinBinding<Scalar>& binding) { return *binding.data_; }
+};
+
+/// What a binding holds, valid as long as it.
+template <class Scalar>
+const SkinData<Scalar>& dataOf(const SkinBinding<Scalar>& binding) {
+  return Access<SkinBinding<Scalar>>::data(binding);
+}
+
+/// Ok if a surface can follow these nodes: NonFinite names the first that is not finite, or beyond
+/// Limits::kMaxCoordinate.
 template <class Scalar>
 TETSKIN_CORE_API Status checkNodes(PointView<const Scalar> nodes);
 
-/// Ok if positions can be relative to this.
+/// Ok if positions can be relative to this origin.
 Status checkOrigin(const Eigen::Vector3d& origin);
 
-/// All that can be known of a skin's options before anything is embedded.
+/// All checks of a skin's options that are possible before anything is embedded.
 TETSKIN_CORE_API Status checkInstance(const InstanceOptions& options, std::size_t vertexCount);
 
 }  // namespace tetskin

@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <utility>
 
@@ -16,11 +17,12 @@ namespace {
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-constexpr int kMostRings = 4;
-constexpr std::size_t kFewestNeighbours = 12;
-/// So many of the nearest are enough where they make a fit: beside all of two rings, a third less work every step, and
-/// a surface a sixth closer to smooth maps, as what is far away tells less of the gradient here. Those at the same
-/// distance come along, so that the stencils of a lattice are as symmetric as it is.
+constexpr int kMaxRings = 4;
+constexpr std::size_t kMinNeighbours = 12;
+/// This many of the nearest neighbours are enough if they determine a fit: compared with all nodes of two rings, they
+/// need a third less work per update, and bring the surface a sixth closer to smooth maps, as distant nodes say less
+/// about the gradient here. All nodes at the same distance are included, so that the stencils of a lattice are as
+/// symmetric as it is.
 constexpr std::size_t kNearNeighbours = 18;
 constexpr double kSameDistance = 1.0 + 1e-6;
 /// Smallest over largest singular value from which a fit counts as well conditioned. Where none is, smaller singular
@@ -62,7 +64,7 @@ struct Fit {
     return solver.eigenvalues()[0] >= kWellConditioned * kWellConditioned * solver.eigenvalues()[8];
   }
 
-  /// By neighbour: how the gradient depends on it.
+  /// By neighbour: the derivative of the gradient by its position.
   std::vector<Eigen::Vector3d> gradientFactors() const {
     Vector9 inverse = Vector9::Zero();
     for (int i = 0; i < 9; ++i) {
@@ -76,9 +78,10 @@ struct Fit {
     return factors;
   }
 
-  /// Truncation costs affine exactness, sum_j d_j g_j^T = I; this gives it back by the smallest change. False where the
-  /// offsets lie in a plane.
+  /// Truncation loses affine exactness, sum_j d_j g_j^T = I; this function restores it by the smallest change. Returns
+  /// false if the offsets lie in a plane.
   bool makeAffineExact(std::vector<Eigen::Vector3d>& factors) const {
+    assert(factors.size() == offsets.size());
     Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero(), moment = Eigen::Matrix3d::Zero();
     for (std::size_t j = 0; j < offsets.size(); ++j) {
       const Eigen::Vector3d d = offsets[j] / unit;
@@ -96,26 +99,28 @@ struct Fit {
   }
 };
 
-/// By node: the same for nodes that are the same corner of copies of a tet. Empty without copies.
-std::vector<int> placesOf(const TetMesh& cage, const std::vector<int>& latticeTets) {
+/// By node: a number that is the same for nodes that are the same corner of duplicates of a tet. Empty without
+/// duplicates.
+std::vector<int> indicesOf(const TetMesh& cage, const std::vector<int>& latticeTets) {
+  assert(latticeTets.empty() || latticeTets.size() == cage.tetCount());
   std::map<int, std::size_t> first;  // by lattice tet
   DisjointSets places(latticeTets.empty() ? 0 : cage.nodeCount());
   bool copies = false;
   for (std::size_t t = 0; t < latticeTets.size(); ++t) {
-    const auto [place, isNew] = first.try_emplace(latticeTets[t], t);
+    const auto [entry, isNew] = first.try_emplace(latticeTets[t], t);
     copies |= !isNew;
-    for (int k = 0; k < 4; ++k) places.unite(cage.tets[place->second][k], cage.tets[t][k]);
+    for (int k = 0; k < 4; ++k) places.unite(cage.tets[entry->second][k], cage.tets[t][k]);
   }
-  std::vector<int> placeOf;
-  for (std::size_t n = 0; copies && n < cage.nodeCount(); ++n) placeOf.push_back(places.find(static_cast<int>(n)));
-  return placeOf;
+  std::vector<int> indexOf;
+  for (std::size_t n = 0; copies && n < cage.nodeCount(); ++n) indexOf.push_back(places.find(static_cast<int>(n)));
+  return indexOf;
 }
 
 }  // namespace
 
 CageNeighbours::CageNeighbours(const TetMesh& cage, const std::vector<int>& latticeTets)
-    : cage_(cage), placeOf_(placesOf(cage, latticeTets)), foundFor_(cage.nodeCount(), 0) {
-  TetMesh solid;  // without flat tets, which may tie together what is far apart
+    : cage_(cage), indexOf_(indicesOf(cage, latticeTets)), foundFor_(cage.nodeCount(), 0) {
+  TetMesh solid;  // without flat tets, which may connect nodes that are far apart
   std::vector<bool> isSolid(cage.tetCount());
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     isSolid[t] = !isFlat(cornersOf(cage, cage.tets[t]));
@@ -136,13 +141,13 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
   found_.assign(1, node);
   foundFor_[node] = node + 1;
   std::size_t ringStart = 0;
-  for (int ring = 1; ring <= kMostRings; ++ring) {
+  for (int ring = 1; ring <= kMaxRings; ++ring) {
     const std::size_t before = found_.size();
     addRing(ringStart);
-    leaveOutCopies(before);
+    skipDuplicates(before);
     ringStart = before;
-    const bool last = ring == kMostRings || found_.size() == before;
-    if (!last && found_.size() <= kFewestNeighbours) continue;
+    const bool last = ring == kMaxRings || found_.size() == before;
+    if (!last && found_.size() <= kMinNeighbours) continue;
 
     std::vector<std::uint32_t> neighbours = nearNeighbours();
     Fit fit(offsetsOf(neighbours));
@@ -150,7 +155,7 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
       neighbours.assign(found_.begin() + 1, found_.end());
       fit = Fit(offsetsOf(neighbours));
     }
-    const bool full = fit.wellConditioned() && neighbours.size() >= kFewestNeighbours;
+    const bool full = fit.wellConditioned() && neighbours.size() >= kMinNeighbours;
     if (!last && !full) continue;
 
     GradientStencil stencil;
@@ -158,16 +163,17 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
     if (!fit.makeAffineExact(stencil.factors)) break;
     stencil.kind = full ? GradientStencil::Kind::Full : GradientStencil::Kind::Thin;
     stencil.nodes = std::move(neighbours);
-    Eigen::Vector3d own = Eigen::Vector3d::Zero();  // offsets are from the node itself
+    Eigen::Vector3d own = Eigen::Vector3d::Zero();  // offsets are relative to the node itself
     for (const Eigen::Vector3d& g : stencil.factors) own -= g;
     stencil.nodes.push_back(node);
     stencil.factors.push_back(own);
+    assert(stencil.factors.size() == stencil.nodes.size());
     return stencil;
   }
   return plainStencil(node);
 }
 
-/// Of those found, the nearest ones.
+/// The nearest ones of the nodes that were found.
 std::vector<std::uint32_t> CageNeighbours::nearNeighbours() const {
   std::vector<std::pair<double, std::uint32_t>> byDistance;
   for (std::size_t k = 1; k < found_.size(); ++k) {
@@ -189,8 +195,8 @@ std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::ui
   return offsets;
 }
 
-/// Appends the nodes that share an edge with those found from place `from` on. A node at the very place of the first
-/// (a crack) tells nothing, and is passed by.
+/// Appends the nodes that share an edge with those found from index `from` on. A node at the very position of the first
+/// one (a crack) contributes nothing, and is skipped.
 void CageNeighbours::addRing(std::size_t from) {
   const std::uint32_t centre = found_.front();
   for (std::size_t k = from, end = found_.size(); k < end; ++k) {
@@ -203,12 +209,13 @@ void CageNeighbours::addRing(std::size_t from) {
   }
 }
 
-/// Of the nodes found from place `from` on, those at a place where another has been found, before or in this ring.
-void CageNeighbours::leaveOutCopies(std::size_t from) {
-  if (placeOf_.empty()) return;
+/// Removes, of the nodes found from index `from` on, those whose position another found node has, in this ring or an
+/// earlier one.
+void CageNeighbours::skipDuplicates(std::size_t from) {
+  if (indexOf_.empty()) return;
   const auto isCopy = [&](std::size_t k) {
     for (std::size_t j = 0; j < found_.size(); ++j) {
-      if (j != k && placeOf_[found_[j]] == placeOf_[found_[k]]) return true;
+      if (j != k && indexOf_[found_[j]] == indexOf_[found_[k]]) return true;
     }
     return false;
   };
@@ -236,6 +243,7 @@ GradientStencil CageNeighbours::plainStencil(std::uint32_t node) const {
   }
   GradientStencil stencil;
   stencil.kind = GradientStencil::Kind::Plain;
+  assert(volume > 0.0);
   for (const auto& [n, factor] : factors) {
     stencil.nodes.push_back(n);
     stencil.factors.push_back(factor / volume);

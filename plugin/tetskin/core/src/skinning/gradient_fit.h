@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to quadratic skinning: how the gradient at a node follows from the positions of the nodes around it.
+// Internal to quadratic skinning: the gradient at a node as a linear function of the positions of the nodes around it.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <cstdint>
 #include <vector>
@@ -16,19 +16,20 @@ namespace tetskin {
 struct GradientStencil {
   enum class Kind {
     Full,   ///< exact for quadratic maps
-    Thin,   ///< exact for affine maps; some second derivatives are not told apart
+    Thin,   ///< exact for affine maps; some second derivatives cannot be told apart
     Plain,  ///< the mean of the gradients of the tets around the node, weighted by volume; exact for affine maps
   };
   std::vector<std::uint32_t> nodes;
-  std::vector<Eigen::Vector3d> factors;  ///< one a node, 1 / length
+  std::vector<Eigen::Vector3d> factors;  ///< one per node, 1 / length
   Kind kind = Kind::Full;
 };
 
-/// Which nodes share an edge, and which tets share a node, over the tets that are not flat. Where copies of tets branch
-/// off, neighbours that are at one place in several branches tell nothing of a node's gradient, and are passed by.
+/// Which nodes share an edge, and which tets share a node, over the tets that are not flat. Where duplicate tets branch
+/// off, neighbours that have the same position in several branches contribute nothing to a node's gradient, and are
+/// skipped.
 class CageNeighbours {
  public:
-  /// latticeTets  by tet: the same for copies of one, see Cage; empty: there are none
+  /// latticeTets  by tet: a number that duplicates share, see Cage; empty: there are none
   explicit CageNeighbours(const TetMesh& cage, const std::vector<int>& latticeTets = {});
 
   /// The stencil of one node, which must belong to a tet that is not flat. Cost: some fits of 9 unknowns.
@@ -36,7 +37,7 @@ class CageNeighbours {
 
  private:
   void addRing(std::size_t from);
-  void leaveOutCopies(std::size_t from);
+  void skipDuplicates(std::size_t from);
   std::vector<std::uint32_t> nearNeighbours() const;
   std::vector<Eigen::Vector3d> offsetsOf(const std::vector<std::uint32_t>& neighbours) const;
   GradientStencil plainStencil(std::uint32_t node) const;
@@ -44,9 +45,9 @@ class CageNeighbours {
   const TetMesh& cage_;
   Lists<> edges_;                        ///< by node: the nodes at the other ends of its edges
   Lists<> tets_;                         ///< by node: its tets
-  std::vector<int> placeOf_;             ///< by node: the same for copies of one; empty: there are none
-  std::vector<std::uint32_t> found_;     ///< the node, then its rings
-  std::vector<std::uint32_t> foundFor_;  ///< by node: for which node it was found last, plus 1
+  std::vector<int> indexOf_;             ///< by node: a number that duplicates share; empty: there are none
+  std::vector<std::uint32_t> found_;     ///< the node, followed by its rings
+  std::vector<std::uint32_t> foundFor_;  ///< by node: the last node for which it was found, plus 1
 };
 
 }  // namespace tetskin

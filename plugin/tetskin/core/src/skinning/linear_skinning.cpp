@@ -9,9 +9,9 @@ namespace tetskin {
 template <class Scalar, class Out>
 void skinLinear(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const SkinOutput<Scalar, Out>& output,
                 Box3* bounds, ParallelFor* threads) {
-  auto work = skin_tasks::workFor(embedding.data(), nodes);
+  auto work = skin_tasks::workFor(dataOf(embedding), nodes);
   work.surface = kernels::Surface::Linear;
-  skin_tasks::skin(embedding.data(), work, nodes, output, bounds, threads);
+  skin_tasks::skin(dataOf(embedding), work, nodes, output, bounds, threads);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar, Out)                                                                        \

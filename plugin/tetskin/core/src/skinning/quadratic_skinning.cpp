@@ -10,12 +10,13 @@
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-/// A node's gradient costs some 30 times what a vertex does.
+/// A node's gradient costs about 30 times as much as a vertex.
 constexpr std::size_t kGradientsPerTask = 512;
 constexpr std::size_t kEdgesPerTask = 4096;
 
@@ -51,7 +52,7 @@ template <class Scalar>
 QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embedding& embedding,
                                              const std::vector<int>& latticeTets) {
   assert(cage.nodeCount() == embedding.nodeCount() && cage.tetCount() == embedding.tetCount());
-  const std::vector<Edge> edges = occupiedEdges(embedding.data());
+  const std::vector<Edge> edges = occupiedEdges(dataOf(embedding));
   std::vector<std::uint32_t> gradientOf(cage.nodeCount(), kNone);
   for (const Edge& edge : edges) gradientOf[edge[0]] = gradientOf[edge[1]] = 0;
 
@@ -69,6 +70,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
     starts_.push_back(static_cast<std::uint32_t>(entryNodes_.size()));
   }
   entryFactors_.push_back(0);
+  assert(entryFactors_.size() == 3 * entryNodes_.size() + 1);
   for (const Edge& edge : edges) {
     const Eigen::Vector3d half = 0.5 * (cage.nodes[edge[1]] - cage.nodes[edge[0]]);
     for (const std::uint32_t node : edge) edgeGradients_.push_back(gradientOf[node]);
@@ -76,10 +78,11 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
     halfRest_.push_back(static_cast<Scalar>(half.squaredNorm()));
     restLengths_.push_back(static_cast<Scalar>(2.0 * half.norm()));
   }
-  for (std::size_t r = 0; r + 1 < embedding.data().runs.size(); ++r) {
-    for (const Edge& edge : edgesOf(embedding.data().runs[r])) {
-      const auto place = std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin();
-      runEdges_.push_back(static_cast<std::uint32_t>(place));
+  for (std::size_t r = 0; r + 1 < dataOf(embedding).runs.size(); ++r) {
+    for (const Edge& edge : edgesOf(dataOf(embedding).runs[r])) {
+      const auto index = std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin();
+      assert(static_cast<std::size_t>(index) < edges.size());
+      runEdges_.push_back(static_cast<std::uint32_t>(index));
     }
   }
 }
@@ -129,12 +132,13 @@ template <class Scalar, class Out>
 void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,
                    const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
                    const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
-  assert(stencils.runEdges().size() + 6 == 6 * embedding.data().runs.size());
-  auto work = skin_tasks::workFor(embedding.data(), nodes);
+  assert(edges.data() || stencils.edgeCount() == 0);
+  assert(stencils.runEdges().size() + 6 == 6 * dataOf(embedding).runs.size());
+  auto work = skin_tasks::workFor(dataOf(embedding), nodes);
   work.surface = kernels::Surface::Quadratic;
   work.edges = edges.data();
   work.runEdges = stencils.runEdges().data();
-  skin_tasks::skin(embedding.data(), work, nodes, output, bounds, threads);
+  skin_tasks::skin(dataOf(embedding), work, nodes, output, bounds, threads);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)         \

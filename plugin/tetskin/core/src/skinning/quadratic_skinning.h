@@ -9,7 +9,7 @@
 
 namespace tetskin {
 
-/// All that quadratic skinning needs of the rest shape: computed once, immutable, shared like an Embedding.
+/// The data of the rest shape that quadratic skinning needs: computed once, immutable, shared like an Embedding.
 ///
 ///     x(v) = sum_i b_i x_i + sum_{i<j} b_i b_j e_ij,   e_ij = (F_i - F_j) (X_j - X_i) / 2
 ///
@@ -18,31 +18,31 @@ namespace tetskin {
 /// quadratic maps; these are, wherever the cage allows: least-squares fits of first and second derivatives over the
 /// nearest nodes around node i, corrected so that every affine map is exact.
 ///
-/// Memory: some 20 x 16 bytes a node that carries vertices (28 in double), 40 bytes an edge of such a tet.
+/// Memory: some 20 x 16 bytes per node that carries vertices (28 in double), 40 bytes per edge of such a tet.
 template <class Scalar>
 class QuadraticStencils {
  public:
   QuadraticStencils() = default;
   /// cage         usable, rest space; that of the embedding
   /// latticeTets  see CageNeighbours
-  /// Cost  some 20 to 50 microseconds a node that carries vertices
+  /// Cost  some 20 to 50 microseconds per node that carries vertices
   QuadraticStencils(const TetMesh& cage, const Embedding& embedding, const std::vector<int>& latticeTets = {});
 
   std::size_t gradientCount() const { return starts_.size() - 1; }
   std::size_t edgeCount() const { return restLengths_.size(); }
-  /// Of the gradients, those of thin places, and those without a fit: see GradientStencil::Kind.
+  /// The number of gradients in thin regions, and of those without a fit: see GradientStencil::Kind.
   std::size_t thinCount() const { return thinCount_; }
   std::size_t plainCount() const { return plainCount_; }
 
-  /// By gradient, and one more: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
+  /// By gradient, and the end: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
-  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }           ///< 3 an entry and 1, 1 / length
-  const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 an edge
-  /// 4 an edge: half the rest vector from its first node to its second, and the square of that half's length.
+  const std::vector<Scalar>& entryFactors() const { return entryFactors_; }  ///< 3 per entry and one more, 1 / length
+  const std::vector<std::uint32_t>& edgeGradients() const { return edgeGradients_; }  ///< 2 per edge
+  /// 4 per edge: half the rest vector from its first node to its second, and the square of that half's length.
   const std::vector<Scalar>& halfRest() const { return halfRest_; }
   const std::vector<Scalar>& restLengths() const { return restLengths_; }
-  /// 6 a run of the embedding: its edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3).
+  /// 6 per run of the embedding: its edges (0,1) (0,2) (0,3) (1,2) (1,3) (2,3).
   const std::vector<std::uint32_t>& runEdges() const { return runEdges_; }
 
  private:
@@ -68,11 +68,11 @@ class EdgeVectors {
   void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
               ParallelFor* threads = nullptr);
 
-  /// 4 an edge: its vector, and its rest length
+  /// 4 per edge: its vector, and its rest length
   const Scalar* data() const { return edges_.data(); }
 
  private:
-  /// One a cache line, or two.
+  /// A gradient takes one cache line, or two.
   struct alignas(64) Gradient {
     Scalar columns[kernels::kGradientStride];
   };
@@ -81,7 +81,7 @@ class EdgeVectors {
 };
 
 /// Writes the current position of every vertex by the formula above; outside, the map is continued to first order from
-/// the closest point of the tet. Everything else as in `skinLinear`.
+/// the closest point of the tet. The other parameters are those of `skinLinear`.
 /// edges  updated for these nodes
 template <class Scalar, class Out>
 void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,

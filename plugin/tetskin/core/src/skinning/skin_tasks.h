@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to skinning: an embedding's runs as pieces of work for kernels, cut alike for any number of threads.
+// Internal to skinning: divides an embedding's runs into pieces of work for kernels, in the same way for any number of
+// threads.
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
@@ -11,33 +12,36 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 
 namespace tetskin::skin_tasks {
 
-/// Handing work to another thread costs some microseconds, in which these many vertices are skinned.
+/// Handing work to another thread costs some microseconds, in which this many vertices are skinned.
 constexpr std::size_t kSlotsPerTask = 16384;
-constexpr std::size_t kMostTasks = 64;
+constexpr std::size_t kMaxTasks = 64;
 
 inline std::size_t taskCount(std::size_t items, std::size_t itemsPerTask = kSlotsPerTask) {
-  return std::clamp<std::size_t>(items / itemsPerTask, 1, kMostTasks);
+  return std::clamp<std::size_t>(items / itemsPerTask, 1, kMaxTasks);
 }
 
 /// First of `items` items of a task; that of task `tasks` is `items`.
 inline std::size_t firstItem(std::size_t items, std::size_t tasks, std::size_t task) {
+  assert(tasks > 0 && task <= tasks);
   return items * task / tasks;
 }
 
 /// The first run that begins at this slot or later.
 inline std::size_t runFrom(const EmbeddingData& embedding, std::size_t slot) {
+  assert(!embedding.runs.empty() && slot <= embedding.vertexCount());
   const auto& runs = embedding.runs;
   const auto found = std::partition_point(runs.begin(), runs.end() - 1,
                                           [slot](const EmbeddingData::Run& run) { return run.firstSlot < slot; });
   return static_cast<std::size_t>(found - runs.begin());
 }
 
-/// Calls kernel(work, task) for all runs: in pieces that lie inside or outside as a whole where the
-/// surface differs. `work` is the common part of all pieces.
+/// Calls kernel(work, task) for all runs, in pieces that are entirely inside or entirely outside if the surface treats
+/// these differently. `work` contains the values that all pieces have in common.
 template <class Scalar, class Kernel>
 void forAllRuns(const EmbeddingData& embedding, const kernels::Work<Scalar>& work, ParallelFor* threads,
                 Kernel&& kernel) {
@@ -59,7 +63,7 @@ void forAllRuns(const EmbeddingData& embedding, const kernels::Work<Scalar>& wor
   });
 }
 
-/// The part of the work that an embedding and its nodes give.
+/// The values of the work that depend on an embedding and its nodes.
 template <class Scalar>
 kernels::Work<Scalar> workFor(const EmbeddingData& embedding, const PackedNodes<Scalar>& nodes) {
   assert(nodes.size() == embedding.nodeCount);
@@ -74,17 +78,19 @@ kernels::Work<Scalar> workFor(const EmbeddingData& embedding, const PackedNodes<
   return work;
 }
 
-/// Whether kernels can write there themselves.
+/// True if kernels can write to the output directly.
 template <class Scalar, class Out>
 bool isDirect(PointView<Out> points, VertexOrder order) {
   return std::is_same_v<Scalar, Out> && order == VertexOrder::Sorted && points.strideBytes() == 3 * sizeof(Out);
 }
 
-/// To points of the same type side by side. Each is moved with the scalar behind it, which the next one overwrites: one
-/// load and one store, where three scalars would take two of each. So `sorted` has a scalar more, the points have not.
+/// Copies to contiguous points of the same type. Each point is moved with the scalar behind it, which the next one
+/// overwrites: one load and one store, where three scalars would take two of each. Therefore `sorted` needs one scalar
+/// more, but the points do not.
 template <class Scalar>
 void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
                   Scalar* points) {
+  assert(first < last);
   for (std::size_t k = first; k + 1 < last; ++k) {
     std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 4 * sizeof(Scalar));
   }
@@ -92,7 +98,7 @@ void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t 
   std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 3 * sizeof(Scalar));
 }
 
-/// To points of four scalars, of which the last is whatever lies behind.
+/// Copies to points of four scalars, the last of which gets any value.
 template <class Scalar>
 void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
                  Scalar* padded) {
@@ -106,9 +112,9 @@ void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t f
   }
 }
 
-/// From the order of the slots, in `scratchSize` scalars, to where the points shall be, and to `padded` if it is not
-/// null. To read at random and write in order is much the faster way round: a processor need not wait for what it reads
-/// ahead.
+/// Copies from the order of the slots, in `scratchSize` scalars, to the order of the output, and to `padded` if it is
+/// not null. Reading at random and writing in order is much faster than the reverse: a processor need not wait for
+/// values that it reads ahead.
 template <class From, class Out>
 void place(const EmbeddingData& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
            ParallelFor* threads, From* padded = nullptr) {
@@ -132,16 +138,17 @@ void place(const EmbeddingData& embedding, const From* sorted, PointView<Out> po
   });
 }
 
-/// The way back.
+/// Copies back to the order of the slots.
 template <class From>
 void collect(const EmbeddingData& embedding, PointView<From> points, VertexOrder order, From* sorted) {
+  assert(points.size() == embedding.vertexCount());
   for (std::size_t slot = 0; slot < points.size(); ++slot) {
     const std::size_t k = order == VertexOrder::Mesh ? embedding.slotVertices[slot] : slot;
     std::copy_n(points[k], 3, sorted + 3 * slot);
   }
 }
 
-/// Writes all positions; their box, if asked for.
+/// Writes all positions, and their box, if it is given.
 template <class Scalar, class Out>
 void skin(const EmbeddingData& embedding, const kernels::Work<Scalar>& work, const PackedNodes<Scalar>& nodes,
           const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
@@ -149,7 +156,7 @@ void skin(const EmbeddingData& embedding, const kernels::Work<Scalar>& work, con
   if (embedding.runs.empty()) return;
   const Eigen::Matrix<Scalar, 3, 1> shift = nodes.mean() - output.origin;
   constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
-  std::array<kernels::Extent<Scalar>, kMostTasks> extents;
+  std::array<kernels::Extent<Scalar>, kMaxTasks> extents;
   extents.fill({{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
   const bool direct = isDirect<Scalar>(output.points, output.order) && !output.padded;
   std::vector<Scalar> ownScratch(direct || output.scratch ? 0 : scratchSize(output.points.size()));

@@ -14,13 +14,13 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   if (nodes_.empty()) return 0;
   using Four = Eigen::Matrix<Scalar, 4, 1>;
   const auto packed = [&](std::size_t i) { return Eigen::Map<Four, Eigen::Aligned16>(nodes_[i].scalars); };
-  // Two of each, as one would wait for itself.
+  // Two sums of each are used, as one addition would have to wait for the one before.
   Four sum[2] = {Four::Zero(), Four::Zero()}, largest[2] = {Four::Zero(), Four::Zero()};
-  const auto add = [](const Four& p, Four& total, Four& most) {
+  const auto add = [](const Four& p, Four& total, Four& maximum) {
     total += p;
-    most = most.cwiseMax(p.cwiseAbs());  // passes over what is no number: the sum does not
+    maximum = maximum.cwiseMax(p.cwiseAbs());  // skips NaN, which the sum does not
   };
-  // Read with the scalar behind each, which may not be there for the last.
+  // Each point is read with the scalar behind it, which may not exist for the last one.
   const std::size_t last = size() - 1;
   for (std::size_t i = 0; i + 2 <= last; i += 2) {
     const Four p = Eigen::Map<const Four>(positions[i]), q = Eigen::Map<const Four>(positions[i + 1]);
@@ -34,9 +34,9 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
     add(packed(i), sum[0], largest[0]);
   }
   const Point total = (sum[0] + sum[1]).template head<3>();
-  const Scalar most = largest[0].cwiseMax(largest[1]).template head<3>().maxCoeff();
-  if (!total.allFinite() || most > static_cast<Scalar>(kLargestCoordinate)) return firstUnusable(positions);
-  // Differences to a point among the nodes are nearly exact, however far they all are from the origin.
+  const Scalar maximum = largest[0].cwiseMax(largest[1]).template head<3>().maxCoeff();
+  if (!total.allFinite() || maximum > static_cast<Scalar>(Limits::kMaxCoordinate)) return firstUnusable(positions);
+  // Differences to a point among the nodes are nearly exact, however far all of them are from the origin.
   mean_ = total / static_cast<Scalar>(size());
   const Four mean(mean_[0], mean_[1], mean_[2], Scalar(0));
   for (std::size_t i = 0; i < size(); ++i) {

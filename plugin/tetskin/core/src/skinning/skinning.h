@@ -22,20 +22,20 @@ class PackedNodes {
   explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount) {}
 
   /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or is beyond
-  /// kLargestCoordinate, or size(); the packed nodes are good for nothing then. Cost O(nodeCount), no allocation.
+  /// Limits::kMaxCoordinate, or size(); the packed nodes are then unusable. Cost O(nodeCount), no allocation.
   [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
 
   std::size_t size() const { return nodes_.size(); }
-  /// size() x 3, four scalars apart: positions that are made for packing may be written here, and then be packed from
-  /// here in place.
+  /// size() x 3, four scalars apart: positions that are computed for packing may be written here, and packed from here
+  /// in place.
   PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().scalars, size(), 4 * sizeof(Scalar)}; }
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().scalars; }
   const Point& mean() const { return mean_; }
 
  private:
-  /// Not an Eigen type: how those are aligned, and how Eigen frees them, depends on the flags that each file is
-  /// compiled with, the application's and ours.
+  /// Not an Eigen type: the alignment of those, and how Eigen frees them, depends on the flags with which each file is
+  /// compiled, in the application and here.
   struct alignas(4 * sizeof(Scalar)) Node {
     Scalar scalars[4] = {};
   };
@@ -43,7 +43,7 @@ class PackedNodes {
   Point mean_ = Point::Zero();
 };
 
-/// Scalars of scratch memory for so many vertices.
+/// Size of the scratch memory, in scalars, for a number of vertices.
 constexpr std::size_t scratchSize(std::size_t vertexCount) {
   return 3 * vertexCount + 1;
 }
@@ -51,18 +51,19 @@ constexpr std::size_t scratchSize(std::size_t vertexCount) {
 /// Where and how the points of an update are written.
 template <class Scalar, class Out>
 struct SkinOutput {
-  /// vertexCount x 3, caller-owned, any stride; never read. Between and beyond the points nothing is touched.
+  /// vertexCount x 3, caller-owned, any stride; never read. Memory between and beyond the points is not changed.
   PointView<Out> points;
   VertexOrder order = VertexOrder::Mesh;
   /// World space; subtracted from every result before it is rounded to Out: a local origin near the body keeps float
   /// output exact far from the world's origin.
   Eigen::Matrix<Scalar, 3, 1> origin = Eigen::Matrix<Scalar, 3, 1>::Zero();
-  /// scratchSize(vertexCount) scalars of the caller's, overwritten. Points of Scalar side by side in sorted order are
-  /// written directly and need none; all others are put in their places from here. Without it, some is allocated each
-  /// time.
+  /// scratchSize(vertexCount) scalars of the caller's, overwritten. Contiguous points of type Scalar in sorted order
+  /// are written directly and need none; all others are copied to their positions from here. Without it, memory is
+  /// allocated each time.
   Scalar* scratch = nullptr;
-  /// If not null, vertexCount x 4 scalars of the caller's that get the points besides, in the same order, each with one
-  /// that means nothing: for who has to read them. All points then go by the scratch.
+  /// If not null, vertexCount x 4 scalars of the caller's that also get the points, in the same order, each with one
+  /// scalar without meaning, for callers that have to read them. All points are then written to the scratch memory
+  /// first.
   Scalar* padded = nullptr;
 };
 

@@ -11,62 +11,65 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Residual over load at which a displacement counts as found. The response of interest is wrong by its square only.
+/// Residual relative to the load at which a displacement counts as found. The error of the response is of the square of
+/// this.
 constexpr double kTolerance = 2e-3;
-constexpr int kMostSolveIterations = 200;
-/// Of what is empty: it has to go along with the rest, without holding it.
-constexpr double kLeastScale = 1e-3, kLeastMass = 1e-4;
+constexpr int kMaxSolveIterations = 200;
+/// Factors of stiffness and mass of empty tets: they must move with the rest without resisting it.
+constexpr double kMinScale = 1e-3, kMinMass = 1e-4;
 
-/// As the body will have it.
+/// By tet: the stiffness factors of the body.
 std::vector<double> scaleOf(const Cage& cage) {
   std::vector<double> scale = cage.stiffnessScale();
-  return scale.empty() ? std::vector<double>(cage.tetCount(), 1.0) : scale;
+  return scale.empty() ? std::vector<double>(cage.mesh.tetCount(), 1.0) : scale;
 }
 
 Eigen::VectorXd massesOf(const Cage& cage) {
-  if (cage.masses.empty()) return lumpedVolumes(cage, std::vector<double>(cage.tetCount(), 1.0));
-  Eigen::VectorXd masses(static_cast<Eigen::Index>(3 * cage.nodeCount()));
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+  if (cage.masses.empty()) return lumpedVolumes(cage.mesh, std::vector<double>(cage.mesh.tetCount(), 1.0));
+  Eigen::VectorXd masses(static_cast<Eigen::Index>(3 * cage.mesh.nodeCount()));
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
     masses.segment<3>(static_cast<Eigen::Index>(3 * n)).setConstant(cage.masses[n]);
   }
   return masses;
 }
 
-/// By tet of a refinement: share of it within the mesh.
+/// By tet of a refinement: the volume fraction of it within the mesh.
 std::vector<double> fillAt(const Cage& cage, int refinement) {
+  assert(refinement == 1 || refinement == 2);
+  assert(cage.fineVolumeFraction.empty() || cage.fineVolumeFraction.size() == kFineTets * cage.mesh.tetCount());
   const std::size_t pieces = refinement == 1 ? 8 : kFineTets, finest = kFineTets / pieces;
-  std::vector<double> fill(pieces * cage.tetCount(), 1.0);
+  std::vector<double> fill(pieces * cage.mesh.tetCount(), 1.0);
   for (std::size_t k = 0; k < fill.size(); ++k) {
-    if (cage.fineFill.empty()) {
-      if (!cage.fill.empty()) fill[k] = cage.fill[k / pieces];
+    if (cage.fineVolumeFraction.empty()) {
+      if (!cage.volumeFraction.empty()) fill[k] = cage.volumeFraction[k / pieces];
       continue;
     }
     double sum = 0.0;
-    for (std::size_t j = 0; j < finest; ++j) sum += cage.fineFill[finest * k + j];
+    for (std::size_t j = 0; j < finest; ++j) sum += cage.fineVolumeFraction[finest * k + j];
     fill[k] = sum / (255.0 * static_cast<double>(finest));
   }
   return fill;
 }
 
-std::vector<double> atLeast(std::vector<double> values, double least) {
-  for (double& value : values) value = std::max(value, least);
+std::vector<double> atLeast(std::vector<double> values, double minimum) {
+  for (double& value : values) value = std::max(value, minimum);
   return values;
 }
 
 Eigen::VectorXd massesOf(const TetMesh& mesh, const std::vector<double>& fill) {
   Eigen::VectorXd masses = lumpedVolumes(mesh, fill);
-  masses.array() += kLeastMass * masses.mean();
+  masses.array() += kMinMass * masses.mean();
   return masses;
 }
 
-/// Of each field by itself.
+/// The scalar product of each column of a with that of b.
 Eigen::RowVectorXd products(const Fields& a, const Fields& b) {
   Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(a.cols());
   for (Eigen::Index row = 0; row < a.rows(); ++row) sums += a.row(row).cwiseProduct(b.row(row));
   return sums;
 }
 
-/// 0 where there is nothing to divide.
+/// The quotients by component; 0 where the divisor is 0.
 Eigen::RowVectorXd quotients(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
   Eigen::RowVectorXd result = Eigen::RowVectorXd::Zero(a.size());
   for (Eigen::Index k = 0; k < a.size(); ++k) {
@@ -79,21 +82,22 @@ Eigen::RowVectorXd quotients(const Eigen::RowVectorXd& a, const Eigen::RowVector
 
 RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vector<double>& fill)
     : refinement(std::move(made)),
-      stiffness(refinement.mesh, poissonRatio, atLeast(fill, kLeastScale)),
+      stiffness(refinement.mesh, poissonRatio, atLeast(fill, kMinScale)),
       masses(massesOf(refinement.mesh, fill)),
       diagonal(stiffness.diagonal()),
       rigid(refinement.mesh, masses) {}
 
 RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
-    : cage_(std::move(cage)), coarsest_(cage_, poissonRatio, scaleOf(cage_), massesOf(cage_)), direct_(coarsest_) {
+    : cage_(std::move(cage)), coarsest_(cage_.mesh, poissonRatio, scaleOf(cage_), massesOf(cage_)), direct_(coarsest_) {
   assert(refinements >= 0 && refinements <= 2);
   for (int k = 1; k <= refinements; ++k) {
-    const TetMesh& before = k == 1 ? cage_ : at(static_cast<std::size_t>(k - 1)).refinement.mesh;
+    const TetMesh& before = k == 1 ? cage_.mesh : at(static_cast<std::size_t>(k - 1)).refinement.mesh;
     levels_.push_back(std::make_unique<Level>(refineUniformly(before), poissonRatio, fillAt(cage_, k)));
   }
 }
 
 Fields RefinedBodies::refined(std::size_t level, const Fields& displacements) const {
+  assert(displacements.rows() == masses(level).size());
   const std::vector<std::array<int, 2>>& edges = at(level + 1).refinement.edges;
   Fields result(displacements.rows() + 3 * static_cast<Eigen::Index>(edges.size()), displacements.cols());
   result.topRows(displacements.rows()) = displacements;
@@ -106,6 +110,7 @@ Fields RefinedBodies::refined(std::size_t level, const Fields& displacements) co
 }
 
 Fields RefinedBodies::coarsened(std::size_t level, const Fields& loads) const {
+  assert(level > 0 && loads.rows() == masses(level).size());
   const std::vector<std::array<int, 2>>& edges = at(level).refinement.edges;
   const Eigen::Index size = loads.rows() - 3 * static_cast<Eigen::Index>(edges.size());
   Fields result = loads.topRows(size);
@@ -134,7 +139,7 @@ Fields RefinedBodies::solve(std::size_t level, const Fields& loads, const Fields
   Fields directions = Fields::Zero(loads.rows(), loads.cols());
   Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(loads.cols());
   const Eigen::RowVectorXd enough = kTolerance * kTolerance * products(loads, loads);
-  for (int k = 0; k < kMostSolveIterations; ++k) {
+  for (int k = 0; k < kMaxSolveIterations; ++k) {
     if ((products(residuals, residuals).array() <= enough.array()).all()) break;
     const Fields steps = precondition(level, residuals);
     const Eigen::RowVectorXd now = products(residuals, steps);

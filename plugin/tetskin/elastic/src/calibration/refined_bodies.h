@@ -7,6 +7,7 @@
 #include <tetskin/elastic/src/calibration/rest_body.h>
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -14,13 +15,13 @@
 namespace tetskin::elastic_detail {
 
 /// A cage and its uniform refinements: the same shape, with eight times the tets from level to level. Displacements of
-/// a level are those of the next as well, once its midpoints are filled in.
+/// a level are also displacements of the next one, once its midpoints are interpolated.
 class RefinedBodies {
  public:
-  /// The cage is as its body will be; the finer levels see the material at their own resolution, as `Cage::fineFill`
-  /// has it. Check `ok()`.
+  /// The coarsest level has the stiffness and mass of the body; the finer levels have the volume fractions of their own
+  /// resolution, from `Cage::fineFill`. Check `ok()`.
   ///
-  /// cage         every node of it in a tet
+  /// cage         every node is used by a tet
   /// refinements  at most two
   RefinedBodies(Cage cage, double poissonRatio, int refinements);
 
@@ -30,14 +31,14 @@ class RefinedBodies {
   const RestBody& coarsest() const { return coarsest_; }
   const DirectSolver& direct() const { return direct_; }
   const Eigen::VectorXd& masses(std::size_t level) const { return level == 0 ? coarsest_.masses : at(level).masses; }
-  /// See RigidMotions.
+  /// See RigidMotions::balance.
   void balance(std::size_t level, Fields& loads) const {
     (level == 0 ? coarsest_.rigid : at(level).rigid).balance(loads);
   }
 
-  /// Displacements of `level` in terms of `level + 1`.
+  /// Interpolates displacements of `level` to `level + 1`.
   Fields refined(std::size_t level, const Fields& displacements) const;
-  /// What the nodes of `level - 1` feel of loads on `level`: the transpose of `refined`.
+  /// Restricts loads on `level` to the nodes of `level - 1`: the transpose of `refined`.
   Fields coarsened(std::size_t level, const Fields& loads) const;
   /// The displacements under balanced loads, starting from a guess: conjugate gradients, preconditioned by all coarser
   /// levels, so that the number of iterations does not grow with the size or slenderness of the body.
@@ -46,13 +47,16 @@ class RefinedBodies {
  private:
   struct Level {
     Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill);
-    Refinement refinement;  ///< of the level before
+    Refinement refinement;  ///< of the coarser level
     BlockRows stiffness;
     Eigen::VectorXd masses, diagonal;
     RigidMotions rigid;
   };
 
-  const Level& at(std::size_t level) const { return *levels_[level - 1]; }
+  const Level& at(std::size_t level) const {
+    assert(level > 0 && level <= levels_.size());
+    return *levels_[level - 1];
+  }
   Fields precondition(std::size_t level, const Fields& loads) const;
 
   Cage cage_;

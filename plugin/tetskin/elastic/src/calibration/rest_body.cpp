@@ -5,17 +5,19 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Stiffness added for solving, in proportion to mass, over the mean stiffness to mass: without it rigid motions have
-/// none. They are taken out of every result, so that it only has to be small beside the softest vibration.
+/// Stiffness in proportion to mass that is added for the solve, relative to the mean ratio of stiffness to mass:
+/// without it, rigid motions have none, and the matrix is singular. They are removed from every result, so that the
+/// addition only has to be small compared with the softest vibration.
 constexpr double kShift = 1e-9;
-/// Vectors of the subspace beyond those that are wanted: the more, the faster it converges.
+/// Vectors of the subspace in addition to those that are wanted: the more, the faster it converges.
 constexpr int kGuardModes = 6;
-constexpr int kMostIterations = 20;
+constexpr int kMaxIterations = 20;
 /// Relative change of the wanted frequencies' squares at which they count as found.
 constexpr double kConverged = 1e-4;
 
@@ -37,6 +39,7 @@ RestBody::RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<d
 DirectSolver::DirectSolver(const RestBody& body) : body_(body), factors_(shifted(body)) {}
 
 Fields DirectSolver::solve(const Fields& loads) const {
+  assert(ok() && loads.rows() == body_.masses.size());
   Fields displacements(loads.rows(), loads.cols());
   for (Eigen::Index k = 0; k < loads.cols(); ++k) {
     displacements.col(k) = factors_.solve(Eigen::VectorXd(loads.col(k)));
@@ -46,12 +49,13 @@ Fields DirectSolver::solve(const Fields& loads) const {
 }
 
 Eigen::MatrixXd softestModes(const RestBody& body, const DirectSolver& solver, int count) {
+  assert(solver.ok() && count > 0);
   const Eigen::Index size = body.masses.size();
   const Eigen::Index columns = std::min<Eigen::Index>(count + kGuardModes, size);
   const Eigen::Index wanted = std::min<Eigen::Index>(count, columns);
   Eigen::MatrixXd modes = startVectors(size, columns);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(wanted);
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     Fields loads = body.masses.asDiagonal() * modes;
     body.rigid.balance(loads);
     modes = solver.solve(loads);

@@ -4,6 +4,7 @@
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,8 @@ namespace tetskin::elastic_detail {
 
 template <class S>
 void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads) {
+  assert(!matrices.empty() && std::find(matrices.begin(), matrices.end(), nullptr) == matrices.end());
+  assert(limits.tolerance >= 0.0 && limits.iterations >= 0);
   matrices_ = std::move(matrices);
   extra_ = std::move(extra);
   added_.assign(matrices_.size(), nullptr);
@@ -22,23 +25,24 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, E
   }
   target_ = std::max(limits.tolerance * limits.tolerance * rho_, limits.floor * limits.floor * mass);
   target_ = std::max(target_, limits.enough);
-  // Below, products of residuals lose their digits, and the next lengths would be anything.
+  // Below this, products of residuals lose their digits, and the next step lengths would be arbitrary.
   constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
   target_ = std::max(target_, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));
   stopped_ = false;
   if (!std::isfinite(rho_)) stop();
   factor_ = 0;
   iterations_ = 0;
-  most_ = limits.iterations;
+  max_ = limits.iterations;
 }
 
 template <class S>
 bool ConjugateGradient<S>::step(ParallelFor* threads) {
+  assert(!stopped_ && added_.size() == matrices_.size());
   for (BlockMatrix<S>* matrix : matrices_) matrix->backward(factor_, threads);
   if (extra_) extra_(added_);
   double bend = 0.0;
   for (std::size_t k = 0; k < matrices_.size(); ++k) bend += matrices_[k]->forward(added_[k], threads);
-  // An addition that is not positive leaves what has been reached.
+  // If the addition is not positive, the iteration stops with the current solution.
   if (!(bend > 0.0 && std::isfinite(bend))) return false;
   const auto length = static_cast<S>(rho_ / bend);
   double rho = 0.0;
@@ -55,8 +59,8 @@ void ConjugateGradient<S>::stop() {
 }
 
 template <class S>
-bool ConjugateGradient<S>::iterate(int most, ParallelFor* threads) {
-  for (int k = 0; k < most && iterations_ < most_ && !stopped_ && !converged(); ++k, ++iterations_) {
+bool ConjugateGradient<S>::iterate(int maximum, ParallelFor* threads) {
+  for (int k = 0; k < maximum && iterations_ < max_ && !stopped_ && !converged(); ++k, ++iterations_) {
     if (!step(threads)) stop();
   }
   return converged();

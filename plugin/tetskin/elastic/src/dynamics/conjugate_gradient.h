@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient over the bodies that something couples, or over one: preconditioned by a symmetric
-// Gauss-Seidel sweep of each, see elastic_kernels.h.
+// The conjugate gradient for one body, or for several bodies that are coupled. The preconditioner is a symmetric
+// Gauss-Seidel sweep of each body, see elastic_kernels.h.
 #pragma once
 
 #include <tetskin/elastic/src/matrix/block_matrix.h>
@@ -13,30 +13,32 @@
 namespace tetskin::elastic_detail {
 
 struct SolveLimits {
-  double tolerance = 5e-3;  ///< of the residual, over that at the start, in the preconditioner's norm
-  double floor = 0.0;       ///< an error in velocity that is always small enough
-  double enough = 0.0;      ///< a residual, as `enough()`, that is
-  int iterations = 200;     ///< at most
+  double tolerance = 5e-3;  ///< of the residual relative to its initial value, in the preconditioner's norm
+  double floor = 0.0;       ///< an error in velocity that always counts as converged
+  double enough = 0.0;      ///< a residual norm, squared as `enough()`, that always counts as converged
+  int iterations = 200;     ///< bound of their number
 };
 
 template <class S>
 class TETSKIN_ELASTIC_API ConjugateGradient {
  public:
   using Matrices = std::vector<BlockMatrix<S>*>;
-  /// Told when all matrices have their `stepPoints`: for each matrix, what is to be added to A t, wide, or null.
+  /// Called when all matrices have their `stepPoints`. For each matrix, it returns what is to be added to A t, in the
+  /// wide layout, or null.
   using Extra = std::function<void(std::vector<const S*>&)>;
 
-  /// Of the matrices' residuals, r = b - A x of their solutions. They are transformed: start once.
-  /// extra  a symmetric, positive addition to the matrices; none: each matrix alone. Valid as long as this is used.
+  /// Begins with the matrices' residuals r = b - A x. They are transformed in place, so that `start` is called once.
+  /// extra  a symmetric positive addition to the matrices; none: the matrices alone. It must stay valid while this is
+  ///        used.
   void start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads);
-  /// Goes on for so many iterations, or until it has converged; returns whether it has. Where an addition is not
-  /// positive it stops, with what it has reached.
-  bool iterate(int most, ParallelFor* threads);
+  /// Does up to `most` iterations; returns true if it has converged. Where an addition is not positive, it stops with
+  /// the current solution.
+  bool iterate(int maximum, ParallelFor* threads);
 
   bool converged() const { return rho_ <= target_; }
-  /// The square of the residual's norm at which it has.
+  /// The square of the residual's norm at which it has converged.
   double enough() const { return target_; }
-  /// The square of the residual's norm, as it is.
+  /// The current square of the residual's norm.
   double squaredResidual() const { return rho_; }
   int iterations() const { return iterations_; }
 
@@ -49,8 +51,8 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   std::vector<const S*> added_;
   double rho_ = 0.0, target_ = 0.0;
   S factor_ = 0;
-  int iterations_ = 0, most_ = 0;
-  bool stopped_ = false;  ///< by an addition that is not positive, or what is not finite
+  int iterations_ = 0, max_ = 0;
+  bool stopped_ = false;  ///< because an addition is not positive, or a value is not finite
 };
 
 }  // namespace tetskin::elastic_detail

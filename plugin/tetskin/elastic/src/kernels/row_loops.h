@@ -21,7 +21,7 @@ TETSKIN_INLINE WideVector<S, W> symmetricTimes(const S* block, const WideVector<
           xz * v.x + yz * v.y + wide<S, W>(block + 5 * kGroup) * v.z};
 }
 
-/// The blocks of entries [first, last) times the points of their neighbours.
+/// Adds the blocks of entries [first, last) times the points of their neighbours.
 template <class S, int W>
 TETSKIN_INLINE WideVector<S, W> offDiagonal(const RowWork<S>& work, std::uint32_t first, std::uint32_t last, int lane,
                                             const S* points) {
@@ -39,8 +39,8 @@ TETSKIN_INLINE WideVector<S, W> offDiagonal(const RowWork<S>& work, std::uint32_
   return total;
 }
 
-/// Of symmetric positive blocks; 0 where there is no mass. Of their ratios to the trace: products of three of the
-/// stiffest would leave float's range.
+/// The inverses of symmetric positive blocks; 0 where there is no mass. They are computed from the ratios to the trace:
+/// products of three entries of the stiffest blocks would leave float's range.
 template <class S, int W>
 TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, S* to) {
   using V = Lanes<S, W>;
@@ -69,9 +69,9 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
   for (int k = 0; k < 9; ++k) block[k] = V{};
   V trace{};
   for (std::uint32_t term = work.sums[entry]; term < work.sums[entry + 1]; ++term) {
-    const std::uint32_t* places = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
-    const WidePoints<S, W> p = pointsAt<S, W>(work.corners, places);
-    const WideVector<S, W> q = vectorsAt<S, W>(work.corners, places + kGroup);
+    const std::uint32_t* indices = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
+    const WidePoints<S, W> p = pointsAt<S, W>(work.corners, indices);
+    const WideVector<S, W> q = vectorsAt<S, W>(work.corners, indices + kGroup);
     const V a[3] = {p.x, p.y, p.z}, b[3] = {q.x, q.y, q.z};
     for (int i = 0; i < 3; ++i) {
       const V scaled = p.w * a[i];
@@ -82,8 +82,9 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
   for (int i = 0; i < 3; ++i) block[4 * i] += trace;
 }
 
-/// Rows have the sum of their masses, so that a body moves as a whole without resistance. A mass below the last digits
-/// of its stiffness would be lost in that sum, and the matrix not be positive: it counts as `leastMass` of them.
+/// The diagonal block of a row is the sum of its mass and its off-diagonal blocks, so that a body moves as a whole
+/// without resistance. A mass below the last digits of its stiffness would be lost in that sum, and the matrix would
+/// not be positive: it is raised to the fraction `minMass` of the stiffness.
 template <class S, int W>
 void assemble(const RowWork<S>& work) {
   using V = Lanes<S, W>;
@@ -100,9 +101,9 @@ void assemble(const RowWork<S>& work) {
         }
       }
       const V real = wide<S, W>(work.masses + kGroup * c + lane);
-      const V least = -work.leastMass * (rowSum[0] + rowSum[4] + rowSum[8]);
-      const auto light = (real > S(0)) & (real < least);
-      const V mass = light ? least : real;
+      const V minimum = -work.minMass * (rowSum[0] + rowSum[4] + rowSum[8]);
+      const auto light = (real > S(0)) & (real < minimum);
+      const V mass = light ? minimum : real;
       const V d[6] = {mass - rowSum[0], S(-0.5) * (rowSum[1] + rowSum[3]), S(-0.5) * (rowSum[2] + rowSum[6]),
                       mass - rowSum[4], S(-0.5) * (rowSum[5] + rowSum[7]), mass - rowSum[8]};
       for (int k = 0; k < 6; ++k) put<S, W>(d[k], work.diagonal + kWideSymmetric * c + k * kGroup + lane);
@@ -146,7 +147,7 @@ void backward(const RowWork<S>& work) {
   }
 }
 
-/// y = (D + L)^-1 v of W rows.
+/// Computes y = (D + L)^-1 v for W rows.
 template <class S, int W>
 TETSKIN_INLINE WideVector<S, W> solveLower(const RowWork<S>& work, std::size_t c, int lane, const WideVector<S, W>& v) {
   const auto l = offDiagonal<S, W>(work, work.starts[2 * c], work.starts[2 * c + 1], lane, work.lowerPoints);

@@ -10,19 +10,19 @@
 //
 // With F the deformation gradient, R the rotation that maximises tr(R^T F), S = R^T F and E = sym(S) - 1:
 //   energy = V (mu E : E + lambda / 2 tr(E)^2),  force on node a = -V R (2 mu E + lambda tr(E)) g_a
-// which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that has turned inside out
-// has such a rotation, too.
+// which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that is turned inside out
+// also has such a rotation.
 #pragma once
 
 #include <tetskin/elastic/src/kernels/wide.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// The square of the angle in radians below which a step of Newton's is the last: the next one would be of the order of
-/// its square. And most steps, after which `findRotation` is faster.
+/// The square of the angle in radians below which a Newton step is the last one: the next one would be of the order of
+/// its square. And the most steps, beyond which `findRotation` is faster.
 template <class S>
 constexpr S kLastStep = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
-constexpr int kMostSteps = 8;
+constexpr int kMaxSteps = 8;
 
 template <class S, int W>
 struct Quaternions {
@@ -34,8 +34,8 @@ TETSKIN_INLINE Quaternions<S, W> quaternions(const S* from) {
   return {wide<S, W>(from), wide<S, W>(from + kGroup), wide<S, W>(from + 2 * kGroup), wide<S, W>(from + 3 * kGroup)};
 }
 
-/// Of two rotations, whatever the quaternions' signs: 4 sin^2 of a quarter of the angle between them. Unlike 1 - their
-/// dot product it has digits where they are nearly the same.
+/// The difference of two rotations, whatever the quaternions' signs: 4 sin^2 of a quarter of the angle between them.
+/// Unlike 1 minus the quaternions' dot product, it is precise for rotations that are nearly equal.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Quaternions<S, W>& q) {
   using V = Lanes<S, W>;
@@ -45,7 +45,7 @@ TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Q
   return w * w + x * x + y * y + z * z;
 }
 
-/// Row by row.
+/// Computes the product row by row.
 template <class S, int W>
 struct WideMatrix {
   Lanes<S, W> at[9];
@@ -71,15 +71,15 @@ TETSKIN_INLINE WideMatrix<S, W> transposedProduct(const WideMatrix<S, W>& r, con
   return s;
 }
 
-/// What a step towards the rotation has been, by tet.
+/// Properties of a step towards the rotation, by tet.
 template <class S, int W>
 struct RotationStep {
   Lanes<S, W> squaredAngle;
-  Lanes<S, W> unsafe;  ///< 1 where it was the gradient's, 0 where it was Newton's
+  Lanes<S, W> unsafe;  ///< 1 for a gradient step, 0 for a Newton step
 };
 
-/// One step of Newton's on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix
-/// is not safely positive, a step of the gradient's.
+/// One Newton step on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix is
+/// not safely positive, a gradient step.
 template <class S, int W>
 TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
@@ -100,7 +100,7 @@ TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatr
   const V hx = S(0.5) * wx, hy = S(0.5) * wy, hz = S(0.5) * wz;
   const V w = q.w - q.x * hx - q.y * hy - q.z * hz, x = q.x + q.w * hx + q.y * hz - q.z * hy;
   const V y = q.y + q.w * hy + q.z * hx - q.x * hz, z = q.z + q.w * hz + q.x * hy - q.y * hx;
-  // It is at least 1, of what is finite; a tet that was not begins again.
+  // The squared length is at least 1 for finite values; a tet whose values were not finite begins again.
   const V squared = w * w + x * x + y * y + z * z;
   const auto finite = (squared > S(0.5)) & (squared < S(1e18));
   const V unit = S(1) / squareRoots<S, W>(finite ? squared : all<S, W>(1));
@@ -108,8 +108,8 @@ TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatr
   return {wx * wx + wy * wy + wz * wz, good ? V{} : all<S, W>(1)};
 }
 
-/// 1 where the rotation is at a saddle or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue below 0.
-/// At 0, of a mirrored tet, there are many maxima, and the one at hand is as good as any.
+/// 1 where the rotation is at a saddle point or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue
+/// below 0. An eigenvalue of 0, as of a mirrored tet, means many maxima, of which the present one is as good as any.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
@@ -123,9 +123,9 @@ TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
   return negative ? all<S, W>(1) : V{};
 }
 
-/// A symmetric 4x4 matrix becomes diagonal, its eigenvectors the columns of `vectors`: Jacobi's method.
+/// Diagonalises a symmetric 4x4 matrix by Jacobi's method; its eigenvectors become the columns of `vectors`.
 TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4][4]) {
-  constexpr int kSweeps = 8;  // it converges quadratically: three or four do
+  constexpr int kSweeps = 8;  // convergence is quadratic: three or four sweeps suffice
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (int i = 0; i < 3; ++i) {
       for (int j = i + 1; j < 4; ++j) {
@@ -146,9 +146,9 @@ TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4]
   }
 }
 
-/// The quaternion w x y z of the rotation that maximises tr(R^T F), from any other: the first eigenvector of that form
+/// The quaternion w x y z of the rotation that maximises tr(R^T F), from any start: the first eigenvector of that form
 /// (Berthold K. P. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4,
-/// 1987, doi 10.1364/JOSAA.4.000629). Some 1 us. Left as it is where F is 0 or not finite.
+/// 1987, doi 10.1364/JOSAA.4.000629). It takes about 1 us. The quaternion stays unchanged where F is 0 or not finite.
 TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) {
   double squared = 0.0;
   for (const double x : f) squared += x * x;
@@ -164,8 +164,8 @@ TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) 
   diagonalise(a, vectors);
   int first = 0;
   for (int k = 1; k < 4; ++k) first = a[k][k] > a[first][first] ? k : first;
-  // Of several that are as good, as of a body turned inside out, the nearest to the one before, or to a fixed one: tets
-  // side by side must not choose by their rounding.
+  // Of several rotations that are equally good, as for a body turned inside out, the nearest to the one before is
+  // chosen, or to a fixed one: neighbouring tets must not choose by their rounding.
   constexpr double kAsGood = 1e-3, kHasPart = 1e-3;
   const double fixed[4] = {0, 1, 0, 0};
   const auto project = [&](const double* wanted, double* to) {
@@ -188,7 +188,7 @@ TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) 
   for (int k = 0; k < 4; ++k) q[k] = chosen ? found[k] : vectors[k][first];
 }
 
-/// Of those tets that have lost theirs.
+/// Repairs the rotations of those tets that have lost their maximum.
 template <class S, int W>
 TETSKIN_NOINLINE void findRotations(const WideMatrix<S, W>& f, const Lanes<S, W>& lost, Quaternions<S, W>& q) {
   S from[9][W], to[4][W], which[W];
@@ -206,9 +206,9 @@ TETSKIN_NOINLINE void findRotations(const WideMatrix<S, W>& f, const Lanes<S, W>
   q = {wide<S, W>(to[0]), wide<S, W>(to[1]), wide<S, W>(to[2]), wide<S, W>(to[3])};
 }
 
-/// The rotations that maximise tr(R^T F), from those of the step before; s becomes R^T F. As a quadratic form of R's
-/// quaternion it has no other maxima, but saddles that steps hardly lead away from: a tet that has been turned by 180
-/// degrees begins at one.
+/// The rotations that maximise tr(R^T F), starting from those of the step before; s becomes R^T F. As a quadratic form
+/// of R's quaternion it has no other maxima, but it has saddle points from which steps hardly lead away: a tet that has
+/// been rotated by 180 degrees begins at one.
 template <class S, int W>
 TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& q, WideMatrix<S, W>& r,
                                   WideMatrix<S, W>& s) {
@@ -219,7 +219,7 @@ TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& 
   follow();
   RotationStep<S, W> step{};
   bool turning = true;
-  for (int k = 0; k < kMostSteps && turning; ++k) {
+  for (int k = 0; k < kMaxSteps && turning; ++k) {
     step = turnAlong<S, W>(q, s);
     follow();
     turning = anyAbove<S, W>(step.squaredAngle, kLastStep<S>);
@@ -252,7 +252,7 @@ TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, cons
   return f;
 }
 
-/// R (m g_a), for the corners 1 to 3, and what makes their sum 0 for the first.
+/// R (m g_a) for corners 1 to 3, and for corner 0 the value that makes the sum 0.
 template <class S, int W, class Carried>
 TETSKIN_INLINE void putCorners(const TetPack<S>& pack, int lane, const Lanes<S, W>& fourth, S* corners,
                                Carried&& carried) {
@@ -277,7 +277,7 @@ TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S
 template <class S, int W>
 TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
   using V = Lanes<S, W>;
-  V mostTurned{}, turned{};
+  V maxTurned{}, turned{};
   double energy = 0.0;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
@@ -293,7 +293,7 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
       put<S, W>(q.z, rotations + 3 * kGroup);
       const Quaternions<S, W> before = quaternions<S, W>(work.assembled + 4 * kGroup * p + lane);
       const V turn = squaredDifference<S, W>(q, before);
-      mostTurned = larger(turn, mostTurned);
+      maxTurned = larger(turn, maxTurned);
       turned += turn;
 
       const V e0 = s.at[0] - S(1), e4 = s.at[4] - S(1), e8 = s.at[8] - S(1);
@@ -314,7 +314,7 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
       }
     }
   }
-  return {largest<S, W>(mostTurned), static_cast<double>(laneSum<S, W>(turned)), energy};
+  return {largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)), energy};
 }
 
 template <class S, int W>
@@ -334,7 +334,7 @@ void rotatedGradients(const TetWork<S>& work) {
   }
 }
 
-/// Four lanes are a point.
+/// One point in four lanes.
 template <class S>
 void sum(const SumWork<S>& work) {
   using V = Lanes<S, 4>;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: W tets or rows side by side, a part of a group of eight, and the way to points and back.
+// Internal to the kernels: W tets or rows at a time, which are a part of a group of eight, with conversions from and to
+// points.
 #pragma once
 
 #include <tetskin/core/src/shared/kernels/lanes.h>
@@ -24,7 +25,7 @@ TETSKIN_INLINE Lanes<S, W> all(S s) {
   return Lanes<S, W>{} + s;
 }
 
-/// W vectors, by component.
+/// W vectors, stored by component.
 template <class S, int W>
 struct WideVector {
   Lanes<S, W> x, y, z;
@@ -59,9 +60,9 @@ TETSKIN_INLINE S largest(const Lanes<S, W>& v) {
   if constexpr (W == 1) {
     return v;
   } else {
-    S most = v[0];
-    for (int i = 1; i < W; ++i) most = v[i] > most ? v[i] : most;
-    return most;
+    S maximum = v[0];
+    for (int i = 1; i < W; ++i) maximum = v[i] > maximum ? v[i] : maximum;
+    return maximum;
   }
 }
 template <class S, int W>
@@ -90,13 +91,13 @@ TETSKIN_INLINE Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
   }
 }
 
-/// Whether any lane is above a limit.
+/// True if any lane is above a limit.
 template <class S, int W>
 TETSKIN_INLINE bool anyAbove(const Lanes<S, W>& v, S limit) {
   if constexpr (W == 1) {
     return v > limit;
   } else {
-    const auto above = v > limit;  // all bits set where it holds
+    const auto above = v > limit;  // all bits set where it is true
 #if defined(TETSKIN_VECTOR_TYPES) && defined(__AVX2__)
     if constexpr (sizeof above == 32) return _mm256_movemask_ps(reinterpret_cast<__m256>(above)) != 0;
 #endif
@@ -122,10 +123,10 @@ TETSKIN_INLINE __m256 pairOf(const float* low, const float* high) {
 }
 #endif
 
-/// Points by their places.
+/// Points gathered by their indices.
 template <class S, int W>
-TETSKIN_INLINE WidePoints<S, W> pointsAt(const S* points, const std::uint32_t* places) {
-  const auto at = [&](int i) { return points + 4 * static_cast<std::size_t>(places[i]); };
+TETSKIN_INLINE WidePoints<S, W> pointsAt(const S* points, const std::uint32_t* indices) {
+  const auto at = [&](int i) { return points + 4 * static_cast<std::size_t>(indices[i]); };
 #if defined(TETSKIN_VECTOR_TYPES) && defined(__AVX2__)
   if constexpr (W == 8 && sizeof(S) == sizeof(float)) {
     const __m256 a = pairOf(at(0), at(4)), b = pairOf(at(1), at(5)), c = pairOf(at(2), at(6)), d = pairOf(at(3), at(7));
@@ -165,12 +166,12 @@ TETSKIN_INLINE WidePoints<S, W> pointsAt(const S* points, const std::uint32_t* p
   }
 }
 template <class S, int W>
-TETSKIN_INLINE WideVector<S, W> vectorsAt(const S* points, const std::uint32_t* places) {
-  const WidePoints<S, W> v = pointsAt<S, W>(points, places);
+TETSKIN_INLINE WideVector<S, W> vectorsAt(const S* points, const std::uint32_t* indices) {
+  const WidePoints<S, W> v = pointsAt<S, W>(points, indices);
   return {v.x, v.y, v.z};
 }
 
-/// W points, so many scalars apart.
+/// W points at a constant distance in memory.
 template <class S, int W>
 TETSKIN_INLINE void putPoints(const WidePoints<S, W>& v, S* to, std::size_t apart) {
 #if defined(TETSKIN_VECTOR_TYPES) && defined(__AVX2__)

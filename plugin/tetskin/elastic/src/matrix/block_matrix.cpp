@@ -14,11 +14,11 @@ using kernels::kWideSymmetric;
 
 namespace {
 
-/// Of a node, over the trace of the block of alpha K on its diagonal: so many last digits of it.
+/// Least mass of a node relative to the trace of its diagonal block of alpha K: a number of last digits of it.
 template <class S>
-constexpr S kLeastMass = 16 * std::numeric_limits<S>::epsilon();
+constexpr S kMinMass = 16 * std::numeric_limits<S>::epsilon();
 
-/// Of a positive matrix: xx xy xz yy yz zz.
+/// The inverse of a symmetric positive matrix: xx xy xz yy yz zz.
 template <class S>
 void invertSymmetric(const S block[6], S out[6]) {
   const S unit = 1 / (block[0] + block[3] + block[5]);
@@ -47,7 +47,8 @@ BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std
 
 template <class S>
 kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t lastChunk) const {
-  // The kernels that write get their targets from members that are not const where they are called.
+  assert(firstChunk <= lastChunk && lastChunk <= pattern_.chunkCount());
+  // This function is const, but the kernels that write are only called from functions that are not.
   const auto writable = [](const AlignedVector<S>& v) { return const_cast<S*>(v.data()); };
   kernels::RowWork<S> work;
   work.firstChunk = firstChunk;
@@ -82,7 +83,7 @@ void BlockMatrix<S>::everywhere(ParallelFor* threads, Kernel&& kernel) const {
            [&](std::size_t task) { kernel(task, pattern_.taskChunks[task], pattern_.taskChunks[task + 1]); });
 }
 
-/// One colour after the other.
+/// Processes one colour after the other.
 template <class S>
 template <class Kernel>
 void BlockMatrix<S>::byColours(bool forwards, ParallelFor* threads, Kernel&& kernel) const {
@@ -96,7 +97,7 @@ void BlockMatrix<S>::byColours(bool forwards, ParallelFor* threads, Kernel&& ker
   }
 }
 
-/// In an order that no number of threads changes.
+/// Sums in an order that does not depend on the number of threads.
 template <class S>
 double BlockMatrix<S>::summed() const {
   double total = 0.0;
@@ -111,7 +112,7 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.corners = corners;
-    part.leastMass = kLeastMass<S>;
+    part.minMass = kMinMass<S>;
     part.diagonal = freeDiagonal_.data();
     part.inverse = freeInverse_.data();
     table.assemble(part);
@@ -124,7 +125,7 @@ template <class S>
 void BlockMatrix<S>::free() {
   diagonal_ = freeDiagonal_;
   inverse_ = freeInverse_;
-  // Backwards: a block may have been added to twice.
+  // Backwards, since a block may have been changed twice.
   for (auto saved = saved_.rbegin(); saved != saved_.rend(); ++saved) {
     for (std::size_t k = 0; k < 9; ++k) saved->block[k * kGroup] = saved->values[k];
   }
@@ -133,6 +134,7 @@ void BlockMatrix<S>::free() {
 
 template <class S>
 S* BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) {
+  assert(slot < slotCount() && neighbour < slotCount());
   const std::size_t chunk = slot / kGroup, lane = slot % kGroup;
   for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
     if (pattern_.neighbours[kGroup * e + lane] == neighbour) return &blocks_[kernels::kWideBlock * e + lane];
@@ -165,6 +167,7 @@ bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block
 
 template <class S>
 void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
+  assert(node < nodeCount());
   if (mass(node) == S(0)) return;
   const std::size_t slot = slotOf(node);
   S* d = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
@@ -177,6 +180,7 @@ void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
 
 template <class S>
 void BlockMatrix<S>::setInverse(std::size_t slot, const S inverse[6]) {
+  assert(slot < slotCount());
   S* to = &inverse_[slot / kGroup * kWideSymmetric + slot % kGroup];
   for (std::size_t k = 0; k < 6; ++k) to[k * kGroup] = inverse[k];
 }
@@ -196,12 +200,13 @@ void BlockMatrix<S>::freeInverse(std::size_t node, S out[6]) const {
 
 template <class S>
 void BlockMatrix<S>::diagonal(std::size_t node, S out[6]) const {
+  assert(node < nodeCount());
   const std::size_t slot = slotOf(node);
   const S* from = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
   for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
 }
 
-/// d (d^T D d)^-1 d^T
+/// The matrix d (d^T D d)^-1 d^T.
 template <class S>
 void BlockMatrix<S>::fixAllBut(std::size_t node, const S d[3]) {
   if (mass(node) == S(0)) return;
@@ -233,6 +238,7 @@ void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
 
 template <class S>
 void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
+  assert(points && wide);
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);

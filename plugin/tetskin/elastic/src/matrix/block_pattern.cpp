@@ -5,21 +5,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace tetskin::elastic_detail {
 namespace {
 
 using kernels::kGroup;
 
-/// Handing work to another thread costs some microseconds, in which these many chunks are swept.
+/// Handing work to another thread costs some microseconds, in which this many chunks are swept.
 constexpr std::size_t kChunksPerTask = 24;
 
-/// Two corners of a tet at one pair of nodes.
+/// Two corners of a tet that contribute to the block of a pair of nodes.
 struct Term {
   std::uint32_t own = 0, other = 0;
 };
 
-/// A node's neighbours, in order, and the terms of each block.
+/// A node's neighbours, sorted, and the terms of each block.
 struct Row {
   std::vector<std::uint32_t> neighbours;
   std::vector<std::vector<Term>> terms;
@@ -31,6 +32,7 @@ struct Pair {
 };
 
 std::vector<Row> rowsOf(std::size_t nodes, const std::vector<Tet>& tets) {
+  assert(tets.size() < 0xFFFFFFFFu / 4);
   const Lists<Pair> pairs = packLists<Pair>(nodes, [&](auto&& visit) {
     for (std::uint32_t t = 0; t < tets.size(); ++t) {
       for (std::uint32_t a = 0; a < 4; ++a) {
@@ -72,13 +74,13 @@ std::vector<std::uint32_t> coloursOf(const std::vector<Row>& rows) {
   return colours;
 }
 
-/// How many neighbours are swept before a row.
+/// The number of neighbours that are swept before a row.
 std::size_t lowerCount(const Row& row, std::uint32_t colour, const std::vector<std::uint32_t>& colours) {
   return static_cast<std::size_t>(std::count_if(row.neighbours.begin(), row.neighbours.end(),
                                                 [&](std::uint32_t m) { return colours[m] < colour; }));
 }
 
-/// Makes one chunk of up to eight rows after another.
+/// Creates the chunks of up to eight rows one after the other.
 class PatternMaker {
  public:
   PatternMaker(BlockPattern& pattern, const std::vector<Row>& rows, const std::vector<std::uint32_t>& colours,
@@ -88,35 +90,36 @@ class PatternMaker {
     pattern_.sums.push_back(0);
   }
 
-  /// nodes  of the chunk; fewer than eight if no more are of this colour
+  /// nodes  of the chunk; fewer than eight if no more nodes have this colour
   void addChunk(const std::uint32_t* nodes, std::size_t count, std::uint32_t firstSlot) {
+    assert(count > 0 && count <= kGroup && firstSlot % kGroup == 0);
     for (const bool lower : {true, false}) {
-      std::array<std::vector<std::size_t>, kGroup> places;  // in the row's lists
+      std::array<std::vector<std::size_t>, kGroup> indices;  // positions in the rows' lists
       std::size_t longest = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const Row& row = rows_[nodes[i]];
         for (std::size_t k = 0; k < row.neighbours.size(); ++k) {
-          if ((colours_[row.neighbours[k]] < colours_[nodes[i]]) == lower) places[i].push_back(k);
+          if ((colours_[row.neighbours[k]] < colours_[nodes[i]]) == lower) indices[i].push_back(k);
         }
-        longest = std::max(longest, places[i].size());
+        longest = std::max(longest, indices[i].size());
       }
-      for (std::size_t k = 0; k < longest; ++k) addEntry(nodes, count, firstSlot, places, k);
+      for (std::size_t k = 0; k < longest; ++k) addEntry(nodes, count, firstSlot, indices, k);
       pattern_.starts.push_back(static_cast<std::uint32_t>(pattern_.sums.size() - 1));
     }
   }
 
  private:
-  /// The k-th neighbour of each row; where there is none, the row itself, with a block of zeros.
+  /// Adds the k-th neighbour of each row; a row without one gets itself, with a block of zeros.
   void addEntry(const std::uint32_t* nodes, std::size_t count, std::uint32_t firstSlot,
-                const std::array<std::vector<std::size_t>, kGroup>& places, std::size_t k) {
+                const std::array<std::vector<std::size_t>, kGroup>& indices, std::size_t k) {
     std::array<const std::vector<Term>*, kGroup> terms{};
     std::size_t longest = 0;
     for (std::size_t i = 0; i < kGroup; ++i) {
       std::uint32_t neighbour = firstSlot + static_cast<std::uint32_t>(i);
-      if (i < count && k < places[i].size()) {
+      if (i < count && k < indices[i].size()) {
         const Row& row = rows_[nodes[i]];
-        neighbour = pattern_.slotOf[row.neighbours[places[i][k]]];
-        terms[i] = &row.terms[places[i][k]];
+        neighbour = pattern_.slotOf[row.neighbours[indices[i][k]]];
+        terms[i] = &row.terms[indices[i][k]];
         longest = std::max(longest, terms[i]->size());
       }
       pattern_.neighbours.push_back(neighbour);
@@ -138,6 +141,7 @@ class PatternMaker {
 }  // namespace
 
 BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet) {
+  assert(noTet >= tets.size());
   const std::vector<Row> rows = rowsOf(nodes, tets);
   const std::vector<std::uint32_t> colours = coloursOf(rows);
   const std::uint32_t colourCount = colours.empty() ? 0 : *std::max_element(colours.begin(), colours.end()) + 1;
@@ -145,7 +149,7 @@ BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::
     for (std::uint32_t n = 0; n < nodes; ++n) visit(colours[n], n);
   });
 
-  // Rows of like lengths side by side: the shorter ones of a chunk are filled up.
+  // Rows of similar length are put in one chunk, since the shorter rows of a chunk are padded.
   BlockPattern pattern;
   pattern.slotOf.resize(nodes);
   std::uint32_t slot = 0;
@@ -175,6 +179,9 @@ BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::
     }
     pattern.colours.push_back(static_cast<std::uint32_t>(pattern.taskChunks.size() - 1));
   }
+  assert(pattern.starts.size() == 2 * std::size_t{chunk} + 1 &&
+         pattern.sums.back() * 2 * kGroup == pattern.terms.size());
+  assert(std::is_sorted(pattern.starts.begin(), pattern.starts.end()) && slot == chunk * kGroup);
   return pattern;
 }
 

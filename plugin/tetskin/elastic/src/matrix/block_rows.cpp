@@ -9,10 +9,10 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Fields that share registers.
+/// Number of fields that are processed together in registers.
 constexpr int kTogether = 6;
 
-/// By node: itself and those that it shares a tet with, ascending.
+/// By node: the node itself and those with which it shares a tet, ascending.
 Lists<> neighboursOf(const TetMesh& mesh) {
   const Lists<> around = tetsAroundNodes(mesh);
   Lists<> neighbours;
@@ -49,6 +49,7 @@ std::size_t BlockRows::indexOf(int row, int column) const {
   const auto first = columns_.values.begin() + columns_.starts[row];
   const auto last = columns_.values.begin() + columns_.starts[row + 1];
   const auto found = std::lower_bound(first, last, static_cast<std::uint32_t>(column));
+  assert(found != last && *found == static_cast<std::uint32_t>(column));
   return static_cast<std::size_t>(found - columns_.values.begin());
 }
 
@@ -81,6 +82,8 @@ void BlockRows::multiply(const Fields& fields, Fields& product) const {
 
 template <int kColumns>
 void BlockRows::multiplyColumns(Eigen::Index first, const Fields& fields, Fields& product) const {
+  assert(fields.rows() == 3 * static_cast<Eigen::Index>(columns_.starts.size() - 1));
+  assert(first + kColumns <= fields.cols());
   using Some = Eigen::Array<double, 1, kColumns>;
   const Eigen::Index stride = fields.cols();
   for (std::size_t row = 0; row + 1 < columns_.starts.size(); ++row) {

@@ -10,14 +10,14 @@
 
 namespace tetskin::elastic_detail {
 
-/// The stiffness matrix of a mesh at rest as rows of 3x3 blocks: forces over displacements, 3N x 3N, symmetric,
-/// positive but for rigid motions.
+/// The stiffness matrix of a mesh at rest as rows of 3x3 blocks, which maps displacements to forces: 3N x 3N,
+/// symmetric, positive except for rigid motions.
 class BlockRows {
  public:
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
   /// mesh   rest space, no tet flat. Not referred to later
-  /// scale  by tet: times the stiffness of a Young's modulus of 1
+  /// scale  by tet: stiffness factor relative to a Young's modulus of 1
   /// Cost   O(T log T) for T tets
   BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale);
 
@@ -25,9 +25,9 @@ class BlockRows {
   void multiply(const Fields& fields, Fields& product) const;
   Eigen::VectorXd diagonal() const;
   const Block& diagonalBlock(std::size_t node) const;
-  /// By node: itself and those that it shares a tet with, ascending.
+  /// By node: the node itself and those with which it shares a tet, ascending.
   const Lists<>& neighbours() const { return columns_; }
-  /// All of it, both triangles.
+  /// The whole matrix, both triangles.
   Eigen::SparseMatrix<double, Eigen::RowMajor> sparse() const;
 
  private:

@@ -12,7 +12,7 @@ Eigen::Index rowOf(std::size_t item) {
   return static_cast<Eigen::Index>(3 * item);
 }
 
-/// sums += arm x vectors, three rows each.
+/// Adds arm x vector to the sums, three rows each.
 template <class Vectors, class Sums>
 void addCross(const Eigen::Vector3d& arm, const Vectors& vectors, Sums&& sums) {
   for (int i = 0; i < 3; ++i) {
@@ -31,30 +31,30 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) :
   }
   std::vector<int> number(mesh.nodeCount(), -1);
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
-    int& part = number[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (part < 0) {
-      part = static_cast<int>(parts_.size());
-      parts_.emplace_back();
+    int& component = number[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
+    if (component < 0) {
+      component = static_cast<int>(components_.size());
+      components_.emplace_back();
     }
-    partOf_[n] = part;
+    partOf_[n] = component;
     masses_.push_back(masses[rowOf(n)]);
-    parts_[part].mass += masses_[n];
-    parts_[part].centroid += masses_[n] * mesh.nodes[n];
+    components_[component].mass += masses_[n];
+    components_[component].centroid += masses_[n] * mesh.nodes[n];
   }
-  for (Part& part : parts_) part.centroid /= part.mass;
+  for (Component& component : components_) component.centroid /= component.mass;
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
-    Part& part = parts_[partOf_[n]];
-    arms_.emplace_back(mesh.nodes[n] - part.centroid);
-    part.inertia +=
+    Component& component = components_[partOf_[n]];
+    arms_.emplace_back(mesh.nodes[n] - component.centroid);
+    component.inertia +=
         masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
   }
-  for (Part& part : parts_) part.inertiaFactors.compute(part.inertia);
+  for (Component& component : components_) component.inertiaFactors.compute(component.inertia);
 }
 
 void RigidMotions::removeFrom(Fields& displacements) const {
   assert(displacements.rows() == rowOf(partOf_.size()));
-  // Momenta of the parts first, then the velocities of the rigid motions that have them.
-  Fields linear = Fields::Zero(rowOf(parts_.size()), displacements.cols()), angular = linear;
+  // First the momenta of the components, then the velocities of the rigid motions with these momenta.
+  Fields linear = Fields::Zero(rowOf(components_.size()), displacements.cols()), angular = linear;
   Fields momentum(3, displacements.cols()), motion = momentum;
   for (std::size_t n = 0; n < partOf_.size(); ++n) {
     const Eigen::Index part = 3 * partOf_[n];
@@ -62,11 +62,12 @@ void RigidMotions::removeFrom(Fields& displacements) const {
     linear.middleRows<3>(part) += momentum;
     addCross(arms_[n], momentum, angular.middleRows<3>(part));
   }
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    linear.middleRows<3>(rowOf(p)) /= parts_[p].mass;
+  for (std::size_t p = 0; p < components_.size(); ++p) {
+    linear.middleRows<3>(rowOf(p)) /= components_[p].mass;
     for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
       const Eigen::Vector3d spin = angular.block<3, 1>(rowOf(p), k);
-      angular.block<3, 1>(rowOf(p), k) = parts_[p].inertiaFactors.solve(spin);
+      const Eigen::Vector3d velocity = components_[p].inertiaFactors.solve(spin);
+      angular.block<3, 1>(rowOf(p), k) = velocity;
     }
   }
   for (std::size_t n = 0; n < partOf_.size(); ++n) {
@@ -78,6 +79,7 @@ void RigidMotions::removeFrom(Fields& displacements) const {
 }
 
 void RigidMotions::balance(Fields& loads) const {
+  assert(loads.rows() == rowOf(masses_.size()));
   for (std::size_t n = 0; n < masses_.size(); ++n) loads.middleRows<3>(rowOf(n)) /= masses_[n];
   removeFrom(loads);
   for (std::size_t n = 0; n < masses_.size(); ++n) loads.middleRows<3>(rowOf(n)) *= masses_[n];

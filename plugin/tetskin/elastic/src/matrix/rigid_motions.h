@@ -9,28 +9,28 @@
 
 namespace tetskin::elastic_detail {
 
-/// The rigid motions of each part of a body at rest that nothing holds: elasticity does not resist them. What is said
-/// of one displacement or load goes for each column.
+/// The rigid motions of each component of a free body at rest: elasticity does not resist them. Displacements and loads
+/// may have several columns; each column is treated by itself.
 ///
-/// A body in a step is another matter: its parts turn by angles that are not small, and some of their nodes are held
-/// (see PartMotion::excess).
+/// This does not apply to a body in motion: its components rotate by angles that are not small, and some of their nodes
+/// are pinned (see ComponentMotion::excess).
 class RigidMotions {
  public:
-  /// mesh    rest space; every part has a volume. Not referred to later
+  /// mesh    rest space; every component has a volume. Not referred to later
   /// masses  3 nodeCount, above 0, see `lumpedVolumes`
   /// Cost    O(nodes + tets)
   RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses);
 
-  /// How many there are: six a part.
-  Eigen::Index count() const { return 6 * static_cast<Eigen::Index>(parts_.size()); }
-  /// Takes the rigid motions out of displacements, so that they neither move nor turn any part's masses: the projection
-  /// that is orthogonal by mass. Cost O(nodes x columns)
+  /// The number of rigid motions: six per component.
+  Eigen::Index count() const { return 6 * static_cast<Eigen::Index>(components_.size()); }
+  /// Removes the rigid motions from displacements, so that they neither translate nor rotate any component: the
+  /// projection that is orthogonal with respect to mass. Cost O(nodes x columns)
   void removeFrom(Fields& displacements) const;
-  /// Takes the resultants and moments out of loads: `removeFrom` of the accelerations that they cause.
+  /// Removes the resultants and moments from loads: `removeFrom`, applied to the accelerations that they cause.
   void balance(Fields& loads) const;
 
  private:
-  struct Part {
+  struct Component {
     double mass = 0.0;
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
@@ -39,8 +39,8 @@ class RigidMotions {
 
   std::vector<int> partOf_;            ///< by node
   std::vector<double> masses_;         ///< by node
-  std::vector<Eigen::Vector3d> arms_;  ///< by node: from its part's centroid
-  std::vector<Part> parts_;
+  std::vector<Eigen::Vector3d> arms_;  ///< by node: from its component's centroid
+  std::vector<Component> components_;
 };
 
 }  // namespace tetskin::elastic_detail

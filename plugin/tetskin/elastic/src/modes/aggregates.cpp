@@ -11,17 +11,17 @@
 
 namespace tetskin::elastic_detail {
 
-Aggregates aggregate(const Lists<>& neighbours, int most) {
+Aggregates aggregate(const Lists<>& neighbours, int maximum) {
   const std::size_t nodes = neighbours.starts.size() - 1;
-  assert(nodes > 0 && most > 0);
+  assert(nodes > 0 && maximum > 0);
   Aggregates result{std::vector<int>(nodes, -1), 0};
   std::vector<int> distance(nodes, std::numeric_limits<int>::max());
   std::vector<std::uint32_t> queue;
   std::size_t seed = 0;
-  while (result.count < most && distance[seed] > 0) {
+  while (result.count < maximum && distance[seed] > 0) {
     const int group = result.count++;
     distance[seed] = 0;
-    result.of[seed] = group;
+    result.indices[seed] = group;
     queue.assign(1, static_cast<std::uint32_t>(seed));
     for (std::size_t k = 0; k < queue.size(); ++k) {
       const std::uint32_t node = queue[k];
@@ -29,12 +29,13 @@ Aggregates aggregate(const Lists<>& neighbours, int most) {
         const std::uint32_t other = neighbours.values[j];
         if (distance[other] <= distance[node] + 1) continue;
         distance[other] = distance[node] + 1;
-        result.of[other] = group;
+        result.indices[other] = group;
         queue.push_back(other);
       }
     }
     seed = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
   }
+  assert(std::find(result.indices.begin(), result.indices.end(), -1) == result.indices.end());
   return result;
 }
 

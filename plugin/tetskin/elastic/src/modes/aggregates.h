@@ -10,14 +10,14 @@ namespace tetskin::elastic_detail {
 
 /// Groups of neighbouring nodes.
 struct Aggregates {
-  std::vector<int> of;  ///< by node
+  std::vector<int> indices;  ///< by node
   int count = 0;
 };
 
-/// At most so many groups, each of the nodes that are nearest to one of them, counted in edges: seeds are as far from
-/// each other as they can be, so that groups are round and of like size. The graph must be connected.
+/// At most this many groups; each node belongs to the group whose seed is nearest, counted in edges. Seeds are as far
+/// from each other as possible, so that groups are round and of similar size. The graph must be connected.
 /// neighbours  by node
 /// Cost        O(groups x nodes)
-Aggregates aggregate(const Lists<>& neighbours, int most);
+Aggregates aggregate(const Lists<>& neighbours, int maximum);
 
 }  // namespace tetskin::elastic_detail

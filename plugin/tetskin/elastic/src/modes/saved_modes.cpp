@@ -8,10 +8,10 @@
 //   8                  version
 //   8                  hash of the tets, see hashOf
 //   5 x 8              nodeCount, tetCount, modeCount, number of pinned nodes, Poisson's ratio
-//   8 a node           mass
-//   8 a pinned node    which node it is
-//   8 a mode           eigenvalue
-//   24 a mode and node displacement
+//   8 per node         mass
+//   8 per pinned node  index of the node
+//   8 per mode         eigenvalue
+//   24 per mode, node  displacement
 //   8                  hash of all that precedes
 #include <tetskin/core/src/shared/base/bytes.h>
 #include <tetskin/elastic/vibration_modes.h>
@@ -27,42 +27,42 @@ constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 8 * 8;
 
 Status damaged(const std::string& how) {
-  return {StatusCode::Malformed, "the saved modes " + how + "; find them again"};
+  return {StatusCode::Malformed, "the saved modes " + how + "; compute them again"};
 }
 
 struct Header {
   std::uint64_t tetsHash = 0, nodeCount = 0, tetCount = 0, modeCount = 0, pinnedCount = 0;
 
-  /// False where the sum would overflow, too.
+  /// Also false where the sum would overflow.
   bool isOf(std::size_t bytes) const {
-    const std::uint64_t most = bytes / 8;
-    if (nodeCount > most || pinnedCount > nodeCount || modeCount > most) return false;
-    if (nodeCount > 0 && modeCount > most / (3 * nodeCount)) return false;
+    const std::uint64_t maximum = bytes / 8;
+    if (nodeCount > maximum || pinnedCount > nodeCount || modeCount > maximum) return false;
+    if (nodeCount > 0 && modeCount > maximum / (3 * nodeCount)) return false;
     return kHeaderBytes + 8 * (nodeCount + pinnedCount + modeCount + 3 * modeCount * nodeCount) + kHashBytes == bytes;
   }
 };
 
 Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
   if (count < 8 || std::memcmp(bytes, kMagic, 8) != 0) {
-    return {StatusCode::UnsupportedFormat, "these bytes are no modes that tetskin has saved"};
+    return {StatusCode::UnsupportedFormat, "these bytes are not modes saved by tetskin"};
   }
   if (count < kHeaderBytes + kHashBytes) return damaged("end within their header");
   ByteReader reader(bytes + 8);
   if (const std::uint64_t version = reader.u64(); version != kVersion) {
-    return {StatusCode::UnsupportedFormat, "the saved modes are of version " + std::to_string(version) +
+    return {StatusCode::UnsupportedFormat, "the saved modes have version " + std::to_string(version) +
                                                ", but this library reads version " + std::to_string(kVersion) +
-                                               " alone; find them again"};
+                                               " only; compute them again"};
   }
   for (std::uint64_t* value :
        {&header.tetsHash, &header.nodeCount, &header.tetCount, &header.modeCount, &header.pinnedCount}) {
     *value = reader.u64();
   }
-  if (!header.isOf(count)) return damaged("have another number of bytes than they tell");
+  if (!header.isOf(count)) return damaged("have another number of bytes than their header states");
   if (!hashIsRight(bytes, count)) return damaged("are damaged");
   return {};
 }
 
-/// What `vibrationModes` never returns.
+/// False for results that `computeVibrationModes` never returns.
 bool makeSense(const VibrationModes& modes) {
   const auto isPositive = [](double value) { return value > 0.0; };
   const auto isNormal = [&](const std::vector<double>& shape) {
@@ -102,8 +102,8 @@ Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::siz
   if (header.nodeCount != tets.nodeCount() || header.tetCount != tets.tetCount() || header.tetsHash != hashOf(tets)) {
     return Status{StatusCode::CageMismatch,
                   "the modes were saved with other tets: " + std::to_string(header.nodeCount) + " nodes and " +
-                      std::to_string(header.tetCount) + " tets, these are " + std::to_string(tets.nodeCount()) +
-                      " and " + std::to_string(tets.tetCount()) + ", or lie elsewhere; find the modes again"};
+                      std::to_string(header.tetCount) + " tets, but these have " + std::to_string(tets.nodeCount()) +
+                      " and " + std::to_string(tets.tetCount()) + ", or other positions; compute the modes again"};
   }
   VibrationModes modes;
   modes.nodes = tets.nodes;
@@ -115,13 +115,13 @@ Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::siz
   finite &= reader.plane(modes.masses.data(), modes.masses.size());
   for (std::uint64_t k = 0; k < header.pinnedCount; ++k) {
     const std::uint64_t node = reader.u64();
-    if (node >= header.nodeCount) return damaged("name a node that does not exist");
+    if (node >= header.nodeCount) return damaged("refer to a node that does not exist");
     modes.pinned.push_back(static_cast<int>(node));
   }
   finite &= reader.plane(modes.eigenvalues.data(), modes.eigenvalues.size());
   for (std::vector<double>& shape : modes.shapes) finite &= reader.plane(shape.data(), shape.size());
   if (!finite) return damaged("have numbers that are not finite");
-  if (!makeSense(modes)) return damaged("hold masses, frequencies or a material that cannot be");
+  if (!makeSense(modes)) return damaged("contain invalid masses, frequencies or material parameters");
   return modes;
 }
 

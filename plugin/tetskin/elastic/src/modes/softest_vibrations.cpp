@@ -19,22 +19,22 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Error of a vector in the norm of energy, over its own, at which it counts as found: eigenvalues are then right to
-/// the square of that, as far as rounding lets them.
+/// Error of a vector relative to the vector, in the energy norm, at which it counts as found: the relative error of its
+/// eigenvalue is the square of this, up to rounding.
 constexpr double kVectorTolerance = 1e-8;
-constexpr int kMostModeIterations = 200;
-/// Vectors beyond those that are wanted: the more, the faster the wanted ones converge.
+constexpr int kMaxModeIterations = 200;
+/// Vectors in addition to those that are wanted: the more, the faster the wanted ones converge.
 constexpr int kGuards = 5;
-/// Freedoms a vector below which all are found at once: the iteration takes three subspaces.
+/// Degrees of freedom per vector below which all vectors are found at once: the iteration takes three subspaces.
 constexpr Eigen::Index kFewFreedoms = 5;
-/// Of the products of normalised vectors, an eigenvalue below which they depend on each other.
+/// Eigenvalue of the products of normalised vectors below which the vectors are linearly dependent.
 constexpr double kDependent = 1e-13;
 
 struct Space {
-  Fields vectors, images;  ///< images: times the matrix
+  Fields vectors, images;  ///< images: the matrix times the vectors
 };
 
-/// Orthonormal vectors of the same span, without what depends on the others.
+/// Orthonormal vectors of the same span; linearly dependent ones are dropped.
 Fields orthonormal(Fields vectors) {
   for (int pass = 0; pass < 2 && vectors.cols() > 0; ++pass) {
     Eigen::MatrixXd products = vectors.transpose() * vectors;
@@ -60,7 +60,7 @@ class Iteration {
  public:
   Iteration(const VibrationProblem& problem, int wanted)
       : problem_(problem), wanted_(wanted), width_(widthFor(problem, wanted)) {
-    // By reflections, which keep all columns: those of slender bodies all but depend on each other.
+    // By reflections, which keep all columns: those of slender bodies are nearly linearly dependent.
     const Eigen::HouseholderQR<Eigen::MatrixXd> start(problem.precondition(startVectors(problem.size(), width_)));
     space_.vectors = start.householderQ() * Eigen::MatrixXd::Identity(problem.size(), width_);
     space_.images = problem.times(space_.vectors);
@@ -72,7 +72,7 @@ class Iteration {
     return std::min<Eigen::Index>(wanted + std::max(kGuards, wanted / 4), all);
   }
 
-  /// Returns how far the wanted ones are from their tolerance, at most 1; 0: all are found.
+  /// Returns how far the wanted vectors are from their tolerance, at most 1; 0: all are found.
   double advance() {
     const Fields residuals = space_.vectors.leftCols(width_) * (-values_).asDiagonal() + space_.images.leftCols(width_);
     const Fields steps = problem_.precondition(residuals);
@@ -94,15 +94,16 @@ class Iteration {
   Fields vectors() const { return space_.vectors.leftCols(wanted_); }
 
  private:
-  /// Rayleigh-Ritz in the first `width_` vectors.
+  /// Rayleigh-Ritz in the span of the first `width_` vectors.
   void rotate() {
     const Eigen::MatrixXd energies = space_.vectors.transpose() * space_.images;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (energies + energies.transpose()));
     take(ritz, {});
   }
 
-  /// To the best vectors in the span of the present ones, of the directions in which these came, and of the steps.
+  /// Finds the best vectors in the span of the present ones, of the directions of the last step, and of the new steps.
   void extend(Fields steps, const std::vector<Eigen::Index>& active) {
+    assert(steps.cols() == static_cast<Eigen::Index>(active.size()));
     for (int pass = 0; pass < 2; ++pass) {
       steps = orthonormal(std::move(steps));
       problem_.removeRigid(steps);
@@ -120,9 +121,11 @@ class Iteration {
     take(ritz, active);
   }
 
-  /// Makes the softest Ritz vectors the present ones, and for the active ones keeps what they have beyond the former.
+  /// The softest Ritz vectors become the present ones; for the active ones, their difference to the former ones is kept
+  /// as the direction.
   void take(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& ritz, const std::vector<Eigen::Index>& active) {
     const Eigen::Index all = space_.vectors.cols();
+    assert(ritz.eigenvectors().rows() == all && width_ <= all);
     const Eigen::MatrixXd best = ritz.eigenvectors().leftCols(width_);
     values_ = ritz.eigenvalues().head(width_);
     Eigen::MatrixXd came(all, static_cast<Eigen::Index>(active.size()));
@@ -140,12 +143,12 @@ class Iteration {
 
   const VibrationProblem& problem_;
   Eigen::Index wanted_, width_;
-  Space space_;  ///< the present vectors, then the directions in which they came
+  Space space_;  ///< the present vectors, followed by the directions of the last step
   Eigen::VectorXd values_;
 };
 
 Vibrations allAtOnce(const VibrationProblem& problem, int count) {
-  // Rigid motions, which only a body has of which all is free, become the stiffest.
+  // Rigid motions, which only a free body has, become the stiffest.
   Eigen::MatrixXd matrix = problem.dense();
   if (problem.rigidCount() > 0) {
     const Fields identity = Fields::Identity(problem.size(), problem.size());
@@ -166,8 +169,8 @@ Vibrations allAtOnce(const VibrationProblem& problem, int count) {
 
 Vibrations softestVibrations(const VibrationProblem& problem, int count, const std::function<void(double)>& progress) {
   assert(problem.ok() && count > 0 && count <= problem.freedoms() - problem.rigidCount());
-  const auto tell = [&](double share) {
-    if (progress) progress(share);
+  const auto tell = [&](double fraction) {
+    if (progress) progress(fraction);
   };
   if (problem.freedoms() < kFewFreedoms * Iteration::widthFor(problem, count)) {
     Vibrations result = allAtOnce(problem, count);
@@ -177,7 +180,7 @@ Vibrations softestVibrations(const VibrationProblem& problem, int count, const s
   Iteration iteration(problem, count);
   Vibrations result;
   double told = 0.0;
-  while (!result.converged && result.iterations < kMostModeIterations) {
+  while (!result.converged && result.iterations < kMaxModeIterations) {
     const double left = iteration.advance();
     result.converged = left == 0.0;
     ++result.iterations;

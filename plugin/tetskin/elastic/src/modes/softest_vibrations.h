@@ -10,41 +10,41 @@
 
 namespace tetskin::elastic_detail {
 
-/// A body as its vibrations see it. Vectors are displacements times the root of their nodes' masses: then mass is 1,
-/// and stiffness alone is left.
+/// The eigenvalue problem of a body's vibrations. Vectors are displacements times the square roots of their nodes'
+/// masses: then the mass matrix is the identity, and only stiffness is left.
 class VibrationProblem {
  public:
-  /// tets    of one part, rest space. Not referred to later
+  /// tets    of one component, rest space. Not referred to later
   /// masses  by node
-  /// free    by node: not pinned
+  /// free    by node: true if it is not pinned
   VibrationProblem(const TetMesh& tets, BlockRows stiffness, const std::vector<double>& masses,
                    const std::vector<char>& free);
   VibrationProblem(const VibrationProblem&) = delete;
 
   bool ok() const { return solver_.ok(); }
   Eigen::Index size() const { return inverseRoots_.size(); }
-  /// Of displacements that may be other than 0.
+  /// The number of displacements that may differ from 0.
   Eigen::Index freedoms() const { return freedoms_; }
   double largestFrequency() const { return solver_.largestFrequency(); }
 
   Fields times(const Fields& vectors) const;
-  /// Roughly the inverse of `times`.
+  /// An approximate inverse of `times`.
   Fields precondition(const Fields& vectors) const;
-  /// Of rigid motions: 6 of a body that nothing holds; otherwise none.
+  /// The number of rigid motions: 6 for a free body, otherwise none.
   Eigen::Index rigidCount() const { return rigid_ ? rigid_->count() : 0; }
   void removeRigid(Fields& vectors) const;
-  /// Ascending, as many as freedoms.
+  /// The rows of free nodes, ascending, as many as freedoms.
   std::vector<Eigen::Index> freeRows() const;
-  /// Of the free rows, for bodies of which few are.
+  /// The matrix of the free rows, for bodies with few of them.
   Eigen::MatrixXd dense() const;
   Fields displacements(const Fields& vectors) const { return inverseRoots_.asDiagonal() * vectors; }
 
  private:
   BlockRows stiffness_;
   TwoLevelSolver solver_;
-  Eigen::VectorXd roots_, inverseRoots_;  ///< of the masses; 0 where a node is pinned
+  Eigen::VectorXd roots_, inverseRoots_;  ///< square roots of the masses, and their inverses; 0 where a node is pinned
   Eigen::Index freedoms_ = 0;
-  std::optional<RigidMotions> rigid_;  ///< of a body that nothing holds
+  std::optional<RigidMotions> rigid_;  ///< for a free body only
 };
 
 struct Vibrations {
@@ -54,9 +54,9 @@ struct Vibrations {
   bool converged = false;
 };
 
-/// The `count` smallest eigenvalues but those of rigid motions.
-/// count     at most freedoms, less 6 if nothing is pinned
-/// progress  told the share that is done; may be empty
+/// The `count` smallest eigenvalues, without those of rigid motions.
+/// count     at most the number of freedoms, less 6 if nothing is pinned
+/// progress  called with the fraction that is done; may be empty
 Vibrations softestVibrations(const VibrationProblem& problem, int count, const std::function<void(double)>& progress);
 
 }  // namespace tetskin::elastic_detail

@@ -7,7 +7,7 @@
 
 namespace tetskin::elastic_detail {
 
-/// Numbers that look random and are the same on every machine, from -0.5 to 0.5.
+/// Pseudorandom numbers from -0.5 to 0.5 that are the same on every machine.
 inline Eigen::MatrixXd startVectors(Eigen::Index rows, Eigen::Index columns) {
   Eigen::MatrixXd start(rows, columns);
   std::uint32_t state = 1;

@@ -17,20 +17,21 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Of groups: six motions each are as many unknowns as a dense factorisation takes a few seconds for.
-constexpr int kMostGroups = 400;
-/// Nodes to a group, at least.
+/// Most groups: six motions each give as many unknowns as a dense factorisation can process in a few seconds.
+constexpr int kMaxGroups = 400;
+/// Least number of nodes per group.
 constexpr std::size_t kNodesOfGroup = 8;
-/// A group's motion that is this small beside its largest is none: of nodes in a line, or of one.
+/// A group's motion that is this small relative to its largest one does not exist: the nodes are on a line, or there is
+/// only one.
 constexpr double kNoMotion = 1e-6;
-/// Degree of the polynomial that smooths, and the part of the spectrum that it damps: all above 1 over this of it.
+/// Degree of the smoothing polynomial, and the part of the spectrum that it damps: all above 1 over this of it.
 constexpr int kDegree = 3;
 constexpr double kDampedRange = 12.0;
 constexpr int kPowerIterations = 15;
-/// Margin over an estimated largest eigenvalue, which comes from below.
-constexpr double kLargestMargin = 1.1;
-/// Stiffness added to the groups', the same for each motion, over the largest: without it a free body's rigid motions
-/// have none.
+/// Margin added to an estimate of the largest eigenvalue, which is a lower bound.
+constexpr double kMaxMargin = 1.1;
+/// Stiffness added to that of the groups, the same for each motion, relative to the largest: without it, a free body's
+/// rigid motions have none.
 constexpr double kGroupShift = 1e-10;
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -38,9 +39,10 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// Orthonormal bases of the rigid motions of each group's free nodes.
 SparseRows motionsOf(const Aggregates& groups, const std::vector<Eigen::Vector3d>& nodes,
                      const std::vector<char>& free) {
+  assert(groups.indices.size() == nodes.size() && free.size() == nodes.size());
   const Lists<> members = packLists(static_cast<std::size_t>(groups.count), [&](auto&& add) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      if (free[n]) add(static_cast<std::size_t>(groups.of[n]), static_cast<std::uint32_t>(n));
+      if (free[n]) add(static_cast<std::size_t>(groups.indices[n]), static_cast<std::uint32_t>(n));
     }
   });
   std::vector<Eigen::Triplet<double>> entries;
@@ -85,12 +87,12 @@ TwoLevelSolver::TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eig
     if (free[n]) inverseDiagonal_[n] = stiffness.diagonalBlock(n).inverse();
   }
   estimateLargest(masses);
-  const int wished = static_cast<int>(std::min<std::size_t>(kMostGroups, 1 + nodes.size() / kNodesOfGroup));
-  const SparseRows motions = motionsOf(aggregate(stiffness.neighbours(), wished), nodes, free);
+  const int desired = static_cast<int>(std::min<std::size_t>(kMaxGroups, 1 + nodes.size() / kNodesOfGroup));
+  const SparseRows motions = motionsOf(aggregate(stiffness.neighbours(), desired), nodes, free);
   const SparseRows sparse = stiffness.sparse();
 
-  // Once over by Jacobi's method: motions of neighbouring groups then go over into each other, which is what makes them
-  // soft. P = (1 - 4/3 D^-1 K / largest) P0
+  // One step of Jacobi's method: the motions of neighbouring groups then blend into each other, which makes them soft.
+  // P = (1 - 4/3 D^-1 K / largest) P0
   SparseRows inverse(sparse.rows(), sparse.rows());
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -116,10 +118,10 @@ void TwoLevelSolver::estimateLargest(const std::vector<double>& masses) {
   for (int k = 0; k < kPowerIterations; ++k) {
     stiffness_.multiply(field, forces);
     field = timesInverseDiagonal(forces);
-    largest_ = kLargestMargin * field.norm();
+    largest_ = kMaxMargin * field.norm();
     field /= field.norm();
   }
-  // A node's stiffness over its mass times `largest` bounds all frequencies.
+  // A node's stiffness over its mass, times `largest`, bounds all squared frequencies.
   for (std::size_t n = 0; n < masses.size(); ++n) {
     if (inverseDiagonal_[n].isZero(0.0)) continue;
     const double stiffest = stiffness_.diagonalBlock(n).trace();
@@ -128,6 +130,7 @@ void TwoLevelSolver::estimateLargest(const std::vector<double>& masses) {
 }
 
 Fields TwoLevelSolver::timesInverseDiagonal(const Fields& loads) const {
+  assert(loads.rows() == static_cast<Eigen::Index>(3 * inverseDiagonal_.size()));
   Fields result(loads.rows(), loads.cols());
   for (std::size_t n = 0; n < inverseDiagonal_.size(); ++n) {
     const auto at = static_cast<Eigen::Index>(3 * n);
@@ -139,8 +142,9 @@ Fields TwoLevelSolver::timesInverseDiagonal(const Fields& loads) const {
   return result;
 }
 
-/// Chebyshev's iteration for the upper part of the spectrum.
+/// Chebyshev iteration for the upper part of the spectrum.
 void TwoLevelSolver::smooth(const Fields& loads, Fields& displacements, bool fromZero) const {
+  assert(largest_ > 0.0 && loads.rows() == displacements.rows() && loads.cols() == displacements.cols());
   const double high = largest_, low = largest_ / kDampedRange;
   const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
   Fields residual = loads, forces(loads.rows(), loads.cols());

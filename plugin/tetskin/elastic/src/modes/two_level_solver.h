@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Displacements under loads, roughly: smoothing on the nodes, and an exact solve for what groups of nodes do as a
-// whole.
+// Approximate displacements under loads: smoothing on the nodes, and an exact solve for the motions of groups of nodes
+// as a whole.
 #pragma once
 
 #include <tetskin/elastic/src/matrix/block_rows.h>
@@ -13,21 +13,21 @@
 
 namespace tetskin::elastic_detail {
 
-/// A stiffness matrix approximately inverted: linear, symmetric and positive, as preconditioners must be.
+/// An approximate inverse of a stiffness matrix: linear, symmetric and positive, as preconditioners must be.
 class TwoLevelSolver {
  public:
   /// stiffness  must outlive this
   /// nodes      rest positions of all nodes
   /// masses     by node
-  /// free       by node: not pinned
+  /// free       by node: true if it is not pinned
   TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eigen::Vector3d>& nodes,
                  const std::vector<double>& masses, const std::vector<char>& free);
 
-  /// False if what groups do as a whole has no positive stiffness.
+  /// False if the matrix of the groups' motions is not positive.
   bool ok() const { return coarse_.info() == Eigen::Success; }
-  /// Of each load; 0 at pinned nodes.
+  /// Solves for each load; 0 at pinned nodes.
   Fields solve(const Fields& loads) const;
-  /// An upper bound of stiffness over mass, as squared frequencies are: what is small has to be small beside it.
+  /// An upper bound of stiffness over mass, which is a squared frequency: a shift must be small relative to it.
   double largestFrequency() const { return largestFrequency_; }
 
  private:
@@ -39,7 +39,7 @@ class TwoLevelSolver {
 
   const BlockRows& stiffness_;
   std::vector<Block> inverseDiagonal_;  ///< by node; 0 where it is pinned
-  double largest_ = 0.0;                ///< eigenvalue of the inverse diagonal times the stiffness
+  double largest_ = 0.0;                ///< largest eigenvalue of the inverse diagonal times the stiffness
   double largestFrequency_ = 0.0;
   Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation_;  ///< 3 nodes x motions of groups
   Eigen::LLT<Eigen::MatrixXd> coarse_;

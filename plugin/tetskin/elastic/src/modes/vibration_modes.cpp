@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 #include <tetskin/core/src/shared/base/positive_values.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
 #include <tetskin/elastic/vibration_modes.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 
@@ -17,15 +19,15 @@ using elastic_detail::Fields;
 using elastic_detail::VibrationProblem;
 using elastic_detail::Vibrations;
 
-/// Of a body's largest eigenvalue: a smaller one is that of a motion that nothing resists.
+/// Relative to a body's largest eigenvalue: a smaller one belongs to a motion that nothing resists.
 constexpr double kNoStiffness = 1e-13;
 
 Status invalid(std::string message) {
   return {StatusCode::InvalidOption, std::move(message)};
 }
 
-/// Nodes of one part, all of them in tets.
-Status checkParts(const TetMesh& tets) {
+/// Ok if all nodes are in tets and belong to one component.
+Status checkComponents(const TetMesh& tets) {
   DisjointSets sets(tets.nodeCount());
   std::vector<char> used(tets.nodeCount(), 0);
   for (const Tet& tet : tets.tets) {
@@ -34,39 +36,39 @@ Status checkParts(const TetMesh& tets) {
       sets.unite(tet[0], node);
     }
   }
-  std::size_t parts = 0, unused = 0;
+  std::size_t components = 0, unused = 0;
   for (std::size_t n = 0; n < tets.nodeCount(); ++n) {
     if (!used[n]) ++unused;
-    if (used[n] && sets.find(static_cast<int>(n)) == static_cast<int>(n)) ++parts;
+    if (used[n] && sets.find(static_cast<int>(n)) == static_cast<int>(n)) ++components;
   }
   if (unused > 0) {
     return {StatusCode::Degenerate,
-            std::to_string(unused) + " nodes are in no tet, and would have no mass; remove them"};
+            std::to_string(unused) + " nodes are in no tet and would have no mass; remove them"};
   }
-  if (parts == 1) return {};
+  if (components == 1) return {};
   return {StatusCode::Degenerate,
-          "the tets are " + std::to_string(parts) +
-              " parts that nothing holds together; a reduced body has to be one: find the modes of "
-              "each part by itself"};
+          "the tets form " + std::to_string(components) +
+              " components that are not connected; a reduced body must be one: compute the modes of "
+              "each component separately"};
 }
 
 Status checkTets(const TetMesh& tets) {
-  const TetMeshReport report = checkForUse(tets);
-  if (Status status = usable(tets, report); !status.ok()) return status;
+  const TetMeshReport report = inspectForUse(tets);
+  if (Status status = validate(tets, report); !status.ok()) return status;
   const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
   if (flat.count > 0) {
     return {StatusCode::Degenerate, std::to_string(report.zeroVolume.count + report.repeatedNode.count) +
-                                        " tets are flat and have no stiffness, the first is tet " +
+                                        " tets are flat and have no stiffness, the first of them tet " +
                                         std::to_string(flat.first) + "; remove them"};
   }
-  return checkParts(tets);
+  return checkComponents(tets);
 }
 
-/// free  by node, set where the options are sound
+/// free  by node; set if the options are valid
 Status checkVibrationOptions(const TetMesh& tets, const VibrationOptions& options, std::vector<char>& free) {
-  if (options.modes < 1) return invalid("there must be one mode at least");
+  if (options.modeCount < 1) return invalid("the number of modes must be at least 1");
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5)) {
-    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+    return invalid("Poisson's ratio must be at least 0 and below 0.5");
   }
   for (Status status : {checkPositive<double>(options.stiffnessScale, tets.tetCount(), "stiffnessScale", "tet"),
                         checkPositive<double>(options.nodeMasses, tets.nodeCount(), "nodeMasses", "node")}) {
@@ -80,10 +82,10 @@ Status checkVibrationOptions(const TetMesh& tets, const VibrationOptions& option
     free[node] = 0;
   }
   const auto freeNodes = static_cast<std::size_t>(std::count(free.begin(), free.end(), 1));
-  if (freeNodes == 0) return invalid("all nodes are pinned: nothing can vibrate");
-  if (static_cast<std::size_t>(options.modes) > freeNodes) {
-    return invalid(std::to_string(options.modes) + " modes are more than the " + std::to_string(freeNodes) +
-                   " nodes that are free; ask for fewer, or give more tets");
+  if (freeNodes == 0) return invalid("all nodes are pinned; at least one must be free");
+  if (static_cast<std::size_t>(options.modeCount) > freeNodes) {
+    return invalid(std::to_string(options.modeCount) + " modes are more than the " + std::to_string(freeNodes) +
+                   " free nodes; request fewer modes, or use more tets");
   }
   return {};
 }
@@ -96,13 +98,15 @@ std::vector<double> massesOf(const TetMesh& tets, const VibrationOptions& option
   return masses;
 }
 
-/// The largest component of each is positive, so that they do not depend on how they were found.
+/// The sign is chosen so that the largest component is positive, which makes it independent of how the vector was
+/// found.
 std::vector<double> shapeOf(const Fields& displacements, Eigen::Index mode) {
+  assert(mode < displacements.cols());
   const Eigen::VectorXd shape = displacements.col(mode);
-  // Of the first that is as large as any: in symmetric bodies there are several, of either sign.
-  const double most = shape.cwiseAbs().maxCoeff();
+  // The first component that is about as large as the largest: symmetric bodies have several, of either sign.
+  const double maximum = shape.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
-  while (std::abs(shape[first]) < 0.999 * most) ++first;
+  while (std::abs(shape[first]) < 0.999 * maximum) ++first;
   const double sign = shape[first] < 0.0 ? -1.0 : 1.0;
   std::vector<double> result(static_cast<std::size_t>(shape.size()));
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = sign * shape[static_cast<Eigen::Index>(k)];
@@ -111,7 +115,7 @@ std::vector<double> shapeOf(const Fields& displacements, Eigen::Index mode) {
 
 }  // namespace
 
-Result<VibrationModes> vibrationModes(const TetMesh& tets, const VibrationOptions& options) {
+Result<VibrationModes> computeVibrationModes(const TetMesh& tets, const VibrationOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<char> free;
   if (Status status = checkTets(tets); !status.ok()) return status;
@@ -126,16 +130,16 @@ Result<VibrationModes> vibrationModes(const TetMesh& tets, const VibrationOption
   const std::vector<double> ones(options.stiffnessScale.empty() ? tets.tetCount() : 0, 1.0);
   const VibrationProblem problem(
       tets, BlockRows(tets, options.poissonRatio, ones.empty() ? options.stiffnessScale : ones), modes.masses, free);
-  const Status hinged = {
-      StatusCode::Degenerate,
-      "the body can bend without resistance: parts of it hang together by a node or an edge alone, or "
-      "too few nodes are pinned to hold it"};
+  const Status hinged = {StatusCode::Degenerate,
+                         "the body can deform without resistance: components of it share only a node or an edge, or "
+                         "too few nodes are pinned"};
   if (!problem.ok()) return hinged;
-  const Vibrations found = softestVibrations(problem, options.modes, options.progress);
+  const Vibrations found = softestVibrations(problem, options.modeCount, options.progress);
   if (!(found.eigenvalues[0] > kNoStiffness * problem.largestFrequency())) return hinged;
   if (!found.converged) {
-    return Status{StatusCode::Degenerate, "the modes were not found in " + std::to_string(found.iterations) +
-                                              " iterations: the tets are too bad, or their stiffnesses too different"};
+    return Status{StatusCode::Degenerate,
+                  "the modes did not converge in " + std::to_string(found.iterations) +
+                      " iterations; the tets are badly shaped, or their stiffnesses differ too much"};
   }
   modes.eigenvalues.assign(found.eigenvalues.data(), found.eigenvalues.data() + found.eigenvalues.size());
   const Fields displacements = problem.displacements(found.vectors);

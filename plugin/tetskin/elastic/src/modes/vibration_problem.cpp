@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::elastic_detail {
@@ -12,6 +13,7 @@ VibrationProblem::VibrationProblem(const TetMesh& tets, BlockRows stiffness, con
       solver_(stiffness_, tets.nodes, masses, free),
       roots_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * tets.nodeCount()))),
       inverseRoots_(roots_) {
+  assert(masses.size() == tets.nodeCount() && free.size() == tets.nodeCount());
   for (std::size_t n = 0; n < tets.nodeCount(); ++n) {
     if (!free[n]) continue;
     roots_.segment<3>(static_cast<Eigen::Index>(3 * n)).setConstant(std::sqrt(masses[n]));
@@ -22,6 +24,7 @@ VibrationProblem::VibrationProblem(const TetMesh& tets, BlockRows stiffness, con
 }
 
 Fields VibrationProblem::times(const Fields& vectors) const {
+  assert(vectors.rows() == size());
   const Fields moved = displacements(vectors);
   Fields forces(vectors.rows(), vectors.cols());
   stiffness_.multiply(moved, forces);
@@ -29,6 +32,7 @@ Fields VibrationProblem::times(const Fields& vectors) const {
 }
 
 Fields VibrationProblem::precondition(const Fields& vectors) const {
+  assert(vectors.rows() == size());
   Fields loads = roots_.asDiagonal() * vectors;
   if (rigid_) rigid_->balance(loads);
   Fields moved = solver_.solve(loads);
@@ -52,16 +56,16 @@ std::vector<Eigen::Index> VibrationProblem::freeRows() const {
 }
 
 Eigen::MatrixXd VibrationProblem::dense() const {
-  std::vector<Eigen::Index> placeOf(static_cast<std::size_t>(size()), -1);
+  std::vector<Eigen::Index> indexOf(static_cast<std::size_t>(size()), -1);
   Eigen::Index count = 0;
-  for (const Eigen::Index row : freeRows()) placeOf[static_cast<std::size_t>(row)] = count++;
+  for (const Eigen::Index row : freeRows()) indexOf[static_cast<std::size_t>(row)] = count++;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   const auto sparse = stiffness_.sparse();
   using Sparse = std::remove_const_t<decltype(sparse)>;
   for (Eigen::Index outer = 0; outer < sparse.outerSize(); ++outer) {
     for (typename Sparse::InnerIterator entry(sparse, outer); entry; ++entry) {
-      const Eigen::Index i = placeOf[static_cast<std::size_t>(entry.row())];
-      const Eigen::Index j = placeOf[static_cast<std::size_t>(entry.col())];
+      const Eigen::Index i = indexOf[static_cast<std::size_t>(entry.row())];
+      const Eigen::Index j = indexOf[static_cast<std::size_t>(entry.col())];
       if (i < 0 || j < 0) continue;
       matrix(i, j) = inverseRoots_[entry.row()] * entry.value() * inverseRoots_[entry.col()];
     }

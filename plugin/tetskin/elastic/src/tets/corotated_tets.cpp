@@ -14,7 +14,7 @@ namespace {
 
 using kernels::kGroup;
 
-/// Handing work to another thread costs some microseconds, in which these many packs, or nodes, are done.
+/// Handing work to another thread costs some microseconds, in which this many packs, or nodes, are processed.
 constexpr std::size_t kPacksPerTask = 64, kSlotsPerTask = 1024;
 
 std::size_t tasksFor(std::size_t items, std::size_t perTask) {
@@ -39,6 +39,7 @@ RestTets restTets(const TetMesh& cage) {
 template <class S>
 CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>& slotOf, std::size_t slots)
     : rest_(std::move(rest)), slots_(slots) {
+  assert(count() > 0 && rest_.gradients.size() == count() && rest_.volumes.size() == count());
   const std::size_t packs = noTet(count()) / kGroup;
   packs_.resize(packs);
   rotations_.assign(4 * kGroup * packs, S(0));
@@ -61,10 +62,12 @@ CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>&
   });
   cornerStarts_ = std::move(corners.starts);
   cornersAt_ = std::move(corners.values);
+  assert(cornersAt_.size() == 4 * count());
 }
 
 template <class S>
 void CorotatedTets<S>::setMaterial(std::size_t tet, const Lame& lame) {
+  assert(tet < count() && lame.mu > 0.0 && lame.lambda >= 0.0);
   kernels::TetPack<S>& pack = packs_[tet / kGroup];
   pack.shear[tet % kGroup] = static_cast<S>(2.0 * lame.mu * rest_.volumes[tet]);
   pack.bulk[tet % kGroup] = static_cast<S>(lame.lambda * rest_.volumes[tet]);
@@ -87,16 +90,17 @@ void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
 
 template <class S>
 double CorotatedTets<S>::cornerForces(const S* points, bool energy, ParallelFor* threads) {
+  assert(points);
   const auto& table = kernels::elasticInUse<S>();
   byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t task) {
     work.points = points;
     findings_[task] = table.forces(work, energy);
   });
-  mostTurned_ = S(0);
+  maxTurned_ = S(0);
   turned_ = 0.0;
   double total = 0.0;
   for (const kernels::TetFindings<S>& part : findings_) {
-    mostTurned_ = std::max(mostTurned_, part.mostTurned);
+    maxTurned_ = std::max(maxTurned_, part.maxTurned);
     turned_ += part.turned;
     total += part.energy;
   }
@@ -121,13 +125,13 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
 
 template <class S>
 double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
-  // What asks is told, and changes nothing: rotations are turned from where they were before.
+  // A query changes nothing, so that the next step finds its rotations starting from the same ones.
   const AlignedVector<S> rotations = rotations_;
-  const S mostTurned = mostTurned_;
+  const S maxTurned = maxTurned_;
   const double turned = turned_;
   const double energy = cornerForces(points, true, threads);
   rotations_ = rotations;
-  mostTurned_ = mostTurned;
+  maxTurned_ = maxTurned;
   turned_ = turned;
   return energy;
 }
@@ -138,8 +142,8 @@ double CorotatedTets<S>::meanTurn() const {
 }
 
 template <class S>
-double CorotatedTets<S>::mostTurn() const {
-  return 4.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(mostTurned_))));
+double CorotatedTets<S>::maxTurn() const {
+  return 4.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
 }
 
 template <class S>

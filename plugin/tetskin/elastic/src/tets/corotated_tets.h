@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Elastic forces of a body's tets, each with a rotation and a stiffness of its own: see tet_loops.h.
+// Elastic forces of a body's tets, each with its own rotation and stiffness: see tet_loops.h.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/shared/base/aligned.h>
-#include <tetskin/core/tet_mesh.h>
 #include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/material.h>
 
@@ -16,42 +16,42 @@
 
 namespace tetskin::elastic_detail {
 
-/// Tets as they are at rest. None is flat.
+/// The tets at rest. None is flat.
 struct RestTets {
   std::vector<Tet> tets;
-  std::vector<std::array<double, 9>> gradients;  ///< rows: of the weights of nodes 1, 2 and 3, rest space
+  std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
   std::vector<double> volumes;                   ///< above 0
 
   std::size_t count() const { return tets.size(); }
 };
 
-/// Of a cage without flat tets. Cost O(T).
+/// The tets of a cage without flat ones. Cost O(T).
 TETSKIN_ELASTIC_API RestTets restTets(const TetMesh& cage);
 
 template <class S>
 class TETSKIN_ELASTIC_API CorotatedTets {
  public:
-  /// slotOf  by node, where its point lies
+  /// slotOf  by node: the index of its point
   CorotatedTets(RestTets rest, const std::vector<std::uint32_t>& slotOf, std::size_t slots);
 
   std::size_t count() const { return rest_.count(); }
   const RestTets& rest() const { return rest_; }
-  /// What fills the last pack, and one tet more, have corners that are 0.
+  /// Index of the tet whose corners are 0: it follows the padding of the last pack, whose corners are 0, too.
   static std::size_t noTet(std::size_t tets) {
     return (tets + kernels::kGroup - 1) / kernels::kGroup * kernels::kGroup;
   }
 
   void setMaterial(std::size_t tet, const Lame& lame);
 
-  /// Elastic forces at `points`, both 4 scalars a slot; the tets' rotations are turned along.
+  /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
-  /// Elastic energy at `points`.
+  /// The elastic energy at `points`.
   double energy(const S* points, ParallelFor* threads);
 
-  /// By how much tets have turned since `cornersForMatrix`, in radians: root mean square, and at most.
+  /// The rotation of tets since `cornersForMatrix`, in radians: root mean square, and maximum.
   double meanTurn() const;
-  double mostTurn() const;
-  /// The corners that BlockMatrix::assemble takes, of the rotations as they are now.
+  double maxTurn() const;
+  /// The corners for BlockMatrix::assemble, with the current rotations.
   const S* cornersForMatrix(S alpha, ParallelFor* threads);
 
  private:
@@ -64,8 +64,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   AlignedVector<S> rotations_, assembled_, corners_;
   std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot
   std::size_t slots_ = 0;
-  S mostTurned_ = 0;                               ///< squared difference of quaternions
-  double turned_ = 0.0;                            ///< sum of them, a quarter of the angles' squares
+  S maxTurned_ = 0;      ///< squared difference of quaternions
+  double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
 };
 

@@ -4,6 +4,7 @@
 
 #include <tetskin/core/types.h>
 
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -19,54 +20,56 @@ struct Lame {
 /// youngsModulus  in pressure units, above 0
 /// poissonRatio   0 to below 0.5
 inline Lame lameOf(double youngsModulus, double poissonRatio) {
+  assert(youngsModulus > 0.0 && poissonRatio >= 0.0 && poissonRatio < 0.5);
   return {youngsModulus / (2.0 * (1.0 + poissonRatio)),
           youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio))};
 }
 
-/// Ok, or what of a material makes no sense, or is beyond the range of Scalar.
+/// Ok, or what is invalid in a material, or beyond the range of Scalar.
 /// damping  seconds
 template <class Scalar>
 Status checkMaterial(double youngsModulus, double poissonRatio, double damping) {
   const auto invalid = [](const char* message) { return Status{StatusCode::InvalidOption, message}; };
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
   if (!(youngsModulus > 0.0 && std::isfinite(youngsModulus))) {
-    return invalid("a Young's modulus must be above 0, and finite");
+    return invalid("Young's modulus must be finite and above 0");
   }
   if (!(poissonRatio >= 0.0 && poissonRatio < 0.5)) {
-    return invalid("a Poisson's ratio must be at least 0 and below 0.5");
+    return invalid("Poisson's ratio must be at least 0 and below 0.5");
   }
-  if (!(damping >= 0.0 && std::isfinite(damping))) return invalid("damping must not be negative, and must be finite");
+  if (!(damping >= 0.0 && std::isfinite(damping))) return invalid("damping must be finite and not negative");
   const Lame lame = lameOf(youngsModulus, poissonRatio);
   if (held(lame.mu) && held(lame.lambda) && held(damping) && held(lame.lambda * damping)) return {};
   return invalid(sizeof(Scalar) == sizeof(float)
-                     ? "a material so stiff, or so strongly damped, is beyond the range of float"
-                     : "a material so stiff, or so strongly damped, is beyond the range of double");
+                     ? "the material is too stiff, or too strongly damped, for the range of float"
+                     : "the material is too stiff, or too strongly damped, for the range of double");
 }
 
-/// A Young's modulus over a density, and over the square of a size, in 1 / s^2, above which positions of this precision
-/// store more energy by their last digits than a body that falls or turns has. Tested to be stable that far, in steps
-/// of 1/60 s.
+/// A Young's modulus over a density, and over the square of a size, in 1 / s^2. Above this value, the rounding of
+/// positions in this precision stores more energy than a body has that falls or rotates. Tested to be stable up to this
+/// value, in steps of 1/60 s.
 template <class Scalar>
-constexpr double kMostStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
+constexpr double kMaxStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
 
-/// Whether a body can be simulated that is so stiff beside its mass.
-/// volume  at rest, its cube root counts as the size
+/// True if a body with this ratio of stiffness to mass can be simulated.
+/// volume  at rest; its cube root counts as the size
 template <class Scalar>
 Status checkStiffness(double youngsModulus, double damping, double mass, double volume) {
   constexpr double kLongStep = 1.0 / 60.0;
   const double size = std::cbrt(volume), density = mass / volume;
-  const double most = kMostStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);
-  if (!(mass > 0.0 && volume > 0.0) || youngsModulus <= most) return {};
+  const double maximum = kMaxStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);
+  if (!(mass > 0.0 && volume > 0.0) || youngsModulus <= maximum) return {};
   char text[256];
   std::snprintf(text, sizeof text,
                 "a Young's modulus of %.3g with damping of %.3g s is too stiff for a mass of %.3g in a volume of %.3g, "
                 "in %s: at most %.3g",
-                youngsModulus, damping, mass, volume, sizeof(Scalar) == sizeof(float) ? "float" : "double", most);
+                youngsModulus, damping, mass, volume, sizeof(Scalar) == sizeof(float) ? "float" : "double", maximum);
   return {StatusCode::InvalidOption, text};
 }
 
-/// stiffnessScale  by tet, or empty: 1
+/// stiffnessScale  stiffness factor by tet, or empty: 1
 inline std::vector<Lame> lameOfTets(const Lame& lame, std::size_t tets, const std::vector<double>& stiffnessScale) {
+  assert(stiffnessScale.empty() || stiffnessScale.size() == tets);
   std::vector<Lame> scaled(tets, lame);
   for (std::size_t t = 0; t < stiffnessScale.size(); ++t) {
     scaled[t].mu *= stiffnessScale[t];

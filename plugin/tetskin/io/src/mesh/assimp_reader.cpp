@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cassert>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -25,7 +26,7 @@ namespace tetskin::io {
 
 namespace {
 
-/// A mesh of the scene at the place of one of the nodes that show it.
+/// A mesh of the scene, placed by one of the nodes that show it.
 struct Instance {
   const aiMesh* mesh = nullptr;
   const aiNode* node = nullptr;
@@ -58,7 +59,7 @@ Status checkFaces(const std::string& path, const aiScene& scene) {
       for (unsigned i = 0; i < mesh.mFaces[f].mNumIndices; ++i) {
         if (mesh.mFaces[f].mIndices[i] < mesh.mNumVertices) continue;
         return fileError(StatusCode::IndexOutOfRange, path, 0,
-                         "face " + std::to_string(f) + " of mesh " + std::to_string(m) + " names vertex " +
+                         "face " + std::to_string(f) + " of mesh " + std::to_string(m) + " refers to vertex " +
                              std::to_string(mesh.mFaces[f].mIndices[i]) + " of " + std::to_string(mesh.mNumVertices) +
                              "; export the model again");
       }
@@ -71,12 +72,12 @@ bool isSurface(const aiFace& face) {
   return face.mNumIndices >= 3;
 }
 
-/// assimp's own flags are wrong on damaged files, so the faces are asked.
+/// The flags of assimp are wrong for damaged files, so that the faces are tested.
 bool hasSurface(const aiMesh& mesh) {
   return std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces, isSurface);
 }
 
-/// For each vertex of a mesh, whether it stays: those that only lines and points name do not.
+/// For each vertex of a mesh, whether it is kept: those that only lines and points use are not.
 std::vector<bool> keptVertices(const aiMesh& mesh) {
   std::vector<bool> kept(mesh.mNumVertices, true);
   for (const bool surface : {false, true}) {
@@ -115,14 +116,17 @@ std::vector<Instance> instances(const aiScene& scene) {
   return result;
 }
 
-/// Smooth normals of the vertices from `firstVertex` on, from the triangles from `firstTriangle` on, by area.
+/// Appends smooth normals of the vertices from `firstVertex` on, computed from the triangles from `firstTriangle` on,
+/// weighted by area.
 void appendSmoothNormals(TriangleMesh& mesh, std::size_t firstVertex, std::size_t firstTriangle) {
+  assert(mesh.normals.size() == firstVertex && firstVertex <= mesh.vertexCount());
   std::vector<Eigen::Vector3d> sums(mesh.vertexCount() - firstVertex, Eigen::Vector3d::Zero());
   sumAreaVectors(mesh, firstTriangle, [&](std::size_t v) -> Eigen::Vector3d& { return sums[v - firstVertex]; });
   for (const Eigen::Vector3d& sum : sums) mesh.normals.push_back(unitNormal(sum));
 }
 
 void appendTriangles(const Instance& instance, const std::vector<int>& vertices, TriangleMesh& mesh) {
+  assert(vertices.size() == instance.mesh->mNumVertices);
   const bool mirrored = instance.toScene.linear().determinant() < 0.0;
   std::vector<int> polygon;
   for (unsigned f = 0; f < instance.mesh->mNumFaces; ++f) {
@@ -136,19 +140,20 @@ void appendTriangles(const Instance& instance, const std::vector<int>& vertices,
 }
 
 TriangleGroup groupOf(const aiScene& scene, const Instance& instance, const TriangleMesh& mesh, std::size_t first) {
+  assert(first <= mesh.triangleCount());
   TriangleGroup group;
   group.name = instance.mesh->mName.length > 0 ? instance.mesh->mName.C_Str() : instance.node->mName.C_Str();
   if (instance.mesh->mMaterialIndex < scene.mNumMaterials) {
     group.material = scene.mMaterials[instance.mesh->mMaterialIndex]->GetName().C_Str();
   }
-  // What assimp invents for a file without materials is none.
+  // The material that assimp adds to a file without materials does not count.
   if (group.material == AI_DEFAULT_MATERIAL_NAME) group.material.clear();
   group.firstTriangle = first;
   group.triangleCount = mesh.triangleCount() - first;
   return group;
 }
 
-/// Normals of the mesh, if it has some, or smooth ones.
+/// Appends the normals of the mesh, if it has any, or smooth ones.
 void appendNormals(const Instance& instance, const std::vector<bool>& kept, std::size_t firstVertex,
                    std::size_t firstTriangle, TriangleMesh& mesh) {
   const aiMesh& part = *instance.mesh;
@@ -186,20 +191,22 @@ Result<TriangleMesh> collect(const std::string& path, const aiScene& scene) {
     vertexCount += part.mesh->mNumVertices;
   }
   if (vertexCount > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    return fileError(StatusCode::UnsupportedFormat, path, 0, "shows more than 2147483647 vertices; split the model");
+    return fileError(StatusCode::UnsupportedFormat, path, 0, "has more than 2147483647 vertices; split the model");
   }
   TriangleMesh mesh;
   mesh.positions.reserve(vertexCount);
   for (const Instance& part : parts) {
     const std::size_t firstTriangle = mesh.triangleCount();
     append(part, texcoords, normals, mesh);
+    assert((normals ? mesh.vertexCount() : 0) == mesh.normals.size());
+    assert((texcoords ? mesh.vertexCount() : 0) == mesh.texcoords.size());
     mesh.groups.push_back(groupOf(scene, part, mesh, firstTriangle));
   }
   if (mesh.triangles.empty()) {
     return fileError(StatusCode::Empty, path, 0, "has no triangles; export the model as a surface of polygons");
   }
   if (mesh.groups.size() == 1 && mesh.groups[0].name.empty() && mesh.groups[0].material.empty()) mesh.groups.clear();
-  const Status status = checkTriangleMesh(mesh);
+  const Status status = validate(mesh);
   if (!status.ok()) return fileError(status.code, path, 0, status.message + " in the model, or export it again");
   const PointView<const double> positions = viewOf(std::as_const(mesh.positions));
   if (const std::string fault = coordinateFault(positions); !fault.empty()) {
@@ -214,14 +221,14 @@ Status checkPath(const std::string& path, const Assimp::Importer& importer) {
     return fileError(StatusCode::FileNotFound, path, 0, "does not exist; check the path");
   }
   if (std::filesystem::is_directory(path, ignored)) {
-    return fileError(StatusCode::FileNotFound, path, 0, "is a folder; name a file in it");
+    return fileError(StatusCode::FileNotFound, path, 0, "is a folder; give the path of a file");
   }
   const std::string extension = lowerExtension(path);
   if (!extension.empty() && importer.IsExtensionSupported(extension)) return {};
-  return fileError(StatusCode::UnsupportedFormat, path, 0,
-                   (extension.empty() ? "has no extension that tells its format"
-                                      : "is of a format, " + excerpt(extension) + ", that is not read") +
-                       "; convert it to OBJ, PLY, STL or glTF");
+  return fileError(
+      StatusCode::UnsupportedFormat, path, 0,
+      (extension.empty() ? "has no file name extension" : "unsupported input format " + excerpt(extension)) +
+          "; convert it to OBJ, PLY, STL or glTF");
 }
 
 Result<TriangleMesh> importFile(const std::string& path) {
@@ -229,9 +236,9 @@ Result<TriangleMesh> importFile(const std::string& path) {
   Status status = checkPath(path, importer);
   if (status.ok()) status = checkStatedSizes(path);
   if (!status.ok()) return status;
-  // A file with nothing but bones would otherwise show up as a mesh of its bones.
+  // A file that contains only bones would otherwise appear as a mesh of its bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // No step of assimp's own behind its importers: they take the scene on trust, and abort on damaged ones.
+  // None of assimp's post-processing is used: it trusts the scene, and aborts on damaged ones.
   const aiScene* scene = importer.ReadFile(path, 0);
   if (!scene) {
     return fileError(StatusCode::Malformed, path, 0,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/io/mesh_loader.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/obj_reader.h>
 #include <tetskin/io/src/mesh/ply_reader.h>

@@ -48,6 +48,7 @@ std::string objName(const std::string& name) {
 }
 
 void appendFaces(const TriangleMesh& mesh, std::size_t first, std::size_t count, std::string& text) {
+  assert(first + count <= mesh.triangleCount());
   for (std::size_t t = first; t < first + count; ++t) {
     text += 'f';
     for (const int v : mesh.triangles[t]) {
@@ -63,7 +64,7 @@ void appendFaces(const TriangleMesh& mesh, std::size_t first, std::size_t count,
 
 }  // namespace
 
-Result<ObjLayout> ObjLayout::fromFile(const std::string& objPath) {
+Result<ObjLayout> ObjLayout::load(const std::string& objPath) {
   const Result<std::string> source = io::readObjText(objPath);
   if (!source.ok()) return source.status();
   ObjLayout layout;
@@ -117,7 +118,7 @@ void ObjLayout::addFace(const io::ObjStatement& statement) {
   text_.append(copied, text.data() + text.size());
 }
 
-/// A name may contain blanks, or there may be several names: whatever exists is taken.
+/// A name may contain blanks, or there may be several names: every one that exists as a file is taken.
 void ObjLayout::addLibraries(const io::ObjStatement& statement) {
   const auto offset = [&, start = text_.size()](std::string_view name) {
     return start + static_cast<std::size_t>(name.data() - statement.text.data());
@@ -130,6 +131,7 @@ void ObjLayout::addLibraries(const io::ObjStatement& statement) {
 }
 
 bool ObjLayout::addLibrary(std::string_view name, std::size_t offset) {
+  assert(offset + name.size() <= text_.size() && text_.compare(offset, name.size(), name) == 0);
   std::error_code ignored;
   const fs::path file(name);
   if (file.is_absolute() || !fs::exists(fs::path(sourceFolder_) / file, ignored)) return false;
@@ -137,7 +139,7 @@ bool ObjLayout::addLibrary(std::string_view name, std::size_t offset) {
   return true;
 }
 
-ObjLayout ObjLayout::fromMesh(const TriangleMesh& mesh) {
+ObjLayout ObjLayout::create(const TriangleMesh& mesh) {
   assert(mesh.texcoords.empty() || mesh.texcoords.size() == mesh.vertexCount());
   ObjLayout layout;
   std::string& text = layout.text_;
@@ -157,7 +159,7 @@ ObjLayout ObjLayout::fromMesh(const TriangleMesh& mesh) {
   std::string material;
   for (const TriangleGroup& group : mesh.groups) {
     text += "g " + objName(group.name) + "\n";
-    // Without a name it means no material, which has to be said only after one.
+    // An empty name means no material, which must only be stated after another material.
     if (group.material != material) text += "usemtl " + objName(group.material) + "\n";
     material = group.material;
     appendFaces(mesh, group.firstTriangle, group.triangleCount, text);
@@ -165,8 +167,8 @@ ObjLayout ObjLayout::fromMesh(const TriangleMesh& mesh) {
   return layout;
 }
 
-/// A normal's number is that of its vertex, counted from the front or, as its line follows the vertex's at once, from
-/// behind.
+/// The number of a normal is that of its vertex if counted from the front. It is also that if counted from the back, as
+/// its line directly follows the vertex's.
 ObjLayout ObjLayout::withNormals() const {
   assert(!hasNormals());
   ObjLayout result;
@@ -195,6 +197,7 @@ ObjLayout ObjLayout::withNormals() const {
 }
 
 void ObjLayout::addFaceWithNormals(const io::ObjStatement& statement) {
+  assert(statement.keyword == "f");
   const std::string_view text = statement.text;
   const char* copied = text.data();
   io::ObjWords words(statement.rest);
@@ -206,7 +209,7 @@ void ObjLayout::addFaceWithNormals(const io::ObjStatement& statement) {
   text_.append(copied, text.data() + text.size());
 }
 
-ObjLayout ObjLayout::withLibrary(const std::string& name) const {
+ObjLayout ObjLayout::withMaterialLibrary(const std::string& name) const {
   ObjLayout result = *this;
   const std::string line = "mtllib " + objName(name) + "\n";
   result.text_.insert(0, line);
@@ -216,10 +219,10 @@ ObjLayout ObjLayout::withLibrary(const std::string& name) const {
   return result;
 }
 
-ObjLayout ObjLayout::inFolder(const std::string& folder) const {
+ObjLayout ObjLayout::forFolder(const std::string& folder) const {
   ObjLayout result = *this;
   std::error_code error;
-  // From the last name to the first, so that the offsets of those before stay right.
+  // From the last name to the first, so that the offsets of the earlier ones stay valid.
   for (std::size_t i = libraries_.size(); i-- > 0;) {
     const Library& library = libraries_[i];
     const fs::path path = fs::proximate(fs::path(sourceFolder_) / library.name, fs::absolute(folder, error), error);
@@ -256,6 +259,7 @@ std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vecto
   char* out = buffer.data();
   const char* copied = text_.data();
   const auto copyTo = [&](std::size_t gap) {
+    assert(copied <= text_.data() + gap && gap <= text_.size());
     out = std::copy(copied, text_.data() + gap, out);
     copied = text_.data() + gap;
   };
@@ -267,6 +271,7 @@ std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vecto
     out = formatPoint(out, normals[v]);
   }
   copyTo(text_.size());
+  assert(static_cast<std::size_t>(out - buffer.data()) <= buffer.size());
   return {buffer.data(), static_cast<std::size_t>(out - buffer.data())};
 }
 
@@ -276,7 +281,7 @@ Status checkCount(const std::string& path, std::size_t count, std::size_t wanted
   if (count == wanted) return {};
   return io::fileError(StatusCode::SizeMismatch, path, 0,
                        "cannot be written from " + std::to_string(count) + " " + what + "s, as the mesh has " +
-                           std::to_string(wanted) + " vertices; pass one " + what + " a vertex");
+                           std::to_string(wanted) + " vertices; pass one " + what + " per vertex");
 }
 
 template <class Scalar>
@@ -294,8 +299,9 @@ template <class Scalar>
 Status ObjLayout::checkPoints(const std::string& path, PointView<const Scalar> positions,
                               PointView<const float> normals) const {
   if (!hasNormals() && !normals.empty()) {
-    return io::fileError(StatusCode::SizeMismatch, path, 0,
-                         "cannot be written with normals, as its layout has none; make it by ObjLayout::withNormals");
+    return io::fileError(
+        StatusCode::SizeMismatch, path, 0,
+        "cannot be written with normals, as its layout has none; create the layout with ObjLayout::withNormals");
   }
   Status status = checkCount(path, positions.size(), vertexCount(), "position");
   if (status.ok() && hasNormals()) status = checkCount(path, normals.size(), vertexCount(), "normal");
@@ -312,7 +318,7 @@ Status writeLayout(const ObjLayout& layout, const std::string& path, PointView<c
   Status status = layout.checkPoints(path, positions, normals);
   if (!status.ok()) return status;
   std::vector<char> buffer;
-  return io::writeFile(path, layout.inFolder(folderOf(path)).format(positions, buffer, normals));
+  return io::writeFile(path, layout.forFolder(folderOf(path)).format(positions, buffer, normals));
 }
 
 }  // namespace
@@ -328,8 +334,8 @@ Status ObjLayout::writeTo(const std::string& path, PointView<const double> posit
 }
 
 Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh) {
-  if (io::lowerExtension(meshPath) != ".obj") return ObjLayout::fromMesh(mesh);
-  Result<ObjLayout> layout = ObjLayout::fromFile(meshPath);
+  if (io::lowerExtension(meshPath) != ".obj") return ObjLayout::create(mesh);
+  Result<ObjLayout> layout = ObjLayout::load(meshPath);
   if (layout.ok() && layout.value().vertexCount() != mesh.vertexCount()) {
     return io::fileError(StatusCode::SizeMismatch, meshPath, 0,
                          "has " + std::to_string(layout.value().vertexCount()) + " vertices, but the mesh has " +

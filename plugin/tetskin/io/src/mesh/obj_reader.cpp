@@ -9,6 +9,7 @@
 #include <tetskin/io/src/text/number_text.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,7 @@ struct Run {
   std::string_view name, material;
 };
 
-/// The statements of one file, still with its polygons.
+/// Collects the statements of one file, with polygons that are not yet triangulated.
 class ObjParser {
  public:
   ObjParser(const std::string& path, std::string_view text) : path_(path), scanner_(text) {}
@@ -49,6 +50,7 @@ class ObjParser {
   Status checkIndices() const;
   Status checkIndex(int index, std::size_t count, const char* what, std::size_t line) const;
   std::size_t cornerEnd(std::size_t face) const {
+    assert(face < faces_.size());
     return face + 1 < faces_.size() ? faces_[face + 1].firstCorner : corners_.size();
   }
   void triangulate();
@@ -110,6 +112,7 @@ Status ObjParser::readStatement() {
 }
 
 Status ObjParser::readNumbers(int needed, int wanted, Eigen::Vector3d& values) {
+  assert(needed <= wanted && wanted <= 3);
   ObjWords words(statement_.rest);
   for (int i = 0; i < wanted; ++i) {
     const std::string_view word = words.next();
@@ -150,8 +153,8 @@ Status ObjParser::readFace() {
   }
   const std::size_t count = corners_.size() - firstCorner;
   if (count < 3) {
-    return error(StatusCode::Malformed,
-                 "a face of " + std::to_string(count) + " corners, where 3 are needed; complete the line or remove it");
+    return error(StatusCode::Malformed, "a face of " + std::to_string(count) +
+                                            " corners, but at least 3 are needed; complete the line or remove it");
   }
   beginRun();
   faces_.push_back({firstCorner, statement_.line});
@@ -174,8 +177,8 @@ Status ObjParser::readCorner(std::string_view word, Corner& corner) {
   return status;
 }
 
-/// Makes an index of the file, which counts from 1 or backwards from the last one so far, count from 0. Whether it is
-/// too large shows only at the end of the file, as faces may name what comes later.
+/// Converts an index of the file, which counts from 1, or backwards from the last one so far, to one that counts from
+/// 0. Whether it is too large is only known at the end of the file, as faces may refer to what comes later.
 Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t count, int& index) {
   long long number = 0;
   if (!parseInteger(text, number)) {
@@ -184,7 +187,7 @@ Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t
   const long long resolved = number > 0 ? number - 1 : static_cast<long long>(count) + number;
   if (number == 0 || resolved < 0 || resolved > std::numeric_limits<int>::max()) {
     return error(StatusCode::IndexOutOfRange,
-                 "the face names " + std::string(what) + " " + std::to_string(number) +
+                 "the face refers to " + std::string(what) + " " + std::to_string(number) +
                      (number == 0 ? ", but an OBJ file counts from 1" : ", which does not exist") +
                      "; correct the face");
   }
@@ -192,8 +195,9 @@ Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t
   return {};
 }
 
-/// Starts a run at the next face if its name or material differ from the last one's.
+/// Starts a group at the next face if its name or material differ from the last one's.
 void ObjParser::beginRun() {
+  assert(runs_.empty() || runs_.back().firstFace < faces_.size());
   if (!runs_.empty() && runs_.back().name == name_ && runs_.back().material == material_) return;
   runs_.push_back({faces_.size(), name_, material_});
 }
@@ -214,11 +218,12 @@ Status ObjParser::checkIndices() const {
 Status ObjParser::checkIndex(int index, std::size_t count, const char* what, std::size_t line) const {
   if (index < 0 || static_cast<std::size_t>(index) < count) return {};
   return fileError(StatusCode::IndexOutOfRange, path_, line,
-                   "the face names number " + std::to_string(std::size_t(index) + 1) + " of the " + what +
+                   "the face refers to number " + std::to_string(std::size_t(index) + 1) + " of the " + what +
                        ", but the file has " + std::to_string(count) + "; correct the face or complete the file");
 }
 
 void ObjParser::triangulate() {
+  assert(!runs_.empty() && runs_.front().firstFace == 0 && corners_.size() >= 3 * faces_.size());
   mesh_.triangles.reserve(corners_.size() - 2 * faces_.size());
   std::vector<int> polygon;
   std::size_t run = 0;
@@ -244,6 +249,7 @@ std::vector<Point> ObjParser::perVertex(int Corner::*attribute, const std::vecto
   std::vector<int> chosen(mesh_.vertexCount(), kNone);
   for (const Corner& corner : corners_) {
     const int value = corner.*attribute;
+    assert(value == kNone || static_cast<std::size_t>(value) < values.size());
     int& previous = chosen[static_cast<std::size_t>(corner.vertex)];
     if (value == kNone) return {};
     if (previous == kNone) previous = value;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <string>
 
@@ -15,7 +15,7 @@ namespace tetskin::io {
 /// - groups are the runs of faces with the same name, that of the last `g` or `o`, and the same `usemtl`;
 /// - texcoords (and normals, made unit) are given if every vertex in a face has exactly one value, else left empty;
 ///   vertices in no face get 0, and so do values that are not finite.
-/// Lines, points, curves and unknown statements are read over.
+/// Lines, points, curves and unknown statements are skipped.
 /// Cost: linear, about 20 ms for 60,000 triangles.
 /// Errors: FileNotFound; with the line: Malformed, IndexOutOfRange, NonFinite; Empty without vertices or faces.
 Result<TriangleMesh> readObj(const std::string& path);

@@ -4,6 +4,7 @@
 #include <tetskin/io/src/text/file_text.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::io {
 
@@ -40,8 +41,8 @@ std::size_t wordLength(std::string_view text) {
   return length;
 }
 
-/// Length up to the line break that ends the statement, which a comment's backslash does not put off: it may well be
-/// the end of a Windows path.
+/// Length up to the line break that ends the statement. A backslash in a comment does not continue it: it may be the
+/// end of a Windows path.
 std::size_t statementLength(std::string_view text, bool comment) {
   std::size_t end = text.find('\n');
   while (end != text.npos && !comment) {
@@ -71,6 +72,7 @@ bool ObjScanner::next(ObjStatement& statement) {
   // Only statements with a backslash span lines, so most need no counting.
   const bool oneLine = statement.rest.find('\\') == statement.rest.npos;
   line_ += oneLine ? 1 : static_cast<std::size_t>(std::count(statement.text.begin(), statement.text.end(), '\n'));
+  assert(!statement.text.empty() && statement.text.size() <= rest_.size());
   rest_.remove_prefix(statement.text.size());
   return true;
 }

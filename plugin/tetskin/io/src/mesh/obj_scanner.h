@@ -14,11 +14,11 @@ namespace tetskin::io {
 struct ObjStatement {
   std::string_view text;     ///< everything, from leading blanks to the line break
   std::string_view keyword;  ///< "v", "f", ...; empty for a blank line or a comment
-  std::string_view rest;     ///< between the keyword and the line break
+  std::string_view rest;     ///< number of its first line, from 1
   std::size_t line = 0;      ///< of its first line, from 1
 };
 
-/// Splits the text of an OBJ file into statements, which together are the text. The text must outlive it.
+/// Splits the text of an OBJ file into statements, which together make up the whole text. The text must outlive it.
 class ObjScanner {
  public:
   explicit ObjScanner(std::string_view text) : rest_(text) {}
@@ -36,7 +36,7 @@ class ObjWords {
   explicit ObjWords(std::string_view rest) : rest_(rest) {}
   /// Empty at the end.
   std::string_view next();
-  /// The rest of the statement as one name, which may contain blanks; without blanks around it and without a comment.
+  /// The rest of the statement as one name, which may contain blanks, without a comment and without blanks around it.
   std::string_view name();
 
  private:

@@ -23,15 +23,16 @@ Result<ObjSequenceWriter> ObjSequenceWriter::create(const std::string& directory
   fs::create_directories(writer.directory_, error);
   if (!fs::is_directory(writer.directory_)) {
     return io::fileError(StatusCode::FileNotWritable, directory, 0,
-                         "cannot be made a folder: " + error.message() + "; choose another one");
+                         "the folder cannot be created: " + error.message() + "; choose another one");
   }
   const std::string probe = (fs::path(writer.directory_) / (writer.baseName_ + "probe")).string();
   const Status writable = io::writeFile(probe, "");
   fs::remove(probe, error);
   if (!writable.ok()) {
-    return io::fileError(StatusCode::FileNotWritable, directory, 0, "no file can be made in it: " + writable.message);
+    return io::fileError(StatusCode::FileNotWritable, directory, 0,
+                         "no file can be created in this folder: " + writable.message);
   }
-  writer.layout_ = layout.inFolder(writer.directory_);
+  writer.layout_ = layout.forFolder(writer.directory_);
   return writer;
 }
 

@@ -7,6 +7,7 @@
 #include <tetskin/io/src/text/file_text.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::io {
 
@@ -68,7 +69,7 @@ Status HeaderReader::readFormat(TextScanner& line) {
   hasFormat_ = true;
   if (!header_.binary || kind == "binary_big_endian" || kind == "binary_little_endian") return {};
   return error(StatusCode::UnsupportedFormat,
-               "is of format " + excerpt(kind) + ", which is not read; save it as ascii");
+               "has format " + excerpt(kind) + ", which is not supported; save it as ascii");
 }
 
 Status HeaderReader::readElement(TextScanner& line) {
@@ -78,7 +79,7 @@ Status HeaderReader::readElement(TextScanner& line) {
   const std::string_view count = line.word();
   if (!parseInteger(count, element.count)) {
     return error(StatusCode::Malformed,
-                 "has " + excerpt(count) + " for the number of " + excerpt(element.name) + "; correct the header");
+                 "has " + excerpt(count) + " as the number of " + excerpt(element.name) + "; correct the header");
   }
   header_.elements.push_back(std::move(element));
   return {};
@@ -108,7 +109,7 @@ Status HeaderReader::readType(TextScanner& line, NumberType& type) {
   type = plyNumberType(name);
   if (type.bytes > 0) return {};
   return error(StatusCode::UnsupportedFormat,
-               "has a property of type " + excerpt(name) + ", which is not read; save it with float and int");
+               "has a property of type " + excerpt(name) + ", which is not supported; save it with float and int");
 }
 
 }  // namespace
@@ -121,6 +122,7 @@ std::size_t PlyElement::find(std::initializer_list<std::string_view> names, bool
 }
 
 Result<PlyHeader> readPlyHeader(const std::string& path, TextScanner& in) {
+  assert(in.line() == 1);
   return HeaderReader(path, in).read();
 }
 

@@ -13,11 +13,11 @@
 
 namespace tetskin::io {
 
-/// A number of each instance of an element, or a list of numbers.
+/// A property of an element: one number per instance, or a list of numbers.
 struct PlyProperty {
   std::string_view name;
   NumberType type;
-  NumberType countType;  ///< of a list: of how many it has
+  NumberType countType;  ///< of a list: type of its length
   bool isList = false;
 };
 
@@ -25,14 +25,14 @@ struct PlyElement {
   std::string_view name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  std::size_t line = 0;  ///< in the header
+  std::size_t line = 0;  ///< line number in the header
 
-  /// Place of the first property that has one of these names and is a list or is none; properties.size() if there is
-  /// none such.
+  /// Index of the first property that has one of these names and is, or is not, a list; properties.size() if there is
+  /// none.
   std::size_t find(std::initializer_list<std::string_view> names, bool list = false) const;
 };
 
-/// What a PLY file says it holds. Its names are views into the text.
+/// The contents of a PLY file as its header states them. Its names are views into the text.
 struct PlyHeader {
   bool binary = false;
   ByteOrder order = ByteOrder::Little;

@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   Greg Turk, "The PLY Polygon File Format", 1994
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/io/src/mesh/ply_header.h>
 #include <tetskin/io/src/mesh/ply_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -19,10 +21,10 @@ namespace tetskin::io {
 
 namespace {
 
-/// One instance of an element: by property its numbers, one where it is no list.
+/// One instance of an element: by property its numbers; one number if it is no list.
 using Row = std::vector<std::vector<double>>;
 
-/// The properties of an element that are of interest; those that it lacks are beyond its last.
+/// The columns of the properties of interest; the columns of missing ones are beyond the last.
 struct Columns {
   std::array<std::size_t, 3> position{}, normal{};
   std::array<std::size_t, 2> texcoord{};
@@ -65,7 +67,7 @@ class PlyReader {
   Status addStrips(std::uint64_t index, const Row& row);
   Status readCorner(std::string_view what, std::uint64_t index, double number, int& vertex) const;
   void addTexcoords(const std::vector<double>& numbers);
-  /// Binary data have no lines worth naming.
+  /// Binary data have no lines that are worth reporting.
   Status error(StatusCode code, const std::string& what) const {
     return fileError(code, path_, header_.binary ? 0 : in_.line(), what);
   }
@@ -75,8 +77,8 @@ class PlyReader {
   PlyHeader header_;
   Columns columns_;  ///< of the element that is being read
   std::vector<int> polygon_;
-  std::vector<char> hasTexcoord_;  ///< by vertex, where its texture coordinates come from the corners of faces
-  bool texcoordsDiffer_ = false;   ///< between corners at one vertex, or some have none
+  std::vector<char> hasTexcoord_;  ///< by vertex; used if texture coordinates come from the corners of faces
+  bool texcoordsDiffer_ = false;   ///< corners at one vertex have different ones, or some have none
   TriangleMesh mesh_;
 };
 
@@ -127,17 +129,17 @@ Status PlyReader::checkVertices(const PlyElement& element) {
                    "has vertices without x, y or z; export the model again");
 }
 
-/// Whether so many instances fit into the rest of the file, with lists that are all empty.
+/// Ok if this many instances fit into the rest of the file, with all lists empty.
 Status PlyReader::checkRoom(const PlyElement& element) const {
-  std::uint64_t least = 0;
+  std::uint64_t minimum = 0;
   for (const PlyProperty& property : element.properties) {
-    least += !header_.binary ? 2 : property.isList ? property.countType.bytes : property.type.bytes;
+    minimum += !header_.binary ? 2 : property.isList ? property.countType.bytes : property.type.bytes;
   }
-  // The last number of a text needs no blank behind it.
-  if (least == 0 || element.count <= (in_.remaining() + 1) / least) return {};
+  // The last number of a text needs no blank after it.
+  if (minimum == 0 || element.count <= (in_.remaining() + 1) / minimum) return {};
   return fileError(StatusCode::Malformed, path_, element.line,
                    "states " + std::to_string(element.count) + " of element " + excerpt(element.name) + ", at least " +
-                       std::to_string(least) + " bytes each, but only " + std::to_string(in_.remaining()) +
+                       std::to_string(minimum) + " bytes each, but only " + std::to_string(in_.remaining()) +
                        " bytes are left for them; is it complete? Save it again");
 }
 
@@ -148,19 +150,21 @@ bool PlyReader::readNumber(const NumberType& type, double& value) {
   return true;
 }
 
-/// How many numbers follow: no more than there can be.
+/// Reads how many numbers follow: no more than fit into the file.
 bool PlyReader::readCount(const PlyProperty& property, std::size_t& count) {
+  assert(!header_.binary || property.type.bytes > 0);
   count = 1;
   if (!property.isList) return true;
   double stated = 0.0;
   if (!readNumber(property.countType, stated)) return false;
-  const std::size_t most = in_.remaining() / (header_.binary ? property.type.bytes : 2) + 1;
-  if (!(stated >= 0.0 && stated <= static_cast<double>(most)) || stated != std::floor(stated)) return false;
+  const std::size_t maximum = in_.remaining() / (header_.binary ? property.type.bytes : 2) + 1;
+  if (!(stated >= 0.0 && stated <= static_cast<double>(maximum)) || stated != std::floor(stated)) return false;
   count = static_cast<std::size_t>(stated);
   return true;
 }
 
 Status PlyReader::readRow(const PlyElement& element, std::uint64_t index, Row& row) {
+  assert(row.size() == element.properties.size());
   for (std::size_t p = 0; p < row.size(); ++p) {
     const PlyProperty& property = element.properties[p];
     std::size_t count = 0;
@@ -176,6 +180,7 @@ Status PlyReader::readRow(const PlyElement& element, std::uint64_t index, Row& r
 }
 
 Status PlyReader::addVertex(std::uint64_t index, const Row& row) {
+  assert(index <= mesh_.vertexCount());
   Eigen::Vector3d position, normal;
   take(row, columns_.position, position.data());
   if (const std::string fault = coordinateFault(position); !fault.empty()) {
@@ -195,12 +200,13 @@ Status PlyReader::readCorner(std::string_view what, std::uint64_t index, double 
   }
   std::string named;
   appendNumber(named, number);
-  return error(StatusCode::IndexOutOfRange, std::string(what) + " " + std::to_string(index) + " names vertex " + named +
-                                                ", but there are " + std::to_string(mesh_.vertexCount()) +
+  return error(StatusCode::IndexOutOfRange, std::string(what) + " " + std::to_string(index) + " refers to vertex " +
+                                                named + ", but there are " + std::to_string(mesh_.vertexCount()) +
                                                 " before it, counted from 0; correct it or export the model again");
 }
 
 Status PlyReader::addFace(std::uint64_t index, const Row& row) {
+  assert(columns_.corners < row.size());
   const std::vector<double>& corners = row[columns_.corners];
   polygon_.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -228,9 +234,10 @@ void PlyReader::addTexcoords(const std::vector<double>& numbers) {
   }
 }
 
-/// A list of strips with -1 between them: each vertex from the third on makes a triangle with the two before it, of
-/// which every other one is the other way round.
+/// A list of strips separated by -1: each vertex from the third on makes a triangle with the two before it; every
+/// second triangle has the opposite orientation.
 Status PlyReader::addStrips(std::uint64_t index, const Row& row) {
+  assert(columns_.corners < row.size());
   polygon_.clear();
   for (const double number : row[columns_.corners]) {
     if (number == -1.0) {
@@ -247,7 +254,7 @@ Status PlyReader::addStrips(std::uint64_t index, const Row& row) {
   return {};
 }
 
-/// Makes the line ends of old Macs, carriage returns alone, line feeds as far as the file is text.
+/// Converts the line ends of old Macs, single carriage returns, to line feeds, as far as the file is text.
 void endLines(std::string& text) {
   if (text.substr(0, 4) != "ply\r" || text.substr(4, 1) == "\n") return;
   const std::size_t header = std::min(text.find("end_header\r"), text.size());

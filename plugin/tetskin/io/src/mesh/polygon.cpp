@@ -16,11 +16,11 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-/// Searches for an ear that may fail, each of which takes quadratic time, before what is left is cut off corner by
-/// corner. Polygons that touch themselves need a few; those that cross themselves, nearly one for every corner.
-constexpr std::size_t kMostFailures = 4;
+/// Number of failed searches for an ear, each of quadratic time, after which the rest is cut off corner by corner.
+/// Polygons that touch themselves need a few; those that cross themselves, nearly one per corner.
+constexpr std::size_t kMaxFailures = 4;
 
-/// The polygon seen from the side towards which its area vector points, along the nearest axis: counter-clockwise.
+/// The polygon projected along the axis nearest to its area vector, so that it is counter-clockwise.
 std::vector<Point> flattened(const std::vector<Eigen::Vector3d>& positions, const std::vector<int>& corners) {
   const auto at = [&](std::size_t i) { return positions[static_cast<std::size_t>(corners[i % corners.size()])]; };
   Eigen::Vector3d area(0, 0, 0);
@@ -47,12 +47,13 @@ bool isConvex(const std::vector<Point>& points) {
   return true;
 }
 
-/// True if the corner in the middle of three sticks out, and none of the polygon's corners lies in their triangle.
-bool isEar(const std::vector<Point>& points, const std::vector<std::size_t>& left, std::size_t middle) {
+/// True if the middle one of three corners is convex, and none of the polygon's corners lies in their triangle.
+bool isEar(const std::vector<Point>& points, const std::vector<std::size_t>& left, std::size_t centroid) {
+  assert(centroid < left.size() && left.size() >= 3);
   const std::size_t count = left.size();
-  const Point& a = points[left[(middle + count - 1) % count]];
-  const Point& b = points[left[middle]];
-  const Point& c = points[left[(middle + 1) % count]];
+  const Point& a = points[left[(centroid + count - 1) % count]];
+  const Point& b = points[left[centroid]];
+  const Point& c = points[left[(centroid + 1) % count]];
   if (!(turn(a, b, c) > 0.0)) return false;
   for (const std::size_t other : left) {
     const Point& p = points[other];
@@ -64,9 +65,10 @@ bool isEar(const std::vector<Point>& points, const std::vector<std::size_t>& lef
 
 void clipEars(const std::vector<Point>& points, const std::vector<int>& corners,
               std::vector<std::array<int, 3>>& triangles) {
+  assert(points.size() == corners.size());
   std::vector<std::size_t> left(points.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  std::size_t mayFail = kMostFailures;
+  std::size_t mayFail = kMaxFailures;
   for (std::size_t count = left.size(); count > 2; --count) {
     std::size_t ear = 0;
     while (mayFail > 0 && ear < count && !isEar(points, left, ear)) ++ear;

@@ -8,9 +8,9 @@
 
 namespace tetskin::io {
 
-/// Ok unless a file states that it holds more than its bytes can: assimp takes such counts on trust, and allocates and
-/// loops by them. Asked of OFF (vertices and faces), binary STL (triangles) and binary glTF (its scene); all other
-/// files are Ok. Errors: FileNotFound; Malformed, with what is stated and what there is
+/// Ok unless a file states that it contains more than its bytes can: assimp trusts such counts, and allocates and loops
+/// by them. Tested are OFF (vertices and faces), binary STL (triangles) and binary glTF (its scene); all other files
+/// are Ok. Errors: FileNotFound; Malformed, with the stated and the actual size
 Status checkStatedSizes(const std::string& path);
 
 }  // namespace tetskin::io

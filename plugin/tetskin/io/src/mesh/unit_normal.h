@@ -8,7 +8,7 @@
 
 namespace tetskin::io {
 
-/// v / |v|, or 0 where that is no direction.
+/// v / |v|, or 0 if v has no direction.
 inline Eigen::Vector3f unitNormal(const Eigen::Vector3d& v) {
   const double length = v.norm();
   return length > 0.0 && std::isfinite(length) ? Eigen::Vector3f((v / length).cast<float>()) : Eigen::Vector3f(0, 0, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/io/embedding_file.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -33,7 +34,7 @@ class GmshReader {
   Result<TetMesh> read();
 
  private:
-  /// A tet by the tags of its nodes, which may be read later than it.
+  /// A tet by the tags of its nodes, which may follow later in the file.
   struct TaggedTet {
     std::int64_t tag = 0;
     std::array<std::int64_t, 4> nodes{};
@@ -57,7 +58,7 @@ class GmshReader {
   Status collectTets();
   Status cutShort() const {
     return error(StatusCode::Malformed,
-                 "has something else than a number, or ends, within the data; is it complete? "
+                 "has something other than a number, or ends, within the data; is it complete? "
                  "Save it again");
   }
   Status error(StatusCode code, const std::string& what) const { return fileError(code, path_, in_.line(), what); }
@@ -74,7 +75,7 @@ class GmshReader {
 Result<TetMesh> GmshReader::read() {
   for (std::string_view word = in_.word(); !word.empty(); word = in_.word()) {
     if (word[0] != '$' || word.size() == 1) {
-      return error(StatusCode::Malformed, "has " + excerpt(word) + " where a section should begin; is it a Gmsh file?");
+      return error(StatusCode::Malformed, "has " + excerpt(word) + " where a section is expected; is it a Gmsh file?");
     }
     Status status = readSection(word.substr(1));
     if (!status.ok()) return status;
@@ -98,7 +99,7 @@ Status GmshReader::readSection(std::string_view name) {
   return status.ok() ? endSection(name, !mesh) : status;
 }
 
-/// Reads over the end of a section, and over all before it where the section is of no interest.
+/// Skips the end of a section, and everything before it if the section is of no interest.
 Status GmshReader::endSection(std::string_view name, bool skip) {
   const std::string wanted = "$End" + std::string(name);
   std::string_view word = in_.word();
@@ -114,16 +115,16 @@ Status GmshReader::readFormat() {
   if (!in_.integer(binary)) return cutShort();
   if (binary != 0) {
     return error(StatusCode::UnsupportedFormat,
-                 "is a binary file, which is not read; save it as ASCII, version 2.2 or "
+                 "is a binary file, which is not supported; save it as ASCII, version 2.2 or "
                  "4.1 (gmsh -save -format msh41 or msh22, without -bin)");
   }
   version_ = version == "4.1" ? 4 : version.substr(0, 2) == "2." || version == "2" ? 2 : 0;
   if (version_ != 0) return {};
   return error(StatusCode::UnsupportedFormat,
-               "is of format version " + excerpt(version) + ", which is not read; save it as version 2.2 or 4.1");
+               "has format version " + excerpt(version) + ", which is not supported; save it as version 2.2 or 4.1");
 }
 
-/// Reads a count of things that are so many numbers each in the file.
+/// Reads a count of items, each of which takes this many numbers in the file.
 Status GmshReader::readCount(std::uint64_t numbersEach, std::uint64_t& count) {
   if (!in_.integer(count)) return cutShort();
   if (count <= static_cast<std::uint64_t>(std::numeric_limits<int>::max()) && in_.hasRoomFor(count * numbersEach)) {
@@ -134,6 +135,7 @@ Status GmshReader::readCount(std::uint64_t numbersEach, std::uint64_t& count) {
 }
 
 Status GmshReader::readPosition() {
+  assert(mesh_.nodeCount() < tags_.size());
   Eigen::Vector3d node;
   if (!in_.number(node[0]) || !in_.number(node[1]) || !in_.number(node[2])) return cutShort();
   if (const std::string fault = coordinateFault(node); !fault.empty()) {
@@ -155,7 +157,7 @@ Status GmshReader::readNodes2() {
   return status;
 }
 
-/// Blocks of "dimension entity kind count": block(dimension, kind, count) reads what follows each.
+/// Reads blocks of "dimension entity kind count": block(dimension, kind, count) reads the contents of each.
 template <class Block>
 Status GmshReader::readBlocks(std::uint64_t numbersEach, Block&& block) {
   std::uint64_t blocks = 0, total = 0;
@@ -173,7 +175,7 @@ Status GmshReader::readBlocks(std::uint64_t numbersEach, Block&& block) {
   return status;
 }
 
-/// Blocks of nodes of one kind, parametric or not: their tags, then their coordinates.
+/// Reads blocks of nodes of one kind, parametric or not: their tags, then their coordinates.
 Status GmshReader::readNodes4() {
   return readBlocks(4, [this](int dimension, int parametric, std::uint64_t count) -> Status {
     for (std::uint64_t n = 0; n < count; ++n) {
@@ -190,7 +192,7 @@ Status GmshReader::readNodes4() {
   });
 }
 
-/// Lines of "tag type tagCount tags... nodes...".
+/// Reads lines of "tag type tagCount tags... nodes...".
 Status GmshReader::readElements2() {
   std::uint64_t count = 0;
   Status status = readCount(4, count);
@@ -203,7 +205,7 @@ Status GmshReader::readElements2() {
   return status;
 }
 
-/// Blocks of elements of one type: lines of "tag nodes...".
+/// Reads blocks of elements of one type: lines of "tag nodes...".
 Status GmshReader::readElements4() {
   return readBlocks(2, [this](int, int type, std::uint64_t count) -> Status {
     Status status;
@@ -216,8 +218,10 @@ Status GmshReader::readElements4() {
   });
 }
 
-/// The rest of an element, of which the last of `tets_` has the tag already; it is dropped again if it is no tet.
+/// Reads the rest of an element, whose tag is already in the last entry of `tets_`; the entry is removed if the element
+/// is no tet.
 Status GmshReader::readElement(int type, int tags) {
+  assert(!tets_.empty());
   if (type != kGmshTet) {
     tets_.pop_back();
     ++report_.skippedCells;
@@ -246,6 +250,7 @@ Status GmshReader::sortTags() {
 }
 
 Status GmshReader::collectTets() {
+  assert(tags_.size() == mesh_.nodeCount() && std::is_sorted(tags_.begin(), tags_.end()));
   mesh_.tets.reserve(tets_.size());
   for (const TaggedTet& tagged : tets_) {
     Tet tet;
@@ -254,7 +259,7 @@ Status GmshReader::collectTets() {
       const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair<std::int64_t, int>(node, 0));
       if (found == tags_.end() || found->first != node) {
         return fileError(StatusCode::IndexOutOfRange, path_, tagged.line,
-                         "tet " + std::to_string(tagged.tag) + " names node " + std::to_string(node) +
+                         "tet " + std::to_string(tagged.tag) + " refers to node " + std::to_string(node) +
                              ", which does not exist; correct the tet");
       }
       tet[i] = found->second;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/number_text.h>
-#include <tetskin/io/tet_files.h>
 
+#include <algorithm>
+#include <cassert>
 #include <filesystem>
 
 namespace tetskin {
@@ -21,6 +24,7 @@ void appendPoint(std::string& text, const Eigen::Vector3d& p) {
 
 /// The nodes of a tet, counted from `base`.
 void appendCorners(std::string& text, const Tet& tet, std::size_t base) {
+  assert(base <= 1 && *std::min_element(tet.begin(), tet.end()) >= 0);
   for (int i = 0; i < 4; ++i) {
     io::appendNumber(text, static_cast<std::size_t>(tet[i]) + base);
     text += i < 3 ? ' ' : '\n';
@@ -84,10 +88,10 @@ Status checkExtension(const std::string& path) {
     if (extension == known) return {};
   }
   return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                       "is of a format that is not written; use .vtk, .node, .ele or .msh");
+                       "unsupported output format; use .vtk, .node, .ele or .msh");
 }
 
-/// Ok if a reader would take the mesh.
+/// Ok if a reader would accept the mesh.
 Status checkWritable(const TetMesh& mesh, const std::string& path) {
   if (mesh.tets.empty()) {
     return io::fileError(StatusCode::Empty, path, 0,
@@ -97,14 +101,15 @@ Status checkWritable(const TetMesh& mesh, const std::string& path) {
   if (bad < mesh.nodeCount()) {
     return io::fileError(StatusCode::NonFinite, path, 0,
                          "cannot be written, as node " + std::to_string(bad) +
-                             " has a coordinate that is not finite; check where the mesh comes from");
+                             " has a coordinate that is not finite; check the source of the mesh");
   }
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
     for (const int node : mesh.tets[t]) {
       if (node >= 0 && static_cast<std::size_t>(node) < mesh.nodeCount()) continue;
       return io::fileError(StatusCode::IndexOutOfRange, path, 0,
-                           "cannot be written, as tet " + std::to_string(t) + " names node " + std::to_string(node) +
-                               " of " + std::to_string(mesh.nodeCount()) + "; check where the mesh comes from");
+                           "cannot be written, as tet " + std::to_string(t) + " refers to node " +
+                               std::to_string(node) + " of " + std::to_string(mesh.nodeCount()) +
+                               "; check the source of the mesh");
     }
   }
   return {};
@@ -130,20 +135,21 @@ Status saveTetMesh(const TetMesh& mesh, const std::string& path) {
 
 Status saveCage(const Cage& cage, const std::string& path) {
   Status status = checkExtension(path);
-  if (status.ok()) status = checkWritable(cage, path);
+  if (status.ok()) status = checkWritable(cage.mesh, path);
   if (!status.ok()) return status;
-  if (status = cage.check(); !status.ok()) {
+  if (status = checkKnowledge(cage); !status.ok()) {
     return io::fileError(status.code, path, 0,
-                         "cannot be written, as " + status.message + "; check where the cage comes from");
+                         "cannot be written, as " + status.message + "; check the source of the cage");
   }
   if (io::lowerExtension(path) == ".vtk") {
-    std::string text = vtkText(cage);
+    std::string text = vtkText(cage.mesh);
     io::appendCageData(text, cage);
     return io::writeFile(path, text);
   }
-  if (cage.vertexTets.empty() || !cage.split()) return saveTetMesh(cage, path);
+  if (cage.vertexTets.empty() || !cage.hasDuplicates()) return saveTetMesh(cage.mesh, path);
   return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                       "cannot keep which copy of a tet carries which vertex, and this cage has copies; use .vtk");
+                       "this format cannot store which duplicate of a tet carries which vertex, and this cage has "
+                       "duplicate elements; use .vtk");
 }
 
 }  // namespace tetskin

@@ -8,6 +8,7 @@
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_records.h>
 
+#include <cassert>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -39,7 +40,7 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
   }
   if (dimension != 3) {
     return fileError(StatusCode::UnsupportedFormat, path, header.line(),
-                     "has nodes of dimension " + std::to_string(dimension) + "; only 3 is read");
+                     "has nodes of dimension " + std::to_string(dimension) + "; only 3 is supported");
   }
   if (count > static_cast<std::uint64_t>(std::numeric_limits<int>::max()) || !records.hasRoomFor(4 * count)) {
     return tooShort(path, header, count, "nodes");
@@ -56,8 +57,9 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
     }
     if (n == 0) base = index;
     if (base < 0 || base > 1 || index != base + static_cast<std::int64_t>(n)) {
-      return malformed(path, record,
-                       "has node " + std::to_string(index) + " out of turn; nodes are numbered one by one from 0 or 1");
+      return malformed(
+          path, record,
+          "has node " + std::to_string(index) + " out of order; nodes must be numbered consecutively from 0 or 1");
     }
     if (const std::string fault = coordinateFault(node); !fault.empty()) {
       return fileError(StatusCode::NonFinite, path, record.line(), "node " + std::to_string(index) + fault);
@@ -69,6 +71,7 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
 
 Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, std::size_t nodeCount, std::int64_t base,
                Tet& tet) {
+  assert(base == 0 || base == 1);
   record.word();  // its index, which nothing refers to
   for (int& corner : tet) {
     std::int64_t node = 0;
@@ -79,7 +82,7 @@ Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, st
     }
     if (node < base || node - base >= static_cast<std::int64_t>(nodeCount)) {
       return fileError(StatusCode::IndexOutOfRange, path, record.line(),
-                       "tet " + std::to_string(t) + " names node " + std::to_string(node) + ", but there are " +
+                       "tet " + std::to_string(t) + " refers to node " + std::to_string(node) + ", but there are " +
                            std::to_string(nodeCount) + ", counted from " + std::to_string(base) + "; correct the tet");
     }
     corner = static_cast<int>(node - base);
@@ -96,7 +99,7 @@ Status readTets(const std::string& path, std::string_view text, std::int64_t bas
     return malformed(path, header, "does not begin with the number of tets and of their nodes; is it a TetGen file?");
   }
   if (corners != 4 && corners != 10) {
-    return malformed(path, header, "has tets of " + std::to_string(corners) + " nodes; only 4 and 10 are possible");
+    return malformed(path, header, "has tets of " + std::to_string(corners) + " nodes; only 4 and 10 are supported");
   }
   if (count > std::numeric_limits<std::uint32_t>::max() || !records.hasRoomFor(5 * count)) {
     return tooShort(path, header, count, "tets");
@@ -112,7 +115,7 @@ Status readTets(const std::string& path, std::string_view text, std::int64_t bas
   return {};
 }
 
-/// The file of that name with another extension, which may be in capitals as well.
+/// The path of the file of the same name with another extension, which may also be in capitals.
 std::string sibling(const std::string& path, const char* extension, const char* capitals) {
   std::filesystem::path result = path;
   std::error_code ignored;

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <string>
 
 namespace tetskin::io {
 
-/// Reads a pair of TetGen files, given either, as `loadTetMesh` describes. A file without tets gives a mesh without
-/// tets.
+/// Reads a pair of TetGen files, given the path of either, as `loadTetMesh` describes. If they contain no tets, the
+/// mesh has none.
 Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport& report);
 
 }  // namespace tetskin::io

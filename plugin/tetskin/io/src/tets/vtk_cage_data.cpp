@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <type_traits>
 
@@ -11,11 +12,11 @@ namespace tetskin::io {
 
 namespace {
 
-/// A kind of data but for SCALARS: a keyword, a name, perhaps the number of components, perhaps a type.
+/// A kind of data other than SCALARS: a keyword, a name, possibly the number of components, possibly a type.
 struct Attribute {
   const char* keyword;
-  std::uint64_t components;  ///< 0: stated
-  bool typed;                ///< otherwise bytes in binary files, numbers in text
+  std::uint64_t components;  ///< 0: the file states it
+  bool typed;                ///< otherwise the values are bytes in binary files, numbers in text
 };
 constexpr std::array<Attribute, 10> kAttributes = {{{"vectors", 3, true},
                                                     {"normals", 3, true},
@@ -36,11 +37,12 @@ const Attribute* attributeNamed(const std::string& keyword) {
   return nullptr;
 }
 
-/// Drops the values of cells that are no tets.
+/// Removes the values of cells that are no tets.
 template <class Value>
 void keepValues(std::vector<Value>& values, const std::vector<bool>& isTet) {
   if (values.empty()) return;
-  const std::size_t components = values.size() / isTet.size();  // an array of cells is of all of them
+  assert(!isTet.empty() && values.size() % isTet.size() == 0);
+  const std::size_t components = values.size() / isTet.size();  // an array of cells has values for all cells
   auto kept = values.begin();
   for (std::size_t cell = 0; cell < isTet.size(); ++cell) {
     if (!isTet[cell]) continue;
@@ -52,6 +54,7 @@ void keepValues(std::vector<Value>& values, const std::vector<bool>& isTet) {
 
 template <class Value>
 void appendValues(std::string& text, const std::vector<Value>& values, std::size_t components) {
+  assert(components > 0 && values.size() % components == 0);
   for (std::size_t k = 0; k < values.size(); ++k) {
     appendNumber(text, values[k]);
     text += (k + 1) % components == 0 ? '\n' : ' ';
@@ -96,11 +99,11 @@ Status VtkCageData::readSections(std::string keyword, std::size_t cells, std::si
 
 Status VtkCageData::beginSection(const std::string& keyword, std::size_t cells, std::size_t nodes) {
   owner_ = keyword == "cell_data" ? Owner::Cells : Owner::Nodes;
-  const std::string of = owner_ == Owner::Cells ? "cells" : "points";
+  const std::string name = owner_ == Owner::Cells ? "cells" : "points";
   const std::size_t wanted = owner_ == Owner::Cells ? cells : nodes;
-  Status status = file_.readCount(of.c_str(), tuples_);
+  Status status = file_.readCount(name.c_str(), tuples_);
   if (!status.ok() || tuples_ == wanted) return status;
-  return file_.error(StatusCode::SizeMismatch, "has data of " + std::to_string(tuples_) + " " + of +
+  return file_.error(StatusCode::SizeMismatch, "has data of " + std::to_string(tuples_) + " " + name +
                                                    ", but there are " + std::to_string(wanted) +
                                                    "; correct the data, or remove them");
 }
@@ -114,14 +117,15 @@ Status VtkCageData::readAttribute(const std::string& keyword) {
   }
   const Attribute* known = attributeNamed(keyword);
   if (!known) {
-    return file_.error(StatusCode::Malformed, "has " + excerpt(keyword) +
-                                                  " where data of cells or points should begin; do the data before it "
-                                                  "have the right number of entries? Correct or remove them");
+    return file_.error(StatusCode::Malformed,
+                       "has " + excerpt(keyword) +
+                           " where data of cells or points are expected; do the data before them "
+                           "have the right number of entries? Correct or remove them");
   }
   VtkArray array{std::string(file_.name()), known->components, tuples_, file_.binary() ? "unsigned_char" : "float"};
   Status status;
   if (keyword == "lookup_table") {
-    array.name.clear();  // an array of colours, of neither cells nor points
+    array.name.clear();  // an array of colours, which belongs to neither cells nor points
     status = file_.readCount("colours", array.tuples);
   } else if (known->components == 0) {
     status = file_.readCount("components", array.components);
@@ -153,11 +157,11 @@ Status VtkCageData::readArray(const VtkArray& array) {
   const auto is = [&](Owner wanted, const char* name) { return owner_ == wanted && array.name == name; };
   if (is(Owner::File, "mesh_hash")) return readHash(array);
   if (is(Owner::File, "vertex_tets")) return readInto(array, 1, cage_.vertexTets);
-  if (is(Owner::Cells, "fill")) return readInto(array, 1, cage_.fill);
-  if (is(Owner::Cells, "factor")) return readInto(array, 1, cage_.factor);
-  if (is(Owner::Cells, "part")) return readInto(array, 1, cage_.parts);
-  if (is(Owner::Cells, "lattice_tet")) return readInto(array, 1, cage_.latticeTets);
-  if (is(Owner::Cells, "fine_fill")) return readInto(array, kFineTets, cage_.fineFill);
+  if (is(Owner::Cells, "fill")) return readInto(array, 1, cage_.volumeFraction);
+  if (is(Owner::Cells, "factor")) return readInto(array, 1, cage_.stiffnessFactor);
+  if (is(Owner::Cells, "part")) return readInto(array, 1, cage_.component);
+  if (is(Owner::Cells, "lattice_tet")) return readInto(array, 1, cage_.sourceTet);
+  if (is(Owner::Cells, "fine_fill")) return readInto(array, kFineTets, cage_.fineVolumeFraction);
   if (is(Owner::Nodes, "mass")) return readInto(array, 1, cage_.masses);
   return file_.skip(array);
 }
@@ -170,7 +174,7 @@ Status VtkCageData::readHash(const VtkArray& array) {
   return {};
 }
 
-/// The numbers of a known array: so many for each of its owners, and each a Number.
+/// Reads the numbers of a known array: a fixed number of values per owner, each a Number.
 template <class Number>
 Status VtkCageData::readInto(const VtkArray& array, std::uint64_t components, std::vector<Number>& values) {
   constexpr bool kReal = std::is_floating_point_v<Number>;
@@ -194,7 +198,7 @@ Status VtkCageData::readInto(const VtkArray& array, std::uint64_t components, st
   return file_.readNumbers<Wide>(array.count(), array.type, [&](Wide value) -> Status {
     values.push_back(static_cast<Number>(value));
     if (kReal || static_cast<Wide>(values.back()) == value) return {};
-    return fault("has " + std::to_string(value) + " in " + name + ", whose values go up to " +
+    return fault("has " + std::to_string(value) + " in " + name + ", whose largest value is " +
                  std::to_string(std::numeric_limits<Number>::max()));
   });
 }
@@ -204,34 +208,34 @@ Status VtkCageData::fault(const std::string& what) const {
 }
 
 void VtkCageData::keepTets(const std::vector<bool>& isTet) {
-  keepValues(cage_.fill, isTet);
-  keepValues(cage_.factor, isTet);
-  keepValues(cage_.parts, isTet);
-  keepValues(cage_.latticeTets, isTet);
-  keepValues(cage_.fineFill, isTet);
+  keepValues(cage_.volumeFraction, isTet);
+  keepValues(cage_.stiffnessFactor, isTet);
+  keepValues(cage_.component, isTet);
+  keepValues(cage_.sourceTet, isTet);
+  keepValues(cage_.fineVolumeFraction, isTet);
 }
 
 void appendCageData(std::string& text, const Cage& cage) {
   std::vector<std::uint32_t> hash;
-  if (cage.meshHash != 0) {
-    hash = {static_cast<std::uint32_t>(cage.meshHash >> 32), static_cast<std::uint32_t>(cage.meshHash)};
+  if (cage.meshHash) {
+    hash = {static_cast<std::uint32_t>(*cage.meshHash >> 32), static_cast<std::uint32_t>(*cage.meshHash)};
   }
   const std::size_t fields = (hash.empty() ? 0u : 1u) + (cage.vertexTets.empty() ? 0u : 1u);
   if (fields > 0) appendHeader(text, "FIELD FieldData", fields);
   appendFieldArray(text, "mesh_hash", "unsigned_int", hash, 2);
   appendFieldArray(text, "vertex_tets", "int", cage.vertexTets, 1);
 
-  const bool ofCells = !(cage.fill.empty() && cage.factor.empty() && cage.parts.empty() && cage.latticeTets.empty() &&
-                         cage.fineFill.empty());
-  if (ofCells) appendHeader(text, "CELL_DATA", cage.tetCount());
-  appendScalars(text, "fill", "double", cage.fill);
-  appendScalars(text, "factor", "double", cage.factor);
-  appendScalars(text, "part", "int", cage.parts);
-  appendScalars(text, "lattice_tet", "int", cage.latticeTets);
-  if (!cage.fineFill.empty()) appendHeader(text, "FIELD FieldData", 1);
-  appendFieldArray(text, "fine_fill", "unsigned_char", cage.fineFill, kFineTets);
+  const bool ofCells = !(cage.volumeFraction.empty() && cage.stiffnessFactor.empty() && cage.component.empty() &&
+                         cage.sourceTet.empty() && cage.fineVolumeFraction.empty());
+  if (ofCells) appendHeader(text, "CELL_DATA", cage.mesh.tetCount());
+  appendScalars(text, "fill", "double", cage.volumeFraction);
+  appendScalars(text, "factor", "double", cage.stiffnessFactor);
+  appendScalars(text, "part", "int", cage.component);
+  appendScalars(text, "lattice_tet", "int", cage.sourceTet);
+  if (!cage.fineVolumeFraction.empty()) appendHeader(text, "FIELD FieldData", 1);
+  appendFieldArray(text, "fine_fill", "unsigned_char", cage.fineVolumeFraction, kFineTets);
 
-  if (!cage.masses.empty()) appendHeader(text, "POINT_DATA", cage.nodeCount());
+  if (!cage.masses.empty()) appendHeader(text, "POINT_DATA", cage.mesh.nodeCount());
   appendScalars(text, "mass", "double", cage.masses);
 }
 

@@ -21,28 +21,28 @@
 
 namespace tetskin::io {
 
-/// Reads these arrays into a cage, each wherever the file has it as SCALARS or in a FIELD of its owner, as programs
-/// that save the file again exchange the two. All others are read over.
+/// Reads these arrays into a cage, whether they are SCALARS or in a FIELD of their owner, as programs that save the
+/// file again exchange the two. All other arrays are skipped.
 class VtkCageData {
  public:
   VtkCageData(VtkText& file, Cage& cage) : file_(file), cage_(cage) {}
 
-  /// A FIELD of the file itself, whose keyword has been read.
+  /// Reads a FIELD of the file itself, whose keyword has been read.
   Status readField();
-  /// All from the first CELL_DATA or POINT_DATA on, whose keyword has been read.
+  /// Reads everything from the first CELL_DATA or POINT_DATA on, whose keyword has been read.
   Status readSections(std::string keyword, std::size_t cells, std::size_t nodes);
-  /// Drops what the cage has of cells that are no tets.
+  /// Removes values of cells that are no tets.
   /// isTet  by cell
   void keepTets(const std::vector<bool>& isTet);
 
  private:
-  /// What the arrays of a section are of.
+  /// The elements to which the arrays of a section belong.
   enum class Owner { File, Cells, Nodes };
 
   Status beginSection(const std::string& keyword, std::size_t cells, std::size_t nodes);
   Status readAttribute(const std::string& keyword);
   Status readScalars();
-  /// An array whose header has been read.
+  /// Reads an array whose header has been read.
   Status readArray(const VtkArray& array);
   Status readHash(const VtkArray& array);
   template <class Number>
@@ -52,10 +52,10 @@ class VtkCageData {
   VtkText& file_;
   Cage& cage_;
   Owner owner_ = Owner::File;
-  std::uint64_t tuples_ = 0;  ///< of each array of the section, but those of the file
+  std::uint64_t tuples_ = 0;  ///< of each array of the section, except those of the file
 };
 
-/// Appends the arrays of a cage to the text of its mesh; nothing if nothing is known.
+/// Appends the arrays of a cage to the text of its mesh; nothing if the cage has no such data.
 void appendCageData(std::string& text, const Cage& cage);
 
 }  // namespace tetskin::io

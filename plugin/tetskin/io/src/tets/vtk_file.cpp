@@ -8,6 +8,7 @@
 #include <tetskin/io/src/tets/vtk_text.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -40,23 +41,26 @@ class VtkReader {
                       std::vector<std::size_t>* lines = nullptr);
 
   Status collectTets();
-  bool isTet(std::size_t cell) const { return !hasTypes_ || cellTypes_[cell] == kVtkTet; }
+  bool isTet(std::size_t cell) const {
+    assert(!hasTypes_ || cell < cellTypes_.size());
+    return !hasTypes_ || cellTypes_[cell] == kVtkTet;
+  }
   Status addTet(std::size_t cell);
   Status error(StatusCode code, const std::string& what) const { return file_.error(code, what); }
   Status errorAt(std::size_t line, StatusCode code, const std::string& what) const {
     return fileError(code, file_.path(), line, what);
   }
-  /// Binary data has no lines worth naming.
+  /// Binary data have no lines that are worth reporting.
   std::size_t lineOf(std::size_t entry) const { return entry < entryLines_.size() ? entryLines_[entry] : 0; }
 
   VtkText file_;
   const bool withData_;
   TetFileReport& report_;
   bool hasPoints_ = false, hasCells_ = false, hasTypes_ = false;
-  std::vector<std::int64_t> entries_;    ///< node indices of all cells, perhaps with their counts between them
-  std::vector<std::size_t> entryLines_;  ///< where each stands in an ASCII file
-  std::vector<std::size_t> cellFirst_;   ///< by cell: where its nodes begin in entries_
-  std::vector<std::size_t> cellSize_;    ///< by cell: how many they are
+  std::vector<std::int64_t> entries_;    ///< node indices of all cells, possibly with their counts between them
+  std::vector<std::size_t> entryLines_;  ///< line of each entry in an ASCII file
+  std::vector<std::size_t> cellFirst_;   ///< by cell: index of its first node in entries_
+  std::vector<std::size_t> cellSize_;    ///< by cell: number of its nodes
   std::vector<std::int64_t> cellTypes_;
   Cage cage_;
   VtkCageData data_{file_, cage_};
@@ -70,7 +74,7 @@ Result<Cage> VtkReader::read() {
   return std::move(cage_);
 }
 
-/// Up to the data of points and cells, which are of no interest without the cage's, and from there on those.
+/// Reads up to the data of points and cells, and reads these as well if the cage's data are wanted.
 Status VtkReader::readSections() {
   std::string keyword = file_.word();
   Status status;
@@ -86,13 +90,13 @@ Status VtkReader::readSections() {
     return error(StatusCode::Malformed, "has " + std::to_string(cellTypes_.size()) + " cell types for " +
                                             std::to_string(cellFirst_.size()) + " cells; correct the counts");
   }
-  return withData_ ? data_.readSections(keyword, cellFirst_.size(), cage_.nodeCount()) : status;
+  return withData_ ? data_.readSections(keyword, cellFirst_.size(), cage_.mesh.nodeCount()) : status;
 }
 
 Status VtkReader::readHeader() {
   const std::string_view first = file_.restOfLine();
   if (first.substr(0, 5) == "<?xml" || first.substr(0, 8) == "<VTKFile") {
-    return error(StatusCode::UnsupportedFormat, "is an XML file of VTK, which is not read; save it as legacy VTK");
+    return error(StatusCode::UnsupportedFormat, "is an XML file of VTK, which is not supported; save it as legacy VTK");
   }
   TextScanner mark(first.substr(0, 1) == "#" ? first.substr(1) : std::string_view());  // some files have no blank there
   if (VtkText::lower(mark.word()) != "vtk" || VtkText::lower(mark.word()) != "datafile" ||
@@ -112,8 +116,9 @@ Status VtkReader::readSection(const std::string& keyword) {
   if (keyword == "dataset") {
     const std::string kind = file_.word();
     if (kind == "unstructured_grid") return {};
-    return error(kind.empty() ? StatusCode::Malformed : StatusCode::UnsupportedFormat,
-                 "is a dataset of kind " + excerpt(kind) + "; only UNSTRUCTURED_GRID holds tets, save it as that");
+    return error(
+        kind.empty() ? StatusCode::Malformed : StatusCode::UnsupportedFormat,
+        "is a dataset of kind " + excerpt(kind) + "; save it as UNSTRUCTURED_GRID, the only kind that holds tets");
   }
   if (keyword == "points") return readPoints();
   if (keyword == "cells") return readCells();
@@ -126,7 +131,7 @@ Status VtkReader::readSection(const std::string& keyword) {
     return {};
   }
   return error(StatusCode::Malformed, "has " + excerpt(keyword) +
-                                          " where a section should begin; does the section before it have the right "
+                                          " where a section is expected; does the section before it have the right "
                                           "number of entries?");
 }
 
@@ -161,8 +166,8 @@ Status VtkReader::readPoints() {
                    "node " + std::to_string((values.size() - 1) / 3) + fault);
   });
   if (!status.ok()) return status;
-  cage_.nodes.resize(static_cast<std::size_t>(count));
-  for (std::size_t n = 0; n < cage_.nodes.size(); ++n) cage_.nodes[n] = Eigen::Vector3d(&values[3 * n]);
+  cage_.mesh.nodes.resize(static_cast<std::size_t>(count));
+  for (std::size_t n = 0; n < cage_.mesh.nodes.size(); ++n) cage_.mesh.nodes[n] = Eigen::Vector3d(&values[3 * n]);
   hasPoints_ = true;
   return {};
 }
@@ -181,9 +186,10 @@ Status VtkReader::readCells() {
   return file_.wordAhead() == "offsets" ? readOffsetCells(count, size) : readCountedCells(count, size);
 }
 
-/// The form up to version 4: every cell is the number of its nodes and their indices. How many numbers these are tells
-/// where binary data end. Text needs no telling, and some of Bullet's own files state it wrong.
+/// Reads the form up to version 4: every cell is the number of its nodes and their indices. The total of these numbers
+/// determines where binary data end. In text it is not needed, and some of Bullet's own files state it incorrectly.
 Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) {
+  assert(cellFirst_.empty() && entries_.empty());
   std::vector<std::int64_t> numbers;
   Status status = file_.binary() ? readIntegers(size, "int", numbers) : Status();
   if (!status.ok()) return status;
@@ -207,16 +213,17 @@ Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) 
     if (good) continue;
     return errorAt(line, StatusCode::Malformed,
                    "cell " + std::to_string(cell) + " of " + std::to_string(cellCount) +
-                       " is not the number of its nodes and as many indices; is the file complete? Save it again, or "
+                       " is not a number of nodes followed by as many indices; is the file complete? Save it again, or "
                        "correct the cell or the counts");
   }
   if (taken == numbers.size()) return {};
   return error(StatusCode::Malformed,
-               "has entries behind the last of its " + std::to_string(cellCount) + " cells; correct the counts");
+               "has entries after the last of its " + std::to_string(cellCount) + " cells; correct the counts");
 }
 
-/// The form of version 5: cell c is the range [OFFSETS[c], OFFSETS[c + 1]) of CONNECTIVITY.
+/// Reads the form of version 5: cell c is the range [OFFSETS[c], OFFSETS[c + 1]) of CONNECTIVITY.
 Status VtkReader::readOffsetCells(std::uint64_t offsetCount, std::uint64_t size) {
+  assert(cellFirst_.empty() && entries_.empty());
   file_.word();
   std::string type = file_.word();
   file_.endHeader();
@@ -253,6 +260,7 @@ Status VtkReader::readCellTypes() {
 }
 
 Status VtkReader::collectTets() {
+  assert(cellSize_.size() == cellFirst_.size() && cage_.mesh.tets.empty());
   for (std::size_t cell = 0; cell < cellFirst_.size(); ++cell) {
     if (isTet(cell)) {
       if (Status status = addTet(cell); !status.ok()) return status;
@@ -269,6 +277,7 @@ Status VtkReader::collectTets() {
 }
 
 Status VtkReader::addTet(std::size_t cell) {
+  assert(cell < cellFirst_.size() && cellFirst_[cell] + cellSize_[cell] <= entries_.size());
   const std::size_t first = cellFirst_[cell];
   if (cellSize_[cell] != 4) {
     return errorAt(
@@ -279,14 +288,14 @@ Status VtkReader::addTet(std::size_t cell) {
   Tet tet;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::int64_t node = entries_[first + i];
-    if (node < 0 || static_cast<std::uint64_t>(node) >= cage_.nodeCount()) {
+    if (node < 0 || static_cast<std::uint64_t>(node) >= cage_.mesh.nodeCount()) {
       return errorAt(lineOf(first + i), StatusCode::IndexOutOfRange,
-                     "cell " + std::to_string(cell) + " names node " + std::to_string(node) + ", but there are " +
-                         std::to_string(cage_.nodeCount()) + ", counted from 0; correct the cell");
+                     "cell " + std::to_string(cell) + " refers to node " + std::to_string(node) + ", but there are " +
+                         std::to_string(cage_.mesh.nodeCount()) + ", counted from 0; correct the cell");
     }
     tet[i] = static_cast<int>(node);
   }
-  cage_.tets.push_back(tet);
+  cage_.mesh.tets.push_back(tet);
   return {};
 }
 
@@ -295,7 +304,7 @@ Status VtkReader::addTet(std::size_t cell) {
 Result<Cage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report) {
   Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
-  // In binary data a carriage return is a byte like any other, but lines before them end with a line feed.
+  // In binary data, a carriage return is a byte like any other, but the lines before the data end with a line feed.
   if (text.value().find('\n') == std::string::npos) text.value() = withLineFeeds(std::move(text.value()));
   return VtkReader(path, text.value(), data, report).read();
 }

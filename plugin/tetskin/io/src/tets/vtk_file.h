@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/io/tet_files.h>
+#include <tetskin/io/files.h>
 
 #include <string>
 
 namespace tetskin::io {
 
-/// Which of a file's data to read: its tets alone, or also what `saveCage` writes with them.
+/// Which data of a file to read: its tets only, or also what `saveCage` writes with them.
 enum class VtkData { Skipped, OfCage };
 
-/// Reads a legacy VTK file as `loadTetMesh` and `loadCage` describe. A file without tets gives a cage without tets.
+/// Reads a legacy VTK file as `loadTetMesh` and `loadCage` describe. If the file contains no tets, the cage has none.
 Result<Cage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report);
 
 }  // namespace tetskin::io

@@ -16,14 +16,14 @@ std::string VtkText::lower(std::string_view word) {
 Status VtkText::readCount(const char* what, std::uint64_t& count) {
   const std::string_view word = in_.word();
   if (parseInteger(word, count)) return {};
-  return error(StatusCode::Malformed, "has " + excerpt(word) + " for the number of " + what + "; correct the file");
+  return error(StatusCode::Malformed, "has " + excerpt(word) + " as the number of " + what + "; correct the file");
 }
 
 Status VtkText::checkRoom(std::uint64_t count, const std::string& type) const {
   const NumberType numbers = vtkNumberType(type);
   if (binary_ && numbers.bytes == 0) {
     return error(StatusCode::UnsupportedFormat,
-                 "has binary data of type " + excerpt(type) + ", which is not read; save it as ASCII");
+                 "has binary data of type " + excerpt(type) + ", which is not supported; save it as ASCII");
   }
   if (binary_ ? count <= in_.remaining() / numbers.bytes : in_.hasRoomFor(count)) return {};
   return error(StatusCode::Malformed, "states " + std::to_string(count) +
@@ -32,7 +32,7 @@ Status VtkText::checkRoom(std::uint64_t count, const std::string& type) const {
 
 Status VtkText::notANumber() const {
   return error(StatusCode::Malformed,
-               "has something else than a number, or ends, within the data; is it complete? Save it again");
+               "has something other than a number, or ends, within the data; is it complete? Save it again");
 }
 
 Status VtkText::readArrayHeader(VtkArray& array) {
@@ -57,7 +57,7 @@ Status VtkText::skip(const VtkArray& array) {
     if (status.ok()) in_.bytes(static_cast<std::size_t>(array.count()) * vtkNumberType(array.type).bytes);
     return status;
   }
-  // A string has a line of its own, with its blanks encoded, and may be empty.
+  // A string is on a line of its own, with its blanks encoded, and may be empty.
   for (std::uint64_t i = 0; i < array.count(); ++i) array.type == "string" ? in_.restOfLine() : in_.word();
   return {};
 }

@@ -7,6 +7,7 @@
 #include <tetskin/io/src/text/text_scanner.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,7 +16,7 @@
 
 namespace tetskin::io {
 
-/// What is said of an array before its numbers: `components` for each of `tuples`.
+/// The header of an array: `components` numbers for each of `tuples`.
 struct VtkArray {
   std::string name;
   std::uint64_t components = 0, tuples = 0;
@@ -24,7 +25,7 @@ struct VtkArray {
   std::uint64_t count() const { return components * tuples; }
 };
 
-/// What every section of a legacy VTK file is made of: words, counts, and arrays of numbers, as text or as bytes. The
+/// The elements of every section of a legacy VTK file: words, counts, and arrays of numbers, as text or as bytes. The
 /// path and the text must outlive it.
 class VtkText {
  public:
@@ -35,37 +36,38 @@ class VtkText {
   void setBinary(bool binary) { binary_ = binary; }
   std::size_t line() const { return in_.line(); }
 
-  /// Next word, as it is or in lower case; empty at the end of the file.
+  /// The next word, unchanged or in lower case; empty at the end of the file.
   std::string_view name() { return in_.word(); }
   std::string word() { return lower(in_.word()); }
-  /// The word after that, not yet taken.
+  /// The word after that, which stays unread.
   std::string wordAhead() const { return lower(TextScanner(in_).word()); }
   std::string_view restOfLine() { return in_.restOfLine(); }
-  /// Next word of a text as an integer; false if it is none.
+  /// The next word of a text as an integer; false if it is none.
   bool integer(std::int64_t& value) { return in_.integer(value); }
-  /// Binary data begin on the next line; text may go on in the same one.
+  /// Binary data begin on the next line; text may continue on the same one.
   void endHeader() {
     if (binary_) in_.restOfLine();
   }
 
-  /// What memory may be reserved for so many numbers, each of which takes a byte of the file or more.
+  /// How much memory may be reserved for a number of values, each of which takes at least a byte of the file.
   std::size_t room(std::uint64_t count) const { return std::min<std::uint64_t>(count, in_.remaining()); }
 
   Status readCount(const char* what, std::uint64_t& count);
 
-  /// Gives the next `count` numbers of a type to take(number), which returns a Status, one after the other.
+  /// Passes the next `count` numbers of a type one after the other to take(number), which returns a Status.
   template <class Number, class Take>
   Status readNumbers(std::uint64_t count, const std::string& type, Take&& take);
 
-  /// Reads the arrays of a FIELD, whose keyword has been read: read(array), which returns a Status, for each of them.
+  /// Reads the arrays of a FIELD, whose keyword has been read: calls read(array), which returns a Status, for each of
+  /// them.
   template <class Read>
   Status readField(Read&& read);
 
-  /// Ok unless the file has not so much as a byte for each number of an array.
+  /// Ok unless the file has less than one byte for each number of an array.
   Status checkSize(const VtkArray& array) const;
-  /// Reads over the numbers, or strings, of an array of such a size.
+  /// Skips the numbers, or strings, of an array of this size.
   Status skip(const VtkArray& array);
-  /// Metadata, whose keyword has been read, ends with an empty line.
+  /// Skips metadata, whose keyword has been read; it ends with an empty line.
   void skipMetadata();
 
   Status error(StatusCode code, const std::string& what) const { return fileError(code, path_, in_.line(), what); }
@@ -99,9 +101,10 @@ Status VtkText::readNumbers(std::uint64_t count, const std::string& type, Take&&
   if (Status status = checkRoom(count, type); !status.ok()) return status;
   const NumberType numbers = vtkNumberType(type);
   if (binary_ && numbers.real && !std::is_floating_point_v<Number>) {
-    return error(StatusCode::Malformed, "has indices of type " + excerpt(type) + "; save it again");
+    return error(StatusCode::Malformed, "has indices of unsupported type " + excerpt(type) + "; save it again");
   }
   const char* data = binary_ ? in_.bytes(static_cast<std::size_t>(count) * numbers.bytes).data() : nullptr;
+  assert(!binary_ || numbers.bytes > 0);
   for (std::uint64_t i = 0; i < count; ++i) {
     Number value = 0;
     if (binary_) {

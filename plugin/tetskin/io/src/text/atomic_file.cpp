@@ -19,9 +19,9 @@ Status writeBytes(const std::string& name, const std::string& path, std::string_
   std::FILE* file = std::fopen(name.c_str(), "wb");
   if (!file) {
     return fileError(StatusCode::FileNotWritable, path, 0,
-                     "cannot be created: " + systemReason() + "; check that its folder exists and may be written");
+                     "cannot be created: " + systemReason() + "; check that its folder exists and is writable");
   }
-  // Everything is written at once: a buffer would only be one more copy.
+  // Everything is written at once: a buffer would only add a copy.
   std::setvbuf(file, nullptr, _IONBF, 0);
   errno = 0;
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
@@ -40,7 +40,7 @@ Status writeFile(const std::string& path, std::string_view bytes) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) {
-    return fileError(StatusCode::FileNotWritable, path, 0, "is a folder; give the name of a file");
+    return fileError(StatusCode::FileNotWritable, path, 0, "is a folder; give the path of a file");
   }
   if (fs::exists(status) && !fs::is_regular_file(status)) return writeBytes(path, path, bytes);
 
@@ -55,7 +55,7 @@ Status writeFile(const std::string& path, std::string_view bytes) {
     fs::rename(part, target, error);
     if (!error) return {};
     written = fileError(StatusCode::FileNotWritable, path, 0,
-                        "cannot be put in place: " + error.message() + "; check the permissions of its folder");
+                        "cannot be moved into place: " + error.message() + "; check the permissions of its folder");
   }
   fs::remove(part, error);
   return written;

@@ -10,8 +10,9 @@
 namespace tetskin::io {
 
 /// Writes a whole file under the name `path.part` and renames it, so that a file called `path` is always complete: an
-/// interrupted run leaves the earlier one, or none, and perhaps a `.part`. Writes through symbolic links, and straight
-/// into what is no regular file (/dev/stdout). No wait for the disk, so a power cut is not covered.
+/// interrupted run leaves the earlier one, or none, and perhaps a `.part`. It writes through symbolic links, and
+/// directly to anything that is no regular file (/dev/stdout). It does not wait for the disk, so that a power failure
+/// may lose the file.
 /// Errors: FileNotWritable; the `.part` is removed.
 Status writeFile(const std::string& path, std::string_view bytes);
 

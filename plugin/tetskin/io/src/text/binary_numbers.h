@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -23,7 +24,7 @@ inline NumberType vtkNumberType(std::string_view name) {
   if (name == "unsigned_char" || name == "vtktypeuint8") return {1, false, false};
   if (name == "short" || name == "vtktypeint16") return {2};
   if (name == "unsigned_short" || name == "vtktypeuint16") return {2, false, false};
-  // Legacy files hold ids as int, however wide they are in memory.
+  // Legacy files store ids as int, whatever their width in memory.
   if (name == "int" || name == "vtktypeint32" || name == "vtkidtype") return {4};
   if (name == "unsigned_int" || name == "vtktypeuint32") return {4, false, false};
   if (name == "long" || name == "vtktypeint64" || name == "long_long") return {8};
@@ -47,6 +48,7 @@ enum class ByteOrder { Big, Little };
 
 /// The bits of a number in a file, on any machine.
 inline std::uint64_t bitsAt(const char* data, std::size_t bytes, ByteOrder order) {
+  assert(data && bytes > 0 && bytes <= 8);
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < bytes; ++i) {
     bits = bits << 8 | static_cast<unsigned char>(data[order == ByteOrder::Big ? i : bytes - 1 - i]);
@@ -61,8 +63,9 @@ inline std::int64_t decodeInteger(const char* data, const NumberType& type, Byte
   return static_cast<std::int64_t>(bits << unused) >> unused;
 }
 
-/// A number of any type.
+/// Decodes a number of any type.
 inline double decodeNumber(const char* data, const NumberType& type, ByteOrder order = ByteOrder::Big) {
+  assert(!type.real || type.bytes == sizeof(float) || type.bytes == sizeof(double));
   if (!type.real) return static_cast<double>(decodeInteger(data, type, order));
   const std::uint64_t bits = bitsAt(data, type.bytes, order);
   if (type.bytes == sizeof(float)) {

@@ -8,8 +8,8 @@
 
 namespace tetskin::io {
 
-/// What is wrong with points that a surface cannot follow, as the rest of a sentence about the first of them; empty if
-/// all are finite and not beyond kLargestCoordinate.
+/// Describes the first point that a surface cannot follow, as the rest of a sentence about it; empty if all points are
+/// finite and not beyond Limits::kMaxCoordinate.
 inline std::string coordinateFault(PointView<const double> points) {
   const std::size_t first = firstUnusable(points);
   if (first == points.size()) return {};

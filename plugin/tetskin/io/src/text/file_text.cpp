@@ -23,7 +23,7 @@ struct CloseFile {
 Result<std::string> readFile(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    return fileError(StatusCode::FileNotFound, path, 0, "is a folder; name a file in it");
+    return fileError(StatusCode::FileNotFound, path, 0, "is a folder; give the path of a file");
   }
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (!file) {
@@ -66,7 +66,7 @@ std::string withLineFeeds(std::string text) {
 }
 
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what) {
-  const std::string name = path.empty() ? "a file without a name" : path;
+  const std::string name = path.empty() ? "(empty path)" : path;
   return {code, name + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + what};
 }
 
@@ -79,11 +79,11 @@ std::string lowerExtension(const std::string& path) {
 }
 
 std::string excerpt(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string result(text.substr(0, kLongest));
+  constexpr std::size_t kMax = 40;
+  std::string result(text.substr(0, kMax));
   std::replace_if(
       result.begin(), result.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + result + (text.size() > kLongest ? "...'" : "'");
+  return "'" + result + (text.size() > kMax ? "...'" : "'");
 }
 
 std::string systemReason() {

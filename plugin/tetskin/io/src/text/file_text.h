@@ -13,22 +13,23 @@ namespace tetskin::io {
 /// All bytes of a file. Errors: FileNotFound, also for a folder and for a file that cannot be read.
 Result<std::string> readFile(const std::string& path);
 
-/// All of a text file. Lone carriage returns, the line ends of old Macs, become line feeds. Errors: those of `readFile`
+/// The whole content of a text file. Single carriage returns, the line ends of old Macs, become line feeds. Errors:
+/// those of `readFile`
 Result<std::string> readText(const std::string& path);
 
-/// The text with its lone carriage returns as line feeds. Those before a line feed stay.
+/// The text with single carriage returns replaced by line feeds. Those before a line feed stay.
 std::string withLineFeeds(std::string text);
 
-/// A status whose message starts with the place: "path:line: what", or "path: what" where line is 0.
+/// A status whose message begins with the position: "path:line: what", or "path: what" if line is 0.
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what);
 
 /// Extension of a path in lower case, with its dot; empty if it has none.
 std::string lowerExtension(const std::string& path);
 
-/// A piece of a file for use in a message: in quotes, without control characters, cut after some 40 characters.
+/// A piece of a file for use in a message: in quotes, without control characters, cut after about 40 characters.
 std::string excerpt(std::string_view text);
 
-/// The operating system's words for the current errno.
+/// The operating system's message for the current errno.
 std::string systemReason();
 
 }  // namespace tetskin::io

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -22,18 +23,20 @@ bool parseInteger(std::string_view token, Integer& value) {
   return error == std::errc() && end == last;
 }
 
-/// True if a number is 1 or more, false if it is less, by its text alone: there it may be far beyond a double.
+/// True if a number is 1 or more, false if it is less, decided by its text: it may be far outside the range of double.
 inline bool isLarge(std::string_view token) {
+  assert(!token.empty());
   const std::size_t mark = std::min(token.find_first_of("eE"), token.size());
   const std::string_view digits = token.substr(0, mark);
   const std::size_t first = std::min(digits.find_first_of("123456789"), digits.size());
   const std::size_t point = std::min(digits.find('.'), digits.size());
-  // 0.d1 d2 d3 ... times 10^places, without the exponent; a point before the first digit counts itself.
-  const std::int64_t places =
+  // The exponent in 0.d1 d2 d3 ... times 10^places, without the stated exponent; a point before the first digit is
+  // included.
+  const std::int64_t indices =
       static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first) + (point < first ? 1 : 0);
-  if (mark == token.size()) return places > 0;
+  if (mark == token.size()) return indices > 0;
   std::int32_t exponent = 0;
-  if (parseInteger(token.substr(mark + 1), exponent)) return places + exponent > 0;
+  if (parseInteger(token.substr(mark + 1), exponent)) return indices + exponent > 0;
   return token[mark + 1] != '-';  // no text is as long as that exponent
 }
 
@@ -54,16 +57,17 @@ inline bool parseDouble(std::string_view token, double& value) {
   return true;
 }
 
-/// Room that `formatNumber` needs: the longest double is -2.2250738585072014e-308.
+/// Memory that `formatNumber` needs: the longest double is -2.2250738585072014e-308.
 constexpr int kNumberRoom = 25;
 
-/// Writes the shortest text that reads back as the same number, and returns its end. `out` has room for kNumberRoom.
+/// Writes the shortest text that reads back as the same number, and returns its end. `out` has room for kNumberRoom
+/// characters.
 template <class Number>
 char* formatNumber(char* out, Number value) {
   return std::to_chars(out, out + kNumberRoom, value).ptr;
 }
 
-/// Appends the same to a text.
+/// Appends the shortest text that reads back as the same number.
 template <class Text, class Number>
 void appendNumber(Text& text, Number value) {
   char digits[kNumberRoom];

@@ -6,7 +6,8 @@
 
 namespace tetskin::io {
 
-/// The lines of a text that are neither blank nor a comment, which begins with #. The text must outlive it.
+/// Iterates over the lines of a text that are neither blank nor a comment, which begins with #. The text must outlive
+/// it.
 class TextRecords {
  public:
   explicit TextRecords(std::string_view text) : in_(text) {}

@@ -11,8 +11,8 @@
 
 namespace tetskin::io {
 
-/// Reads words and numbers, separated by white space, from a text in memory, and knows the line. Cheap to copy, so a
-/// copy looks ahead. The text must outlive it.
+/// Reads words and numbers, separated by white space, from a text in memory, and counts lines. It is cheap to copy, so
+/// that a copy can look ahead. The text must outlive it.
 class TextScanner {
  public:
   explicit TextScanner(std::string_view text, std::size_t firstLine = 1) : rest_(text), line_(firstLine) {}
@@ -37,7 +37,7 @@ class TextScanner {
     return parseInteger(word(), value);
   }
 
-  /// The rest of the current line, without its line break, which is read over.
+  /// The rest of the current line, without its line break, which is skipped.
   std::string_view restOfLine() {
     const std::size_t length = rest_.find('\n');
     if (length == rest_.npos) return take(rest_.size());
@@ -48,14 +48,14 @@ class TextScanner {
     return line;
   }
 
-  /// The next bytes, whatever they are; at most `remaining()`. Their line breaks are not counted.
+  /// The next bytes, whatever they contain; at most `remaining()`. Line breaks among them are not counted.
   std::string_view bytes(std::size_t count) {
     assert(count <= rest_.size());
     return take(count);
   }
 
-  /// True if the rest of the text can hold so many numbers, of one digit and one blank at least. To be asked before
-  /// memory is reserved for a count that the file states.
+  /// True if the rest of the text can contain this many numbers, of at least one digit and one blank each. Call it
+  /// before reserving memory for a count that the file states.
   bool hasRoomFor(std::uint64_t numbers) const { return numbers <= rest_.size() / 2 + 1; }
 
   static bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -67,6 +67,7 @@ class TextScanner {
     take(length);
   }
   std::string_view take(std::size_t length) {
+    assert(length <= rest_.size());
     const std::string_view taken = rest_.substr(0, length);
     rest_.remove_prefix(length);
     return taken;

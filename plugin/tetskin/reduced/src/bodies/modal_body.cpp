@@ -10,10 +10,11 @@
 namespace tetskin::reduced_detail {
 namespace {
 
-/// What the frame of a held body weighs for Bullet where it works out what an impulse does to the modes: it takes none.
+/// Mass of the frame of a pinned body where Bullet computes the effect of an impulse on the modes: the frame takes
+/// none.
 constexpr btScalar kHeldMass = btScalar(1e30);
 
-/// Of the substep that is under way, which Bullet tells nobody.
+/// Gives access to the length of the current substep, which Bullet does not publish.
 struct Step : btReducedDeformableBodySolver {
   static btScalar seconds(const btReducedDeformableBodySolver& solver) { return solver.*(&Step::m_dt); }
   static const btVector3& gravity(const btReducedDeformableBodySolver& solver) { return solver.*(&Step::m_gravity); }
@@ -42,13 +43,13 @@ class ModalBody::Shape : public btSoftBodyCollisionShape {
   ModalBody& body_;
 };
 
-ModalBody::ModalBody(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes, bool held)
+ModalBody::ModalBody(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes, bool pinned)
     : btReducedDeformableBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr),
-      held_(held),
+      pinned_(pinned),
       sleepSpeed_(m_sleepingThreshold),
       threshold_(m_sleepingThreshold) {
-  m_sst.sdt = 0;            // Bullet leaves it unset
-  delete m_collisionShape;  // as its destructor does
+  m_sst.sdt = 0;            // Bullet does not initialise it
+  delete m_collisionShape;  // as btSoftBody's destructor does
   m_collisionShape = new Shape(*this);
 }
 
@@ -72,18 +73,19 @@ void ModalBody::begin(const CageModes& modes, const std::vector<double>& eigenva
   }
   setMasses(modes, material.density);
   const btScalar mass = m_mass;
-  if (held_) m_mass = kHeldMass;
+  if (pinned_) m_mass = kHeldMass;
   internalInitialization();
   m_mass = mass;
-  // Bullet passes over contacts of nodes without inverse mass: what does not move must not be pushed, as all modes
-  // would be, by as much as it takes.
+  // Bullet skips contacts of nodes without inverse mass: pushing a node that does not move would push all modes, by as
+  // much as it takes to move the node.
   for (int n = 0; n < m_nFull; ++n) {
-    if (held_ && modes.held[static_cast<std::size_t>(n)]) m_nodes[n].m_im = 0;
+    if (pinned_ && modes.pinned[static_cast<std::size_t>(n)]) m_nodes[n].m_im = 0;
   }
 }
 
-/// The fine body's own mass, centre and inertia, instead of those of the cage's nodes, which lie farther out.
+/// The mass, centre and inertia of the fine body, instead of those of the cage's nodes, which are farther out.
 void ModalBody::setMasses(const CageModes& modes, double density) {
+  assert(density > 0.0 && modes.mass > 0.0);
   tDenseArray masses;
   masses.resize(m_nFull);
   for (int n = 0; n < m_nFull; ++n) {
@@ -95,8 +97,8 @@ void ModalBody::setMasses(const CageModes& modes, double density) {
   m_initialCoM = toBulletVector(modes.centre);
   setInertiaProps();
   m_invInertiaLocal = toBulletMatrix((density * modes.inertia).inverse());
-  if (held_) m_invInertiaLocal = toBulletMatrix(Eigen::Matrix3d::Zero());
-  if (held_) m_linearFactor.setZero();
+  if (pinned_) m_invInertiaLocal = toBulletMatrix(Eigen::Matrix3d::Zero());
+  if (pinned_) m_linearFactor.setZero();
   m_invInertiaTensorWorldInitial = m_invInertiaLocal;
   setFrame(m_rigidTransformWorld);
 }
@@ -108,6 +110,7 @@ void ModalBody::setFrame(const btTransform& frame) {
 }
 
 void ModalBody::placeAt(const btTransform& placement) {
+  assert(m_nReduced > 0);
   setFrame(btTransform(placement.getBasis(), placement * m_initialCoM));
   rest();
   mapToFullPosition(m_rigidTransformWorld);
@@ -121,9 +124,10 @@ void ModalBody::placeAt(const btTransform& placement) {
 }
 
 btMatrix3x3 ModalBody::getImpulseFactor(int node) {
-  // Without the frame's share, which a held body's frame does not have.
+  assert(node >= 0 && node < m_nFull);
+  // Without the mass of the frame, since the frame of a pinned body does not move.
   const btScalar mass = m_mass;
-  if (held_) m_mass = kHeldMass;
+  if (pinned_) m_mass = kHeldMass;
   const btMatrix3x3 factor = btReducedDeformableBody::getImpulseFactor(node);
   m_mass = mass;
   return factor;
@@ -136,20 +140,20 @@ void ModalBody::rest() {
   m_interpolationWorldTransform = m_rigidTransformWorld;
 }
 
-/// Bullet integrates sleeping bodies, too, which rounds their frame anew each time: from the same one, to the same
-/// bits.
+/// Bullet also integrates sleeping bodies, which rounds their frame anew each time. Restoring the same frame keeps the
+/// same bits.
 void ModalBody::stay() {
-  if (!slept_ && !held_) frame_ = m_rigidTransformWorld;
+  if (!slept_ && !pinned_) frame_ = m_rigidTransformWorld;
   slept_ = true;
   m_rigidTransformWorld = frame_;
   rest();
 }
 
-/// Any number of times in a substep, before contacts are solved for: what it sets depends on the state before the
-/// substep alone. Between steps it sets velocities of nodes alone, which the next one sets anew.
+/// May be called any number of times in a substep before contacts are solved: its result depends only on the state
+/// before the substep. Between steps, it only sets velocities of nodes, which the next step sets anew.
 void ModalBody::correctPrediction() {
   const auto* solver = dynamic_cast<const btReducedDeformableBodySolver*>(getSoftBodySolver());
-  // While the world is being told of it, its solver may know of no step.
+  // While the world is being told of the body, its solver may not know the length of a step yet.
   if (!solver || !getBroadphaseHandle()) return;
   for (int n = 0; n < m_nodes.size(); ++n) m_nodes[n].index = n;
   if (!isActive()) return stay();
@@ -157,8 +161,8 @@ void ModalBody::correctPrediction() {
   const btScalar seconds = Step::seconds(*solver);
   const btVector3& gravity = Step::gravity(*solver);
   if (m_sleepingThreshold != threshold_) sleepSpeed_ = m_sleepingThreshold;
-  m_sleepingThreshold = threshold_ = held_ ? sleepSpeed_ : sleepSpeed_ + gravity.length() * seconds;
-  if (held_) {
+  m_sleepingThreshold = threshold_ = pinned_ ? sleepSpeed_ : sleepSpeed_ + gravity.length() * seconds;
+  if (pinned_) {
     m_linearVelocity.setZero();
     m_angularVelocity.setZero();
     m_rigidTransformWorld = m_interpolationWorldTransform = frame_;
@@ -170,7 +174,8 @@ void ModalBody::correctPrediction() {
 
 /// Symplectic Euler, with the damping of backward Euler: v' = v + dt (f - damping K v').
 void ModalBody::vibrate(btScalar seconds, const btVector3& gravity) {
-  const btVector3 pull = held_ ? gravity * frame_.getBasis() : btVector3(0, 0, 0);  // in the body's frame
+  assert(momenta_.size() == static_cast<std::size_t>(m_nReduced));
+  const btVector3 pull = pinned_ ? gravity * frame_.getBasis() : btVector3(0, 0, 0);  // in the body's frame
   for (int r = 0; r < m_nReduced; ++r) {
     const btScalar force = m_reducedForceElastic[r] + momenta_[static_cast<std::size_t>(r)].dot(pull);
     m_reducedVelocity[r] = (m_reducedVelocityBuffer[r] + seconds * force) / (1 + seconds * damping_ * m_eigenvalues[r]);

@@ -9,7 +9,7 @@
 
 namespace tetskin::reduced_detail {
 
-/// In the world's units.
+/// Material values in the world's units.
 struct ModalMaterial {
   double youngsModulus = 0.0, density = 0.0;
   double damping = 0.0;  ///< seconds
@@ -18,21 +18,21 @@ struct ModalMaterial {
 /// Bullet's reduced body, set right once in each substep: when Bullet asks for its box, which it does after it has
 /// predicted where bodies go, and before it looks for contacts.
 ///
-/// What of that is Bullet's to be set right:
+/// It corrects the following properties of Bullet's body:
 /// - gravity pulls sleeping bodies, too, and they fall through what they lie on;
-/// - gravity pulls the frame of a held body, but does not bend it;
-/// - damping is explicit, and explodes from a sixth of the frequencies on that the step itself would bear;
-/// - nodes are numbered through all bodies, which contacts of a later, larger body take for its own numbers;
+/// - gravity pulls the frame of a pinned body, but does not bend it;
+/// - damping is explicit, and unstable from a sixth of the frequencies on at which the step itself would be stable;
+/// - nodes are numbered over all bodies, and contacts of a later, larger body take these numbers for its own;
 /// - a body at rest has the speed that gravity gives it in a step, and never sleeps.
 class ModalBody : public btReducedDeformableBody {
  public:
   /// eigenvalues  by mode, for a stiffness and density of 1
-  /// held         its modes have pinned nodes: its frame stays where it is
-  /// Elements, margins and trees are the caller's to give it, before `begin`.
-  ModalBody(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes, bool held);
+  /// held         its modes have pinned nodes: its frame does not move
+  /// The caller adds elements, margins and trees before `begin`.
+  ModalBody(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes, bool pinned);
   void begin(const CageModes& modes, const std::vector<double>& eigenvalues, const ModalMaterial& material);
 
-  /// Without motion, as it is bent.
+  /// Places the body without motion, in its current deformation.
   /// placement  from rest
   void placeAt(const btTransform& placement);
 
@@ -48,11 +48,12 @@ class ModalBody : public btReducedDeformableBody {
   void rest();
   void vibrate(btScalar seconds, const btVector3& gravity);
 
-  bool held_, slept_ = false;
+  bool pinned_, slept_ = false;
   btScalar damping_ = 0;
-  btTransform frame_ = btTransform::getIdentity();  ///< where a held or sleeping body is
-  std::vector<btVector3> momenta_;                  ///< by mode: over gravity, in the body's frame
-  btScalar sleepSpeed_, threshold_;                 ///< as the application has it; with what gravity gives in a substep
+  btTransform frame_ = btTransform::getIdentity();  ///< of a pinned or sleeping body
+  std::vector<btVector3> momenta_;                  ///< by mode: response to gravity, in the body's frame
+  btScalar sleepSpeed_,
+      threshold_;  ///< the application's value; the value including the speed that gravity adds in a substep
 };
 
 }  // namespace tetskin::reduced_detail

@@ -14,13 +14,12 @@
 namespace tetskin::reduced_detail {
 namespace {
 
-/// Weight of the cage's own bending beside the fine nodes' distances, which it must not spoil; it is there for nodes
-/// that carry next to nothing.
+/// Weight of the cage's own bending relative to the fine nodes' distances, so small that it does not affect these; it
+/// determines nodes that carry next to nothing.
 constexpr double kBendingWeight = 1e-6;
-/// Least mass of a node over the mean: nodes that carry nothing, or whose weights are of nodes outside, would have
-/// none.
-constexpr double kLeastMass = 1e-3;
-/// Of the cage's box: fine nodes farther outside of it than this share of its diagonal are of another place.
+/// Least mass of a node relative to the mean: nodes that carry nothing, or carry nodes outside only, would have none.
+constexpr double kMinMass = 1e-3;
+/// Fraction of the diagonal of the cage's box: fine nodes farther outside of it are not at the cage's position.
 constexpr double kFarOutside = 0.2;
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -34,22 +33,23 @@ struct Weights {
 Status checkNodeTets(const std::vector<int>& nodeTets, std::size_t nodes, const TetMesh& cage) {
   if (nodeTets.size() != nodes) {
     return {StatusCode::SizeMismatch, "nodeTets has " + std::to_string(nodeTets.size()) + " values for " +
-                                          std::to_string(nodes) + " nodes of the modes' tets"};
+                                          std::to_string(nodes) + " nodes of the tets of the modes"};
   }
   for (const int tet : nodeTets) {
     if (tet < 0 || static_cast<std::size_t>(tet) >= cage.tetCount()) {
-      return {StatusCode::IndexOutOfRange, "nodeTets names tet " + std::to_string(tet) + ", which the cage has not"};
+      return {StatusCode::IndexOutOfRange,
+              "nodeTets refers to tet " + std::to_string(tet) + ", which the cage does not have"};
     }
   }
   return {};
 }
 
-Status checkPlace(const std::vector<Eigen::Vector3d>& nodes, const TetMesh& cage) {
+Status checkPosition(const std::vector<Eigen::Vector3d>& nodes, const TetMesh& cage) {
   Box3 around = boundingBox(cage.nodes);
   const double far = kFarOutside * around.diagonal().norm();
   around.extend((around.min().array() - far).matrix()).extend((around.max().array() + far).matrix());
   if (around.contains(boundingBox(nodes))) return {};
-  return {StatusCode::OutsideCage, "the tets that the modes are of are not where the cage is"};
+  return {StatusCode::OutsideCage, "the tets of the modes do not overlap with the cage"};
 }
 
 Result<Weights> weightsOf(const std::vector<Eigen::Vector3d>& nodes, const TetMesh& cage,
@@ -70,9 +70,9 @@ Result<Weights> weightsOf(const std::vector<Eigen::Vector3d>& nodes, const TetMe
     if (Status status = checkNodeTets(nodeTets, nodes.size(), cage); !status.ok()) return status;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const Tet& tet = cage.tets[nodeTets[n]];
-      const Eigen::Vector4d of = BarycentricMap(cornersOf(cage, tet))(nodes[n]);
-      if (barycentricDistance(of) > 1e-6) ++weights.outside;
-      for (int k = 0; k < 4; ++k) entries.emplace_back(static_cast<int>(n), tet[k], of[k]);
+      const Eigen::Vector4d value = BarycentricMap(cornersOf(cage, tet))(nodes[n]);
+      if (barycentricDistance(value) > 1e-6) ++weights.outside;
+      for (int k = 0; k < 4; ++k) entries.emplace_back(static_cast<int>(n), tet[k], value[k]);
     }
   }
   weights.matrix.resize(static_cast<Eigen::Index>(nodes.size()), static_cast<Eigen::Index>(cage.nodeCount()));
@@ -80,8 +80,8 @@ Result<Weights> weightsOf(const std::vector<Eigen::Vector3d>& nodes, const TetMe
   return weights;
 }
 
-/// How much gradients change from tet to tet, squared: nothing for affine displacements. By volume, and by length
-/// squared, so that it weighs as much as displacements do.
+/// The squared change of gradients from tet to tet, which is 0 for affine displacements. It is weighted by volume and
+/// by squared length, to have the unit of squared displacements.
 Sparse bendingOf(const TetMesh& cage) {
   const Lists<> neighbours = faceNeighbours(cage);
   Triplets entries;
@@ -110,8 +110,9 @@ Sparse bendingOf(const TetMesh& cage) {
   return bending;
 }
 
-/// Three columns a mode.
+/// Three columns per mode.
 Eigen::MatrixXd columnsOf(const VibrationModes& modes, std::size_t count) {
+  assert(count <= modes.shapes.size());
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(modes.nodeCount()), static_cast<Eigen::Index>(3 * count));
   for (std::size_t r = 0; r < count; ++r) {
     for (std::size_t n = 0; n < modes.nodeCount(); ++n) {
@@ -136,23 +137,25 @@ void measureFineBody(const VibrationModes& modes, CageModes& result) {
 }
 
 std::vector<double> massesOf(const Eigen::VectorXd& carried, double total) {
-  const double least = kLeastMass * total / static_cast<double>(carried.size());
+  assert(total > 0.0 && carried.size() > 0);
+  const double minimum = kMinMass * total / static_cast<double>(carried.size());
   std::vector<double> masses;
-  for (const double mass : carried) masses.push_back(std::max(mass, least));
+  for (const double mass : carried) masses.push_back(std::max(mass, minimum));
   const double scale = total / std::accumulate(masses.begin(), masses.end(), 0.0);
   for (double& mass : masses) mass *= scale;
   return masses;
 }
 
-/// Which nodes of the cage carry more of what is pinned than of what is not.
-std::vector<char> heldNodes(const VibrationModes& modes, const Sparse& carried) {
+/// True for nodes of the cage that carry more of what is pinned than of what is not.
+std::vector<char> pinnedNodes(const VibrationModes& modes, const Sparse& carried) {
+  assert(carried.rows() == static_cast<Eigen::Index>(modes.nodeCount()));
   Eigen::VectorXd pinned = Eigen::VectorXd::Zero(carried.rows());
   for (const int n : modes.pinned) pinned[n] = modes.masses[static_cast<std::size_t>(n)];
   const Eigen::Map<const Eigen::VectorXd> masses(modes.masses.data(), carried.rows());
   const Eigen::VectorXd ofPinned = carried.transpose() * pinned, all = carried.transpose() * masses;
-  std::vector<char> held;
-  for (Eigen::Index n = 0; n < all.size(); ++n) held.push_back(ofPinned[n] > 0.5 * all[n]);
-  return held;
+  std::vector<char> pinnedMass;
+  for (Eigen::Index n = 0; n < all.size(); ++n) pinnedMass.push_back(ofPinned[n] > 0.5 * all[n]);
+  return pinnedMass;
 }
 
 }  // namespace
@@ -160,7 +163,7 @@ std::vector<char> heldNodes(const VibrationModes& modes, const Sparse& carried) 
 Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, const TetMesh& cage,
                               const std::vector<int>& nodeTets) {
   assert(count > 0 && count <= modes.modeCount());
-  if (Status status = checkPlace(modes.nodes, cage); !status.ok()) return status;
+  if (Status status = checkPosition(modes.nodes, cage); !status.ok()) return status;
   const Result<Weights> weights = weightsOf(modes.nodes, cage, nodeTets);
   if (!weights.ok()) return weights.status();
   const Sparse& carried = weights.value().matrix;
@@ -172,22 +175,23 @@ Result<CageModes> modesOfCage(const VibrationModes& modes, std::size_t count, co
   const Sparse byMass = masses.asDiagonal() * carried;
   const Sparse products = Sparse(carried.transpose()) * byMass;
   const Sparse bending = bendingOf(cage);
-  // Where masses are not volumes, still a fixed share.
+  // A fixed fraction even if masses are not volumes.
   const double scale = kBendingWeight * products.diagonal().sum() / bending.diagonal().sum();
   const Eigen::SimplicialLDLT<Sparse> factors(products + scale * bending);
   if (factors.info() != Eigen::Success) {
-    return Status{StatusCode::Degenerate, "the modes do not tell where the cage's nodes go: it lies elsewhere"};
+    return Status{StatusCode::Degenerate,
+                  "the modes do not determine the motion of the cage's nodes: the cage is at another position"};
   }
   const Eigen::MatrixXd fine = columnsOf(modes, count);
   const Eigen::MatrixXd coarse = factors.solve(byMass.transpose() * fine);
   const Eigen::MatrixXd errors = carried * coarse - fine;
 
-  result.held = heldNodes(modes, carried);
+  result.pinned = pinnedNodes(modes, carried);
   result.masses = massesOf(byMass.transpose() * Eigen::VectorXd::Ones(carried.rows()), result.mass);
   for (std::size_t r = 0; r < count; ++r) {
     const auto first = static_cast<Eigen::Index>(3 * r);
-    const auto norm = [&](const Eigen::MatrixXd& of) {
-      return std::sqrt((masses.asDiagonal() * of.middleCols(first, 3).cwiseAbs2()).sum());
+    const auto norm = [&](const Eigen::MatrixXd& value) {
+      return std::sqrt((masses.asDiagonal() * value.middleCols(first, 3).cwiseAbs2()).sum());
     };
     result.projectionErrors.push_back(norm(errors) / norm(fine));
     result.momenta.push_back(fine.middleCols(first, 3).transpose() * masses);

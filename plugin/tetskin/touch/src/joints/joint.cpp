@@ -3,8 +3,10 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
+#include <tetskin/touch/src/points/point_data.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin::touch_detail {
@@ -12,12 +14,14 @@ namespace {
 
 /// The unit of a spring's frequency: one over Bullet's usual substep.
 constexpr double kUnitRate = 240.0;
-/// Stiffer, or more damped, than this nothing is, in any precision.
+/// Upper bound of stiffness and damping, which either precision can represent.
 constexpr double kStiffest = 1e9;
-/// What moves faster, in lengths a second, wakes what sleeps at the other end; Bullet's own threshold of sleep.
+/// A body that moves faster than this, in body lengths per second, wakes what sleeps at the other end. It is Bullet's
+/// own threshold of sleep.
 constexpr btScalar kWakingSpeed = btScalar(0.04);
 
-/// Of all nodes that can move: a body hangs as heavily on light ones.
+/// Mean over all nodes that can move: the force needed to carry a body does not depend on how light the nodes at the
+/// point are.
 double meanNodeMass(const btSoftBody& body) {
   double sum = 0.0;
   int count = 0;
@@ -43,10 +47,11 @@ Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSe
       nodeMass_(meanNodeMass(*point.body())),
       carried_(carriedPoint()),
       anchorBefore_(anchor_.inWorld()) {
+  assert(point.status() == StatusCode::Ok);
   if (settings.turns) weld();
   btCollisionObject* other = anchor_.object;
   if (settings.collide || !other) return;
-  // An entry for each joint: another one may go before this one does.
+  // One entry per joint, since another joint between the two may be removed before this one.
   point_.body()->m_collisionDisabledObjects.push_back(other);
   hidden_ = true;
 }
@@ -56,39 +61,41 @@ Joint::~Joint() {
 }
 
 void Joint::drop() {
-  btSoftBody* of = body();
-  if (of && hidden_) of->m_collisionDisabledObjects.remove(anchor_.object);
+  btSoftBody* solved = body();
+  if (solved && hidden_) solved->m_collisionDisabledObjects.remove(anchor_.object);
   hidden_ = false;
   dropped_ = true;
 }
 
 Joint::Carried Joint::carriedPoint() const {
   Carried carried;
-  const PointData& data = point_.data();
+  const PointData& data = dataOf(point_);
   for (std::size_t c = 0; c < 3; ++c) {
-    if (data.shares[c] == 0) continue;
+    if (data.weights[c] == 0) continue;
     for (std::size_t k = 0; k < 4; ++k) {
       const int node = data.corners[c].nodes[k];
       const auto last = carried.nodes.begin() + carried.nodeCount;
       const auto found = std::find(carried.nodes.begin(), last, node);
+      assert(found != last || carried.nodeCount < kMaxPointNodes);
       if (found == last) carried.nodes[carried.nodeCount++] = node;
       carried.weights[static_cast<std::size_t>(found - carried.nodes.begin())] +=
-          data.shares[c] * data.corners[c].weights[k];
+          data.weights[c] * data.corners[c].weights[k];
     }
   }
   return carried;
 }
 
-/// In the tet of the corner that has most of the point.
+/// The point, evaluated in the tet of the corner with the largest weight.
 Joint::Carried Joint::pointBeside(const btVector3& at) const {
-  const PointData& data = point_.data();
+  const PointData& data = dataOf(point_);
   const auto c =
-      static_cast<std::size_t>(std::max_element(data.shares.begin(), data.shares.end()) - data.shares.begin());
+      static_cast<std::size_t>(std::max_element(data.weights.begin(), data.weights.end()) - data.weights.begin());
   const Tet& nodes = data.corners[c].nodes;
-  const auto place = [&](std::size_t k) -> const btVector3& { return point_.body()->m_nodes[nodes[k]].m_x; };
-  const btVector3 a = place(0) - place(3), b = place(1) - place(3), d = place(2) - place(3);
+  const auto toPosition = [&](std::size_t k) -> const btVector3& { return point_.body()->m_nodes[nodes[k]].m_x; };
+  const btVector3 a = toPosition(0) - toPosition(3), b = toPosition(1) - toPosition(3),
+                  d = toPosition(2) - toPosition(3);
   const btScalar volume = a.dot(b.cross(d));
-  const btVector3 r = at - place(3);
+  const btVector3 r = at - toPosition(3);
   Carried carried;
   carried.nodeCount = 4;
   std::copy(nodes.begin(), nodes.end(), carried.nodes.begin());
@@ -97,7 +104,7 @@ Joint::Carried Joint::pointBeside(const btVector3& at) const {
   return carried;
 }
 
-/// The points beside are as far from the point as the tet is wide; of a flat tet there are none.
+/// The points beside are as far from the point as the tet is wide; a flat tet has none.
 void Joint::weld() {
   const btTransform anchor = anchor_.inWorld();
   btScalar farthest = 0;
@@ -114,6 +121,7 @@ void Joint::weld() {
 }
 
 btVector3 Joint::positionOf(const Carried& point) const {
+  assert(point.nodeCount > 0);
   const btVector3 first = point_.body()->m_nodes[point.nodes[0]].m_x;
   btVector3 sum(0, 0, 0);
   for (std::uint32_t k = 1; k < point.nodeCount; ++k) {
@@ -145,8 +153,8 @@ btVector3 Joint::velocityOfPoint() const {
   return sum;
 }
 
-/// What has come to rest stays so. What hangs on the body would fall if that slept first; it waits until the other
-/// would sleep, too.
+/// What has come to rest keeps resting. A neighbour that hangs on the body would fall if the body slept first, so that
+/// the body waits until the neighbour would sleep too.
 void Joint::wake() {
   const btTransform anchor = anchor_.inWorld();
   const bool moved = !(anchor == anchorBefore_);
@@ -167,6 +175,7 @@ void Joint::wake() {
 }
 
 PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
+  assert(point_.body() && point.nodeCount > 0);
   PointJoint row;
   row.body = point_.body();
   row.nodeCount = point.nodeCount;
@@ -179,18 +188,19 @@ PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
 }
 
 void Joint::makeSpring(btScalar seconds, PointJoint& row) const {
+  assert(seconds > 0 && settings_.stiffness > 0.0 && settings_.damping >= 0.0);
   const auto dt = static_cast<double>(seconds);
   const double mass = 4.0 * nodeMass_, rate = std::min(settings_.stiffness, kStiffest) * kUnitRate * kUnitRate;
   const double k = rate * mass;
   const double d = 2.0 * std::min(settings_.damping, kStiffest) * std::sqrt(k * mass);
   row.stiffness = static_cast<btScalar>(dt * (k * dt + d));
   row.offset *= static_cast<btScalar>(k * dt / (k * dt + d));
-  if (std::isfinite(settings_.maxForce)) row.most = static_cast<btScalar>(settings_.maxForce * dt);
+  if (std::isfinite(settings_.maxForce)) row.maximum = static_cast<btScalar>(settings_.maxForce * dt);
 }
 
 void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
   added_ = 0;
-  if (spent() || point_.status() != TouchStatus::Ok) return;
+  if (spent() || point_.status() != StatusCode::Ok) return;
   wake();
   const btTransform anchor = anchor_.inWorld();
   joints.push_back(rowOf(carried_, anchor.getOrigin()));
@@ -205,6 +215,7 @@ void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
 }
 
 void Joint::finish(btScalar seconds, const PointJoint* joints) {
+  assert(seconds > 0 && (added_ == 0 || joints));
   force_.setZero();
   torque_.setZero();
   for (int k = 0; k < added_; ++k) {

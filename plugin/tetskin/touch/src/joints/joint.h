@@ -3,33 +3,34 @@
 //
 // Internal to tetskin::touch: what holds a point of a surface to something: springs, ball joints, welds.
 //
-// A spring is a row: with c = dt (k dt + d), the impulse -c (u + q s / dt), s the way from the anchor to the point, u
-// the point's velocity over the anchor's at the end of the step, and q = k dt / (k dt + d), of k alone where nothing
-// damps. It is implicit in both velocities, so that it is stable at any stiffness.
+// A spring is a row: with c = dt (k dt + d), the impulse -c (u + q s / dt), s the offset from the anchor to the point,
+// u the point's velocity relative to the anchor's at the end of the step, and q = k dt / (k dt + d), which is 1 without
+// damping. It is implicit in both velocities, so that it is stable at any stiffness.
 //
-// A weld is three such rows, as stiff as the solver takes for joints: of the point, in all directions; of a point
-// beside it along the anchor's x, in y and z; of one along its y, in z. Six directions, as many as there are to hold.
+// A weld is three such rows, with the stiffness that the solver uses for joints: one of the point, in all directions;
+// one of a point beside it along the anchor's x, in y and z; and one of a point along its y, in z. Together they
+// constrain six directions, which is all that a rigid motion has.
 #pragma once
 
-#include <tetskin/touch/src/forces/touch_force.h>
 #include <tetskin/touch/src/joints/joint_anchor.h>
-#include <tetskin/touch/src/points/lever.h>
+#include <tetskin/touch/src/points/point_jacobian.h>
+#include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <limits>
 
 namespace tetskin::touch_detail {
 
 struct JointSettings {
-  bool turns = false;                                         ///< a weld: about, too
-  double stiffness = 10;                                      ///< as SurfaceSpringOptions; of springs
-  double damping = 0;                                         ///< likewise
-  double maxForce = std::numeric_limits<double>::infinity();  ///< likewise
+  bool turns = false;                                         ///< true for a weld, which also constrains rotation
+  double stiffness = 10;                                      ///< of springs: see SurfaceSpringOptions
+  double damping = 0;                                         ///< of springs: see SurfaceSpringOptions
+  double maxForce = std::numeric_limits<double>::infinity();  ///< of springs: see SurfaceSpringOptions
   bool collide = false;
 };
 
-class Joint : public Acting {
+class Joint : public ActiveJoint {
  public:
-  /// The point is Ok.
+  /// The point's status must be Ok.
   Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings);
   ~Joint() override;
   Joint(const Joint&) = delete;
@@ -40,12 +41,12 @@ class Joint : public Acting {
   const JointAnchor& anchor() const { return anchor_; }
   JointSettings& settings() { return settings_; }
   bool dropped() const { return dropped_; }
-  /// Of the last step, on the point.
+  /// The force of the last step on the point.
   const btVector3& force() const { return force_; }
   const btVector3& torque() const { return torque_; }
-  /// From the anchor to the point, now. The point must be Ok.
+  /// The current offset from the anchor to the point. The point's status must be Ok.
   btVector3 offset() const;
-  /// Of a weld: the angle by which the two have turned to each other, in radians.
+  /// Of a weld: the angle between the current and the initial rotation of the point relative to the anchor, in radians.
   btScalar turn() const;
 
   btSoftBody* body() const override { return dropped_ ? nullptr : point_.body(); }
@@ -55,7 +56,7 @@ class Joint : public Acting {
   void finish(btScalar seconds, const PointJoint* joints) override;
 
  private:
-  /// Carried by nodes.
+  /// A point that nodes carry.
   struct Carried {
     std::uint32_t nodeCount = 0;
     std::array<int, kMaxPointNodes> nodes{};
@@ -73,14 +74,14 @@ class Joint : public Acting {
   SurfacePoint point_;
   JointAnchor anchor_;
   JointSettings settings_;
-  double nodeMass_;  ///< the mean
+  double nodeMass_;  ///< mean mass of the body's nodes that can move
   bool dropped_ = false;
-  bool hidden_ = false;  ///< body and object do not collide, by us
+  bool hidden_ = false;  ///< this joint keeps the body and the object from colliding
   Carried carried_;
-  btScalar arm_ = 0;          ///< of a weld: how far beside the other two are; 0: it holds the point alone
-  Carried beside_[2];         ///< of a weld
-  btTransform anchorBefore_;  ///< in world space, when last looked at
-  int added_ = 0;             ///< rows in this step
+  btScalar arm_ = 0;          ///< of a weld: distance of the other two points; 0: the weld holds the point alone
+  Carried beside_[2];         ///< of a weld: the other two points
+  btTransform anchorBefore_;  ///< in world space, when last read
+  int added_ = 0;             ///< rows added in this step
   btVector3 force_{0, 0, 0}, torque_{0, 0, 0};
 };
 

@@ -3,38 +3,40 @@
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/touch/src/joints/joint_owner.h>
 
+#include <cassert>
+
 namespace tetskin::touch_detail {
 
 Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point) {
-  if (const TouchStatus status = point.status(); status != TouchStatus::Ok) {
-    return {StatusCode::InvalidOption, std::string("the point of the surface is no good: ") + toString(status)};
+  if (const StatusCode status = point.status(); status != StatusCode::Ok) {
+    return {StatusCode::InvalidOption, std::string("invalid surface point: ") + toString(status)};
   }
   const auto* deformable = dynamic_cast<const btDeformableMultiBodyDynamicsWorld*>(&world);
   if (!deformable) {
-    return {
-        StatusCode::InvalidOption,
-        "springs and welds need a deformable world, made with a DeformableSolver; in the classic ones, use impulses, "
-        "or Bullet's own anchors"};
+    return {StatusCode::InvalidOption,
+            "springs and welds need a deformable world created with a DeformableSolver; in other worlds, use impulses "
+            "or Bullet's own anchors"};
   }
   const auto& inWorld = deformable->getSoftBodyArray();
   if (inWorld.findLinearSearch(point.body()) == inWorld.size()) {
-    return {StatusCode::InvalidOption, "the point's body is not in this world: add it there first"};
+    return {StatusCode::InvalidOption, "the body of the point is not in this world; add it first"};
   }
   if (deformableSolverOf(*point.body())) return {};
   return refusal("springs and welds", {kUseDeformableSolver});
 }
 
 JointOwner::JointOwner(std::shared_ptr<Joint> joint)
-    : joint_(std::move(joint)), force_(TouchForce::of(*deformableSolverOf(*joint_->point().body()))) {
+    : joint_(std::move(joint)), force_(SurfaceJointRows::instanceOf(*deformableSolverOf(*joint_->point().body()))) {
+  assert(joint_->body());
   force_->add(joint_);
   joint_->point().body()->activate();
   if (btCollisionObject* other = joint_->anchor().object) other->activate();
 }
 
-TouchStatus JointOwner::status() const {
-  if (released_) return TouchStatus::Released;
-  const TouchStatus of = joint_->point().status();
-  return of == TouchStatus::Ok && joint_->dropped() ? TouchStatus::OutOfWorld : of;
+StatusCode JointOwner::status() const {
+  if (released_) return StatusCode::Released;
+  const StatusCode status = joint_->point().status();
+  return status == StatusCode::Ok && joint_->dropped() ? StatusCode::NotInWorld : status;
 }
 
 void JointOwner::release() {

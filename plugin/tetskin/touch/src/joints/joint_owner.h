@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: what springs and welds have in common, in their worlds.
+// Internal to tetskin::touch: what springs and welds have in common.
 #pragma once
 
 #include <tetskin/touch/src/joints/joint.h>
@@ -10,12 +10,12 @@ class btDiscreteDynamicsWorld;
 
 namespace tetskin::touch_detail {
 
-/// A joint in the force of its world.
+/// Owns a joint in the force of its world.
 class JointOwner {
  public:
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point);
 
-  /// The two are checked.
+  /// The caller has checked the point and the anchor.
   explicit JointOwner(std::shared_ptr<Joint> joint);
   ~JointOwner() { release(); }
   JointOwner(const JointOwner&) = delete;
@@ -23,12 +23,12 @@ class JointOwner {
 
   Joint& joint() { return *joint_; }
   const Joint& joint() const { return *joint_; }
-  TouchStatus status() const;
+  StatusCode status() const;
   void release();
 
  private:
   std::shared_ptr<Joint> joint_;
-  std::shared_ptr<TouchForce> force_;
+  std::shared_ptr<SurfaceJointRows> force_;
   bool released_ = false;
 };
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: what a body's world lets be done to it.
+// Internal to tetskin::touch: what the world of a body supports.
 #pragma once
 
 #include <tetskin/touch/surface_point.h>
 
 namespace tetskin::touch_detail {
 
-/// Reduced bodies have no velocities at their nodes, but for modes'.
+/// Reduced bodies have velocities of modes, and none at their nodes.
 bool isReduced(const btSoftBody& body);
 
 inline bool isFiniteVector(const btVector3& v) {

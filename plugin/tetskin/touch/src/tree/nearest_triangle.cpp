@@ -4,11 +4,13 @@
 
 #include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
+#include <cassert>
 #include <limits>
 
 namespace tetskin::touch_detail {
 
 NearestTriangle nearestTriangle(const TriangleMesh& mesh, const Eigen::Vector3d& to) {
+  assert(mesh.triangleCount() > 0);
   NearestTriangle best;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {

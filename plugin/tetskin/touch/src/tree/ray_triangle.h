@@ -12,7 +12,7 @@
 
 namespace tetskin::touch_detail {
 
-/// A part of a line: from `start` on, up to `end` times `direction`.
+/// A segment of a line: from `start` to `start` plus `end` times `direction`.
 struct Ray {
   Eigen::Vector3d start, direction;
   double end = 1.0;
@@ -20,15 +20,15 @@ struct Ray {
 
 struct RayHit {
   int triangle = -1;                 ///< of the mesh; -1: none
-  int index = -1;                    ///< of the triangle in the hierarchy
+  int index = -1;                    ///< index of the triangle in the hierarchy
   double at = 0.0;                   ///< in units of the ray's direction
-  double second = 0.0, third = 0.0;  ///< weights of these corners
+  double second = 0.0, third = 0.0;  ///< weights of the second and third corner
 };
 
-/// Where a ray meets a triangle, from either side, but for its numbers; false, and nothing written, if it does not, or
-/// the triangle has no area.
-inline bool meets(const Ray& ray, const TriangleCorners& triangle, RayHit& hit) {
-  // A ray that passes between two triangles by rounding meets both.
+/// Finds where a ray meets a triangle, from either side, without the triangle's numbers; returns false, and writes
+/// nothing, if it does not, or if the triangle has no area.
+inline bool collides(const Ray& ray, const TriangleCorners& triangle, RayHit& hit) {
+  // A tolerance, so that a ray that rounding would let pass between two triangles meets both.
   constexpr double kEdge = 1e-12;
   const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const Eigen::Vector3d first = b - a, second = c - a, across = ray.direction.cross(second), from = ray.start - a;

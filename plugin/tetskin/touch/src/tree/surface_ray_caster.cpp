@@ -9,19 +9,19 @@
 namespace tetskin::touch_detail {
 namespace {
 
-/// Few enough that few are tested in vain, many enough that fitting is cheap.
+/// Triangles per leaf: few enough that few are tested in vain, many enough that fitting is cheap.
 constexpr int kLeafSize = 4;
 
-/// By vertex: where a skin of this order writes it.
-std::vector<std::uint32_t> placesOf(const SoftBodyBinding& binding) {
+/// By vertex: the index at which a skin of this order writes it.
+std::vector<std::uint32_t> indicesOf(const SoftBodyBinding& binding) {
   if (binding.options().order == VertexOrder::Sorted) return binding.embedding().vertexSlots();
-  std::vector<std::uint32_t> places(binding.embedding().vertexCount());
-  std::iota(places.begin(), places.end(), 0u);
-  return places;
+  std::vector<std::uint32_t> indices(binding.embedding().vertexCount());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return indices;
 }
 
-Eigen::Vector3d pointAt(PointView<const btScalar> points, int place) {
-  const btScalar* p = points[static_cast<std::size_t>(place)];
+Eigen::Vector3d pointAt(PointView<const btScalar> points, int index) {
+  const btScalar* p = points[static_cast<std::size_t>(index)];
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
@@ -37,45 +37,47 @@ SurfaceRayCaster::SurfaceRayCaster(std::shared_ptr<const SoftBodyBinding> bindin
     centroids.emplace_back(t[0] + t[1] + t[2]);
   }
   bvh_ = Bvh(centroids, kLeafSize);
-  const std::vector<std::uint32_t> places = placesOf(*binding_);
+  const std::vector<std::uint32_t> indices = indicesOf(*binding_);
   triangles_.reserve(mesh.triangleCount());
   for (const int t : bvh_.items()) {
     triangles_.push_back(mesh.triangles[static_cast<std::size_t>(t)]);
-    for (int& corner : triangles_.back()) corner = static_cast<int>(places[static_cast<std::size_t>(corner)]);
+    for (int& corner : triangles_.back()) corner = static_cast<int>(indices[static_cast<std::size_t>(corner)]);
   }
 }
 
 TriangleCorners SurfaceRayCaster::cornersAt(int index) const {
+  assert(index >= 0 && static_cast<std::size_t>(index) < triangles_.size());
   const auto& corners = triangles_[static_cast<std::size_t>(index)];
   const PointView<const btScalar> points = skin_.positions();
   return {pointAt(points, corners[0]), pointAt(points, corners[1]), pointAt(points, corners[2])};
 }
 
-TouchStatus SurfaceRayCaster::fit(const SoftBodySkin& skin) {
-  if (!skin.body()) return TouchStatus::Unbound;
-  if (skin.binding() != binding_) return TouchStatus::OtherBody;
+StatusCode SurfaceRayCaster::fit(const SoftBodySkin& skin) {
+  if (!skin.body()) return StatusCode::Unbound;
+  if (skin.binding() != binding_) return StatusCode::OtherBody;
   const btSoftBody& body = *skin.body();
   if (static_cast<std::size_t>(body.m_nodes.size()) != binding_->embedding().nodeCount()) {
-    return TouchStatus::TopologyChanged;
+    return StatusCode::TopologyChanged;
   }
   const bool sameSurface = skin_.bound() && skin_.interpolation() == skin.interpolation();
-  if (sameSurface && isFitted(body)) return TouchStatus::Ok;
+  if (sameSurface && isFitted(body)) return StatusCode::Ok;
   nodes_.clear();
   if (sameSurface) {
-    if (skin_.update(nodePositions(body)) != UpdateStatus::Updated) return TouchStatus::NonFinite;
+    if (skin_.update(nodePositions(body)) != StatusCode::Ok) return StatusCode::NonFinite;
   } else {
     InstanceOptions options;
-    options.leaveOutQuadratic = skin.interpolation() == Interpolation::Linear;
-    options.leaveOutNormals = true;
+    options.disableQuadratic = skin.interpolation() == Interpolation::Linear;
+    options.disableNormals = true;
     options.bounds = false;
-    if (!skin_.bind(binding_, nodePositions(body), options).ok()) return TouchStatus::NonFinite;
+    if (!skin_.bind(binding_, nodePositions(body), options).ok()) return StatusCode::NonFinite;
   }
   fitBoxes();
   keepNodes(body);
-  return TouchStatus::Ok;
+  return StatusCode::Ok;
 }
 
 void SurfaceRayCaster::fitBoxes() {
+  assert(skin_.bound() && skin_.positions().size() == binding_->embedding().vertexCount());
   const PointView<const btScalar> points = skin_.positions();
   bvh_.fit(boxes_, [&](int index) {
     BvhBox<btScalar> box;
@@ -96,6 +98,7 @@ bool SurfaceRayCaster::isFitted(const btSoftBody& body) const {
 }
 
 void SurfaceRayCaster::keepNodes(const btSoftBody& body) {
+  assert(nodes_.empty());
   nodes_.reserve(3 * static_cast<std::size_t>(body.m_nodes.size()));
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     nodes_.insert(nodes_.end(), body.m_nodes[n].m_x.m_floats, body.m_nodes[n].m_x.m_floats + 3);
@@ -107,7 +110,7 @@ RayHit SurfaceRayCaster::nearestHit(Ray ray, const TriangleFilter& filter) const
   bvh_.visitAlong(boxes_, ray.start, ray.direction, ray.end, [&](int index, double& end) {
     ray.end = end;
     RayHit hit;
-    if (!meets(ray, cornersAt(index), hit)) return;
+    if (!collides(ray, cornersAt(index), hit)) return;
     hit.triangle = bvh_.item(index);
     hit.index = index;
     if (best.triangle >= 0 && hit.at == best.at && hit.triangle > best.triangle) return;
@@ -124,7 +127,7 @@ SurfaceHit SurfaceRayCaster::cast(const btVector3& from, const btVector3& to, co
   SurfaceHit hit;
   const RayHit found = nearestHit(ray, filter);
   if (found.triangle < 0) return hit;
-  hit.status = TouchStatus::Ok;
+  hit.status = StatusCode::Ok;
   hit.triangle = found.triangle;
   hit.weights[1] = static_cast<btScalar>(found.second);
   hit.weights[2] = static_cast<btScalar>(found.third);

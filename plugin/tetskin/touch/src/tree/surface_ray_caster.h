@@ -6,7 +6,7 @@
 
 #include <tetskin/core/src/shared/bvh/bvh.h>
 #include <tetskin/touch/src/tree/ray_triangle.h>
-#include <tetskin/touch/surface_tree.h>
+#include <tetskin/touch/surface_point.h>
 
 #include <memory>
 #include <vector>
@@ -16,14 +16,14 @@ namespace tetskin::touch_detail {
 class SurfaceRayCaster {
  public:
   SurfaceRayCaster() = default;
-  /// Of each other; both good.
+  /// The binding and the hierarchy belong together; the caller has checked both.
   SurfaceRayCaster(std::shared_ptr<const SoftBodyBinding> binding, const TriangleMesh& mesh);
 
-  /// Computes what the skin draws, and the tree, unless the last one had the same nodes. Ok, or Unbound, OtherBody,
-  /// TopologyChanged, NonFinite: then there is nothing to cast against.
-  TouchStatus fit(const SoftBodySkin& skin);
-  /// After `fit` has returned Ok: the nearest triangle that the filter lets pass, if it is given; of two at one place,
-  /// the one of lower number. The hit has no body yet.
+  /// Computes the positions that the skin draws, and the tree, unless the last call had the same node positions.
+  /// Returns Ok, or Unbound, OtherBody, TopologyChanged or NonFinite; then there is nothing to cast against.
+  StatusCode fit(const SoftBodySkin& skin);
+  /// Call it after `fit` has returned Ok: returns the nearest triangle that the filter, if there is one, accepts; of
+  /// two at the same distance, the one of lower number. The hit's body is not set.
   SurfaceHit cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const;
 
  private:
@@ -36,9 +36,9 @@ class SurfaceRayCaster {
   std::shared_ptr<const SoftBodyBinding> binding_;
   Bvh bvh_;                                    ///< of the triangles
   std::vector<BvhBox<btScalar>> boxes_;        ///< by node, of the last fit
-  std::vector<std::array<int, 3>> triangles_;  ///< in the order of the leaves, by their vertices' places in the skin
+  std::vector<std::array<int, 3>> triangles_;  ///< in the order of the leaves, by their vertices' indices in the skin
   MeshSkin<btScalar> skin_;
-  std::vector<btScalar> nodes_;  ///< 3 a node, of the last fit; empty: none
+  std::vector<btScalar> nodes_;  ///< 3 scalars per node, of the last fit; empty: none
 };
 
 }  // namespace tetskin::touch_detail

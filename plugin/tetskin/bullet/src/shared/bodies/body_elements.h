@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies of any kind are made of.
+// Creates the elements of bodies of any kind.
 #pragma once
 
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 
 #include <memory>
 #include <vector>
 
 namespace tetskin {
 
-/// A body that is in no world yet, and what its cage gave it.
+/// A body that is in no world yet, with the data from its cage.
 struct BuiltBody {
   std::unique_ptr<btSoftBody> body;
-  std::vector<double> masses;  ///< by node, of pinned ones, too: what they weigh when they are not
+  std::vector<double> masses;  ///< by node: its mass, which a pinned node has when it is released
 };
 
-/// What `makeSoftBody` does once the cage has been checked.
-/// cage     `cage.check()` is ok
-/// options  with what the cage knows: see `withCage`
-/// Errors   those of `makeSoftBody`
+/// The part of `createSoftBody` after the check of the cage.
+/// cage     `checkKnowledge(cage)` is ok
+/// options  including the data of the cage: see `withCageDefaults`
+/// Errors   those of `createSoftBody`
 Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options);
 
 /// Ok, or that the cage is unusable, or has flat tets.
@@ -31,7 +32,9 @@ TETSKIN_BULLET_API Status checkCage(const TetMesh& cage, const TetMeshReport& re
 /// cage  of positive tets
 TETSKIN_BULLET_API void appendElements(const TetMesh& cage, btSoftBody& body);
 
-/// By the nodes, as the deformable world expects; margin  below 0: by the cage's size
-TETSKIN_BULLET_API void meetRigidBodies(const TetMesh& cage, double margin, double friction, btSoftBody& body);
+/// Sets up contacts by nodes, as the deformable world expects.
+/// margin  not given: a default by the cage's size
+TETSKIN_BULLET_API void collideWithRigidBodies(const TetMesh& cage, std::optional<double> margin, double friction,
+                                               btSoftBody& body);
 
 }  // namespace tetskin

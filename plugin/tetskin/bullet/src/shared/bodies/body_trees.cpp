@@ -4,12 +4,13 @@
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/core/src/shared/bvh/bvh.h>
 
+#include <cassert>
 #include <vector>
 
 namespace tetskin {
 namespace {
 
-/// The leaves of a tree to be, and where they belong.
+/// The leaves of a tree that is to be built, with their items.
 struct Leaves {
   std::vector<btDbvtNode*> nodes;
   Bvh::Centroids<btScalar> centroids;
@@ -21,7 +22,7 @@ struct Leaves {
   btDbvtNode* add(void* data, const btVector3& centroid);
 };
 
-/// As Bullet makes them, which deletes them.
+/// Allocates nodes as Bullet does, since Bullet deletes them.
 btDbvtNode* newNode() {
   return new (btAlignedAlloc(sizeof(btDbvtNode), 16)) btDbvtNode();
 }
@@ -30,14 +31,15 @@ btDbvtNode* Leaves::add(void* data, const btVector3& centroid) {
   btDbvtNode* node = newNode();
   node->parent = nullptr;
   node->data = data;
-  node->childs[1] = nullptr;  // which is how Bullet tells leaves
+  node->childs[1] = nullptr;  // by which Bullet recognises leaves
   nodes.push_back(node);
   centroids.emplace_back(centroid.x(), centroid.y(), centroid.z());
   return node;
 }
 
-/// The tree of a hierarchy with one item in a leaf, as Bullet links it. Boxes are for the caller to compute.
+/// Creates the tree of a hierarchy with one item per leaf, linked as Bullet does it. The caller computes the boxes.
 btDbvtNode* linkNodes(const Bvh& bvh, const std::vector<btDbvtNode*>& leaves, int index = 0) {
+  assert(leaves.size() == bvh.items().size());
   const Bvh::Node& from = bvh.nodes()[static_cast<std::size_t>(index)];
   if (from.isLeaf()) return leaves[static_cast<std::size_t>(bvh.item(from.first))];
   btDbvtNode* node = newNode();
@@ -51,11 +53,12 @@ btDbvtNode* linkNodes(const Bvh& bvh, const std::vector<btDbvtNode*>& leaves, in
 void setTree(btDbvt& tree, const Leaves& leaves) {
   tree.clear();
   const Bvh bvh(leaves.centroids, 1);
+  assert(leaves.nodes.size() == leaves.centroids.size());
   tree.m_root = bvh.empty() ? nullptr : linkNodes(bvh, leaves.nodes);
   tree.m_leaves = static_cast<int>(leaves.nodes.size());
 }
 
-/// By `new`: btSoftBody deletes it so.
+/// Allocated with `new`: btSoftBody deletes it so.
 btDbvntNode* copyWithNormals(const btDbvtNode* node) {
   if (!node) return nullptr;
   auto* copy = new btDbvntNode(node);
@@ -91,7 +94,7 @@ void buildFaceTree(btSoftBody& body) {
   body.updateFaceTree(false, false);
 }
 
-/// A face without extent, far from everything: what the leaf holds that stands for a tree left out.
+/// A face without extent, far from everything. It belongs to the single leaf that replaces an omitted tree.
 btSoftBody::Face* nowhere() {
   static btSoftBody::Node node = [] {
     btSoftBody::Node n = {};
@@ -108,7 +111,7 @@ btSoftBody::Face* nowhere() {
   return &face;
 }
 
-/// Every item has a leaf that points back at it, as is no longer so once Bullet has moved the array.
+/// True if every item has a leaf that points back at it, which is no longer so once Bullet has moved the array.
 template <class Item>
 bool isTreeOf(const btDbvt& tree, const btAlignedObjectArray<Item>& items) {
   if (items.size() == 0 || !tree.m_root) return items.size() == 0;
@@ -130,7 +133,7 @@ void updateConstants(btSoftBody& body) {
   body.updateConstants();
   if (!isTreeOf(body.m_ndbvt, body.m_nodes)) buildNodeTree(body);
   auto* own = dynamic_cast<BodyWithTrees*>(&body);
-  const bool leftOut = own && own->faceTreeIsLeftOut();
+  const bool leftOut = own && own->hasNoFaceTree();
   if (leftOut) {
     own->renewFaceTree();
   } else if (!isTreeOf(body.m_fdbvt, body.m_faces)) {
@@ -139,7 +142,7 @@ void updateConstants(btSoftBody& body) {
   body.m_bUpdateRtCst = false;
 }
 
-/// Bullet asks for the margin in each step, right after it has cleared the tree.
+/// Bullet asks for the margin in each step, right after it has deleted the tree.
 class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
  public:
   explicit Shape(BodyWithTrees& body) : btSoftBodyCollisionShape(&body), body_(body) {}
@@ -167,7 +170,7 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
 BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes)
     : btSoftBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr) {
   m_sst.sdt = 0;            // Bullet leaves it unset until the first step
-  delete m_collisionShape;  // as its destructor does
+  delete m_collisionShape;  // as btSoftBody's destructor does
   m_collisionShape = new Shape(*this);
 }
 
@@ -180,37 +183,40 @@ const BodyWithTrees* bodyWithTrees(const btSoftBody& body) {
 }
 
 void BodyWithTrees::makeTrees(bool faces) {
+  assert(kind_ == Kind::None);
   buildNodeTree(*this);
-  kind_ = faces ? Kind::Faces : Kind::LeftOut;
+  kind_ = faces ? Kind::Faces : Kind::Skipped;
   renewFaceTree();
 }
 
 void BodyWithTrees::renewFaceTree() {
+  assert(kind_ != Kind::None);
   if (kind_ == Kind::Faces) return buildFaceTree(*this);
   Leaves leaves(1);
   btDbvtNode* const leaf = leaves.add(nowhere(), btVector3(0, 0, 0));
-  // In the classic worlds Bullet moves the leaf of each face in which the face no longer fits: all fit into this one.
+  // In the classic worlds, Bullet moves the leaf of each face that has left its box: this box contains all faces.
   const btVector3 everywhere(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   leaf->volume = btDbvtVolume::FromMM(-everywhere, everywhere);
   for (int i = 0; i < m_faces.size(); ++i) m_faces[i].m_leaf = leaf;
   setFaceTree(*this, leaves);
 }
 
-/// The tree may be gone; and where nodes are appended Bullet lets each leaf point at its face, also one that must not.
+/// Bullet may have deleted the tree; and where nodes are appended, Bullet lets each leaf point at its face, including a
+/// leaf that must not.
 void BodyWithTrees::keepFaceTree() {
   if (kind_ == Kind::None) return;
   if (!m_fdbvt.m_root) renewFaceTree();
-  if (kind_ == Kind::LeftOut) m_fdbvt.m_root->data = nowhere();
+  if (kind_ == Kind::Skipped) m_fdbvt.m_root->data = nowhere();
 }
 
 void BodyWithTrees::transform(const btTransform& transform) {
   btSoftBody::transform(transform);
-  if (!faceTreeIsLeftOut()) updateFaceTree(false, false);
+  if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 
 void BodyWithTrees::scale(const btVector3& factors) {
   btSoftBody::scale(factors);
-  if (!faceTreeIsLeftOut()) updateFaceTree(false, false);
+  if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 
 }  // namespace tetskin

@@ -5,8 +5,8 @@
 // m_ndbvt), which rays and collisions by faces search.
 //
 // Bullet's own builder, btSoftBody::initializeFaceTree, compares all pairs of faces, and joins neighbours until one
-// tree is left: for a surface of two parts that share no edge it never ends. Bullet calls it from a ray test of a body
-// without a tree, and from the first step after anything that sets m_bUpdateRtCst, such as setMass.
+// tree is left: for a surface of two components that share no edge it never ends. Bullet calls it from a ray test of a
+// body without a tree, and from the first step after anything that sets m_bUpdateRtCst, such as setMass.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -19,57 +19,57 @@
 
 namespace tetskin {
 
-/// Builds all three trees by median splits, for any number of parts, with boxes that fit the nodes where they are.
-/// Whatever trees there were are deleted; the new ones are the body's. Cost O(n log n) for n faces and nodes.
+/// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
+/// positions. Existing trees are deleted; the new ones belong to the body. Cost O(n log n) for n faces and nodes.
 TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 
-/// What Bullet would do in the next step where m_bUpdateRtCst is set, but with our trees; of faces only where they were
-/// not left out, and anew only if nodes or faces have been added or moved in memory. Cost O(links + faces + nodes)
-/// without that; nothing where the flag is not set.
+/// Does what Bullet would do in the next step if m_bUpdateRtCst is set, but with our trees. The tree of faces is only
+/// updated if it was not omitted, and only rebuilt if nodes or faces have been added or moved in memory. Cost O(links +
+/// faces + nodes) without a rebuild; nothing if the flag is not set.
 void updateConstants(btSoftBody& body);
 
-/// A soft body that keeps its trees.
+/// A soft body that keeps its trees valid.
 ///
-/// They follow when it is moved or scaled by hand. In Bullet only that of the nodes does: until the next step, and for
-/// a sleeping body for good, a ray looks for the faces where they were.
+/// The trees follow when the body is moved or scaled by hand. In Bullet only that of the nodes does: until the next
+/// step, and for a sleeping body permanently, a ray searches for the faces at their old positions.
 ///
-/// And they are there again at once where a step in a classic world deletes that of the faces, as it does where
-/// m_bUpdateRtCst is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are
-/// appended.
+/// The tree of faces is also rebuilt at once where a step in a classic world deletes it, as it does if m_bUpdateRtCst
+/// is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are appended.
 class BodyWithTrees : public btSoftBody {
  public:
   BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes);
 
-  /// Builds the trees for the first time; before, the body is Bullet's own.
-  /// faces  or instead of those of faces a single leaf that no ray hits and no node touches, whatever moves the body: a
-  ///        ray misses, refits cost nothing, and Bullet's builder, which only looks whether there is a tree, is not
-  ///        called
+  /// Builds the trees for the first time; before, the body behaves as in Bullet.
+  /// faces  false: instead of the tree of faces, there is a single leaf that no ray hits and no node touches, whatever
+  ///        moves the body. A ray then misses, refits cost nothing, and Bullet's builder, which only tests whether
+  ///        there is a tree, is not called
   void makeTrees(bool faces);
-  bool faceTreeIsLeftOut() const { return kind_ == Kind::LeftOut; }
-  /// Builds that of the faces, or what stands for it, anew.
+  bool hasNoFaceTree() const { return kind_ == Kind::Skipped; }
+  /// Rebuilds the tree of faces, or the leaf that replaces it.
   void renewFaceTree();
 
-  /// Expires with the body.
+  /// Expires when the body is destroyed.
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
-  /// What has to live as long as the body: one thing, of whoever puts it there.
+  /// An object that must live as long as the body: only one, owned by whoever sets it.
   std::shared_ptr<void>& companion() { return companion_; }
-  /// tetskin::contact's, who finds where the body's surface meets rigid bodies; gone where nobody does.
+  /// The object of tetskin::contact that finds contacts of the body's surface with rigid bodies; expired if there is
+  /// none.
   const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
   void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
 
-  /// What the body is to stay outside of in this step: whoever searches puts it there, the solver takes it up, and
-  /// clears it when a step begins.
+  /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
+  /// them when a step begins.
   PointContacts& pointContacts() { return pointContacts_; }
   const PointContacts& pointContacts() const { return pointContacts_; }
 
-  /// From now on the box that the broadphase is given also holds the nodes where the step takes them, and this much
-  /// around them: Bullet's own only holds them where the step begins. Below 0: Bullet's own.
+  /// From now on, the box in the broadphase also contains the nodes' positions at the end of the step, enlarged by
+  /// this: Bullet's own box only contains the positions at the beginning. Below 0: Bullet's own box.
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
   btScalar reach() const { return reach_; }
 
-  /// How far from what it may meet a body's points count as touching, while a step looks for that, beside what is kept
-  /// between them. Forces that will hold both are not known yet: what rests on something that rests is predicted to
-  /// fall with it, or away from it. 0: none, as outside of steps.
+  /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
+  /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
+  /// rests on a resting object is predicted to fall with it, or away from it. 0: none, as outside of steps.
   void setSpeculation(btScalar distance) { speculation_ = distance; }
   btScalar speculation() const { return speculation_; }
 
@@ -78,7 +78,7 @@ class BodyWithTrees : public btSoftBody {
   void scale(const btVector3& factors) override;
 
  private:
-  enum class Kind { None, Faces, LeftOut };
+  enum class Kind { None, Faces, Skipped };
   class Shape;
   void keepFaceTree();
 
@@ -90,7 +90,7 @@ class BodyWithTrees : public btSoftBody {
   std::weak_ptr<void> surfaceContacts_;
 };
 
-/// Of a body that `makeSoftBody` has made; null for others.
+/// The object of a body that `createSoftBody` has created; null for others.
 TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
 TETSKIN_BULLET_API const BodyWithTrees* bodyWithTrees(const btSoftBody& body);
 

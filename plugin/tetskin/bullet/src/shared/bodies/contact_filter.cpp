@@ -7,7 +7,7 @@
 namespace tetskin {
 namespace {
 
-/// Of groups, masks and callback; true outside of worlds.
+/// Tests groups, masks and the callback; true outside of worlds.
 bool passesBroadphase(const btSoftBody& body, const btCollisionObject& object) {
   const btSoftBodyWorldInfo* world = const_cast<btSoftBody&>(body).getWorldInfo();
   auto* first = const_cast<btBroadphaseProxy*>(body.getBroadphaseHandle());
@@ -22,20 +22,20 @@ bool isIgnored(const btSoftBody& body, const btCollisionObject& object) {
          !body.checkCollideWith(&object) || !object.checkCollideWith(&body);
 }
 
-bool meets(const btSoftBody& body, const btCollisionObject& object) {
+bool collides(const btSoftBody& body, const btCollisionObject& object) {
   return body.hasContactResponse() && object.hasContactResponse() && !isIgnored(body, object) &&
          passesBroadphase(body, object);
 }
 
 }  // namespace
 
-bool meetsRigid(const btSoftBody& body, const btCollisionObject& object) {
-  return (body.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0 && meets(body, object);
+bool collidesWithRigid(const btSoftBody& body, const btCollisionObject& object) {
+  return (body.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0 && collides(body, object);
 }
 
-bool meetsSoft(const btSoftBody& body, const btSoftBody& other) {
+bool collidesWithSoft(const btSoftBody& body, const btSoftBody& other) {
   if (body.m_cfg.collisions == 0 || other.m_cfg.collisions == 0) return false;
-  return &body == &other ? body.hasContactResponse() : meets(body, other) && !isIgnored(other, body);
+  return &body == &other ? body.hasContactResponse() : collides(body, other) && !isIgnored(other, body);
 }
 
 }  // namespace tetskin

@@ -9,7 +9,7 @@ namespace tetskin {
 namespace {
 
 btDeformableLagrangianForce* noForce() {
-  static SilentForce force;
+  static InactiveForce force;
   return &force;
 }
 
@@ -37,6 +37,7 @@ void removeFromList(ForceList& list, const btDeformableLagrangianForce* force) {
 }
 
 void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForce& elasticity, btSoftBody& body) {
+  assert(gravity.m_softBodies.size() == 0 && elasticity.m_softBodies.size() == 0);
   removeFromList(list, noForce());
   list.push_back(nullptr);
   for (int i = list.size() - 1; i > 0; --i) list[i] = list[i - 1];
@@ -51,7 +52,7 @@ BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& l
     : OwnForce<btDeformableGravityForce>(list, world.getGravity()), world_(world) {}
 
 btDeformableLagrangianForceType BodyGravity::getForceType() {
-  return beingAsked_ ? BT_GRAVITY_FORCE : kOwnForceType;
+  return inCallback_ ? BT_GRAVITY_FORCE : kOwnForceType;
 }
 
 void BodyGravity::removeSoftBody(btSoftBody* body) {
@@ -63,21 +64,21 @@ void BodyGravity::reinitialize(bool) {
   // Between a removal and the next substep the application may add forces, which must not join this one.
   const bool removal = removed_ && !removed_->getBroadphaseHandle();
   removed_ = nullptr;
-  beingAsked_ = !removal;
+  inCallback_ = !removal;
   m_gravity = own_.value_or(world_.getGravity());
   for (int i = 0; i < m_softBodies.size(); ++i) updateConstants(*m_softBodies[i]);
 }
 
-/// In explicit worlds Bullet does not ask.
+/// Explicit worlds do not ask for gravity.
 void BodyGravity::addScaledExplicitForce(btScalar scale, TVStack& force) {
-  beingAsked_ = false;
+  inCallback_ = false;
   OwnForce::addScaledExplicitForce(scale, force);
 }
 
-/// In implicit worlds this comes after Bullet has asked, and before it applies the answer.
+/// In implicit worlds, this is called after Bullet has asked for gravity, and before it applies the answer.
 void BodyGravity::addScaledHessian(btScalar scale) {
-  const btVector3 difference = m_gravity - askedGravity();
-  beingAsked_ = false;
+  const btVector3 difference = m_gravity - requestedGravity();
+  inCallback_ = false;
   if (difference.fuzzyZero()) return;
   for (int i = 0; i < m_softBodies.size(); ++i) {
     btSoftBody& body = *m_softBodies[i];
@@ -107,8 +108,9 @@ void BodyGravity::stopSleepers() {
   }
 }
 
-/// What Bullet has found. Forces that stand behind this one and are ours are still being asked, so there is always one.
-btVector3 BodyGravity::askedGravity() const {
+/// The gravity that Bullet has found. Forces of this library that stand behind this one still answer, so that there is
+/// always one.
+btVector3 BodyGravity::requestedGravity() const {
   for (int i = list_.size() - 1; i >= 0; --i) {
     if (list_[i]->getForceType() != BT_GRAVITY_FORCE) continue;
     return static_cast<const btDeformableGravityForce*>(list_[i])->m_gravity;

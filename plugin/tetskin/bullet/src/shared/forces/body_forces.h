@@ -4,8 +4,8 @@
 // Internal to tetskin::bullet: the force objects of one DeformableBody.
 //
 // Bullet keeps all force objects of a world in one list, and its `addForce` only looks at their types: a second body
-// joins the first object of the type, whosever it is, with its gravity and its material. So ours are of a type of their
-// own, and are put into the list past `addForce`.
+// joins the first object of the same type, whoever owns it, with its gravity and its material. Therefore the objects of
+// this library have a type of their own, and are put into the list without `addForce`.
 #pragma once
 
 #include <BulletSoftBody/btDeformableGravityForce.h>
@@ -19,15 +19,15 @@ namespace tetskin {
 
 using ForceList = btAlignedObjectArray<btDeformableLagrangianForce*>;
 
-/// None of Bullet's types; the largest number that their enumeration can hold.
+/// A value that is none of Bullet's types: the largest number that their enumeration can hold.
 constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 
-/// Puts a nameless force that does nothing, and is nobody's, in the place of `force`: its neighbours in the list stay
-/// where they are, so that Bullet may be walking over it.
+/// Replaces `force` in the list by an anonymous force that does nothing: the other entries keep their indices, so that
+/// Bullet may be iterating over the list.
 TETSKIN_BULLET_API void replaceByNothing(ForceList& list, const btDeformableLagrangianForce* force);
 
-/// One that gives Bullet nothing, and joins nobody's body.
-class TETSKIN_BULLET_API SilentForce : public btDeformableLagrangianForce {
+/// A force that is always 0 for Bullet, and joins no other body.
+class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
  public:
   void addScaledForces(btScalar, TVStack&) override {}
   void addScaledExplicitForce(btScalar, TVStack&) override {}
@@ -39,14 +39,14 @@ class TETSKIN_BULLET_API SilentForce : public btDeformableLagrangianForce {
 };
 
 inline bool isSilent(const btDeformableLagrangianForce& force) {
-  return dynamic_cast<const SilentForce*>(&force) != nullptr;
+  return dynamic_cast<const InactiveForce*>(&force) != nullptr;
 }
 
-/// Whether a force needs what Bullet keeps for each tet and updates in every step.
+/// True if a force needs the deformation gradients that Bullet updates for each tet in every step.
 bool needsDeformation(btDeformableLagrangianForce& force);
 
-/// A force of Bullet's for one body, in a list where nobody's body joins it. It leaves the list when the application
-/// takes the body out of the world; otherwise its owner takes it out.
+/// One of Bullet's forces for one body, in a list where no other body joins it. It leaves the list when the application
+/// removes the body from the world; otherwise its owner removes it.
 template <class Force>
 class OwnForce : public Force {
  public:
@@ -64,45 +64,45 @@ class OwnForce : public Force {
   ForceList& list_;
 };
 
-/// Gravity: the world's as it is in each substep, unless set.
+/// Gravity of one body: that of the world in each substep, unless it is set.
 ///
 /// In implicit worlds Bullet asks the list for the last force of type BT_GRAVITY_FORCE, gives all bodies that gravity
-/// before it looks for contacts, and reads a variable that was never set if there is none. So this is of that type for
-/// just as long as Bullet asks, stands in the list before all forces of the application, which therefore are asked
-/// later, and gives its own body the difference.
+/// before it looks for contacts, and reads a variable that was never set if there is none. Therefore this force has
+/// that type only while Bullet asks. It stands in the list before all forces of the application, so that these are
+/// asked later, and gives its own body the difference.
 class BodyGravity : public OwnForce<btDeformableGravityForce> {
  public:
   BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list);
 
-  /// World units per second squared; nothing: the world's.
+  /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
 
   btDeformableLagrangianForceType getForceType() override;
-  /// Of any body: forces are told before it leaves the world.
+  /// Called for any body: forces are told before it leaves the world.
   void removeSoftBody(btSoftBody* body) override;
-  /// Called at the beginning of each substep, and once a body has been removed.
+  /// Called at the beginning of each substep, and when a body has been removed.
   void reinitialize(bool nodeUpdated) override;
   void addScaledExplicitForce(btScalar scale, TVStack& force) override;
   void addScaledHessian(btScalar scale) override;
-  /// Called between the solve of contacts and the integration, by one of these two.
+  /// One of these two is called between the solve of contacts and the integration.
   void addScaledForces(btScalar scale, TVStack& force) override;
   void addScaledDampingForce(btScalar scale, TVStack& force) override;
 
  private:
-  btVector3 askedGravity() const;
-  /// A body falls asleep where the step has just begun: Bullet does not solve for it then, but moves its nodes by the
-  /// velocities that it has.
+  btVector3 requestedGravity() const;
+  /// A body falls asleep after the step has begun: Bullet then does not solve for it, but moves its nodes by their
+  /// velocities.
   void stopSleepers();
 
   btDeformableMultiBodyDynamicsWorld& world_;
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`
-  bool beingAsked_ = false;
+  bool inCallback_ = false;
 };
 
 /// Adds forces for a body to the list: gravity before all others, elasticity after them.
 void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForce& elasticity, btSoftBody& body);
-/// Takes them out again; the others keep their order.
+/// Removes them from the list; the others keep their order.
 TETSKIN_BULLET_API void removeFromList(ForceList& list, const btDeformableLagrangianForce* force);
 
 }  // namespace tetskin

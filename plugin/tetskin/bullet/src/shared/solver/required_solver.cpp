@@ -5,7 +5,7 @@
 namespace tetskin {
 
 DeformableSolver* deformableSolverOf(const btSoftBody& body) {
-  // A body that has left its world may name a solver that is gone.
+  // A body that has left its world may refer to a solver that has been destroyed.
   if (!body.getBroadphaseHandle()) return nullptr;
   return dynamic_cast<DeformableSolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
 }

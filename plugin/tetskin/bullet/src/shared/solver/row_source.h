@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: what a DeformableSolver solves for in a step, beside what bodies meet of rigid ones.
+// Between the libraries: the constraints that a DeformableSolver solves for in a step, in addition to contacts with
+// rigid objects.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
@@ -12,41 +13,44 @@ class btSoftBody;
 
 namespace tetskin {
 
-/// A point of one soft body that is to stay outside of another, or of another part of its own. `object` is that body.
+/// A point of one soft body that must stay outside of another one, or outside of another part of the same body.
+/// `object` is that body.
 struct SoftPointContact : PointContact {
-  btSoftBody* body = nullptr;               ///< awake
-  std::array<int, 4> objectNodes{};         ///< of the tet that the point is in
+  btSoftBody* body = nullptr;               ///< the body of the point, which is awake
+  std::array<int, 4> objectNodes{};         ///< nodes of the tet of `object` that contains the point
   std::array<btScalar, 4> objectWeights{};  ///< sum 1
 };
 
-/// A point of a soft body that is held to a point of a rigid object, or to one in space. World space.
+/// A constraint between a point of a soft body and a point of a rigid object, or a point in space. World space.
 struct PointJoint {
   btSoftBody* body = nullptr;
   std::uint32_t nodeCount = 0;                          ///<
-  std::array<int, kMaxPointNodes> nodes{};              ///< of the body
+  std::array<int, kMaxPointNodes> nodes{};              ///< nodes of the body
   std::array<btScalar, kMaxPointNodes> weights{};       ///< sum 1; some may be below 0
-  const btCollisionObject* object = nullptr;            ///< null: a point in space, which stands
-  btVector3 anchor{0, 0, 0};                            ///< of the object, when the step begins
-  btVector3 offset{0, 0, 0};                            ///< of the body's point from there; what is to be taken back
-  btScalar stiffness = 0;                               ///< impulse over velocity; 0: as stiff as need be
-  btScalar most = BT_LARGE_FLOAT;                       ///< of the impulse
-  btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< a projection: along which it is held
-  /// Of the object on the soft body in the step: force times seconds. Written by the solver, unless it is constant.
+  const btCollisionObject* object = nullptr;            ///< null: a point in space, which does not move
+  btVector3 anchor{0, 0, 0};                            ///< on the object, when the step begins
+  btVector3 offset{0, 0, 0};                            ///< from there to the body's point; the constraint removes it
+  btScalar stiffness = 0;                               ///< impulse over velocity; 0: as stiff as possible
+  btScalar maximum = BT_LARGE_FLOAT;                    ///< bound of the impulse
+  btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< projection to the constrained directions
+  /// The impulse of the object on the soft body in the step: force times seconds. Written by the solver, unless it is
+  /// constant.
   btVector3 impulse{0, 0, 0};
-  bool constant = false;  ///< a load: nothing is held, the impulse is given
+  bool constant = false;  ///< a load: there is no constraint, and the impulse is given
 };
 
-/// In the world's list of forces, where a DeformableSolver finds it and asks it in each step. It is no force itself.
-class TETSKIN_BULLET_API RowSource : public SilentForce {
+/// An entry in the world's list of forces, where a DeformableSolver finds it and calls it in each step. It applies no
+/// force itself.
+class TETSKIN_BULLET_API RowSource : public InactiveForce {
  public:
-  /// Positions are those that the step begins with, velocities those that bodies would end it with alone. What is
-  /// returned lives until the next call; the solver writes the impulses.
+  /// Positions are those at the beginning of the step, velocities those that the bodies would have at its end without
+  /// constraints. The result stays valid until the next call; the solver writes the impulses.
   virtual std::vector<SoftPointContact>* contacts(btScalar /*seconds*/) { return nullptr; }
   virtual std::vector<PointJoint>* joints(btScalar /*seconds*/) { return nullptr; }
-  /// Impulses are written.
+  /// Called when the impulses have been written.
   virtual void finish(btScalar /*seconds*/) {}
 
-  /// Bodies are in it by its owner's will alone.
+  /// Only the owner of this object adds bodies to it.
   void addSoftBody(btSoftBody*) override {}
 };
 

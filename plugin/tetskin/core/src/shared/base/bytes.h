@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Numbers as bytes, little-endian on every machine, and what tells that they are those that were written.
+// Numbers as bytes, little-endian on every machine, with a hash that detects changes.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/base/hash.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <cmath>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace tetskin {
 
-/// Of the nodes' places and the tets' nodes, in their order. 0 and -0 are the same place.
+/// A hash of the nodes' positions and the tets' nodes, in their order. 0 and -0 are the same position.
 inline std::uint64_t hashOf(const TetMesh& tets) {
   Hash hash;
   hash.add(std::uint64_t{tets.nodeCount()});
@@ -33,7 +33,7 @@ inline std::uint64_t readBytes(const unsigned char* from, std::size_t bytes) {
   return value;
 }
 
-/// Of bytes, in words of eight; the last one is filled up with zeros.
+/// A hash of bytes, in words of eight; the last word is padded with zeros.
 inline std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
   Hash hash;
   std::size_t k = 0;
@@ -47,7 +47,7 @@ class ByteWriter {
  public:
   explicit ByteWriter(std::size_t size) { bytes_.reserve(size); }
 
-  /// Of eight letters.
+  /// Writes a tag of eight letters.
   void tag(const char* letters) { u64(readBytes(reinterpret_cast<const unsigned char*>(letters), 8)); }
   void u64(std::uint64_t value) { put(value, 8); }
   void u32(std::uint32_t value) { put(value, 4); }
@@ -65,7 +65,7 @@ class ByteWriter {
       u64(bits);
     }
   }
-  /// All of it, with a hash of it at the end.
+  /// Returns all bytes, followed by their hash.
   std::vector<unsigned char> take() {
     u64(hashOf(bytes_.data(), bytes_.size()));
     return std::move(bytes_);
@@ -78,14 +78,14 @@ class ByteWriter {
   std::vector<unsigned char> bytes_;
 };
 
-/// Reads what is known to be there.
+/// Reads bytes whose number has been checked before.
 class ByteReader {
  public:
   explicit ByteReader(const unsigned char* at) : at_(at) {}
 
   std::uint64_t u64() { return take(8); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
-  /// Return whether all values are finite.
+  /// These functions return true if all values are finite.
   bool plane(float* values, std::size_t count) {
     bool finite = true;
     for (std::size_t k = 0; k < count; ++k) {
@@ -114,9 +114,9 @@ class ByteReader {
   const unsigned char* at_;
 };
 
-/// Of a `ByteWriter::take`.
+/// Size of the hash that `ByteWriter::take` appends.
 constexpr std::size_t kHashBytes = 8;
-/// True if the bytes are as `take` left them.
+/// True if the bytes are as `take` has returned them.
 inline bool hashIsRight(const unsigned char* bytes, std::size_t count) {
   return count >= kHashBytes && ByteReader(bytes + count - kHashBytes).u64() == hashOf(bytes, count - kHashBytes);
 }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -19,6 +20,7 @@ class DisjointSets {
 
   /// Up to `count` members; the new ones each in a set of its own.
   void grow(std::size_t count) {
+    assert(count >= parent_.size());
     const std::size_t before = parent_.size();
     parent_.resize(count);
     std::iota(parent_.begin() + static_cast<std::ptrdiff_t>(before), parent_.end(), static_cast<int>(before));
@@ -26,6 +28,7 @@ class DisjointSets {
   }
 
   int find(int i) {
+    assert(i >= 0 && static_cast<std::size_t>(i) < parent_.size());
     while (parent_[i] != i) {
       const int up = parent_[i];
       parity_[i] = static_cast<char>(parity_[i] ^ parity_[up]);

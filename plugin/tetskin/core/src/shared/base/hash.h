@@ -7,8 +7,8 @@
 
 namespace tetskin {
 
-/// Of a row of words. Every step is one-to-one in the hash so far and in the word, so that a change of one word never
-/// goes unnoticed (the multiplier is the golden ratio's, after Knuth, "The Art of Computer Programming" 3,
+/// A hash of a sequence of words. Every step is one-to-one in the hash so far and in the word, so that a change of one
+/// word never goes unnoticed (the multiplier is the golden ratio's, after Knuth, "The Art of Computer Programming" 3,
 /// section 6.4). Saved embeddings hold such hashes.
 class Hash {
  public:
@@ -16,7 +16,7 @@ class Hash {
     value_ = (value_ ^ word) * kMultiplier;
     value_ ^= value_ >> 32;
   }
-  /// A coordinate: 0 and -0 are the same place.
+  /// Adds a coordinate: 0 and -0 are the same position.
   void add(double x) {
     x += 0.0;
     std::uint64_t bits;
@@ -24,7 +24,7 @@ class Hash {
     add(bits);
   }
   std::uint64_t value() const { return value_; }
-  /// For tables: every bit depends on all of the words'.
+  /// The hash for use in tables: every bit depends on all bits of the words.
   std::uint32_t mixed() const { return static_cast<std::uint32_t>(value_ * kMultiplier >> 32); }
 
  private:

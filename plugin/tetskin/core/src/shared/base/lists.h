@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -16,18 +17,20 @@ struct Lists {
   std::vector<Value> values;
 };
 
-/// A counting sort; every list has the order of the visits. No memory but the result's.
+/// A counting sort; every list has the order of the visits. It needs no memory except for the result.
 /// forEach  is called twice, with a function, which it calls with the key and the value of every entry: the same ones
 template <class Value = std::uint32_t, class ForEach>
 Lists<Value> packLists(std::size_t keys, ForEach&& forEach) {
   Lists<Value> lists;
-  // Lengths two places late; summed, where each list begins, one place late; filled, where it begins.
+  // The counts are stored two entries late. Summed up, they give the beginning of each list one entry late; after
+  // filling, the beginning is at its own entry.
   lists.starts.assign(keys + 2, 0);
   forEach([&](std::size_t key, const Value&) { ++lists.starts[key + 2]; });
   std::partial_sum(lists.starts.begin(), lists.starts.end(), lists.starts.begin());
   lists.values.resize(lists.starts.back());
   forEach([&](std::size_t key, const Value& value) { lists.values[lists.starts[key + 1]++] = value; });
   lists.starts.pop_back();
+  assert(lists.starts.back() == lists.values.size());
   return lists;
 }
 

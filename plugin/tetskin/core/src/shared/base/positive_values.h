@@ -10,17 +10,18 @@
 
 namespace tetskin {
 
-/// Of values for each of something, or none: Ok, or that they are more or fewer, or which is not above 0, or it or its
-/// inverse out of the range of Scalar.
-/// name, of  the values, and one of what has them: "stiffnessScale", "tet"
-/// times     what is made of the values; it must be in the range, too
+/// Checks one value per element, or none at all. Returns Ok, or reports a wrong number of values, or the first value
+/// that is not above 0, or of which it or its inverse is out of the range of Scalar.
+/// name, of  the values, and one of the elements: "stiffnessScale", "tet"
+/// times     a factor of the values; the product must be in range, too
 template <class Scalar>
-Status checkPositive(const std::vector<double>& values, std::size_t count, const char* name, const char* of,
+Status checkPositive(const std::vector<double>& values, std::size_t count, const char* name, const char* label,
                      double times = 1.0) {
   if (values.empty()) return {};
   if (values.size() != count) {
     return {StatusCode::SizeMismatch, std::string(name) + " has " + std::to_string(values.size()) + " values for " +
-                                          std::to_string(count) + " " + of + "s; it takes one for each, or none"};
+                                          std::to_string(count) + " " + label + "s; pass one value per " + label +
+                                          ", or none"};
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto held = static_cast<Scalar>(values[k] * times);

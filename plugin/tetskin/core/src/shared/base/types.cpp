@@ -2,6 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/types.h>
 
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
 namespace tetskin {
 
 const char* toString(StatusCode code) {
@@ -31,11 +35,42 @@ const char* toString(StatusCode code) {
     case StatusCode::OutsideCage:
       return "outside the cage";
     case StatusCode::CageMismatch:
-      return "of another cage";
+      return "cage mismatch";
     case StatusCode::TooLarge:
       return "too large";
+    case StatusCode::Asleep:
+      return "asleep";
+    case StatusCode::Hidden:
+      return "hidden";
+    case StatusCode::Unbound:
+      return "unbound";
+    case StatusCode::TopologyChanged:
+      return "topology changed";
+    case StatusCode::NoHit:
+      return "no hit";
+    case StatusCode::BodyDeleted:
+      return "body deleted";
+    case StatusCode::Released:
+      return "released";
+    case StatusCode::OtherBody:
+      return "other body";
+    case StatusCode::NotInWorld:
+      return "not in the world";
+    case StatusCode::NotAdded:
+      return "not added";
+    case StatusCode::Enclosed:
+      return "enclosed by another body";
   }
   return "unknown status";
+}
+
+void failResult(const std::string& message) {
+#ifdef __cpp_exceptions
+  throw std::logic_error(message);
+#else
+  std::fprintf(stderr, "%s\n", message.c_str());
+  std::terminate();
+#endif
 }
 
 }  // namespace tetskin

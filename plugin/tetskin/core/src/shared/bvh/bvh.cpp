@@ -4,12 +4,13 @@
 #include <tetskin/core/src/shared/bvh/bvh.h>
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace tetskin {
 namespace {
 
-/// What the splits look at: small, because it is moved about a lot.
+/// The items as the splits see them: small, because they are moved often.
 template <class Scalar>
 struct PointItem {
   using Box = BvhBox<Scalar>;
@@ -62,12 +63,12 @@ class Builder {
     return axis;
   }
 
-  /// In the order of the last split, which `nth_element` leaves to the library.
+  /// Sorts the items of a leaf, whose order after `nth_element` depends on the standard library.
   void sortLeaf(int first, int last, int axis) {
     if (axis >= 0) std::sort(at(first), at(last), Before{axis});
   }
 
-  /// Along an axis; of two at one coordinate the one of the lower number.
+  /// Order along an axis; of two at the same coordinate, the lower number comes first.
   struct Before {
     int axis;
     bool operator()(const Item& a, const Item& b) const {
@@ -101,9 +102,10 @@ Bvh::Bvh(const Centroids<Scalar>& centroids, const std::vector<int>& items, int 
   std::vector<Item> points;
   points.reserve(items.size());
   for (const int number : items) {
+    assert(number >= 0 && static_cast<std::size_t>(number) < centroids.size());
     const auto& centroid = centroids[static_cast<std::size_t>(number)];
     points.push_back({centroid, number});
-    // Cannot be sorted; anywhere will do.
+    // It cannot be sorted; any position is valid.
     if (!centroid.allFinite()) points.back().centroid.setZero();
   }
   Builder<Item>(std::move(points), leafSize, nodes_, items_);

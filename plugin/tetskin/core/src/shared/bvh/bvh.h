@@ -25,40 +25,43 @@ class TETSKIN_CORE_API Bvh {
   using Centroids = std::vector<Eigen::Matrix<Scalar, 3, 1>>;
 
   struct Node {
-    int first = 0, last = 0;  ///< its items: `items` from the one to before the other
+    int first = 0, last = 0;  ///< its items, from index `first` of `items` up to, and without, index `last`
     int right = 0;            ///< second child, 0 in a leaf; the first child is the next node
     bool isLeaf() const { return right == 0; }
   };
 
   Bvh() = default;
-  /// Halves the items at the median along the longest side of their centroids' box. Of two at one coordinate the lower
-  /// number comes first, and leaves are in order: the same tree with every standard library.
+  /// Halves the items at the median along the longest side of their centroids' box. Of two at the same coordinate, the
+  /// lower number comes first, and the items of leaves are sorted: the tree is the same with every standard library.
   /// centroids  by item; those that are not finite count as 0
   /// leafSize   items that are not halved any more, at least 1
   /// Cost       O(n log n)
   template <class Scalar>
   Bvh(const Centroids<Scalar>& centroids, int leafSize);
-  /// The same of some items.
+  /// A tree of some of the items.
   /// items  numbers into `centroids`, each at most once
   template <class Scalar>
   Bvh(const Centroids<Scalar>& centroids, const std::vector<int>& items, int leafSize);
-  /// The same by boxes, along the longest side of the box around them all.
+  /// A tree by boxes instead of centroids; it splits along the longest side of the box around them all.
   template <class Scalar>
   Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items, int leafSize);
 
   bool empty() const { return nodes_.empty(); }
-  /// The root first, parents before children.
+  /// The nodes: the root first, parents before children.
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Numbers of items, leaf by leaf.
   const std::vector<int>& items() const { return items_; }
-  int item(int index) const { return items_[static_cast<std::size_t>(index)]; }
+  int item(int index) const {
+    assert(index >= 0 && static_cast<std::size_t>(index) < items_.size());
+    return items_[static_cast<std::size_t>(index)];
+  }
 
-  /// What each node carries, leaves by `fromItems(node)`, others by `fromChildren(left, right)`. Cost O(n); allocates
-  /// only where `values` is too small.
+  /// Computes a value per node, for leaves by `fromItems(node)`, for others by `fromChildren(left, right)`. Cost O(n);
+  /// allocates only if `values` is too small.
   template <class Value, class FromItems, class FromChildren>
   void fill(std::vector<Value>& values, FromItems&& fromItems, FromChildren&& fromChildren) const;
 
-  /// The nodes' boxes, where those of items are `boxOf(index)`. Cost as of `fill`
+  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as of `fill`
   template <class Box, class BoxOf>
   void fit(std::vector<Box>& boxes, BoxOf&& boxOf) const;
 
@@ -74,9 +77,9 @@ class TETSKIN_CORE_API Bvh {
                   double end, Visit&& visit) const;
 
  private:
-  /// Of nodes that wait to be visited: one a level, and trees are balanced.
+  /// Most nodes that wait to be visited: one per level, and trees are balanced.
   static constexpr int kMaxWaiting = 64;
-  struct Waiting {
+  struct PendingNode {
     int node;
     double distance;
   };
@@ -113,18 +116,18 @@ void Bvh::fit(std::vector<Box>& boxes, BoxOf&& boxOf) const {
   fill(boxes, aroundItems, aroundBoth);
 }
 
-/// distance  of a node: unless it is within `bound` there is nothing to find
+/// distance  of a node: if it is not within `bound`, the node is skipped
 template <class Distance, class Within, class Visit>
 void Bvh::visitNearestFirst(const Distance& distance, double& bound, Within within, Visit& visit) const {
   if (empty()) return;
-  Waiting stack[kMaxWaiting];
+  PendingNode stack[kMaxWaiting];
   int count = 0;
   stack[count++] = {0, distance(0)};
   while (count > 0) {
-    Waiting next = stack[--count];
+    PendingNode next = stack[--count];
     while (within(next.distance, bound) && !node(next.node).isLeaf()) {
-      Waiting near{next.node + 1, distance(next.node + 1)};
-      Waiting far{node(next.node).right, distance(node(next.node).right)};
+      PendingNode near{next.node + 1, distance(next.node + 1)};
+      PendingNode far{node(next.node).right, distance(node(next.node).right)};
       if (far.distance < near.distance) std::swap(near, far);
       assert(count < kMaxWaiting);
       if (within(far.distance, bound)) stack[count++] = far;
@@ -153,15 +156,15 @@ void Bvh::visitAlong(const std::vector<Box>& boxes, const Eigen::Vector3d& start
   visitNearestFirst(distance, end, std::less_equal<>(), visit);
 }
 
-/// Calls visit(leafA, leafB) for pairs of leaves of two trees, of which meet(nodeA, nodeB), numbers of nodes, is true,
-/// as it is of all nodes that hold these.
+/// Calls visit(leafA, leafB) for those pairs of leaves of two trees for which meet(nodeA, nodeB), with numbers of
+/// nodes, is true, and for all nodes that contain them.
 template <class Meet, class Visit>
 void visitPairs(const Bvh& a, const Bvh& b, const Meet& meet, Visit&& visit, int nodeA = 0, int nodeB = 0) {
   if (a.empty() || b.empty() || !meet(nodeA, nodeB)) return;
   const Bvh::Node& first = a.nodes()[static_cast<std::size_t>(nodeA)];
   const Bvh::Node& second = b.nodes()[static_cast<std::size_t>(nodeB)];
   if (first.isLeaf() && second.isLeaf()) return visit(first, second);
-  // The one of more items is split.
+  // The one with more items is split.
   if (second.isLeaf() || (!first.isLeaf() && first.last - first.first > second.last - second.first)) {
     visitPairs(a, b, meet, visit, nodeA + 1, nodeB);
     visitPairs(a, b, meet, visit, first.right, nodeB);

@@ -8,7 +8,7 @@
 
 namespace tetskin {
 
-/// An axis-aligned box, empty until extended. What is not a number extends nothing.
+/// An axis-aligned box, empty until extended. NaN extends nothing.
 template <class Scalar>
 struct BvhBox {
   static constexpr Scalar kFar = std::numeric_limits<Scalar>::max();
@@ -25,8 +25,8 @@ struct BvhBox {
   void extend(const Scalar* point) { extend(point, point); }
   void extend(const BvhBox& b) { extend(b.low, b.high); }
 
-  /// Without branches: most pairs are apart, on no axis in particular.
-  bool meets(const BvhBox& b) const {
+  /// Without branches: most pairs are disjoint, and along no particular axis.
+  bool collides(const BvhBox& b) const {
     return (low[0] <= b.high[0]) & (low[1] <= b.high[1]) & (low[2] <= b.high[2]) & (b.low[0] <= high[0]) &
            (b.low[1] <= high[1]) & (b.low[2] <= high[2]);
   }
@@ -69,7 +69,7 @@ struct BvhBox {
     for (int k = 0; k < 3; ++k) {
       const double a = (static_cast<double>(low[k]) - start[k]) * inverse[k];
       const double b = (static_cast<double>(high[k]) - start[k]) * inverse[k];
-      // In this order a ray within a face's plane, of which these are not numbers, is in.
+      // With this order of arguments, a ray within a face's plane, for which these are NaN, is inside.
       in = std::max(in, std::min(a, b));
       out = std::min(out, std::max(a, b));
     }

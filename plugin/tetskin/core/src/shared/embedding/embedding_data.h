@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an Embedding holds.
+// The data of an Embedding.
 #pragma once
 
 #include <tetskin/core/embedding.h>
@@ -18,16 +18,16 @@ namespace tetskin {
 struct EmbeddingData {
   /// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes.
   using Run = kernels::Run;
-  /// Weights come in planes of one float a slot, so that kernels take several vertices at a time; each is followed by
-  /// this many zeros, which they may read.
+  /// Weights are stored in arrays of one float per slot, so that kernels process several vertices at a time; each array
+  /// is followed by this many zeros, which kernels may read.
   static constexpr std::size_t kPadding = 16;
 
   std::size_t nodeCount = 0;
   std::size_t tetCount = 0;
   std::size_t insideCount = 0;  ///< vertices inside: their slots come first
   std::size_t insideRunCount = 0;
-  /// The runs of the tets with vertices inside, ascending by tet; then those of the tets with vertices outside,
-  /// likewise; and one more that closes the list.
+  /// The runs of the tets with vertices inside, ascending by tet; then the runs of the tets with vertices outside,
+  /// ascending by tet; and one more that ends the list.
   std::vector<Run> runs;
   /// vertexCount + kPadding, by slot: weights of nodes 0, 1, 2 of the slot's tet
   std::array<std::vector<float>, 3> weights;
@@ -40,9 +40,20 @@ struct EmbeddingData {
   std::size_t vertexCount() const { return slotVertices.size(); }
 };
 
+template <>
+struct Access<Embedding> {
+  static const EmbeddingData& data(const Embedding& embedding) { return *embedding.data_; }
+  static Embedding create(std::shared_ptr<const EmbeddingData> data) { return Embedding(std::move(data)); }
+};
+
+/// What an embedding holds, valid as long as one of its copies.
+inline const EmbeddingData& dataOf(const Embedding& embedding) {
+  return Access<Embedding>::data(embedding);
+}
+
 /// How closely the weights of an embedding reproduce the vertices; see EmbedReport.
 struct EmbeddingFit {
-  double largestWeight = 1.0;      ///< absolute
+  double largestWeight = 1.0;      ///< largest absolute weight
   double worstBarycentric = -1.0;  ///< dimensionless
   double restErrorSquared = 0.0;   ///< rest space; infinite where weights overflow a float
 };
@@ -51,11 +62,11 @@ struct EmbeddingFit {
 /// vertices  vertexCount x 3, rest space; float or double
 /// tetOf     by vertex: its tet, or ~tet if it lies outside of it; in [0, tetCount), and not flat
 /// fit       written if not null
-/// Memory    the result, and 8 bytes a tet
+/// Memory    the result, and 8 bytes per tet
 Embedding embeddingFromTets(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
                             EmbeddingFit* fit = nullptr);
 
-/// The report of a mesh that was refused before anything else was known of it.
+/// The report of a mesh that was rejected before anything else was computed.
 inline EmbedReport notEmbedded(const TriangleMesh& mesh) {
   EmbedReport report;
   report.vertexCount = report.unbound = mesh.vertexCount();

@@ -5,7 +5,7 @@
 // kernels' headers include is compiled for processors that not everyone has.
 #pragma once
 
-/// Declares the same in all of them.
+/// Declares the same names for all instruction sets.
 #define TETSKIN_FOR_EACH_INSTRUCTION_SET(...) \
   namespace plain {                           \
   __VA_ARGS__                                 \

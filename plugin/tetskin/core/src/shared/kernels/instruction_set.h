@@ -11,7 +11,7 @@ namespace tetskin {
 /// The kernels of skinning exist once for each of these; the widest that the processor has is used, without being asked
 /// for. Results differ by rounding only, and which tet carries a vertex does not depend on it.
 enum class InstructionSet {
-  Plain,     ///< C++ and nothing else, a vertex at a time: for compilers without vector types
+  Plain,     ///< C++ and nothing else, one vertex at a time: for compilers without vector types
   Baseline,  ///< what every processor of the platform has (SSE2 on x86-64), through the compiler's vector types
   Avx2,      ///< with fused multiply-adds
   Avx512,    ///< F, DQ, BW and VL
@@ -19,12 +19,13 @@ enum class InstructionSet {
 
 const char* toString(InstructionSet set);
 
-/// Those that this processor and this build have, narrowest first.
+/// The instruction sets that this processor and this build support, narrowest first.
 std::vector<InstructionSet> availableInstructionSets();
 
 TETSKIN_CORE_API InstructionSet instructionSet();
 
-/// For tests and measurements: use this one from now on, everywhere. It must be available. Not while others skin.
+/// For tests and measurements: everything uses this one from now on. It must be available. Not to be called during an
+/// update.
 void setInstructionSet(InstructionSet set);
 
 }  // namespace tetskin

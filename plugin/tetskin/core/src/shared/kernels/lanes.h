@@ -23,7 +23,7 @@
 #define TETSKIN_VECTOR_TYPES 1
 #endif
 
-// GCC 12 would read a number of several uses from memory again for each of them; unaligned, that is dear.
+// GCC 12 would read a number that is used several times from memory again for each use; unaligned, that is slow.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
 #else
@@ -103,7 +103,7 @@ Lanes<S, W> laneNumbers() {
   return v;
 }
 
-/// The smaller, the larger of two numbers, lane by lane; b where a is not a number.
+/// The smaller, or the larger, of two numbers, lane by lane; b where a is NaN.
 template <class V>
 V smaller(const V& a, const V& b) {
   return a < b ? a : b;
@@ -113,13 +113,13 @@ V larger(const V& a, const V& b) {
   return a > b ? a : b;
 }
 
-/// A bit a lane: is it below 0?
+/// One bit per lane: set if it is below 0.
 template <int W>
 unsigned negativeLanes(const Lanes<float, W>& v) {
   if constexpr (W == 1) {
     return v < 0.0f ? 1u : 0u;
   } else {
-    const auto negative = v < 0.0f;  // all bits set where it holds
+    const auto negative = v < 0.0f;  // all bits set where it is true
 #if defined(__AVX2__)
     if constexpr (W == 8) return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(negative)));
 #endif

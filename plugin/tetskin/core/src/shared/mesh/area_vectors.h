@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 namespace tetskin {
 
 /// Adds to the sums of each triangle's corners its area vector: twice its area times its normal.
-/// sumOf  of a vertex: a Vector3d&, where it is added
+/// sumOf  of a vertex: the Vector3d& to which it is added
 template <class SumOf>
 void sumAreaVectors(const TriangleMesh& mesh, std::size_t firstTriangle, SumOf&& sumOf) {
   for (std::size_t t = firstTriangle; t < mesh.triangleCount(); ++t) {

@@ -3,6 +3,7 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/shared/base/hash.h>
 #include <tetskin/core/src/shared/mesh/face_neighbours.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
@@ -15,14 +16,15 @@
 namespace tetskin {
 namespace {
 
-/// Tets that a search leaves by their faces without coming any nearer to the point, before it gives up.
-constexpr std::size_t kMostFruitless = 400;
-/// Barycentric distance up to which a tet holds a point: one on a face is in both tets, or by rounding in none.
+/// Most tets that a search leaves by their faces without coming any nearer to the point before it stops.
+constexpr std::size_t kMaxFruitless = 400;
+/// Barycentric distance up to which a tet contains a point: a point on a face is in both tets, or, because of rounding,
+/// in none.
 constexpr double kHolds = 1e-12;
 
-Status wrongCount(const char* name, std::size_t count, std::size_t wanted, const char* of) {
+Status wrongCount(const char* name, std::size_t count, std::size_t wanted, const char* label) {
   return {StatusCode::SizeMismatch, "the cage has " + std::to_string(count) + " " + name + " for " +
-                                        std::to_string(wanted) + " " + of + "; it takes one for each, or none"};
+                                        std::to_string(wanted) + " " + label + "; pass as many values, or none"};
 }
 
 Status wrongValue(const char* name, std::size_t k, const char* range) {
@@ -31,10 +33,10 @@ Status wrongValue(const char* name, std::size_t k, const char* range) {
 }
 
 template <class Good>
-Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, const char* of,
+Status checkValues(const std::vector<double>& values, std::size_t count, const char* name, const char* label,
                    const char* range, Good&& good) {
   if (values.empty()) return {};
-  if (values.size() != count) return wrongCount(name, values.size(), count, of);
+  if (values.size() != count) return wrongCount(name, values.size(), count, label);
   for (std::size_t k = 0; k < count; ++k) {
     if (!(std::isfinite(values[k]) && good(values[k]))) return wrongValue(name, k, range);
   }
@@ -56,52 +58,60 @@ Status checkNumbers(const std::vector<int>& numbers, std::size_t count, const ch
 }  // namespace
 
 std::vector<double> Cage::stiffnessScale() const {
-  if (fill.empty()) return factor;
-  std::vector<double> scale = factor.empty() ? std::vector<double>(tetCount(), 1.0) : factor;
-  for (std::size_t t = 0; t < scale.size(); ++t) scale[t] *= std::max(fill[t], kLeastFill);
+  if (volumeFraction.empty()) return stiffnessFactor;
+  std::vector<double> scale = stiffnessFactor.empty() ? std::vector<double>(mesh.tetCount(), 1.0) : stiffnessFactor;
+  for (std::size_t t = 0; t < scale.size(); ++t) scale[t] *= std::max(volumeFraction[t], Limits::kMinVolumeFraction);
   return scale;
 }
 
 void Cage::scaleBy(double scale) {
-  for (Eigen::Vector3d& node : nodes) node *= scale;
+  for (Eigen::Vector3d& node : mesh.nodes) node *= scale;
   for (double& mass : masses) mass *= scale * scale * scale;
 }
 
-bool Cage::split() const {
-  std::vector<int> sorted = latticeTets;
+bool Cage::hasDuplicates() const {
+  std::vector<int> sorted = sourceTet;
   std::sort(sorted.begin(), sorted.end());
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-Status Cage::check() const {
-  Status status = checkValues(fill, tetCount(), "fill", "tets", "from 0 to 1",
+Status checkKnowledge(const Cage& cage) {
+  Status status = checkValues(cage.volumeFraction, cage.mesh.tetCount(), "volumeFraction", "tets", "from 0 to 1",
                               [](double value) { return value >= 0.0 && value <= 1.0; });
-  if (status.ok()) status = checkValues(factor, tetCount(), "factor", "tets", "above 0", positive);
-  if (status.ok()) status = checkValues(masses, nodeCount(), "masses", "nodes", "above 0", positive);
-  if (status.ok()) status = checkNumbers(parts, tetCount(), "parts");
-  if (status.ok()) status = checkNumbers(latticeTets, tetCount(), "latticeTets");
+  if (status.ok())
+    status = checkValues(cage.stiffnessFactor, cage.mesh.tetCount(), "stiffnessFactor", "tets", "above 0", positive);
+  if (status.ok()) status = checkValues(cage.masses, cage.mesh.nodeCount(), "masses", "nodes", "above 0", positive);
+  if (status.ok()) status = checkNumbers(cage.component, cage.mesh.tetCount(), "component");
+  if (status.ok()) status = checkNumbers(cage.sourceTet, cage.mesh.tetCount(), "sourceTet");
   if (!status.ok()) return status;
-  if (!fineFill.empty() && fineFill.size() != kFineTets * tetCount()) {
-    return wrongCount("fineFill", fineFill.size(), kFineTets * tetCount(), "small tets");
+  if (!cage.fineVolumeFraction.empty() && cage.fineVolumeFraction.size() != kFineTets * cage.mesh.tetCount()) {
+    return wrongCount("fineVolumeFraction", cage.fineVolumeFraction.size(), kFineTets * cage.mesh.tetCount(),
+                      "small tets");
   }
-  for (std::size_t v = 0; v < vertexTets.size(); ++v) {
-    if (vertexTets[v] >= 0 && static_cast<std::size_t>(vertexTets[v]) < tetCount()) continue;
-    return {StatusCode::IndexOutOfRange, "the cage's map names tet " + std::to_string(vertexTets[v]) + " for vertex " +
-                                             std::to_string(v) + ", of " + std::to_string(tetCount()) + " tets"};
+  for (std::size_t v = 0; v < cage.vertexTets.size(); ++v) {
+    if (cage.vertexTets[v] >= 0 && static_cast<std::size_t>(cage.vertexTets[v]) < cage.mesh.tetCount()) continue;
+    return {StatusCode::IndexOutOfRange, "the cage's map assigns tet " + std::to_string(cage.vertexTets[v]) +
+                                             " to vertex " + std::to_string(v) + ", but there are " +
+                                             std::to_string(cage.mesh.tetCount()) + " tets"};
   }
   return {};
 }
 
-Status Cage::checkMesh(const TriangleMesh& mesh) const {
-  if (!vertexTets.empty() && vertexTets.size() != mesh.vertexCount()) {
+Status validate(const Cage& cage) {
+  if (Status status = validate(cage.mesh); !status.ok()) return status;
+  return checkKnowledge(cage);
+}
+
+Status Cage::checkMesh(const TriangleMesh& surface) const {
+  if (!vertexTets.empty() && vertexTets.size() != surface.vertexCount()) {
     return {StatusCode::CageMismatch, "the cage was built for a mesh of " + std::to_string(vertexTets.size()) +
-                                          " vertices, and this one has " + std::to_string(mesh.vertexCount()) +
+                                          " vertices, but this one has " + std::to_string(surface.vertexCount()) +
                                           "; build a cage for it"};
   }
-  if (meshHash == 0 || meshHash == positionsHash(mesh.positions)) return {};
-  return {
-      StatusCode::CageMismatch,
-      "the cage was built for a mesh with vertices at other places, or in another order; build a cage for this one"};
+  if (!meshHash || meshHash == positionsHash(surface.positions)) return {};
+  return {StatusCode::CageMismatch,
+          "the cage was built for a mesh with other vertex positions, or another order of vertices; build a cage for "
+          "this one"};
 }
 
 int Cage::locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
@@ -116,8 +126,8 @@ std::uint64_t positionsHash(const std::vector<Eigen::Vector3d>& positions) {
   return hash.value();
 }
 
-struct CageLocator::Parts {
-  explicit Parts(const Cage& ofCage) : cage(ofCage), beyond(faceNeighbours(ofCage)) {}
+struct CageLocator::Impl {
+  explicit Impl(const Cage& ofCage) : cage(ofCage), beyond(faceNeighbours(ofCage.mesh)) {}
 
   const Cage& cage;
   Lists<> beyond;
@@ -127,7 +137,7 @@ struct CageLocator::Parts {
     double barycentric = std::numeric_limits<double>::infinity();
     bool holds() const { return barycentric <= kHolds; }
   };
-  /// A tet on the way to a point; the nearest is the first of a queue.
+  /// A tet on the path to a point; the queue is sorted so that the nearest one is first.
   struct Reached {
     double distance;
     int tet;
@@ -140,15 +150,16 @@ struct CageLocator::Parts {
     for (std::uint32_t k = beyond.starts[face]; k < beyond.starts[face + 4]; ++k) f(static_cast<int>(beyond.values[k]));
   }
 
-  /// From the tets of these vertices through faces, from the nearest first. By distance, not by barycentric distance:
-  /// that is large in small tets, wherever they are, so that the way to the point would go up and down.
+  /// Searches from the tets of these vertices through faces, the nearest tets first. It compares distances, not
+  /// barycentric distances: those are large in small tets, wherever they are, so that they would not decrease steadily
+  /// along the path.
   Found search(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
     Found best;
     std::unordered_set<int> seen;
     std::priority_queue<Reached> next;
     const auto reach = [&](int tet) {
       if (best.holds() || !seen.insert(tet).second) return;
-      const TetCorners corners = cornersOf(cage, cage.tets[tet]);
+      const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[tet]);
       const bool flat = isFlat(corners);
       const Eigen::Vector4d weights = flat ? Eigen::Vector4d::Constant(-1.0) : BarycentricMap(corners)(point);
       const double barycentric = flat ? Found().barycentric : barycentricDistance(weights);
@@ -160,7 +171,7 @@ struct CageLocator::Parts {
       reach(cage.vertexTets[static_cast<std::size_t>(vertex)]);
     }
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t fruitless = 0; fruitless < kMostFruitless && !next.empty() && !best.holds(); ++fruitless) {
+    for (std::size_t fruitless = 0; fruitless < kMaxFruitless && !next.empty() && !best.holds(); ++fruitless) {
       const Reached from = next.top();
       next.pop();
       if (from.distance < nearest) fruitless = 0;
@@ -172,8 +183,8 @@ struct CageLocator::Parts {
 
   Found nearestOfAll(const Eigen::Vector3d& point) const {
     Found best;
-    for (std::size_t t = 0; t < cage.tetCount() && !best.holds(); ++t) {
-      const TetCorners corners = cornersOf(cage, cage.tets[t]);
+    for (std::size_t t = 0; t < cage.mesh.tetCount() && !best.holds(); ++t) {
+      const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[t]);
       if (isFlat(corners)) continue;
       const double barycentric = barycentricDistance(BarycentricMap(corners)(point));
       if (barycentric < best.barycentric) best = {static_cast<int>(t), barycentric};
@@ -182,14 +193,14 @@ struct CageLocator::Parts {
   }
 };
 
-CageLocator::CageLocator(const Cage& cage) : parts_(std::make_unique<const Parts>(cage)) {}
+CageLocator::CageLocator(const Cage& cage) : impl_(std::make_unique<const Impl>(cage)) {}
 CageLocator::~CageLocator() = default;
 CageLocator::CageLocator(CageLocator&&) noexcept = default;
 CageLocator& CageLocator::operator=(CageLocator&&) noexcept = default;
 
 int CageLocator::locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
-  if (!parts_) return -1;
-  return (parts_->cage.vertexTets.empty() ? parts_->nearestOfAll(point) : parts_->search(point, nearVertices)).tet;
+  if (!impl_) return -1;
+  return (impl_->cage.vertexTets.empty() ? impl_->nearestOfAll(point) : impl_->search(point, nearVertices)).tet;
 }
 
 }  // namespace tetskin

@@ -2,22 +2,24 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
 namespace tetskin {
 
 /// By face of a tet, 4 t + the corner opposite to it: the other tets with its three nodes, ascending; more than one
-/// where copies of a tet meet. Cost O(T log T).
+/// where duplicates of a tet meet. Cost O(T log T).
 inline Lists<> faceNeighbours(const TetMesh& mesh) {
+  assert(mesh.tetCount() < 0xFFFFFFFFu / 4);
   struct Face {
     std::array<int, 3> nodes;
-    std::uint32_t place;
+    std::uint32_t index;
   };
   std::vector<Face> faces;
   faces.reserve(4 * mesh.tetCount());
@@ -30,13 +32,13 @@ inline Lists<> faceNeighbours(const TetMesh& mesh) {
     }
   }
   std::sort(faces.begin(), faces.end(),
-            [](const Face& a, const Face& b) { return a.nodes != b.nodes ? a.nodes < b.nodes : a.place < b.place; });
+            [](const Face& a, const Face& b) { return a.nodes != b.nodes ? a.nodes < b.nodes : a.index < b.index; });
   return packLists(faces.size(), [&](auto&& add) {
     for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
       while (last < faces.size() && faces[last].nodes == faces[first].nodes) ++last;
       for (std::size_t a = first; a < last; ++a) {
         for (std::size_t b = first; b < last; ++b) {
-          if (a != b) add(static_cast<std::size_t>(faces[a].place), faces[b].place / 4);
+          if (a != b) add(static_cast<std::size_t>(faces[a].index), faces[b].index / 4);
         }
       }
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/area_vectors.h>
 #include <tetskin/core/src/shared/mesh/weld.h>
-#include <tetskin/core/triangle_mesh.h>
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -13,16 +14,16 @@ namespace {
 /// How far an authored normal's length may be from 1.
 constexpr float kUnitTolerance = 0.1f;
 
-/// A sum of face vectors as a unit vector; false where nothing is left of it.
+/// Normalises a sum of face vectors; returns false if it is 0.
 bool normalise(Eigen::Vector3d& sum) {
   double squared = sum.squaredNorm();
   if (!(squared > std::numeric_limits<double>::min() && std::isfinite(squared))) {
-    // Tiny or huge triangles: scale first, where there is anything to scale.
+    // Sums of tiny or huge triangles are scaled first, unless they are 0 or not finite.
     const double size = sum.cwiseAbs().maxCoeff();
     if (!(size > 0.0 && std::isfinite(size))) return false;
     sum /= size;
     squared = sum.squaredNorm();
-    if (!std::isfinite(squared)) return false;  // the largest coordinate may not tell of another that is NaN
+    if (!std::isfinite(squared)) return false;  // the largest coordinate may hide another one that is NaN
   }
   sum /= std::sqrt(squared);
   return true;
@@ -33,6 +34,7 @@ bool normalise(Eigen::Vector3d& sum) {
 std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3d> normals(mesh.vertexCount(), Eigen::Vector3d::Zero());
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
+  assert(first.size() == mesh.vertexCount());
   sumAreaVectors(mesh, 0, [&](std::size_t v) -> Eigen::Vector3d& { return normals[first[v]]; });
   for (std::size_t v = 0; v < normals.size(); ++v) {
     if (first[v] < v) {

@@ -7,12 +7,13 @@
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022 (barycentric distance)
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/triangle_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 #include <tetskin/core/types.h>
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -51,7 +52,7 @@ inline double edgeSum(const TetCorners& p) {
   return sum;
 }
 
-/// True where the tet has no volume worth the name, see kFlatTet.
+/// True if the tet counts as flat, see kFlatTet.
 inline bool isFlat(const TetCorners& p) {
   const double size = tetSize(p);
   return !(std::abs(6.0 * signedVolume(p)) > kFlatTet * size * size * size);
@@ -88,7 +89,7 @@ struct BarycentricMap {
     return b;
   }
 
-  /// Of all four weights.
+  /// The gradients of all four weights.
   std::array<Eigen::Vector3d, 4> gradients() const {
     return {rows[0], rows[1], rows[2], -(rows[0] + rows[1] + rows[2])};
   }
@@ -116,7 +117,7 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
   double squared = std::numeric_limits<double>::infinity();
   const auto take = [&](const Eigen::Vector3d& q) {
     const double d = (v - q).squaredNorm();
-    if (!(d < squared)) return;  // nor what is not a number
+    if (!(d < squared)) return;  // also skips NaN
     squared = d;
     closest = q;
   };
@@ -127,7 +128,7 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
     take(closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]).point);
   }
   if (inside || squared < std::numeric_limits<double>::infinity()) return closest;
-  // Seen from 1e20 sizes away, rounding may leave nothing of a face; a corner is as near.
+  // Seen from 1e20 sizes away, rounding may eliminate every point of a face; a corner is as near.
   for (const Eigen::Vector3d& corner : p) take(corner);
   return closest;
 }
@@ -137,8 +138,8 @@ inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const
   return (v - closestPointInTet(v, p, weights)).norm();
 }
 
-/// Mean length of the edges of the tets that are not flat, one that several share counted for each: how far from its
-/// nearest tet a vertex may be taken. There must be such a tet. Cost O(T).
+/// Mean length of the edges of the tets that are not flat; an edge that several tets share counts once for each. It is
+/// the unit for how far from its nearest tet a vertex may be moved. There must be such a tet. Cost O(T).
 inline double meanEdge(const TetMesh& mesh) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -148,6 +149,7 @@ inline double meanEdge(const TetMesh& mesh) {
     sum += edgeSum(p);
     count += 6;
   }
+  assert(count > 0);
   return sum / static_cast<double>(count);
 }
 

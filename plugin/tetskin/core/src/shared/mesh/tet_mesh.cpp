@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/mesh.h>
+#include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <algorithm>
 #include <numeric>
@@ -92,7 +93,7 @@ std::string TetMeshReport::describe() const {
   };
   line(indexOutOfRange, "tets with an index out of range", "tet");
   line(nonFiniteNodes, "nodes with coordinates that are not finite", "node");
-  line(repeatedNode, "tets that name a node twice", "tet");
+  line(repeatedNode, "tets with a repeated node", "tet");
   line(zeroVolume, "tets without volume", "tet");
   line(negativeVolume, "tets with reversed orientation", "tet");
   line(duplicateTets, "duplicate tets", "tet");
@@ -100,7 +101,7 @@ std::string TetMeshReport::describe() const {
   return text;
 }
 
-TetMeshReport checkForUse(const TetMesh& mesh) {
+TetMeshReport inspectForUse(const TetMesh& mesh) {
   TetMeshReport report;
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
     if (!mesh.nodes[n].allFinite()) add(report.nonFiniteNodes, n);
@@ -110,27 +111,27 @@ TetMeshReport checkForUse(const TetMesh& mesh) {
 }
 
 TetMeshReport checkTetMesh(const TetMesh& mesh) {
-  TetMeshReport report = checkForUse(mesh);
+  TetMeshReport report = inspectForUse(mesh);
   countDuplicates(mesh, report);
   countUnreferencedNodes(mesh, report);
   return report;
 }
 
 Status checkTetCounts(std::size_t nodes, std::size_t tets) {
-  if (nodes <= kMostTets && tets <= kMostTets) return {};
-  const bool excess = nodes > kMostTets;
+  if (nodes <= Limits::kMaxTets && tets <= Limits::kMaxTets) return {};
+  const bool excess = nodes > Limits::kMaxTets;
   return {StatusCode::TooLarge, "the cage has " + std::to_string(excess ? nodes : tets) +
-                                    (excess ? " nodes" : " tets") + ", more than the " + std::to_string(kMostTets) +
-                                    " that can be numbered; make a coarser one"};
+                                    (excess ? " nodes" : " tets") + ", more than the " +
+                                    std::to_string(Limits::kMaxTets) + " that are supported; make a coarser one"};
 }
 
-Status usable(const TetMesh& mesh, const TetMeshReport& report) {
+Status validate(const TetMesh& mesh, const TetMeshReport& report) {
   const auto first = [](const TetMeshReport::Fault& fault) { return std::to_string(fault.first); };
   if (mesh.tets.empty()) return {StatusCode::Empty, "the cage has no tets"};
   if (Status status = checkTetCounts(mesh.nodeCount(), mesh.tetCount()); !status.ok()) return status;
   if (report.indexOutOfRange.count > 0) {
     return {StatusCode::IndexOutOfRange, "tet " + first(report.indexOutOfRange) +
-                                             " of the cage names a node that does not exist; there are " +
+                                             " of the cage refers to a node that does not exist; there are " +
                                              std::to_string(mesh.nodeCount()) + " nodes; correct the tet"};
   }
   if (report.nonFiniteNodes.count > 0) {
@@ -142,6 +143,10 @@ Status usable(const TetMesh& mesh, const TetMeshReport& report) {
                                         " tets of the cage are flat; is it a surface? Fill its inside with tets"};
   }
   return {};
+}
+
+Status validate(const TetMesh& mesh) {
+  return validate(mesh, inspectForUse(mesh));
 }
 
 TetMeshReport repairTetMesh(TetMesh& mesh) {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/tet_mesh.h>
 
 namespace tetskin {
 
-/// By node, its tets, ascending; of all tets, or of those that `counts`. Cost O(N + T).
+/// By node: its tets, ascending; all of them, or those for which `counts` is true. Cost O(N + T).
 template <class Counts>
 Lists<> tetsAroundNodes(const TetMesh& mesh, Counts&& counts) {
   return packLists(mesh.nodeCount(), [&](auto&& add) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/shared/mesh/triangle_bvh.h>
 
+#include <cassert>
 #include <numeric>
 
 namespace tetskin {
@@ -58,6 +59,7 @@ void TriangleBvh::search(const Eigen::Vector3d& p, NearestPoint& best) const {
 }
 
 void TriangleBvh::test(int index, const Eigen::Vector3d& p, NearestPoint& best) const {
+  assert(index >= 0 && static_cast<std::size_t>(index) < triangles_.size());
   const Eigen::Vector3d point = closestPointOnTriangle(p, triangles_[static_cast<std::size_t>(index)]).point;
   const double squared = (p - point).squaredNorm();
   if (squared < best.squaredDistance) best = {point, bvh_.item(index), squared, index};

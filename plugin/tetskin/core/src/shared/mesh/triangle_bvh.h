@@ -18,19 +18,19 @@ struct NearestPoint {
   int index = -1;  ///< of the triangle in the hierarchy
 };
 
-/// How far a point is from triangles at rest.
+/// Computes distances of points from triangles at rest.
 class TETSKIN_CORE_API TriangleBvh {
  public:
   /// mesh  indices in range, coordinates finite. May go away afterwards. Cost O(n log n) for n triangles
   explicit TriangleBvh(const TriangleMesh& mesh);
-  /// The same, of some of the triangles.
+  /// Uses only some of the triangles.
   TriangleBvh(const TriangleMesh& mesh, const std::vector<int>& triangles);
 
-  /// Of triangles at the same distance one, always the same.
-  /// squaredBound  nothing at this distance or beyond is wanted: the smaller, the faster
+  /// The nearest point. Of several triangles at the same distance, it returns one, always the same.
+  /// squaredBound  only points nearer than this are searched for: the smaller it is, the faster
   NearestPoint nearest(const Eigen::Vector3d& p, double squaredBound = std::numeric_limits<double>::infinity()) const;
-  /// The same, but perhaps another of triangles at the same distance.
-  /// guess  what was found, if anything, for a point nearby: the nearer that is, the faster
+  /// The nearest point, with a guess; of several triangles at the same distance, the result may depend on the guess.
+  /// guess  the result, if any, for a point nearby: the nearer that is, the faster
   NearestPoint nearest(const Eigen::Vector3d& p, const NearestPoint& guess) const;
 
  private:

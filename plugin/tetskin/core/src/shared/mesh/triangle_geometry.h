@@ -7,7 +7,7 @@
 //   Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5 (closest point on a triangle)
 #pragma once
 
-#include <tetskin/core/triangle_mesh.h>
+#include <tetskin/core/mesh.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ inline TriangleCorners cornersOf(const TriangleMesh& mesh, const std::array<int,
   return {corner(0), corner(1), corner(2)};
 }
 
-/// Squared sine of an angle under which rounding leaves nothing of a triangle but its sides.
+/// Squared sine of an angle of a triangle below which only its sides are left, because of rounding.
 constexpr double kThinTriangle = 1e-14;
 
 struct ClosestPoint {
@@ -32,7 +32,7 @@ struct ClosestPoint {
   Eigen::Vector3d weights;  ///< of the corners: none below 0, their sum 1 but for rounding
 };
 
-/// Of the side from one corner to another.
+/// The closest point of the side from one corner to another.
 inline ClosestPoint closestPointOnSide(const Eigen::Vector3d& p, const TriangleCorners& t, int a, int b) {
   const Eigen::Vector3d side = t[b] - t[a];
   const double length = side.squaredNorm();
@@ -43,7 +43,7 @@ inline ClosestPoint closestPointOnSide(const Eigen::Vector3d& p, const TriangleC
   return closest;
 }
 
-/// Of the three sides: what is left of a triangle without area.
+/// The closest point of the three sides: used for a triangle without area.
 inline ClosestPoint closestPointOnSides(const Eigen::Vector3d& p, const TriangleCorners& t) {
   ClosestPoint best = closestPointOnSide(p, t, 0, 1);
   for (int a = 1; a < 3; ++a) {

@@ -3,6 +3,7 @@
 #include <tetskin/core/src/shared/mesh/uniform_refinement.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 
 namespace tetskin {
@@ -24,11 +25,11 @@ constexpr Diagonal kDiagonals[3] = {
 /// length  squared, between two midpoints
 template <class Node, class Length>
 std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
-                                             const std::array<std::array<Node, 4>, 4>& middle, Length&& length) {
-  const auto at = [&](const int(&ends)[2]) { return middle[ends[0]][ends[1]]; };
+                                             const std::array<std::array<Node, 4>, 4>& centroid, Length&& length) {
+  const auto at = [&](const int(&ends)[2]) { return centroid[ends[0]][ends[1]]; };
   std::array<std::array<Node, 4>, 8> eight;
   for (int k = 0; k < 4; ++k) {
-    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : middle[k][j];
+    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : centroid[k][j];
   }
   const auto lengthOf = [&](const Diagonal& d) { return length(at(d.ends[0]), at(d.ends[1])); };
   const Diagonal& shortest = *std::min_element(std::begin(kDiagonals), std::end(kDiagonals),
@@ -45,32 +46,34 @@ Refinement refineUniformly(const TetMesh& coarse) {
   Refinement result;
   result.edges = uniqueEdges(coarse);
   result.mesh.nodes = coarse.nodes;
-  std::map<std::array<int, 2>, int> middleOf;
+  std::map<std::array<int, 2>, int> centroidOf;
   for (const auto& [a, b] : result.edges) {
-    middleOf[{std::min(a, b), std::max(a, b)}] = static_cast<int>(result.mesh.nodeCount());
+    centroidOf[{std::min(a, b), std::max(a, b)}] = static_cast<int>(result.mesh.nodeCount());
     result.mesh.nodes.emplace_back(0.5 * (coarse.nodes[a] + coarse.nodes[b]));
   }
   result.mesh.tets.reserve(8 * coarse.tetCount());
   for (const Tet& tet : coarse.tets) {
-    std::array<std::array<int, 4>, 4> middle{};
+    std::array<std::array<int, 4>, 4> centroid{};
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
-        middle[a][b] = middle[b][a] = middleOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
+        centroid[a][b] = centroid[b][a] = centroidOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
       }
     }
     const auto eight = eightTets(
-        tet, middle, [&](int a, int b) { return (result.mesh.nodes[a] - result.mesh.nodes[b]).squaredNorm(); });
+        tet, centroid, [&](int a, int b) { return (result.mesh.nodes[a] - result.mesh.nodes[b]).squaredNorm(); });
     result.mesh.tets.insert(result.mesh.tets.end(), eight.begin(), eight.end());
   }
+  assert(result.mesh.tetCount() == 8 * coarse.tetCount());
   return result;
 }
 
 std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
-  std::array<std::array<Eigen::Vector3d, 4>, 4> middle;
+  std::array<std::array<Eigen::Vector3d, 4>, 4> centroid;
   for (int a = 0; a < 4; ++a) {
-    for (int b = a + 1; b < 4; ++b) middle[a][b] = middle[b][a] = 0.5 * (p[a] + p[b]);
+    for (int b = a + 1; b < 4; ++b) centroid[a][b] = centroid[b][a] = 0.5 * (p[a] + p[b]);
   }
-  return eightTets(p, middle, [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).squaredNorm(); });
+  return eightTets(p, centroid,
+                   [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).squaredNorm(); });
 }
 
 }  // namespace tetskin

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/tet_mesh.h>
 
 #include <array>
 #include <vector>
@@ -12,7 +12,8 @@ namespace tetskin {
 
 /// A tet mesh with every tet cut into eight.
 struct Refinement {
-  /// The nodes of the coarse mesh first, then one in the middle of every edge; eight tets for each, in its place.
+  /// The nodes of the coarse mesh first, then one at the middle of every edge; the eight tets of each coarse tet, in
+  /// the order of the coarse tets.
   TetMesh mesh;
   /// midpoints x 2: the ends of the edge that node `coarse nodeCount + i` halves
   std::vector<std::array<int, 2>> edges;
@@ -27,7 +28,7 @@ struct Refinement {
 /// coarse  indices in range
 TETSKIN_CORE_API Refinement refineUniformly(const TetMesh& coarse);
 
-/// The same eight tets of one alone, in the same order.
+/// The eight small tets of a single tet, in the same order.
 TETSKIN_CORE_API std::array<TetCorners, 8> refinedTet(const TetCorners& corners);
 
 }  // namespace tetskin

@@ -8,13 +8,14 @@
 #include <tetskin/core/src/shared/base/lists.h>
 #include <tetskin/core/src/shared/mesh/weld.h>
 
+#include <cassert>
 #include <cstring>
 #include <numeric>
 
 namespace tetskin {
 namespace {
 
-/// Most points a bucket, on average: its keys and its table fill about half of a small second-level cache. Smaller
+/// Most points per bucket, on average: its keys and its table fill about half of a small second-level cache. Smaller
 /// buckets would be more than a processor writes to at once without missing its address cache.
 constexpr std::size_t kBucketSize = 8192;
 
@@ -47,6 +48,7 @@ Lists<Key> dealtKeys(const std::vector<std::uint32_t>& hashes) {
 /// Names the first point at the position of every other among the keys of one bucket. `table` is scratch memory.
 void weldBucket(PointReader points, const Key* keys, std::uint32_t count, std::vector<std::uint32_t>& table,
                 std::vector<std::uint32_t>& first) {
+  assert(first.size() == points.size());
   constexpr std::uint32_t kFree = 0xFFFFFFFFu;
   std::size_t size = 16;
   while (size < 2 * std::size_t{count}) size *= 2;  // at most half full: probes stay short
@@ -74,7 +76,8 @@ std::vector<std::uint32_t> weldCoincident(PointReader points) {
   for (std::size_t i = 0; i < points.size(); ++i) first[i] = hashOf(points[i]);
   std::vector<std::uint32_t> table;
   const Lists<Key> buckets = dealtKeys(first);
-  // Now every point is its own first, and only the few that are not are written to, far apart as those of a bucket are.
+  // Now every point is its own first. Only the few exceptions are written, at random positions, as points of a bucket
+  // are far apart.
   std::iota(first.begin(), first.end(), std::uint32_t{0});
   for (std::size_t b = 0; b + 1 < buckets.starts.size(); ++b) {
     const std::uint32_t begin = buckets.starts[b], end = buckets.starts[b + 1];

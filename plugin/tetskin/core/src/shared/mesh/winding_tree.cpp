@@ -80,6 +80,7 @@ WindingTree::Dipole WindingTree::ofLeaf(const Bvh::Node& leaf) const {
     dipole.area += area;
     dipole.centroid += area * (c[0] + c[1] + c[2]) / 3.0;
   }
+  assert(dipole.area > 0.0);
   dipole.centroid /= dipole.area;
   for (int t = leaf.first; t < leaf.last; ++t) {
     for (const Eigen::Vector3d& p : triangles_[t]) {
@@ -100,6 +101,7 @@ WindingTree::Dipole WindingTree::ofChildren(const Dipole& a, const Dipole& b) {
 }
 
 double WindingTree::walk(int index, const Eigen::Vector3d& p) const {
+  assert(index >= 0 && static_cast<std::size_t>(index) < dipoles_.size());
   const Dipole& dipole = dipoles_[static_cast<std::size_t>(index)];
   const Eigen::Vector3d offset = dipole.centroid - p;
   const double squared = offset.squaredNorm();

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/src/shared/bvh/bvh.h>
-#include <tetskin/core/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace tetskin {
 
-/// Half the view: the winding number from which a point is inside, of either sign if surfaces may be inside out.
+/// Winding number from which on a point is inside, of either sign if surfaces may be inside out.
 constexpr double kInside = 0.5;
 
 /// Generalised winding number of triangles: 1 inside a closed surface, 0 outside, and in between,
@@ -20,21 +20,21 @@ class TETSKIN_CORE_API WindingTree {
  public:
   using Triangles = std::vector<std::array<int, 3>>;
 
-  /// Of the first `count` triangles, all of which have an area. They may go away afterwards. Cost O(n log n)
+  /// Uses the first `count` triangles, all of which have an area. They may be destroyed afterwards. Cost O(n log n)
   WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count);
-  /// Of those of a mesh that have an area.
+  /// Uses those triangles of a mesh that have an area.
   explicit WindingTree(const TriangleMesh& mesh);
 
   /// Cost about O(log n). 0 if there are no triangles.
   double windingNumber(const Eigen::Vector3d& p) const;
 
  private:
-  /// Of a node's triangles, as seen from afar.
+  /// Far-field approximation of a node's triangles.
   struct Dipole {
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< area-weighted
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();    ///< sum of the area vectors
     double area = 0.0;
-    double radius = 0.0;  ///< of a ball about the centroid that holds all corners
+    double radius = 0.0;  ///< radius of a ball about the centroid that contains all corners
   };
   using Corners = std::array<Eigen::Vector3d, 3>;
 

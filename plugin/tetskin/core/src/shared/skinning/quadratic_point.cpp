@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 template <class Scalar>
 using Weights = std::array<Scalar, 4>;
 
-/// Index of a tet's run, or the number of runs: tets without vertices have none.
+/// Index of a tet's run, or the number of runs if it has none: tets without vertices have no run.
 std::size_t runOf(const EmbeddingData& data, int tet) {
   const auto isBefore = [](const EmbeddingData::Run& run, std::uint32_t t) { return run.tet < t; };
   const auto inside = data.runs.begin() + static_cast<std::ptrdiff_t>(data.insideRunCount), end = data.runs.end() - 1;
@@ -48,6 +48,7 @@ Eigen::Matrix3d gradientAt(const QuadraticStencils<Scalar>& stencils, std::size_
 template <class Scalar>
 TetEdges edgesOf(const QuadraticStencils<Scalar>& stencils, std::size_t run, const Vector3d& origin,
                  const NodePositions<Scalar>& positionOf) {
+  assert(6 * run + 6 <= stencils.runEdges().size());
   TetEdges edges;
   for (std::size_t k = 0; k < 6; ++k) {
     const std::size_t e = stencils.runEdges()[6 * run + k];
@@ -63,7 +64,7 @@ TetEdges edgesOf(const QuadraticStencils<Scalar>& stencils, std::size_t run, con
   return edges;
 }
 
-/// What bends add to the linear position at the weights b, and its derivative along d.
+/// The correction that the edges' vectors add to the linear position at the weights b, and its derivative along d.
 template <class Scalar>
 Vector3d bendAt(const TetEdges& edges, const Weights<Scalar>& b) {
   Vector3d sum = Vector3d::Zero();
@@ -85,12 +86,12 @@ Vector3d bendAlong(const TetEdges& edges, const Weights<Scalar>& b, const Weight
   return sum;
 }
 
-/// Outside, to first order from the closest point, and no farther than an edge.
+/// Outside, it is continued to first order from the closest point, and is no longer than an edge.
 template <class Scalar>
 Vector3d bendOf(const EmbeddedPoint<Scalar>& point, const TetEdges& edges) {
   if (point.inside) return bendAt(edges, point.weights);
-  Weights<Scalar> closest = point.clamped, beyond{};
-  closest[3] = 1 - closest[0] - closest[1] - closest[2];  // below 0 by rounding, as in skinning
+  Weights<Scalar> closest = point.clampedWeights, beyond{};
+  closest[3] = 1 - closest[0] - closest[1] - closest[2];  // below 0 because of rounding, as in skinning
   for (std::size_t k = 0; k < 4; ++k) beyond[k] = point.weights[k] - closest[k];
   Vector3d bend = bendAt(edges, closest);
   bend += bendAlong(edges, closest, beyond);
@@ -104,9 +105,9 @@ template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> quadraticPosition(const EmbeddedPoint<Scalar>& point, const Embedding& embedding,
                                               const QuadraticStencils<Scalar>& stencils,
                                               const NodePositions<Scalar>& positionOf) {
-  assert(point.tet >= 0 && stencils.runEdges().size() + 6 == 6 * embedding.data().runs.size());
-  const std::size_t run = runOf(embedding.data(), point.tet);
-  if (run == embedding.data().runs.size()) return point.position(positionOf);
+  assert(point.tet >= 0 && stencils.runEdges().size() + 6 == 6 * dataOf(embedding).runs.size());
+  const std::size_t run = runOf(dataOf(embedding), point.tet);
+  if (run == dataOf(embedding).runs.size()) return point.position(positionOf);
   const Vector3d origin = positionOf(point.nodes[3]).template cast<double>();
   return point.position(positionOf) + bendOf(point, edgesOf(stencils, run, origin, positionOf)).template cast<Scalar>();
 }

@@ -4,7 +4,7 @@
 // Quadratic skinning of single points, without the rest of the surface.
 #pragma once
 
-#include <tetskin/core/embedded_point.h>
+#include <tetskin/core/embedding.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <functional>
@@ -15,10 +15,10 @@ namespace tetskin {
 template <class Scalar>
 using NodePositions = std::function<Eigen::Matrix<Scalar, 3, 1>(int node)>;
 
-/// Where `skinQuadratic` puts a point, but for rounding: bends are summed up in double here.
-/// embedding  that of the stencils. The point may be another's of the same cage: in a tet without vertices of this
-///            embedding nothing is known of bends, and it is where linear skinning has it
-/// Cost       some 100 nodes are asked for, no allocation
+/// The position that `skinQuadratic` gives a point, up to rounding: edge vectors are summed in double here.
+/// embedding  that of the stencils. The point may belong to another embedding of the same cage: in a tet without
+///            vertices of this embedding, there are no edge vectors, and the position is that of linear skinning
+/// Cost       reads some 100 nodes, no allocation
 template <class Scalar>
 TETSKIN_CORE_API Eigen::Matrix<Scalar, 3, 1> quadraticPosition(const EmbeddedPoint<Scalar>& point,
                                                                const Embedding& embedding,

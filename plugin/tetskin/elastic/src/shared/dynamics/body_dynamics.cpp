@@ -14,26 +14,29 @@ namespace {
 
 using kernels::kGroup;
 
-/// A matrix whose tets have turned by no more, in radians, in the mean and at most, still serves: forces are those of
-/// the tets as they are.
-constexpr double kMeanTurn = 0.015, kMostTurn = 0.3;
-/// Of steps of so many seconds and more; in proportion of shorter ones, so that they converge.
+/// Mean and largest rotation of tets since the assembly, in radians, up to which a matrix is still used: only the
+/// matrix is outdated, while forces are those of the current rotations.
+constexpr double kMeanTurn = 0.015, kMaxTurn = 0.3;
+/// These angles apply to steps of this many seconds and more; for shorter ones they are reduced in proportion, so that
+/// the simulation converges.
 constexpr double kFullTurnStep = 1.0 / 240.0;
-/// A matrix of rotations that are older by an angle of phi takes rigid turning for strain; the stress of it turns the
-/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the turning. So
-/// much is let be: from 1 to 0.01 held.
-constexpr double kMostGain = 0.1;
-/// dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last.
+/// A matrix with rotations that are outdated by an angle of phi takes rigid rotation for strain; its stress rotates the
+/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the rotation. This
+/// much is allowed: values from 1 to 0.01 are stable.
+constexpr double kMaxGain = 0.1;
+/// Value of dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last
+/// for a step.
 constexpr double kStiff = 1e3;
-/// dt^2 times that, above which a turn that arises within a step, of a tenth of a radian, stores energy to speak of.
+/// Value of dt^2 times that sum over the inertia, above which a rotation by a tenth of a radian that arises within a
+/// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
 
 }  // namespace
 
 template <class S>
 BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
-    : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), held_(nodes) {
-  findParts(rest.tets);
+    : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), pinned_(nodes) {
+  findComponents(rest.tets);
   if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
   for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
     v->assign(4 * matrix_.slotCount(), S(0));
@@ -41,23 +44,23 @@ BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
   for (AlignedVector<S>* v : {&rightSide_, &image_, &began_}) v->assign(matrix_.wideSize(), S(0));
 }
 
-/// Slots without node, which have no mass, belong to the first.
+/// Slots without a node, which have no mass, count as part of the first component.
 template <class S>
-void BodyDynamics<S>::findParts(const std::vector<Tet>& tets) {
+void BodyDynamics<S>::findComponents(const std::vector<Tet>& tets) {
   DisjointSets sets(nodeCount());
   for (const Tet& tet : tets) {
     for (std::size_t k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
   partOf_.assign(matrix_.slotCount(), 0);
-  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // from 1
-  std::uint32_t parts = 0;
+  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // numbers begin at 1
+  std::uint32_t components = 0;
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (number == 0) number = ++parts;
+    if (number == 0) number = ++components;
     partOf_[matrix_.slotOf(n)] = number - 1;
   }
-  motions_.resize(parts);
-  stiffness_.assign(parts, 0.0);
+  motions_.resize(components);
+  stiffness_.assign(components, 0.0);
 }
 
 template <class S>
@@ -67,20 +70,22 @@ void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (std::size_t t = 0; t < lame.size(); ++t) {
     tets_->setMaterial(t, lame[t]);
-    const std::uint32_t part = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
-    stiffness_[part] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
+    const std::uint32_t component = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
+    stiffness_[component] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
   }
   changed_ = true;
 }
 
 template <class S>
 void BodyDynamics<S>::setMass(std::size_t node, S mass) {
+  assert(!(mass < S(0)));
   const S before = matrix_.mass(node);
   if (before == mass) return;
   matrix_.setMass(node, mass);
   changed_ = true;
-  held_ += mass == S(0);
-  held_ -= before == S(0);
+  pinned_ += mass == S(0);
+  assert(pinned_ > 0 || before != S(0));
+  pinned_ -= before == S(0);
 }
 
 template <class S>
@@ -101,12 +106,12 @@ void BodyDynamics<S>::prepare(double seconds, ParallelFor* threads) {
 }
 
 template <class S>
-void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnShare, ParallelFor* threads) {
+void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads) {
   const double alpha = alphaFor(seconds);
-  const double share = turnShare * std::min(1.0, seconds / kFullTurnStep);
-  // A stiff part turns as one, and may be a single tet among many of other parts.
-  const double most = turnShare < 1.0 ? kMeanTurn : kMostTurn;
-  const bool turned = tets_ && (tets_->meanTurn() > share * kMeanTurn || tets_->mostTurn() > share * most);
+  const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep);
+  // A stiff component rotates as a whole, and may be a single tet among many of other components.
+  const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
+  const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
   if (!changed_ && alpha == alpha_ && !turned) return;
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads) : nullptr, threads);
   alpha_ = alpha;
@@ -123,20 +128,22 @@ void bySlots(std::size_t slots, Visit&& visit) {
 
 template <class S>
 void BodyDynamics<S>::findMotions(double seconds) {
-  std::vector<HeldNodes> held(motions_.size());
-  for (std::size_t n = 0; held_ > 0 && n < nodeCount(); ++n) {
+  assert(!motions_.empty());
+  std::vector<PinnedNodes> pinned(motions_.size());
+  for (std::size_t n = 0; pinned_ > 0 && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
     if (matrix_.massAt(slot) != S(0)) continue;
     const S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
-    held[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
+    pinned[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
   }
-  // About where parts were before: one pass, and no digits lost far from the origin.
-  std::vector<PartMoments> moments(motions_.size());
-  const auto add = [&](std::size_t slot, PartMoments& sums, const Eigen::Vector3d& about) {
+  // Moments about the components' previous positions: this needs one pass only, and keeps the digits far from the
+  // origin.
+  std::vector<ComponentMoments> moments(motions_.size());
+  const auto add = [&](std::size_t slot, ComponentMoments& sums, const Eigen::Vector3d& about) {
     sums.add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], about.data());
   };
   if (motions_.size() == 1) {  // nearly always: its sums stay in registers
-    PartMoments sums;
+    ComponentMoments sums;
     const Eigen::Vector3d about = motions_.front().about();
     for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) add(slot, sums, about);
     moments.front() = sums;
@@ -146,52 +153,56 @@ void BodyDynamics<S>::findMotions(double seconds) {
     }
   }
   for (std::size_t k = 0; k < motions_.size(); ++k) {
-    held[k].finish(seconds);
+    pinned[k].finish(seconds);
     const Eigen::Vector3d near = motions_[k].about();
-    motions_[k].find(moments[k], near, held[k], seconds);
+    motions_[k].find(moments[k], near, pinned[k], seconds);
   }
 }
 
-/// Velocities become those of the rigid motion; `relative_` what they are beside it. Forces do not depend on where
-/// parts are: without their translation, points have no other rounding in each step, which would be taken for strain.
-/// All of it is beside an anchor near the part, where this precision does.
+/// The velocities become those of the rigid motion, and `relative_` the difference to them. Forces do not depend on the
+/// position of a component: without its translation, points have the same rounding in each step, and differences in
+/// rounding are not taken for strain. Everything is relative to an anchor near the component, for which this precision
+/// suffices.
 template <class S>
 void BodyDynamics<S>::moveRigidly(double seconds) {
+  assert(seconds > 0.0 && partOf_.size() == matrix_.slotCount());
   struct Rigid {
     S anchor[3], fromAnchor[3], velocity[3], field[9];
   };
-  std::vector<Rigid> parts;
-  for (const PartMotion& motion : motions_) {
+  std::vector<Rigid> components;
+  for (const ComponentMotion& motion : motions_) {
     const RigidVelocity exact = motion.velocities(seconds);
     const Eigen::Vector3d anchor = motion.anchor();
-    Rigid& part = parts.emplace_back();
+    Rigid& component = components.emplace_back();
     for (int k = 0; k < 3; ++k) {
-      part.anchor[k] = static_cast<S>(anchor[k]);
-      part.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
-      part.velocity[k] = static_cast<S>(exact.velocity[k]);
+      component.anchor[k] = static_cast<S>(anchor[k]);
+      component.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
+      component.velocity[k] = static_cast<S>(exact.velocity[k]);
     }
-    for (int k = 0; k < 9; ++k) part.field[k] = static_cast<S>(exact.field[k]);
+    for (int k = 0; k < 9; ++k) component.field[k] = static_cast<S>(exact.field[k]);
   }
   const auto dt = static_cast<S>(seconds);
   for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
-    const Rigid& part = parts[partOf_[slot]];
+    const Rigid& component = components[partOf_[slot]];
     S *x = &points_[4 * slot], *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
-    const S place[3] = {x[0] - part.anchor[0], x[1] - part.anchor[1], x[2] - part.anchor[2]};
-    const S arm[3] = {place[0] - part.fromAnchor[0], place[1] - part.fromAnchor[1], place[2] - part.fromAnchor[2]};
+    const S position[3] = {x[0] - component.anchor[0], x[1] - component.anchor[1], x[2] - component.anchor[2]};
+    const S arm[3] = {position[0] - component.fromAnchor[0], position[1] - component.fromAnchor[1],
+                      position[2] - component.fromAnchor[2]};
     for (std::size_t k = 0; k < 3; ++k) {
-      const S turning = part.field[3 * k] * arm[0] + part.field[3 * k + 1] * arm[1] + part.field[3 * k + 2] * arm[2];
-      moved[k] = place[k] + dt * turning;
-      const S rigid = part.velocity[k] + turning;
+      const S turning =
+          component.field[3 * k] * arm[0] + component.field[3 * k + 1] * arm[1] + component.field[3 * k + 2] * arm[2];
+      moved[k] = position[k] + dt * turning;
+      const S rigid = component.velocity[k] + turning;
       beside[k] = v[k] - rigid;
       v[k] = rigid;
     }
   }
 }
 
-/// The angle by which tets may turn before the matrix is made anew, over that of a soft body.
+/// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
 template <class S>
 double BodyDynamics<S>::allowedTurn() const {
-  return std::min(1.0, std::sqrt(kMostGain / stiffnessNumber_) / kMeanTurn);
+  return std::min(1.0, std::sqrt(kMaxGain / stiffnessNumber_) / kMeanTurn);
 }
 
 template <class S>
@@ -202,7 +213,7 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
   if (changed_) {
     stiffnessOverInertia_ = 0.0;
     for (std::size_t k = 0; k < motions_.size(); ++k) {
-      const double inertia = motions_[k].leastInertia();
+      const double inertia = motions_[k].minInertia();
       if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
     }
   }
@@ -215,23 +226,24 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
 
 template <class S>
 double BodyDynamics<S>::roundingSpeed(double seconds) const {
-  constexpr double kShare = 0.1;  // of the last digit
+  constexpr double kFraction = 0.1;  // of the last digit
   double reach = 0.0;
-  for (const PartMotion& motion : motions_) reach = std::max(reach, motion.reach());
-  return kShare * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
+  for (const ComponentMotion& motion : motions_) reach = std::max(reach, motion.reach());
+  return kFraction * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
 }
 
 template <class S>
 double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<double, 3>& point,
                                         const std::array<double, 3>& direction) const {
   if (!tets_) return 0.0;
-  const PartMotion& motion = motions_[partOf_[matrix_.slotOf(node)]];
+  const ComponentMotion& motion = motions_[partOf_[matrix_.slotOf(node)]];
   return motion.compliance(Eigen::Vector3d(point[0], point[1], point[2]),
                            Eigen::Vector3d(direction[0], direction[1], direction[2]));
 }
 
 template <class S>
 void BodyDynamics<S>::startLater(double seconds) {
+  assert(seconds > 0.0);
   S* solution = matrix_.solution();
   squaredDeviation_ = 0.0;
   if (!tets_) {
@@ -260,7 +272,7 @@ template <class S>
 void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
   startLater(seconds);
   S* residual = matrix_.residual();
-  if (!tets_ || (stiff_ && held_ == 0)) {
+  if (!tets_ || (stiff_ && pinned_ == 0)) {
     std::copy(rightSide_.begin(), rightSide_.end(), residual);
     return;
   }
@@ -315,7 +327,8 @@ const S* BodyDynamics<S>::times(const S* points, ParallelFor* threads) {
 }
 
 template <class S>
-void BodyDynamics<S>::startAgain(ParallelFor* threads) {
+void BodyDynamics<S>::restart(ParallelFor* threads) {
+  assert(rightSide_.size() == matrix_.wideSize() && image_.size() == matrix_.wideSize());
   const S* solution = matrix_.solution();
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = solution[wide + k * kGroup];
@@ -330,17 +343,17 @@ double BodyDynamics<S>::energy(ParallelFor* threads) {
   return tets_ ? tets_->energy(points_.data(), threads) : 0.0;
 }
 
-/// Of the velocities as the solution has them.
+/// Moments of the velocities of the current solution.
 template <class S>
-std::vector<PartMomentum> BodyDynamics<S>::momentaNow() const {
+std::vector<ComponentMomentum> BodyDynamics<S>::momentaNow() const {
   const S* solution = matrix_.solution();
-  std::vector<PartMomentum> now(motions_.size());
+  std::vector<ComponentMomentum> now(motions_.size());
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S* v = &velocities_[4 * slot];
     double velocity[3];
     for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
-    const std::uint32_t part = partOf_[slot];
-    now[part].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[part].about().data());
+    const std::uint32_t component = partOf_[slot];
+    now[component].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[component].about().data());
   });
   return now;
 }
@@ -349,13 +362,13 @@ template <class S>
 void BodyDynamics<S>::bendTurns(double seconds) {
   if (!tets_ || seconds * seconds * stiffnessOverInertia_ < kFeelsTurns) return;
   S* solution = matrix_.solution();
-  const std::vector<PartMomentum> now = momentaNow();
-  std::vector<PartMoments> moments(motions_.size());
+  const std::vector<ComponentMomentum> now = momentaNow();
+  std::vector<ComponentMoments> moments(motions_.size());
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     S v[3];
     for (std::size_t k = 0; k < 3; ++k) v[k] = velocities_[4 * slot + k] + solution[wide + k * kGroup];
-    const std::uint32_t part = partOf_[slot];
-    moments[part].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[part].about().data());
+    const std::uint32_t component = partOf_[slot];
+    moments[component].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[component].about().data());
   });
   std::vector<RigidVelocity> chords;
   for (std::size_t k = 0; k < motions_.size(); ++k) {
@@ -370,11 +383,12 @@ void BodyDynamics<S>::bendTurns(double seconds) {
 }
 
 template <class S>
-bool BodyDynamics<S>::rigidMotions(std::size_t part, AlignedVector<S> (&motions)[kRigidMotions]) const {
+bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const {
+  assert(component < componentCount());
   double mass = 0.0, centroid[3] = {};
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
-    if (partOf_[slot] != part) continue;
+    if (partOf_[slot] != component) continue;
     if (matrix_.massAt(slot) == S(0)) return false;
     const auto m = static_cast<double>(matrix_.massAt(slot));
     mass += m;
@@ -384,7 +398,7 @@ bool BodyDynamics<S>::rigidMotions(std::size_t part, AlignedVector<S> (&motions)
   for (AlignedVector<S>& motion : motions) motion.assign(4 * matrix_.slotCount(), S(0));
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
-    if (partOf_[slot] != part) continue;
+    if (partOf_[slot] != component) continue;
     S arm[3];
     for (std::size_t k = 0; k < 3; ++k) {
       arm[k] = moved_[4 * slot + k] - static_cast<S>(centroid[k] / mass);
@@ -399,9 +413,9 @@ bool BodyDynamics<S>::rigidMotions(std::size_t part, AlignedVector<S> (&motions)
 }
 
 template <class S>
-void BodyDynamics<S>::keepRigidPart() {
+void BodyDynamics<S>::keepRigidComponent() {
   S* solution = matrix_.solution();
-  std::vector<PartMomentum> own(motions_.size());
+  std::vector<ComponentMomentum> own(motions_.size());
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     double v[3];
     for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
@@ -419,16 +433,16 @@ void BodyDynamics<S>::keepRigidPart() {
 
 template <class S>
 void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse) {
-  const std::vector<PartMomentum> now = momentaNow();
+  const std::vector<ComponentMomentum> now = momentaNow();
   std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
   for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
-    const std::size_t slot = matrix_.slotOf(n), part = partOf_[slot];
+    const std::size_t slot = matrix_.slotOf(n), component = partOf_[slot];
     if (matrix_.massAt(slot) == S(0)) continue;
     const S* x = &points_[4 * slot];
     const std::array<double, 3> from = impulse(n);
     const Eigen::Vector3d given(from[0], from[1], from[2]);
-    impulses[part] += given;
-    torques[part] += (Eigen::Vector3d(x[0], x[1], x[2]) - motions_[part].about()).cross(given);
+    impulses[component] += given;
+    torques[component] += (Eigen::Vector3d(x[0], x[1], x[2]) - motions_[component].about()).cross(given);
   }
   std::vector<RigidVelocity> excess;
   for (std::size_t k = 0; k < motions_.size(); ++k) {

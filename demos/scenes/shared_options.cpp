@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "scenes/shared_options.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tetskin::scenes {
+
+const std::vector<SharedOption>& sharedOptions() {
+  static const std::vector<SharedOption> options = {
+      {"--mesh", "Model", "Render mesh, in any format that assimp reads"},
+      {"--model", "Model", "Built-in model"},
+      {"--triangles", "Model", "Triangles of a built-in model"},
+      {"--cage", "Model", "Tet mesh to use as the cage: .vtk, .ele/.node or .msh"},
+      {"--deformed", "Model", "The same tet mesh, deformed, with its nodes in the same order"},
+      {"--tets", "Model", "Approximate number of tets of a built cage"},
+      {"--no-duplicate-elements", "Model",
+       "Do not duplicate cage elements where components of the mesh are closer than a tet; such components fuse"},
+      {"--no-fit", "Model", "Do not fit the cage's boundary to the surface; all tets keep one shape"},
+      {"--calibrate", "Model", "Scale the cage's stiffness to match the mesh; coarse tets are too stiff"},
+      {"--bodies", "Model", "Number of bodies"},
+      {"--elasticity", "Simulation", "Elastic model and solver: tetskin's or Bullet's"},
+      {"--body", "Simulation",
+       "Elastic body, simulated with the cage's tets, or reduced body, with vibration modes of fine tets in Bullet's "
+       "reduced solver and contact at the cage's nodes"},
+      {"--modes", "Simulation", "Vibration modes of a reduced body"},
+      {"--fine-tets", "Simulation", "Tets from which the vibration modes of a reduced body are computed"},
+      {"--contact", "Simulation", "What touches rigid bodies: the rendered surface, or the cage's nodes as in Bullet"},
+      {"--self-contact", "Simulation",
+       "Self-contact at the rendered surface; auto: with --contact surface, if the mesh is closed"},
+      {"--frames", "Simulation", "Frames to simulate, of 1/60 s each"},
+      {"--seconds", "Simulation", "Simulated time, in seconds"},
+      {"--only", "Simulation", "Run only what has this text in its name"},
+      {"--quick", "Simulation", "Run a small selection"},
+      {"--interpolation", "Surface", "Interpolation of the surface between the cage's nodes"},
+      {"--normals", "Surface", "How normals of the deformed surface are computed"},
+      {"--outside", "Surface", "Which tet a vertex outside the cage is bound to"},
+      {"--max-distance", "Surface",
+       "Refuse a mesh with a vertex farther than this outside the cage, in the mesh's unit"},
+      {"--output", "Output", "File to write"},
+      {"--out", "Output", "Folder to write to"},
+      {"--every", "Output", "Write every Nth frame"},
+      {"--view", "Output", "Write an HTML page that plays the run in a browser"},
+      {"--no-view", "Output", "Do not write the HTML page"},
+      {"--write-cage", "Output", "Write the deformed cage of each frame, in files cage_0000.vtk and so on"},
+      {"--dump-embedding", "Output", "Write the tet and the barycentric weights of every vertex to this CSV file"},
+      {"--json", "Output", "Write the results to this JSON file"},
+      {"--markdown", "Output", "Write the results to this Markdown file, as tables"},
+      {"--hash", "Output", "Print a hash of the node positions in all frames; identical runs print the same one"},
+      {"--quiet", "Output", "Print errors only"}};
+  return options;
+}
+
+const SharedOption* sharedOption(const std::string& names) {
+  const std::string name = names.substr(names.rfind(',') + 1);
+  const auto& all = sharedOptions();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const SharedOption& o) { return o.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string presentName(const std::string& earlier, const std::vector<std::string>& known) {
+  static const std::pair<const char*, const char*> renamed[] = {
+      {"--force", "--elasticity"}, {"--whole", "--no-duplicate-elements"},
+      {"--loose", "--no-fit"},     {"--frames", "--repetitions"},  // of tetskin_crowd
+      {"--bodies", "--shapes"},                                    // of tetskin_gaps
+      {"--scene", "--scenes"},     {"--stiffness", "--spring-stiffness"}};
+  const auto isKnown = [&](const std::string& name) { return std::count(known.begin(), known.end(), name) > 0; };
+  for (const auto& [before, now] : renamed) {
+    if (before == earlier && !isKnown(before) && isKnown(now)) return now;
+  }
+  return {};
+}
+
+}  // namespace tetskin::scenes

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Options that several programs share, and those that belong beside them: name, description and position in --help are
+// the same everywhere.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tetskin::scenes {
+
+struct SharedOption {
+  std::string name;
+  std::string group;  ///< heading in --help
+  std::string description;
+};
+
+/// The shared options in the order of --help.
+const std::vector<SharedOption>& sharedOptions();
+/// Null for an option that the program describes itself. `names` may contain a short name, too: "-o,--output".
+const SharedOption* sharedOption(const std::string& names);
+
+/// The present name of an option of an earlier version, for a program with the options `known`; empty if there is none.
+std::string presentName(const std::string& earlier, const std::vector<std::string>& known);
+
+}  // namespace tetskin::scenes

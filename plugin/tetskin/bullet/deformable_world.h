@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The deformable world: its solver, the world that owns it, and the forces that act in it.
+#pragma once
+
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <btBulletCollisionCommon.h>
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/parallel_for.h>
+
+#include <memory>
+
+namespace tetskin {
+
+class ForceRecord;
+class SystemSolve;
+
+/// Bullet's solver of deformable bodies, extended by tetskin's own implicit solve. An application creates it in place
+/// of a `btDeformableBodySolver`, and passes it to its world and its constraint solver in the same way.
+///
+/// Bodies of `ForceModel::Corotated` are solved implicitly, before collision detection, and again if there are
+/// contacts: with contacts and Bullet's anchors as rows of one system, until it has converged. Dynamic rigid bodies and
+/// multibodies that are touched are unknowns of the system, and so are those that these touch or are connected to, as
+/// long as there are fewer than 24; their own contacts and joints start from Bullet's solution. Bullet's constraints
+/// for such contacts and anchors are removed before Bullet solves. All other bodies are solved as Bullet does in an
+/// explicit world with projection of contacts, with its forces. For a sleeping body, only its neighbourhood is
+/// examined. `ForceModel::Corotated`, tetskin::contact and tetskin::touch need this solver, and a world with any of
+/// them uses its solve whatever the settings of Bullet's solve are. A world with Bullet's forces alone that is
+/// implicit, has line search, or has no projection (Bullet's default; `setUseProjection(true)` switches it on, and so
+/// does `DeformableBody::add`) is solved by Bullet's own code.
+///
+/// Contact at nodes respects groups, masks, the world's overlap filter callback and the collision response flags of
+/// both bodies, evaluated in each step. Sleeping bodies wake when what they lie on, or are attached to, is moved,
+/// changed or removed, and when an obstacle comes near; see the guide.
+///
+/// A body whose collision flags allow no contact with soft bodies (as `createSoftBody` makes them) is marked as
+/// sleeping between the solve and its integration, so that Bullet does not search for such contacts; only a world's
+/// solver callback can observe this.
+class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
+ public:
+  /// A solver without bodies; the world passes its bodies in each step.
+  DeformableSolver();
+  ~DeformableSolver() override;
+  DeformableSolver(const DeformableSolver&) = delete;
+  DeformableSolver& operator=(const DeformableSolver&) = delete;
+
+  /// Sets the threads to use, or none with null; not owned, must stay valid until replaced. Steps are bit-identical
+  /// with any number.
+  void setThreads(ParallelFor* threads);
+
+  /// Whether to compute Bullet's node normals (`m_n`), which drawing a body's own faces needs and a skin does not. On
+  /// by default.
+  void setNodeNormals(bool on);
+
+  /// From now on every step uses this solver's own solve, whatever settings of Bullet's solve the world has: implicit,
+  /// line search, projection. Called by `DeformableBody::add` with ForceModel::Corotated, and by contacts and joints.
+  void requireOwnSolve();
+  /// True if this solver's own solve is in use: always after `requireOwnSolve`, otherwise by the world's settings in
+  /// the last step; true before the first.
+  bool ownSolveActive() const;
+  /// Iterations of the conjugate gradient in the last step, over all bodies; 0 if Bullet's own code solved it.
+  int iterations() const;
+
+  /// Linear solves of the last step, over all bodies on which anything beside elasticity acts; bodies that are solved
+  /// simultaneously count once.
+  int linearSolves() const;
+  /// How many of these systems with contacts were stopped before convergence: their bodies continue with the result of
+  /// the last pass.
+  int unconvergedSystems() const;
+
+  // What Bullet calls.
+  void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
+  void predictMotion(btScalar dt) override;
+  void processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) override;
+  using btDeformableBodySolver::processCollision;
+  void setupDeformableSolve(bool implicit) override;
+  void setConstraints(const btContactSolverInfo& info) override;
+  void setLagrangeMultiplier() override;
+  void solveDeformableConstraints(btScalar dt) override;
+  void applyTransforms(btScalar dt) override;
+  void updateSoftBodies() override;
+
+ private:
+  struct Impl;
+  friend struct Impl;
+  friend class ForceRecord;
+  friend class SystemSolve;
+  std::unique_ptr<Impl> impl_;
+};
+
+class RecordedForces;
+
+/// Options of a DeformableWorld.
+struct DeformableWorldOptions {
+  btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
+  ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
+};
+
+/// Internal to DeformableWorld: the objects that a world needs, as a base class so that they are destroyed after it.
+class TETSKIN_BULLET_API DeformableWorldObjects {
+ protected:
+  DeformableWorldObjects();
+  ~DeformableWorldObjects();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;  ///< never null
+};
+
+/// A deformable world that owns everything it needs: Bullet's collision configuration, dispatcher, broadphase and
+/// constraint solver, and a `DeformableSolver`. For everything else it is a `btDeformableMultiBodyDynamicsWorld`.
+///
+///     tetskin::DeformableWorld world;
+///     auto body = tetskin::DeformableBody::add(world, cage).value();
+///     world.stepSimulation(dt, 4, dt / 4);
+///
+/// An application that has these objects already can keep them: it creates a `DeformableSolver` in place of its
+/// `btDeformableBodySolver`, and needs no DeformableWorld.
+///
+/// Ownership  the world destroys its own objects, in the right order. Rigid bodies and shapes belong to the
+///            application, as in any Bullet world; a `DeformableBody`, contacts, joints and force records should be
+///            destroyed before the world
+class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, public btDeformableMultiBodyDynamicsWorld {
+ public:
+  /// An empty world, with projection of contacts switched on.
+  explicit DeformableWorld(const DeformableWorldOptions& options = {});
+  ~DeformableWorld() override;
+  DeformableWorld(const DeformableWorld&) = delete;
+  DeformableWorld& operator=(const DeformableWorld&) = delete;
+
+  DeformableSolver& deformableSolver();                       ///< solver of soft bodies; owned by this
+  btDeformableMultiBodyConstraintSolver& constraintSolver();  ///< solver of rigid bodies; owned by this
+  btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
+  btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
+};
+
+/// A force, and its torque about the centre of mass of the object that it acts on: for a soft body that of its nodes'
+/// masses, for a rigid body or a link the origin of its frame. World space, in the world's units of mass, length and
+/// seconds.
+struct Wrench {
+  btVector3 force{0, 0, 0};   ///< mass length / s^2
+  btVector3 torque{0, 0, 0};  ///< mass length^2 / s^2
+};
+
+/// Forces on an object, by cause.
+struct AppliedForces {
+  Wrench contact;   ///< normal forces of contacts
+  Wrench friction;  ///< friction forces, tangential to the contacts
+  Wrench joints;    ///< `SurfaceSpring`, `SurfaceWeld` and `SurfacePoint::applyForce`
+  Wrench anchors;   ///< Bullet's anchors, by `appendDeformableAnchor`
+
+  /// Sum of all four.
+  Wrench total() const {
+    return {contact.force + friction.force + joints.force + anchors.force,
+            contact.torque + friction.torque + joints.torque + anchors.torque};
+  }
+};
+
+/// Records the forces between soft bodies and what they touch or are attached to: rigid bodies, links of multibodies,
+/// other soft bodies; for instance what a gripper feels. Covers contact at the surface (`SurfaceContact`,
+/// `SoftContacts`) and at nodes.
+///
+///     auto forces = ForceRecord::add(world).value();
+///     ...
+///     world.stepSimulation(...);
+///     btScalar grip = forces->forcesBetween(finger, held).friction.force.length();
+///
+/// Each force is the mean over all substeps of the last `stepSimulation`, so that the impulses on both sides of a pair
+/// are that mean times its seconds; a contact that is shorter than a step, or ends in it, counts for as long as it
+/// lasts. Forces between two sleeping bodies stay as they were when these fell asleep. Nothing else changes them:
+/// neither Bullet's `contactTest` nor bodies that are moved between steps. An object that has left the world since has
+/// no forces, and exerts none on others.
+///
+/// Recorded is what a `DeformableSolver` solves for: forces of bodies of `ForceModel::Corotated`. Not recorded are
+/// forces within one body, nor those between rigid bodies, which are in Bullet's manifolds. The torque on a kinematic
+/// body is about its position as Bullet has it during a step, which is where the whole `stepSimulation` moves it.
+///
+/// In the world's `debugDrawWorld`, with DBG_DrawContactPoints, it draws the loaded contact points of the last substep,
+/// their normals, and their forces: a force equal to the soft body's weight is drawn as long as the body. Bullet calls
+/// this only if DBG_DrawWireframe, DBG_DrawAabb or DBG_DrawNormals is set as well.
+///
+/// Lifetime  destroy it before its world; bodies may be destroyed in any order
+/// Cost      per substep O(contact points, and nodes of bodies in contact); none in a world without it. Several records
+///           of one world share their data
+class TETSKIN_BULLET_API ForceRecord {
+ public:
+  /// Starts recording with the next step, until the record is destroyed.
+  /// world   created with a `DeformableSolver`
+  /// Errors  InvalidOption for worlds with another solver
+  static Result<std::unique_ptr<ForceRecord>> add(btDeformableMultiBodyDynamicsWorld& world);
+  ~ForceRecord();
+  ForceRecord(const ForceRecord&) = delete;
+  ForceRecord& operator=(const ForceRecord&) = delete;
+
+  /// Forces on an object. On a rigid body or a link (its collider): from all soft bodies. On a soft body: from all that
+  /// it touches or is attached to, including points in space. All 0 where nothing acts, or the object is not in the
+  /// world.
+  /// Cost  O(pairs in contact, and objects of the world for each of this object's); allocates nothing
+  AppliedForces forcesOn(const btCollisionObject& object) const;
+  /// Forces on the first object from the second alone; one of the two is a soft body. All 0 where nothing acts.
+  /// Cost  O(pairs in contact, and objects of the world for each of the first object's); allocates nothing
+  AppliedForces forcesBetween(const btCollisionObject& object, const btCollisionObject& other) const;
+
+ private:
+  explicit ForceRecord(std::shared_ptr<RecordedForces> recorded);
+  std::shared_ptr<RecordedForces> recorded_;
+};
+
+}  // namespace tetskin

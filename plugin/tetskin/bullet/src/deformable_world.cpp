@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <tetskin/bullet/deformable_world.h>
+
+namespace tetskin {
+
+struct DeformableWorldObjects::Impl {
+  Impl() : dispatcher(&configuration) { constraintSolver.setDeformableSolver(&deformableSolver); }
+
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher;
+  btDbvtBroadphase broadphase;
+  DeformableSolver deformableSolver;
+  btDeformableMultiBodyConstraintSolver constraintSolver;
+};
+
+DeformableWorldObjects::DeformableWorldObjects() : impl_(std::make_unique<Impl>()) {}
+DeformableWorldObjects::~DeformableWorldObjects() = default;
+
+DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
+    : btDeformableMultiBodyDynamicsWorld(&impl_->dispatcher, &impl_->broadphase, &impl_->constraintSolver,
+                                         &impl_->configuration, &impl_->deformableSolver) {
+  setGravity(options.gravity);
+  setUseProjection(true);
+  impl_->deformableSolver.setThreads(options.threads);
+}
+
+DeformableWorld::~DeformableWorld() = default;
+
+DeformableSolver& DeformableWorld::deformableSolver() {
+  return impl_->deformableSolver;
+}
+btDeformableMultiBodyConstraintSolver& DeformableWorld::constraintSolver() {
+  return impl_->constraintSolver;
+}
+btDbvtBroadphase& DeformableWorld::broadphase() {
+  return impl_->broadphase;
+}
+btCollisionDispatcher& DeformableWorld::dispatcher() {
+  return impl_->dispatcher;
+}
+
+}  // namespace tetskin

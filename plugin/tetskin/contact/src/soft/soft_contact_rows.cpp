@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/shared/bodies/contact_filter.h>
+#include <tetskin/contact/src/soft/body_pairs.h>
+#include <tetskin/contact/src/soft/soft_contact_rows.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::contact_detail {
+namespace {
+
+/// Contacts whose gap the step will not close are left out, if the gap is larger than this many cubes.
+constexpr btScalar kNearCubes = btScalar(0.1);
+/// A body that moves faster than this, in body lengths per second, wakes what sleeps where it touches. It is Bullet's
+/// own threshold of sleep.
+constexpr btScalar kWakingSpeed = btScalar(0.04);
+/// Depth, in sizes of the smaller body, from which on two bodies overlap.
+constexpr btScalar kDeep = btScalar(0.03);
+/// Least length of the mean normal of the samples inside that has a direction: a body that lies wholly within another
+/// one has none.
+constexpr btScalar kMinGradient = btScalar(0.05);
+/// Fraction of a body's samples that are at or below another's surface with agreeing normals, from which on the two
+/// bodies coincide.
+constexpr double kInOnePlace = 0.3;
+/// Numbers of points begin here, so that they differ from those of contacts with rigid bodies.
+constexpr std::uint32_t kFirstPoint = 0x40000000U;
+
+btVector3 velocityOf(const SoftPointContact& contact) {
+  btVector3 v(0, 0, 0);
+  for (std::uint32_t k = 0; k < contact.nodeCount; ++k) {
+    v += contact.weights[k] * contact.body->m_nodes[contact.nodes[k]].m_v;
+  }
+  const btSoftBody& object = *btSoftBody::upcast(contact.object);
+  if (!object.isActive()) return v;
+  for (std::size_t k = 0; k < 4; ++k) v -= contact.objectWeights[k] * object.m_nodes[contact.objectNodes[k]].m_v;
+  return v;
+}
+
+/// The same contact as one of the other body: a sleeping body has no rows of its own.
+SoftPointContact turned(const SoftPointContact& from) {
+  assert(from.nodeCount == 4 && btSoftBody::upcast(from.object));
+  SoftPointContact contact = from;
+  contact.body = const_cast<btSoftBody*>(btSoftBody::upcast(from.object));
+  contact.object = from.body;
+  std::copy(from.objectNodes.begin(), from.objectNodes.end(), contact.nodes.begin());
+  std::copy(from.objectWeights.begin(), from.objectWeights.end(), contact.weights.begin());
+  std::copy_n(from.nodes.begin(), 4, contact.objectNodes.begin());
+  std::copy_n(from.weights.begin(), 4, contact.objectWeights.begin());
+  contact.normal = -from.normal;
+  return contact;
+}
+
+bool liesWithin(const ContactBody& body, const Overlap& overlap) {
+  return overlap.inside > 0 && static_cast<std::size_t>(overlap.inside) == body.data().samples.size();
+}
+
+bool isMostlyWithin(const ContactBody& body, const Overlap& overlap) {
+  return overlap.agreeing > kInOnePlace * static_cast<double>(body.data().samples.size());
+}
+
+/// A direction for each body, spread over the sphere by the golden angle.
+btVector3 directionOf(int id) {
+  constexpr double kGoldenAngle = 2.39996322972865332, kGoldenPart = 0.61803398874989485;
+  const double y = 2.0 * std::fmod(kGoldenPart * id, 1.0) - 1.0, angle = kGoldenAngle * id;
+  const double radius = std::sqrt(1.0 - y * y);
+  return {static_cast<btScalar>(radius * std::cos(angle)), static_cast<btScalar>(y),
+          static_cast<btScalar>(radius * std::sin(angle))};
+}
+
+}  // namespace
+
+ContactBody* SoftContactRows::find(const btSoftBody& body) const {
+  for (const auto& solved : bodies_) {
+    if (solved->body == &body) return solved.get();
+  }
+  return nullptr;
+}
+
+bool SoftContactRows::isGone(const btSoftBody& body) const {
+  return std::find(gone_.begin(), gone_.end(), &body) != gone_.end();
+}
+
+bool SoftContactRows::isWithin(const ContactBody& body) const {
+  return std::any_of(pairStates_.begin(), pairStates_.end(),
+                     [&](const auto& entry) { return entry.second.within == &body; });
+}
+
+void SoftContactRows::include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
+  assert(shape);
+  exclude(body);
+  bodies_.push_back(std::make_unique<ContactBody>(body, std::move(shape), self, nextId_++));
+}
+
+void SoftContactRows::exclude(const btSoftBody& body) {
+  gone_.erase(std::remove(gone_.begin(), gone_.end(), &body), gone_.end());
+  const ContactBody* solved = find(body);
+  if (!solved) return;
+  // Nothing stored in the step before may refer to the body.
+  const int id = solved->id;
+  contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(),
+                                 [&](const auto& contact) { return contact.body == &body || contact.object == &body; }),
+                  contacts_.end());
+  for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
+    kept = kept->first.first == id || kept->first.second == id ? pairStates_.erase(kept) : std::next(kept);
+  }
+  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; }));
+}
+
+void SoftContactRows::removeSoftBody(btSoftBody* body) {
+  if (!find(*body)) return;
+  exclude(*body);
+  gone_.push_back(body);
+}
+
+std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds) {
+  assert(seconds > 0);
+  contacts_.clear();
+  for (const auto& body : bodies_) {
+    body->readable = false;
+    if (body->fits()) body->read();
+  }
+  for (const auto& [first, second] : overlappingPairs()) {
+    if (first->awake || second->awake) findInPair(*first, *second, seconds);
+  }
+  return &contacts_;
+}
+
+/// The pairs that may collide. Other pairs are forgotten: their relative position is a different one when they may
+/// collide again.
+SoftContactRows::BodyPairs SoftContactRows::overlappingPairs() {
+  std::vector<ContactBody*> readable;
+  std::vector<ContactBox> boxes;
+  for (const auto& body : bodies_) {
+    if (!body->readable) continue;
+    readable.push_back(body.get());
+    boxes.push_back(body->box);
+  }
+  BodyPairs near;
+  for (const auto& [a, b] : overlappingBoxPairs(boxes)) {
+    const bool asked = a != b || readable[a]->self;
+    if (asked && collidesWithSoft(*readable[a]->body, *readable[b]->body)) near.emplace_back(readable[a], readable[b]);
+  }
+  forgetAllBut(near);
+  return near;
+}
+
+/// near  pairs in the order of their ids
+void SoftContactRows::forgetAllBut(const BodyPairs& near) {
+  auto pair = near.begin();
+  for (auto known = pairStates_.begin(); known != pairStates_.end();) {
+    const auto idsOf = [](const auto& body) { return std::make_pair(body.first->id, body.second->id); };
+    while (pair != near.end() && idsOf(*pair) < known->first) ++pair;
+    const bool isNear = pair != near.end() && idsOf(*pair) == known->first;
+    known = isNear ? std::next(known) : pairStates_.erase(known);
+  }
+}
+
+void SoftContactRows::findInPair(ContactBody& first, ContactBody& second, btScalar seconds) {
+  assert(first.readable && second.readable);
+  PairState& pairState = pairStates_[{first.id, second.id}];
+  const btVector3 before = pairState.apart;
+  pairState.apart = search(first, second, seconds, pairState);
+  if (before.isZero() && !pairState.apart.isZero()) search(first, second, seconds, pairState);
+  for (const Touch& touch : touches_[0]) addContact(first, second, touch, seconds);
+  for (const Touch& touch : touches_[1]) addContact(second, first, touch, seconds);
+}
+
+/// Returns the direction in which the first body is to leave the second, if they overlap: down the gradient of their
+/// common volume, which is the integral of either body's normal over the part of its surface within the other.
+btVector3 SoftContactRows::search(ContactBody& first, ContactBody& second, btScalar seconds, PairState& pairState) {
+  const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
+  // The distance that the two can approach each other within the step.
+  const btScalar approach = seconds * (first.fastest + second.fastest + (first.drift - second.drift).length());
+  const auto in = [&](ContactBody& a, ContactBody& b, int k) {
+    const btScalar cube = b.data().grid.spacing();
+    const btScalar reach = std::min(kReachCubes * cube, kNearCubes * cube + approach);
+    touches_[k].clear();
+    return search_.find(a, b, reach, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
+                        touches_[k]);
+  };
+  const Overlap own = in(first, second, 0);
+  touches_[1].clear();
+  if (&first == &second) return {0, 0, 0};
+  const Overlap other = in(second, first, 1);
+  const bool firstWithin = liesWithin(first, own), secondWithin = liesWithin(second, other);
+  pairState.within = firstWithin == secondWithin ? nullptr : firstWithin ? &first : &second;
+  if (pairState.within) return {0, 0, 0};
+  const bool inOnePlace = isMostlyWithin(first, own) && isMostlyWithin(second, other);
+  if (std::min(own.deepest, other.deepest) > -deep && !inOnePlace) return {0, 0, 0};
+  const btVector3 gradient = other.normals - own.normals;
+  const btScalar length = gradient.length();
+  if (length > kMinGradient * static_cast<btScalar>(own.inside + other.inside)) return gradient / length;
+  return inOnePlace ? (directionOf(first.id) - directionOf(second.id)).normalized() : btVector3(0, 0, 0);
+}
+
+void SoftContactRows::addContact(const ContactBody& first, const ContactBody& second, const Touch& touch,
+                                 btScalar seconds) {
+  const auto s = static_cast<std::size_t>(touch.sample);
+  assert(touch.sample >= 0 && s < first.data().samples.size());
+  assert(touch.tet >= 0 && static_cast<std::size_t>(touch.tet) < second.data().tets.size());
+  const EmbeddedPoint<btScalar>& sample = first.data().samples[s];
+  SoftPointContact contact;
+  contact.body = first.body;
+  contact.object = second.body;
+  contact.point = kFirstPoint + static_cast<std::uint32_t>(first.data().sampleNodes[s]);
+  contact.nodeCount = 4;
+  std::copy(sample.nodes.begin(), sample.nodes.end(), contact.nodes.begin());
+  std::copy(sample.weights.begin(), sample.weights.end(), contact.weights.begin());
+  const Tet& tet = second.data().tets[static_cast<std::size_t>(touch.tet)];
+  std::copy(tet.begin(), tet.end(), contact.objectNodes.begin());
+  std::copy(touch.weights, touch.weights + 4, contact.objectWeights.begin());
+  contact.position = first.sampleAt(touch.sample);
+  contact.normal = touch.normal;
+  contact.distance = touch.distance;
+  contact.friction = options_.friction ? static_cast<btScalar>(*options_.friction)
+                                       : btSqrt(first.body->m_cfg.kDF * second.body->m_cfg.kDF);
+  const btVector3 velocity = velocityOf(contact);
+  const btScalar near = kNearCubes * second.data().grid.spacing();
+  if (touch.distance + seconds * velocity.dot(touch.normal) > near) return;
+  if (first.awake != second.awake && velocity.length2() > kWakingSpeed * kWakingSpeed) {
+    first.body->activate();
+    second.body->activate();
+  }
+  contacts_.push_back(first.awake ? contact : turned(contact));
+}
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to SoftContacts: the contacts among its bodies, in each step. It is an entry in the world's list of forces,
+// where a DeformableSolver finds it, but applies no force itself.
+#pragma once
+
+#include <tetskin/bullet/src/shared/solver/row_source.h>
+#include <tetskin/contact/src/soft/pair_search.h>
+
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace tetskin::contact_detail {
+
+class SoftContactRows : public RowSource {
+ public:
+  explicit SoftContactRows(const SoftContactOptions& options) : options_(options) {}
+
+  void include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self);
+  void exclude(const btSoftBody& body);
+  ContactBody* find(const btSoftBody& body) const;
+  bool isGone(const btSoftBody& body) const;
+  /// True if the body lay wholly within another one in the last step.
+  bool isWithin(const ContactBody& body) const;
+  /// The contacts of the last step.
+  const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
+
+  std::vector<SoftPointContact>* contacts(btScalar seconds) override;
+  void removeSoftBody(btSoftBody* body) override;
+
+ private:
+  /// What two bodies, or one body with itself, store from step to step.
+  struct PairState {
+    PairMemory memories[2];    ///< of the first body in the second, and of the second in the first
+    btVector3 apart{0, 0, 0};  ///< direction in which the first body is to leave the second; 0 unless they overlap
+    const ContactBody* within = nullptr;  ///< the one that lies wholly within the other, or null
+  };
+  using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
+  BodyPairs overlappingPairs();
+  void forgetAllBut(const BodyPairs& near);
+  void findInPair(ContactBody& first, ContactBody& second, btScalar seconds);
+  btVector3 search(ContactBody& first, ContactBody& second, btScalar seconds, PairState& pairState);
+  void addContact(const ContactBody& first, const ContactBody& second, const Touch& touch, btScalar seconds);
+
+  SoftContactOptions options_;
+  std::vector<std::unique_ptr<ContactBody>> bodies_;
+  std::vector<const btSoftBody*> gone_;
+  int nextId_ = 0;
+  PairSearch search_;
+  std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids
+  std::vector<Touch> touches_[2];  ///< of the first body in the second, and of the second in the first
+  std::vector<SoftPointContact> contacts_;
+};
+
+}  // namespace tetskin::contact_detail

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The rigid motion of one component of a body over a step: nodes that tets connect, of which some may be pinned.
+//
+// Positions are moved along straight lines, x + dt v. A body that rotates by dt omega x r thereby swells by
+// (dt omega)^2 / 2 in every step, which its stiffness must undo. Therefore the velocities of a rigid motion are taken
+// as the chords of a
+// rotation Q: v = (Q - 1) r / dt, and Q is the one that has the angular momentum of the part,
+//   sum m r x Q r = dt L
+// which is what x + dt v keeps: angular momentum is exact, and a component that does not deform is not stretched.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tetskin::elastic_detail {
+
+/// The pinned nodes of a component, world space: none, one node, nodes on a line, or more; and their motion.
+class PinnedNodes {
+ public:
+  enum Kind { Nothing, Point, Line, Fixed };
+
+  void add(const Eigen::Vector3d& point, const Eigen::Vector3d& velocity);
+  /// Call it when all nodes are added.
+  void finish(double seconds);
+
+  Kind kind = Nothing;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), axis = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centroid
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< of the step: the rotation that fits the nodes' motion best
+
+ private:
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  int count_ = 0;
+  Eigen::Vector3d positions_ = Eigen::Vector3d::Zero(),
+                  velocities_ = Eigen::Vector3d::Zero();  ///< sums
+  Eigen::Matrix3d positionsByPosition_ = Eigen::Matrix3d::Zero(), velocitiesByPosition_ = Eigen::Matrix3d::Zero();
+};
+
+/// Sums over the nodes of a component that are not pinned, about a point near them. They are plain numbers, as they are
+/// updated for each node.
+struct ComponentMoments {
+  double mass = 0.0;
+  double first[3] = {}, momentum[3] = {}, spin[3] = {};  ///< sums of m r, m v, m r x v
+  double second[6] = {};                                 ///< sum of m r r^T: xx xy xz yy yz zz
+
+  template <class S>
+  void add(S nodeMass, const S* point, const S* velocity, const double* about) {
+    const auto m = static_cast<double>(nodeMass);
+    const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
+    const double mx = m * x, my = m * y, mz = m * z;
+    const double a = velocity[0], b = velocity[1], c = velocity[2];
+    mass += m;
+    first[0] += mx, first[1] += my, first[2] += mz;
+    momentum[0] += m * a, momentum[1] += m * b, momentum[2] += m * c;
+    spin[0] += my * c - mz * b, spin[1] += mz * a - mx * c, spin[2] += mx * b - my * a;
+    second[0] += mx * x, second[1] += mx * y, second[2] += mx * z;
+    second[3] += my * y, second[4] += my * z, second[5] += mz * z;
+  }
+};
+
+/// The momentum of velocities that a solve has found.
+struct ComponentMomentum {
+  double momentum[3] = {}, spin[3] = {};
+
+  template <class S>
+  void add(S nodeMass, const S* point, const double* velocity, const double* about) {
+    const auto m = static_cast<double>(nodeMass);
+    const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
+    const double a = m * velocity[0], b = m * velocity[1], c = m * velocity[2];
+    momentum[0] += a, momentum[1] += b, momentum[2] += c;
+    spin[0] += y * c - z * b, spin[1] += z * a - x * c, spin[2] += x * b - y * a;
+  }
+};
+
+/// The velocity field x -> velocity + field (x - about).
+struct RigidVelocity {
+  double about[3] = {}, velocity[3] = {}, field[9] = {};  ///< `field` is stored by rows
+
+  template <class S>
+  void at(const S* point, double out[3]) const {
+    const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
+    for (int i = 0; i < 3; ++i) out[i] = velocity[i] + field[3 * i] * x + field[3 * i + 1] * y + field[3 * i + 2] * z;
+  }
+  RigidVelocity operator-(const RigidVelocity& other) const;
+};
+
+class ComponentMotion {
+ public:
+  /// moments  about `near`, a point near the component
+  void find(const ComponentMoments& moments, const Eigen::Vector3d& near, const PinnedNodes& pinned, double seconds);
+
+  /// The centre of mass, or the centroid of the pinned nodes.
+  const Eigen::Vector3d& about() const { return about_; }
+  /// The velocities of the rigid motion over the step, as a function of the nodes' positions at its beginning.
+  RigidVelocity velocities(double seconds) const;
+  /// A point near `about()`, on a grid as wide as the component, so that it seldom changes: positions relative to it
+  /// have as many digits as they can, and the same rounding from step to step.
+  Eigen::Vector3d anchor() const;
+  /// The distance from the origin to about the farthest node.
+  double reach() const;
+  /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
+  double minInertia() const;
+  /// The change of velocity per unit impulse, both at a point and in a direction, if the component moves as a rigid
+  /// body: with pinned nodes, only by rotations about the node or line; 0 if more is pinned.
+  double compliance(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+
+  /// The velocities to subtract from velocities with this momentum, about `about()`, so that the component has its
+  /// momentum at the beginning of the step: internal forces cannot change it, but a solve that is cut short does. They
+  /// are a rigid motion of the component at its predicted position, which its stiffness does not resist. With one
+  /// pinned node, only the angular momentum about it is corrected; with pinned nodes on a line, that about the line;
+  /// with more, nothing.
+  /// impulse, torque  of everything else that has acted in the step
+  RigidVelocity excess(const ComponentMomentum& now, const Eigen::Vector3d& impulse,
+                       const Eigen::Vector3d& torque) const;
+
+  /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit it.
+  RigidVelocity withMomentum(const ComponentMomentum& own) const;
+
+  /// The velocities to add where something else has rotated the component: the rotation is a straight motion, linear in
+  /// the nodes' positions, and becomes a chord. Momenta stay the same.
+  /// now, moments  of the velocities before
+  RigidVelocity chord(const ComponentMomentum& now, const ComponentMoments& moments, const Eigen::Vector3d& near,
+                      double seconds) const;
+
+ private:
+  void findInverseInertia();
+  /// The rigid motion with this momentum about `about_`, of the component after a rotation.
+  RigidVelocity rigidWith(const Eigen::Vector3d& momentum, const Eigen::Vector3d& spin,
+                          const Eigen::Matrix3d& turn) const;
+
+  PinnedNodes pinned_;
+  Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
+  double mass_ = 0.0;
+  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();  ///< momenta about `about_`
+  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero(),
+                  central_ = second_;  ///< second moments of mass, about `about_` and about the centre
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inverseInertia_ =
+      Eigen::Matrix3d::Zero();  ///< about `about_`; with pinned nodes, of the possible rotations
+};
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Meshes in, tet meshes, cages and embeddings in and out.
+#pragma once
+
+#include <tetskin/core/cage.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh.h>
+
+#include <cstddef>
+#include <string>
+
+namespace tetskin {
+
+/// Reads a render mesh.
+///
+/// `.obj` files (in any case) are read as they are: vertices in the file's order, including unused ones; polygons split
+/// into triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has exactly one.
+///
+/// `.ply` files are read as they are, too: vertices in the file's order, polygons split into triangles, no groups,
+/// normals and texture coordinates if the file has them.
+///
+/// Everything else (STL, glTF, FBX, Collada, 3DS, OFF, ...) is read by assimp, with the transforms of its scene:
+/// - every mesh once for each node that shows it, transformed, as one group; in the file's own unit;
+/// - vertices are those of assimp (three per triangle for STL), none merged; those of lines and points are left out,
+///   and so are bones and animations;
+/// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
+///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
+///
+/// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite (also for a coordinate beyond
+/// Limits::kMaxCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the
+/// line of an `.obj` or an ASCII `.ply` file. Throws nothing.
+TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path);
+
+/// What a file contained besides the tets that were read. Also written if reading fails, up to the point of failure.
+struct TETSKIN_IO_API TetFileReport {
+  std::size_t skippedCells = 0;  ///< cells that are not linear tets: surfaces, lines, hexahedra, quadratic tets, ...
+  std::size_t skippedHighOrder = 0;  ///< of these, tets with nodes on their edges
+
+  /// Readable summary in one line; empty if nothing was skipped.
+  std::string describe() const;
+};
+
+/// Reads a tet mesh; the extension, in any case, selects the format:
+/// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid; deviations from the
+///                   standard as in Bullet's own files are accepted
+/// - `.node`, `.ele` TetGen: given either, the other is found beside it; numbered from 0 or 1; corners of 10-node tets
+/// - `.msh`          Gmsh, ASCII, versions 2.x and 4.1
+///
+/// Nodes and tets are in the file's order and unit. Cells other than tets of 4 nodes are skipped and counted in
+/// `report`, including tets with more nodes (VTK types 24 and 71, Gmsh type 11, ...). In the result, every index names
+/// a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see `checkTetMesh`.
+///
+/// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
+///
+/// Errors: FileNotFound; UnsupportedFormat; with the line: Malformed, IndexOutOfRange, NonFinite; Empty without tets.
+TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report = nullptr);
+
+/// Writes a tet mesh, complete or not at all; the extension, in any case, selects the format:
+/// - `.vtk`          legacy VTK 2.0, ASCII, one point per line and tets only, so that Bullet's reader accepts it
+/// - `.node`, `.ele` both TetGen files, given either; numbered from 0, as Bullet's reader expects
+/// - `.msh`          Gmsh 2.2, ASCII: the version that most programs read
+///
+/// Coordinates are the shortest numbers that read back as the same doubles: `loadTetMesh` gives the same mesh.
+/// Errors: UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, as no reader would accept the file;
+/// FileNotWritable.
+TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
+
+/// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also the data that `saveCage` writes. Data that is
+/// absent stays empty; arrays of other names are skipped, and so are values of cells that are not tets. If the file
+/// stores which mesh the cage belongs to, `Cage::checkMesh` compares it.
+///
+/// Cost: linear; memory is bounded by the size of the file. Errors: those of `loadTetMesh`; for an array by one of
+/// these names with a wrong count, type or value: Malformed, SizeMismatch, InvalidOption, IndexOutOfRange.
+TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* report = nullptr);
+
+/// Writes a cage: the file of `saveTetMesh`, followed, in a `.vtk` file, by all data of the cage, so that `loadCage`
+/// gives a bit-identical cage:
+/// - FIELD:      `mesh_hash` (unsigned_int, upper and lower 32 bits), `vertex_tets` (int, one per vertex of the mesh)
+/// - CELL_DATA:  `fill`, `factor` (double), `part`, `lattice_tet` (int), `fine_fill` (unsigned_char, kFineTets per
+///   tet): volumeFraction, stiffnessFactor, component, sourceTet and fineVolumeFraction
+/// - POINT_DATA: `mass` (double)
+///
+/// ParaView shows these arrays; Bullet's reader and simple programs stop before them. A cage without data gives the
+/// file of `saveTetMesh`. The other formats store the tets alone.
+///
+/// Errors: those of `saveTetMesh` and of `validate(const Cage&)`; UnsupportedFormat if `vertexTets` of a cage with
+/// duplicate elements would be lost, since only `.vtk` stores it.
+TETSKIN_IO_API Status saveCage(const Cage& cage, const std::string& path);
+
+/// Writes the bytes of `Embedding::save` to a file, complete or not at all. The embedding must not be empty.
+/// cage    the cage that it was made with
+/// Errors  FileNotWritable
+TETSKIN_IO_API Status saveEmbedding(const Embedding& embedding, const TetMesh& cage, const std::string& path);
+
+/// Reads a file written by `saveEmbedding`; see `Embedding::load` for what is checked. The caller should compare
+/// vertexCount() with the mesh's.
+/// cage    the cage that it was saved with, bit-identical: the same file again, or the same call of `createCage`
+/// Errors  FileNotFound; those of `Embedding::load`, with the path in front
+TETSKIN_IO_API Result<Embedding> loadEmbedding(const std::string& path, const TetMesh& cage);
+
+}  // namespace tetskin

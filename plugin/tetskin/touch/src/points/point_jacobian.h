@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::touch: how a point moves with the nodes around it, and the share of a push that each of them
+// gets.
+#pragma once
+
+#include <tetskin/touch/src/points/point_data.h>
+#include <tetskin/touch/surface_point.h>
+
+#include <vector>
+
+namespace tetskin::touch_detail {
+
+/// One node of a lever: the point's velocity is the sum of `linear` times the nodes' velocities. The transposed
+/// matrices divide a push among the nodes, so that the work at the point equals the work at the nodes, and momentum is
+/// preserved.
+struct PointJacobianNode {
+  int node = 0;
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+};
+using PointJacobian = std::vector<PointJacobianNode>;  ///< 4 to 12 nodes, all distinct
+
+/// The lever of a point at the current node positions. A corner inside its tet uses barycentric weights. A corner
+/// outside uses those of the tet's closest point, and a couple: with weights that extrapolate, single nodes would get
+/// very large shares.
+PointJacobian leverOf(const PointData& point, const btSoftBody& body);
+
+/// Inverse mass: the velocity of the point per unit impulse.
+Eigen::Matrix3d linearResponse(const PointJacobian& lever, const btSoftBody& body);
+
+/// The mass to which this response belongs: infinite if nothing can move.
+double massOf(const Eigen::Matrix3d& response);
+
+}  // namespace tetskin::touch_detail

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/touch/src/rows/surface_joint_rows.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin::touch_detail {
+
+SurfaceJointRows::~SurfaceJointRows() {
+  // The forces left here act on bodies that still exist; whether one of these is in the world tells whether the list of
+  // forces still exists.
+  const bool inWorld = std::any_of(active_.begin(), active_.end(), [&](const auto& joint) {
+    const btSoftBody* body = joint->body();
+    return body && body->getBroadphaseHandle() && body->getSoftBodySolver() == &solver_;
+  });
+  if (inWorld) leave();
+}
+
+std::shared_ptr<SurfaceJointRows> SurfaceJointRows::instanceOf(DeformableSolver& solver) {
+  const auto& list = *solver.getLagrangianForceArray();
+  for (int i = 0; i < list.size(); ++i) {
+    if (auto* found = dynamic_cast<SurfaceJointRows*>(list[i])) return found->shared_from_this();
+  }
+  return std::make_shared<SurfaceJointRows>(solver);
+}
+
+void SurfaceJointRows::add(std::shared_ptr<ActiveJoint> joint) {
+  assert(joint && !joint->spent());
+  solver_.requireOwnSolve();
+  active_.push_back(std::move(joint));
+  if (listed_) return;
+  listed_ = true;
+  setIndices(solver_.getIndices());
+  solver_.getLagrangianForceArray()->push_back(this);
+}
+
+void SurfaceJointRows::remove(const ActiveJoint& joint) {
+  const auto found =
+      std::find_if(active_.begin(), active_.end(), [&](const auto& item) { return item.get() == &joint; });
+  if (found == active_.end()) return;
+  active_.erase(found);
+  if (active_.empty()) leave();
+}
+
+/// Bullet may be iterating over the list.
+void SurfaceJointRows::leave() {
+  if (listed_) replaceByNothing(*solver_.getLagrangianForceArray(), this);
+  listed_ = false;
+}
+
+void SurfaceJointRows::removeSoftBody(btSoftBody* body) {
+  for (const auto& joint : active_) {
+    if (joint->body() == body) joint->drop();
+  }
+  eraseSpent();
+}
+
+void SurfaceJointRows::eraseSpent() {
+  active_.erase(std::remove_if(active_.begin(), active_.end(), [](const auto& joint) { return joint->spent(); }),
+                active_.end());
+  if (active_.empty()) leave();
+}
+
+std::vector<PointJoint>* SurfaceJointRows::joints(btScalar seconds) {
+  eraseSpent();
+  joints_.clear();
+  firsts_.clear();
+  for (const auto& joint : active_) {
+    firsts_.push_back(joints_.size());
+    joint->addJoints(seconds, joints_);
+  }
+  return &joints_;
+}
+
+void SurfaceJointRows::finish(btScalar seconds) {
+  assert(firsts_.size() <= active_.size());
+  for (std::size_t k = 0; k < firsts_.size(); ++k) active_[k]->finish(seconds, joints_.data() + firsts_[k]);
+  firsts_.clear();
+}
+
+}  // namespace tetskin::touch_detail
