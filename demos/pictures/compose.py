@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures from what the demos wrote; called by the script make, which see.
+"""Draws the pictures from the files that the demos wrote; called by the script make.
 
 compose.py drop  FOLDER PNG FRAME...         moments of the drop demo's sequence in FOLDER, side by side
 compose.py gap   FOLDER PNG FOLDER FRAME     the same moment of two sequences from nearby, by the cage's nodes and by the
@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter, ImageFont
 
-PANEL = 500       # pixels a side
+PANEL = 500       # pixels per side
 GAP = 6           # pixels between panels
-OVERSAMPLING = 2  # drawn larger and scaled down: f3d's own smoothing leaves the edges of scales ragged
+OVERSAMPLING = 2  # drawn larger and scaled down, as f3d's own smoothing leaves the edges of scales ragged
 BACKGROUND = (244, 242, 238)
 INK = (84, 86, 92)
-SUN = np.array((0.30, -1.0, -0.25))  # where its light goes, for the shadows
+SUN = np.array((0.30, -1.0, -0.25))  # the direction of the sun's light, for the shadows
 FLOOR_HALF_SIDE = 8.0
 
 # Position, focus, angle.
@@ -30,19 +30,19 @@ DROP_VIEW = (-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5
 GAP_VIEW = (-0.5, -0.80, 5.5), (-0.05, -0.72, 0.0), 20.0
 PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0, 1.5, 0.0), 29.0)
 
-TWIST = 1.8  # radians a unit of length
+TWIST = 1.8  # radians per unit of length
 TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle
 
 # The hand of demos/scenes/hand.cpp: its fingers go from its palm along `HAND_UP`, and bend towards `HAND_FRONT`.
 HAND_UP, HAND_FRONT = np.array((0.0, np.cos(np.radians(50)), np.sin(np.radians(50)))), np.array((0.0, -np.sin(np.radians(50)), np.cos(np.radians(50))))
 FINGER_X = np.array((-0.5, -0.25, 0.0, 0.25, 0.5))
 ROOT, LENGTH = 1.0, 0.7
-CURL = np.array((1.9, 0.0, 0.0, 1.9, 1.9))        # radians, of a whole finger's length
+CURL = np.array((1.9, 0.0, 0.0, 1.9, 1.9))        # radians, for a whole finger's length
 SPREAD = np.array((0.0, 0.22, -0.22, 0.0, 0.0))   # radians, to the side
 HAND_VIEW = (-0.6, 4.2, 2.4), (0.0, 0.62, 0.72), 27.0
 
-# Diffuse, ambient and specular colour, each as a part of the first. f3d lights from beside the camera alone: without an
-# ambient part what faces upwards is black.
+# Diffuse, ambient and specular colour, the last two as a share of the first. f3d has only a light beside the camera:
+# without an ambient component, surfaces that face upwards would be black.
 MATERIALS = {
     "scales": ((0.10, 0.44, 0.27), 1.0, 0.25, 0.25),
     "horn": ((0.80, 0.60, 0.34), 0.9, 0.25, 0.2),
@@ -62,7 +62,7 @@ MATERIALS = {
 
 
 def read_obj(path):
-    """Vertices, and the triangles of each (group, material), in order; vertices have their normals behind them, if any."""
+    """Vertices, and the triangles of each (group, material), in order; a vertex is followed by its normal, if any."""
     vertices, normals, parts, group, material, triangles = [], [], [], "", "", None
     for line in open(path):
         word, _, rest = line.partition(" ")
@@ -94,7 +94,7 @@ def read_cage(path):
 
 
 def smooth_normals(vertices, triangles):
-    """Of the vertices; f3d would shade each triangle flat."""
+    """Normals of the vertices, without which f3d would shade each triangle flat."""
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = np.zeros_like(vertices)
@@ -126,7 +126,7 @@ class Scene:
         """One panel, seen from a position. Shadows: images by material, see shadow()."""
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
-            # f3d finds the materials by the name of the file, not by a mtllib line.
+            # f3d finds the materials by the name of the file, not by an mtllib line.
             (folder / "scene.obj").write_text("\n".join(self.lines) + "\n")
             with open(folder / "scene.mtl", "w") as out:
                 for name, (colour, diffuse, ambient, specular) in MATERIALS.items():
@@ -147,13 +147,13 @@ class Scene:
 
 
 def on_floor(points, floor):
-    """Where on the floor, as texture coordinates, the sun puts the shadows of points."""
+    """The positions on the floor, as texture coordinates, of the shadows of points."""
     p = points + (floor - points[:, 1:2]) / SUN[1] * SUN
     return 0.5 + 0.5 * p[:, (0, 2)] / FLOOR_HALF_SIDE
 
 
 def shadow(size, *surfaces):
-    """A texture: white, and darker where a surface keeps the sun from the floor. f3d itself casts no shadows."""
+    """A texture: white, and darker where a surface shades the floor. f3d itself casts no shadows."""
     image = Image.new("L", (size, size), 255)
     draw = ImageDraw.Draw(image)
     for uv, triangles in surfaces:
@@ -176,7 +176,7 @@ def drop_panel(folder, frame, view):
     add_mesh(scene, vertices, parts)
     square = FLOOR_HALF_SIDE * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]) + (0, floor, 0)
     scene.add("floor", square, np.array([[0, 1, 2], [0, 2, 3]]), on_floor(square, floor))
-    corners = points[ramp.ravel()]  # not shared by faces: its edges are sharp
+    corners = points[ramp.ravel()]  # not shared by faces, as its edges are sharp
     scene.add("ramp", corners, np.arange(len(corners)).reshape(-1, 3), on_floor(corners, floor))
     used, renumbered = np.unique(dome, return_inverse=True)
     scene.add("dome", points[used], renumbered.reshape(-1, 3), on_floor(points[used], floor))
@@ -189,7 +189,7 @@ def drop_panel(folder, frame, view):
 
 
 def pile_panel(folder, frame, view):
-    """Without the wall that is between the viewer and the bodies."""
+    """A panel of the pile, without the wall that is between the viewer and the bodies."""
     scene = Scene()
     vertices, parts = read_obj(folder / f"frame_{frame:04d}.obj")
     add_mesh(scene, vertices, [(group, group, triangles) for group, _, triangles in parts])
@@ -200,7 +200,7 @@ def pile_panel(folder, frame, view):
     scene.add("floor", square, np.array([[0, 1, 2], [0, 2, 3]]), on_floor(square, floor))
     for k, (_, _, box) in enumerate(boxes[1:]):
         corners = points[box.ravel()]
-        is_pole = k % 3 == 2  # of each side: a wall that leans, one that does not, a pole
+        is_pole = k % 3 == 2  # on each side: a wall that leans, one that does not, a pole
         if not is_pole and corners.mean(axis=0) @ (view[0] * np.array((1, 0, 1))) > 0:
             continue
         scene.add("pole" if is_pole else "wall", corners, np.arange(len(corners)).reshape(-1, 3))
@@ -208,7 +208,7 @@ def pile_panel(folder, frame, view):
 
 
 def cage_panel(mesh, cage):
-    """The cage's boundary over the mesh, and its number of tets. Only what faces the viewer: the rest is clutter."""
+    """The cage's boundary over the mesh, and its number of tets. Only faces towards the viewer: the rest is clutter."""
     position, focus = (-1.3, 2.0, 4.1), (-0.03, 0.45, 0.05)
     scene = Scene()
     add_mesh(scene, *read_obj(mesh))
@@ -229,7 +229,7 @@ def cage_panel(mesh, cage):
     aside = np.cross(along, np.where(np.abs(along[:, 1:2]) < 0.9, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)))
     aside /= np.linalg.norm(aside, axis=1, keepdims=True)
     above = np.cross(along, aside)
-    # The more edges, the thinner: otherwise a fine cage hides its mesh.
+    # The more edges there are, the thinner they are: otherwise a fine cage hides its mesh.
     radius = min(0.005, 0.012 * len(edges) ** -0.22)
     ring = [radius * (np.cos(t) * aside + np.sin(t) * above) for t in 2 * np.pi / 3 * np.arange(3)]
     points = np.stack([tip + r for tip in (start, end) for r in ring], axis=1)
@@ -259,7 +259,7 @@ def turn(cage, target):
 
 
 def parts_beyond(tets, beyond):
-    """A number for each node: the least of the nodes that hang together with it by tets beyond the fingers' roots."""
+    """A number for each node: the least index of the nodes connected with it by tets beyond the fingers' roots."""
     part = np.arange(len(beyond))
     tets = tets[beyond[tets].all(axis=1)]
     while True:
@@ -272,8 +272,8 @@ def parts_beyond(tets, beyond):
 
 
 def open_hand(cage, target):
-    """Writes a cage of the hand with some fingers bent and two spread. Nodes move with the finger that they belong to: their
-    part's, or, where the cage joins all fingers to one part, the nearest."""
+    """Writes a cage of the hand with some fingers bent and two spread. Nodes move with the finger that they belong to:
+    that of their component, or, where the cage joins all fingers in one component, the nearest."""
     nodes, tets = read_cage(cage)
     x, up, front = nodes[:, 0], nodes @ HAND_UP, nodes @ HAND_FRONT
     part = parts_beyond(tets, up > ROOT)
@@ -309,7 +309,7 @@ def hand_panel(path):
 
 
 def save(panels, labels, gap, path):
-    """The panels side by side, each with its label in a corner, in 256 colours: a quarter of the size."""
+    """The panels side by side, each with its label in a corner, in 256 colours, which takes a quarter of the size."""
     sheet = Image.new("RGB", (len(panels) * (PANEL + gap) - gap, PANEL), "white")
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.truetype("DejaVuSans.ttf", 20)
@@ -317,7 +317,7 @@ def save(panels, labels, gap, path):
         x = k * (PANEL + gap)
         sheet.paste(panel, (x, 0))
         draw.text((x + 18, 14), label, INK, font)
-    # The commonest colours alone would leave out the eyes; the most different alone, soft shadows.
+    # The commonest colours alone would omit the eyes; the most different ones alone, soft shadows.
     common, different = sheet.quantize(155), sheet.quantize(100, Image.MAXCOVERAGE)
     palette = Image.new("P", (1, 1))
     palette.putpalette([*BACKGROUND, *common.getpalette()[:3 * 155], *different.getpalette()[:3 * 100]])

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Tells what tetskin_error_vs_time measured: tables, printed and as error_vs_time.md, and plots as PNG and SVG, beside its
-JSON file (or in the folder given).
+"""Presents the results of tetskin_error_vs_time: tables, printed and as error_vs_time.md, and plots as PNG and SVG, beside
+its JSON file (or in the folder given).
 
 error_vs_time.py RESULTS.json [FOLDER] [--target-error X] [--tets N] [--no-surface] [--quiet]
 
 For every scene: a table, orders, the reference's own error, and the cheapest setting below an error of X;
-SCENE_INTEGRATOR.png, error against time a frame; SCENE_INTEGRATOR_amplitude.png, of reduced bodies over the deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest
-to N tets (3,000); and, if f3d is there, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
+SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
+deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
+installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
 import argparse
@@ -21,32 +22,29 @@ import tempfile
 from pathlib import Path
 
 import matplotlib
+from matplotlib.lines import Line2D
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
+sys.dont_write_bytecode = True  # leaves nothing in the repository
+from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
 
-COLOURS = {"linear": "#0072B2", "quadratic": "#D55E00", "bullet": "#666666"}  # told apart by the colour-blind, too
+COLOURS = {"linear": BLUE, "quadratic": ORANGE, "bullet": GREY}
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
 STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--",
           "reduced": (0, (1, 1.5))}
-# Kinds that are there to tell what makes the difference, with one surface: told apart by colour and marker as well.
-KIND_COLOURS = {"same_calibrated": "#56B4E9", "split": "#009E73", "filled": "#CC79A7", "reduced": "#000000"}
+# Kinds that only serve to separate causes of error, with one surface: distinguished by colour and marker as well.
+KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000"}
 KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*"}
-# What stands behind a surface's name.
+# What follows a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
          "calibrated": ", calibrated", "reduced": ", reduced"}
-plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
-                     "svg.hashsalt": "tetskin"})
 
-
-HEAD = ("| tets | copies | stiffness | surface | error, RMS | largest | embedding alone | at the nodes | normals, degrees | "
-        "simulation, ms | skin, µs | total, ms | speed-up | attach, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
+HEAD = ("| tets | duplicates | stiffness | surface | error, RMS | largest | embedding only | at the nodes | normals, degrees | "
+        "simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
-SMOOTH = "\nOn a smooth map the theory's orders are 2 (linear) and 3 (quadratic).\n"
-CLAMPED = ("\nThe theory's orders, 2 for linear embedding and 3 for quadratic, are those of smooth maps; here the body is clamped "
-           "along edges, where its strain is not smooth, the reference is itself linear in each tet, and coarse cages have "
-           "another shape: they are fatter, and where they are not split, parts that lie close together are fused.\n")
+SMOOTH = "\nOn a smooth map the theoretical orders are 2 (linear) and 3 (quadratic).\n"
+CLAMPED = ("\nThe theoretical orders, 2 for linear embedding and 3 for quadratic, hold for smooth maps. Here the body is clamped "
+           "along edges, where its strain is not smooth, the reference itself is linear in each tet, and coarse cages have "
+           "another shape: they are thicker, and without duplicate elements nearby components are fused.\n")
 
 
 def setting(row):
@@ -60,9 +58,9 @@ def setting(row):
 
 def tets_of(row):
     """A row's cage, as cells of a table."""
-    factor = f"times {row['stiffness_factor']:.3f}" if row["stiffness_factor"] != 1 else ""
+    factor = f"scaled by {row['stiffness_factor']:.3f}" if row["stiffness_factor"] != 1 else ""
     if row["calibration_left"] > 0:
-        factor += f" (left: {row['calibration_left']:.1%})"
+        factor += f" (remaining error {row['calibration_left']:.1%})"
     return f"| {row['tets']:,.0f} | {row['copies']:,.0f} | {factor} |"
 
 
@@ -74,7 +72,7 @@ def is_choice(row):
 def table_line(row, reference_error, integrator, against):
     memory = f"{row['memory_bytes'] / 1e6:.1f}"
     if row["interpolation"] == "reference":
-        whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's force, {row['integrator']}"
+        whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's elasticity, {row['integrator']}"
         about = f"about {reference_error:.1e}" if row["integrator"] == integrator and reference_error > 0 else ""
         return (f"{tets_of(row)} {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
                 f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
@@ -88,72 +86,73 @@ def table_line(row, reference_error, integrator, against):
             + (f" {row['error_against_bullet_rms']:.2e} | {row['speedup_against_bullet']:.4g} |" if against else "") + "\n")
 
 
-NOT_REDUCED = ("\nNo reduced bodies: the bar's ends are driven, and what moves by its vibrations alone has none that takes them "
-               "along; Bullet's constraint for a reduced body's nodes holds them where they began.\n")
+NOT_REDUCED = ("\nNo reduced bodies: the ends of the bar are driven, and vibration modes cannot follow them; Bullet's constraint for "
+               "the nodes of a reduced body keeps them at their initial positions.\n")
 
 
 def orders_text(scene):
-    text = "\nObserved orders (error over edge length; total / embedding alone):\n\n"
+    text = "\nObserved orders (error over edge length; total / embedding only):\n\n"
     for order in scene["orders"]:
         if order["material"] == "same":
             steps = [f" {step['total']:.1f} / {step['embedding']:.1f} ({step['coarse_tets']:,.0f} to "
                      f"{step['fine_tets']:,.0f} tets)" for step in order["steps"]]
             overall = order["overall"]
-            text += (f"- {order['interpolation']}: {overall['total']:.1f} / {overall['embedding']:.1f} over all;"
+            text += (f"- {order['interpolation']}: {overall['total']:.1f} / {overall['embedding']:.1f} overall;"
                      + ",".join(steps) + "\n")
     return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED)
 
 
 def reduction_text(scene):
-    """What of reduced bodies the table does not show, and whether to take one."""
+    """Facts about reduced bodies that the table does not show, and whether to use one."""
     rows = [row for row in scene["rows"] if row["modes"]]
     if not rows:
         return NOT_REDUCED if scene["scene"] == "twist" else ""
     shown = max(row["tets"] for row in rows)
-    text = f"\nReduced bodies: modes of the reference's tets, found in {rows[0]['modes_ms'] / 1000:.3g} s; "
-    text += "the cage's nodes tell them to " + ", ".join(
+    text = f"\nReduced bodies: modes of the reference's tets, computed in {rows[0]['modes_ms'] / 1000:.3g} s; "
+    text += "relative error of the modes at the cage's nodes: " + ", ".join(
         f"{row['projection_error']:.1%} ({row['modes']:.0f} modes)" for row in rows if row["tets"] == shown) + ". "
     limit = scene["reduction_limit"]
     if scene["scene"] == "sag" and limit["amplitude"] > 0:
-        text += (f"Linear modes serve up to a deformation of {limit['amplitude']:.2g} (RMS): beyond, {limit['modes']:.0f} of "
-                 "them are wrong by more than a tenth of it. ")
+        text += (f"Linear modes are usable up to a deformation of {limit['amplitude']:.2g} (RMS): beyond it, the error with "
+                 f"{limit['modes']:.0f} modes exceeds a tenth of the deformation. ")
     return text + scene["reduction_advice"] + "\n"
 
 
 def cheapest_text(scene, target):
     choices = [row for row in scene["rows"] if is_choice(row)]
-    # What the library does by default, where that was measured.
+    # The library's default, where it was measured.
     choices = [row for row in choices if row["material"] == "calibrated"] or choices
     good = [row for row in choices if row["error_total_rms"] <= target]
     if not good:
-        return f"\nNo setting stays below an error of {target:g}.\n"
+        return f"\nNo setting has an error below {target:g}.\n"
     best = min(good, key=lambda row: row["total_ms"])
-    return (f"\nCheapest below an error of {target:g}: {best['tets']:,.0f} tets, {setting(best)}: {best['total_ms']:.3g} ms "
-            f"a frame, error {best['error_total_rms']:.2e}.\n")
+    return (f"\nCheapest setting with an error below {target:g}: {best['tets']:,.0f} tets, {setting(best)}: {best['total_ms']:.3g} ms "
+            f"per frame, error {best['error_total_rms']:.2e}.\n")
 
 
 def reference_text(reference):
     count = f"{reference['tets']:,} tets"
     if reference["from"] == "built":
-        text = f"The reference is a built cage of about {count}, split where parts are near to each other, filled, not fitted"
+        text = f"The reference is a built cage of about {count}, with duplicate elements and volume fractions, not fitted"
     else:
-        whose = "made by formula" if reference["from"] == "formula" else f"of {reference['from']}"
-        text = f"The reference is a mesh of {count} {whose}, not built as the cages are"
+        whose = "made by formula" if reference["from"] == "formula" else f"from {reference['from']}"
+        text = f"The reference is a mesh of {count} {whose}, not a built cage"
     if reference["stiffness_factor"] == 1:
-        return text + "; it is not calibrated, and a little too stiff itself.\n"
-    return text + f", and calibrated: its stiffness is times {reference['stiffness_factor']:.3f}.\n"
+        return text + "; it is not calibrated, and slightly too stiff itself.\n"
+    return text + f", and calibrated: its stiffness is scaled by {reference['stiffness_factor']:.3f}.\n"
 
 
-KINDS_TEXT = ("Cages: without a word, bare tets that are all full of material, and fuse parts that are near to each other; "
-              "*split*, a tet for each of these; *filled*, as heavy and stiff as what is in them; *calibrated*, split, filled "
-              "and softened, which is the library's own way; *bare, calibrated*, only softened.\n")
+KINDS_TEXT = ("Cages: without a note, bare tets, each entirely full of material, which fuse nearby components; *split*, with "
+              "duplicate elements for such components; *filled*, with mass and stiffness weighted by how much of the mesh each "
+              "tet contains; *calibrated*, split, filled and calibrated, as the library does by default; *bare, calibrated*, "
+              "only calibrated.\n")
 
 
 def tables(results, target):
-    """All that the results say in words, as Markdown."""
+    """Everything that the results say in words, as Markdown."""
     text = (f"# Error against run time: {results['model']}\n\n{results['vertices']:,} vertices, {results['triangles']:,} "
-            "triangles. Errors in diagonals of the mesh's box, over all vertices and frames; times of the processor in one "
-            "thread, medians over the frames. Bold: nothing is both faster and more accurate. "
+            "triangles. Errors are fractions of the diagonal of the mesh's bounding box, over all vertices and frames; times are "
+            "processor times in one thread, medians over the frames. Bold: no other setting is both faster and more accurate. "
             + reference_text(results["reference"]) + KINDS_TEXT)
     for scene in results["scenes"]:
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
@@ -162,11 +161,11 @@ def tables(results, target):
         text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
         text += "".join(table_line(row, scene["reference_error"], scene["integrator"], against) for row in scene["rows"])
         if against:
-            text += ("\nTwo references of the same cage and material: by the library's force and solver, and by Bullet's "
-                     "own force, which turns and damps otherwise.\n")
+            text += ("\nTwo references with the same cage and material: one with the library's elasticity and solver, one with "
+                     "Bullet's elasticity, which handles rotation and damping differently.\n")
         if scene["reference_error"] > 0:
-            text += (f"\nThe reference itself is wrong by about {scene['reference_error']:.1e}: smaller differences mean "
-                     "nothing, by the finest cages that are made as it is.\n")
+            text += (f"\nThe error of the reference itself is about {scene['reference_error']:.1e}, estimated from the finest "
+                     "cages that are made as it is; smaller differences are not significant.\n")
         text += reduction_text(scene)
         text += orders_text(scene)
         if target:
@@ -211,7 +210,7 @@ def draw_totals(axes, scene):
 
 
 def draw_reduced(axes, rows, look):
-    """A line a cage, by the number of modes."""
+    """One line per cage, by the number of modes."""
     for tets in sorted({row["tets"] for row in rows}):
         line = sorted((row for row in rows if row["tets"] == tets), key=lambda row: row["modes"])
         axes.plot([r["total_ms"] for r in line], [r["error_total_rms"] for r in line], linewidth=1.2, zorder=4,
@@ -222,7 +221,7 @@ def draw_reduced(axes, rows, look):
 
 
 def draw_embedding(axes, scene):
-    """Of one kind of cages: the material does not change what the embedding gets wrong."""
+    """Draws the embedding errors of one kind of cage, as they do not depend on the material."""
     for interpolation in ("linear", "quadratic"):
         rows = any_series(scene, (interpolation,))
         axes.plot([r["total_ms"] for r in rows], [r["error_embedding_rms"] for r in rows], color=COLOURS[interpolation],
@@ -236,7 +235,7 @@ def draw_front(axes, scene):
 
 
 def any_series(scene, interpolations, materials=tuple(STYLES)):
-    """The first of these lines that there is."""
+    """The first of these series that is not empty."""
     return next(filter(None, (series(scene, i, m) for i in interpolations for m in materials)), [])
 
 
@@ -268,11 +267,11 @@ def legend_of(axes, scene):
                     modes = " (number: modes)" if material == "reduced" else ""
                     entries.append(Line2D([], [], linestyle=style, label=interpolation + KINDS[material] + modes,
                                           **look_of(interpolation, material)))
-            entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding alone",
+            entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding only",
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
     if series(scene, "bullet", "same"):
         entries.append(Line2D([], [], linestyle="", color=COLOURS["bullet"], marker="x", label="Bullet's render nodes"))
-    entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="nothing faster and better"))
+    entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="Pareto-optimal: none faster and more accurate"))
     if reference_of(scene) and scene["reference_error"] > 0:
         entries.append(Line2D([], [], color="#000000", alpha=0.12, linewidth=9, label="below the reference's own error"))
     axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
@@ -292,8 +291,8 @@ def error_against_time(scene, name):
     label_sizes(axes, scene)
     draw_reference(axes, scene)
     axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
-    axes.set_xlabel("milliseconds a frame (simulation and skin)" if reference_of(scene) else "milliseconds a frame (skin)")
-    axes.set_ylabel("error, RMS, box diagonals")
+    axes.set_xlabel("milliseconds per frame (simulation and skin)" if reference_of(scene) else "milliseconds per frame (skin)")
+    axes.set_ylabel("error, RMS, over the box's diagonal")
     axes.set_title(f"{title_of(scene)} ({name})", fontsize=11, loc="left")
     legend_of(axes, scene)
     return figure
@@ -314,7 +313,7 @@ def error_over_frames(scene, name, tets):
                   alpha=0.5 if wide else 1)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("seconds")
-    axes.set_ylabel("error, RMS, box diagonals")
+    axes.set_ylabel("error, RMS, over the box's diagonal")
     axes.set_title(f"{title_of(scene)} ({name}, about {tets:,.0f} tets)", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9, handlelength=4)
@@ -322,7 +321,7 @@ def error_over_frames(scene, name, tets):
 
 
 def error_over_amplitude(scene, name, tets):
-    """Frame by frame: how wrong reduced bodies and a cage are, over how far the surface is from rest."""
+    """Frame by frame: the errors of reduced bodies and of a cage, over the distance of the surface from rest."""
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
     rows = [r for r in scene["rows"] if r["modes"] and r["finite"]]
     rows = [r for r in rows if r["tets"] == max(r["tets"] for r in rows)]
@@ -337,7 +336,7 @@ def error_over_amplitude(scene, name, tets):
     low, high = axes.get_xlim()
     axes.plot([low, high], [0.1 * low, 0.1 * high], color="#999999", linewidth=0.8, label="a tenth of the deformation")
     axes.set_xlim(low, high)
-    axes.set_xlabel("deformation: distance from rest, RMS, box diagonals")
+    axes.set_xlabel("deformation: distance from rest, RMS, over the box's diagonal")
     axes.set_ylabel("error, RMS")
     axes.set_title(f"{title_of(scene)} ({name})", fontsize=11, loc="left")
     axes.grid(True, color="#dddddd", linewidth=0.6)
@@ -372,7 +371,7 @@ def surface(path, name):
     axes.set_axis_off()
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, most), "viridis")
     bar = figure.colorbar(scale, ax=axes, shrink=0.75)
-    bar.set_label("error, RMS over the frames, box diagonals")
+    bar.set_label("error, RMS over the frames, over the box's diagonal")
     bar.ax.ticklabel_format(style="sci", scilimits=(-2, 2))
     axes.set_title(name, fontsize=11, loc="left")
     return figure
@@ -381,7 +380,7 @@ def surface(path, name):
 def save(figure, folder, name):
     for ending in ("png", "svg"):
         path = folder / f"{name}.{ending}"
-        figure.savefig(path, dpi=110, bbox_inches="tight", metadata={"Date": None} if ending == "svg" else None)
+        figure.savefig(path, dpi=DPI, bbox_inches="tight", metadata={"Date": None} if ending == "svg" else None)
     plt.close(figure)
     return folder / f"{name}.png"
 

@@ -48,17 +48,17 @@ def draw_bullets(cells, path):
         axes.set_title("implicit: one Newton step" if implicit else "explicit, implicit damping")
     both[0].set_ylabel("Young's modulus, Pa")
     bar = figure.colorbar(image, ax=both, extend="max")
-    bar.set_label("largest extent, times the body's; × exploded")
+    bar.set_label("largest extent, relative to the body's size; × exploded")
     figure.savefig(path, dpi=110)
 
 
 def draw_ours(cells, path):
     figure, axes = plt.subplots(figsize=(6.2, 4.4), layout="constrained")
     image = draw(axes, cells)
-    axes.set_title("tetskin's force and solver")
+    axes.set_title("tetskin's elasticity and solver")
     axes.set_ylabel("Young's modulus, Pa")
     bar = figure.colorbar(image, ax=axes, extend="max")
-    bar.set_label("largest extent, times the body's; × exploded\n○ Bullet's force explodes, both ways (run to $10^7$ Pa)")
+    bar.set_label("largest extent, relative to the body's size; × exploded\n○ Bullet's elasticity explodes, explicit and implicit (run to $10^7$ Pa)")
     figure.savefig(path, dpi=110)
 
 
@@ -68,7 +68,7 @@ def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         cells = [case for case in json.load(file) if case["group"] == "map"]
     if not cells:
-        sys.exit(f"{sys.argv[1]}: has no cells of a map")
+        sys.exit(f"{sys.argv[1]}: has no cases of the group 'map'; make it with tetskin_stress --only map/ --json")
     bullets = [cell for cell in cells if cell["force"] == "neo_hookean"]
     ours = [cell for cell in cells if cell["force"] == "tetskin"]
     name, extension = os.path.splitext(sys.argv[2])
