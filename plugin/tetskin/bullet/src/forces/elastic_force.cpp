@@ -8,11 +8,11 @@ namespace tetskin {
 
 ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
                            const ElasticMaterial& material, std::vector<double> stiffnessScale,
-                           const SolverSettings& limits)
-    : material_(material), limits_(limits) {
+                           const SolverSettings& settings)
+    : material_(material), settings_(settings) {
   assert(checkMaterial(material).ok() && rest.count() == static_cast<std::size_t>(body.m_tetras.size()));
   assert(stiffnessScale.empty() || stiffnessScale.size() == rest.count());
-  assert(limits.tolerance >= 0.0 && limits.tolerance < 1.0 && limits.iterations >= 1);
+  assert(settings.tolerance >= 0.0 && settings.tolerance < 1.0 && settings.iterations >= 1);
   body_.body = &body;
   body_.world = &world;
   body_.worldInfo = &world.getWorldInfo();

@@ -20,10 +20,10 @@ class ElasticForce : public InactiveForce {
   /// material        checked: see `checkMaterial`
   /// stiffnessScale  tetCount, above 0; or empty: 1
   ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
-               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverSettings& limits);
+               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);
-  const SolverSettings& limits() const { return limits_; }
+  const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 
   /// Called in each step: rebuilds what the application has changed in the body.
@@ -32,7 +32,7 @@ class ElasticForce : public InactiveForce {
 
  private:
   ElasticMaterial material_;
-  SolverSettings limits_;
+  SolverSettings settings_;
   ForcedBody body_;
 };
 

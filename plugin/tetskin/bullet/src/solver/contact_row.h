@@ -51,8 +51,8 @@ struct ContactRow {
   btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< of a joint: projection to the constrained directions
 
   btVector3 normal;
-  btScalar lowest = 0,
-           highest = BT_LARGE_FLOAT;  ///< bound of the impulse along the normal; of a joint, in any direction
+  /// Bounds of the impulse along the normal; of a joint, in any direction.
+  btScalar lowest = 0, highest = BT_LARGE_FLOAT;
   btScalar friction = 0;
   btScalar stiffness = 0;               ///< D, in masses
   btScalar tangentStiffness = 0;        ///< T
@@ -81,8 +81,8 @@ struct Sticking {
   std::uint32_t point = 0;
   const btCollisionObject* object = nullptr;
   btVector3 normal;
-  btVector3
-      position;  ///< in the object's frame; against a soft body: its offset from the sticking position, world space
+  /// In the object's frame; against a soft body: its offset from the sticking position, world space.
+  btVector3 position;
   btScalar normalForce = 0;  ///< of the step that stored it
   bool stuck = false;        ///< true if the point stuck in that step, false if it slid
 };

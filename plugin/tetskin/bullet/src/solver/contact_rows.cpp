@@ -144,7 +144,7 @@ btScalar seenGap(btScalar gap, const ContactRow& row) {
 }
 
 /// The offset without its components that are below the rounding.
-btVector3 seenComponent(const btVector3& offset, const btVector3& position) {
+btVector3 visibleOffset(const btVector3& offset, const btVector3& position) {
   const btVector3 rounding = roundingOf(position);
   btVector3 seen = offset;
   for (int k = 0; k < 3; ++k) {
@@ -167,7 +167,7 @@ void recall(const SolvedBody& body, const btTransform& frame, btScalar seconds, 
     row.stickingPosition = known->position;
     btVector3 offset = row.ends[1].isSoft() ? known->position : row.position - frame * known->position;
     offset -= row.normal.dot(offset) * row.normal;
-    row.offsetVelocity = seenComponent(offset, row.position) / seconds;
+    row.offsetVelocity = visibleOffset(offset, row.position) / seconds;
     row.normalBound = known->normalForce * seconds;
     row.stuck = known->stuck;
     return;

@@ -124,8 +124,8 @@ class RigidRowCollector {
 
 /// The rows of a joint, in the form in which Bullet's solver asks for them.
 struct JointRows {
-  static constexpr std::size_t kMax = 6, kStride = 16;
-  std::array<btScalar, kMax * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
+  static constexpr std::size_t kMaxRows = 6, kStride = 16;
+  std::array<btScalar, kMaxRows * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
       highest{};
 
   btTypedConstraint::btConstraintInfo2 info(btScalar seconds) {
@@ -146,8 +146,8 @@ struct JointRows {
   }
 };
 
-btVector3 vectorAt(const std::array<btScalar, JointRows::kMax * JointRows::kStride>& from, int row) {
-  assert(row >= 0 && row < static_cast<int>(JointRows::kMax));
+btVector3 vectorAt(const std::array<btScalar, JointRows::kMaxRows * JointRows::kStride>& from, int row) {
+  assert(row >= 0 && row < static_cast<int>(JointRows::kMaxRows));
   const auto at = static_cast<std::size_t>(row) * JointRows::kStride;
   return {from[at], from[at + 1], from[at + 2]};
 }
@@ -156,7 +156,7 @@ btVector3 vectorAt(const std::array<btScalar, JointRows::kMax * JointRows::kStri
 void RigidRowCollector::addJoint(btTypedConstraint& joint) {
   btTypedConstraint::btConstraintInfo1 counts{};
   joint.getInfo1(&counts);
-  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMax)) return;
+  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMaxRows)) return;
   JointRows from;
   from.lowest.fill(-BT_LARGE_FLOAT);
   from.highest.fill(BT_LARGE_FLOAT);

@@ -81,7 +81,7 @@ void SolverBodies::listAwake() {
   for (std::size_t k = 0; k < awake_.size(); ++k) {
     bodies_[k].body = awake_[k];
     bodies_[k].first = first;
-    bodies_[k].limits = &kBulletsBodies;
+    bodies_[k].settings = &kBulletsBodies;
     first += awake_[k]->m_nodes.size();
     indices_[awake_[k]] = k;
   }
@@ -99,7 +99,7 @@ void SolverBodies::takeElastic(const ForceList& forces) {
     const std::size_t k = indexOf(elastic->body().body);
     if (k == bodies_.size()) continue;
     bodies_[k].elastic = &elastic->body();
-    bodies_[k].limits = &elastic->limits();
+    bodies_[k].settings = &elastic->settings();
   }
 }
 

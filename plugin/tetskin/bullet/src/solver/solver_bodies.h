@@ -31,7 +31,7 @@ struct SolvedBody {
   btSoftBody* body = nullptr;
   int first = 0;                  ///< number of its first node in Bullet's vectors
   ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
-  const SolverSettings* limits = nullptr;
+  const SolverSettings* settings = nullptr;
   Dynamics* dynamics = nullptr;
   bool needsDeformation = false;              ///< Bullet's own deformation gradients are needed
   std::vector<Sticking>* sticking = nullptr;  ///< of the step before, by number of the point; for elastic bodies only

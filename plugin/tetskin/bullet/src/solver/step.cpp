@@ -179,15 +179,15 @@ void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* in
   dynamics.matrix().free();
   if (body.waits) return dynamics.startLater(static_cast<double>(dt()));
   dynamics.start(static_cast<double>(dt()), inner);
-  if (body.elastic) solveAlone(body, body.wasTouched ? 0 : body.limits->iterations, inner);
+  if (body.elastic) solveAlone(body, body.wasTouched ? 0 : body.settings->iterations, inner);
 }
 
 void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const {
   assert(body.elastic && maximum >= 0);
   const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
-  limits.tolerance = body.limits->tolerance;
-  limits.iterations = body.limits->iterations;
+  limits.tolerance = body.settings->tolerance;
+  limits.iterations = body.settings->iterations;
   limits.floor = std::max(kUnseen * seconds, body.dynamics->roundingSpeed(seconds));
   limits.enough = limits.tolerance * limits.tolerance * body.dynamics->squaredDeviation();
   body.solve->start({&body.dynamics->matrix()}, limits, {}, inner);
@@ -293,9 +293,9 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
     // stopped.
     if (first.waits) {
       first.dynamics->restart(inner);
-      solveAlone(first, first.limits->iterations, inner);
+      solveAlone(first, first.settings->iterations, inner);
     } else {
-      first.solve->iterate(first.limits->iterations, inner);
+      first.solve->iterate(first.settings->iterations, inner);
       first.iterations = first.solve->iterations();
     }
   }

@@ -43,8 +43,8 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   double squaredStart = 0.0;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const SolvedBody& body = bodyAt(k);
-    limits.tolerance = std::min(limits.tolerance, body.limits->tolerance);
-    limits.iterations = std::max(limits.iterations, body.limits->iterations);
+    limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
+    limits.iterations = std::max(limits.iterations, body.settings->iterations);
     if (body.elastic && !body.waits) limits.enough += body.solve->enough();
     changed |= !body.fixed.empty() || body.touched;
     stiff |= body.dynamics->isStiff();
@@ -75,8 +75,8 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   double byMatrix = 0.0, byMasses = 0.0, tolerance = 1.0;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const SolvedBody& body = bodyAt(k);
-    tolerance = std::min(tolerance, body.limits->tolerance);
-    limits.iterations = std::max(limits.iterations, body.limits->iterations);
+    tolerance = std::min(tolerance, body.settings->tolerance);
+    limits.iterations = std::max(limits.iterations, body.settings->iterations);
     byMatrix += body.dynamics->squaredByMatrix();
     byMasses += body.dynamics->squaredChange();
   }

@@ -172,7 +172,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
   assert(k >= 0 && static_cast<std::size_t>(k) < heads_.size());
   const ShapeData& data = now_.second->data();
   const DeformedTet& deformed = now_.second->deformed(tet);
-  Position position;
+  SamplePosition position;
   deformed.weightsAt(now_.first->sampleAt(sample), position.weights);
   if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(position.weights)) return atSurface();
   position.rest = restPoint(data, tet, position.weights);
@@ -197,7 +197,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
 }
 
 /// The motion of the sample in the body's rest space.
-btVector3 PairSearch::restMotion(int sample, const Position& position) const {
+btVector3 PairSearch::restMotion(int sample, const SamplePosition& position) const {
   const ShapeData& in = now_.second->data();
   const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
   const btVector3 velocity =
@@ -250,7 +250,7 @@ void PairSearch::count(const btVector3& own, const Touch& touch) {
   ++overlap_.inside;
 }
 
-void PairSearch::touch(int sample, int run, const Position& position) {
+void PairSearch::touch(int sample, int run, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
   const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, position);

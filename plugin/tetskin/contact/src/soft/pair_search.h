@@ -53,7 +53,7 @@ class PairSearch {
 
  private:
   /// A position of a sample in the second body: where that body folds, there are several.
-  struct Position {
+  struct SamplePosition {
     int tet = -1, next = -1;
     btScalar weights[4] = {};
     btVector3 rest{0, 0, 0};
@@ -73,9 +73,9 @@ class PairSearch {
   Clearance testTet(int tet);
   Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
-  void touch(int sample, int run, const Position& position);
+  void touch(int sample, int run, const SamplePosition& position);
   void count(const btVector3& own, const Touch& touch);
-  btVector3 restMotion(int sample, const Position& position) const;
+  btVector3 restMotion(int sample, const SamplePosition& position) const;
   btVector3 ownNormal(int sample, int run) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
@@ -86,8 +86,8 @@ class PairSearch {
   ContactBox around_;                   ///< box of its samples
   std::vector<int> touched_, pierced_;  ///< samples of the step before
   std::vector<btScalar> inside_;        ///< by sample of the run: its least weight in the tet
-  std::vector<Position> positions_;
-  std::vector<int> heads_;  ///< by sample of the run: index in `places_`
+  std::vector<SamplePosition> positions_;
+  std::vector<int> heads_;  ///< by sample of the run: index in `positions_`
   std::vector<Touch>* touches_ = nullptr;
   std::vector<int> touchOfNode_;
   Overlap overlap_;

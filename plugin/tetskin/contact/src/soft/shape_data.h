@@ -51,11 +51,11 @@ struct ShapeData {
   std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
   // Separate arrays of those values that are read for many samples in sequence.
   std::vector<btVector3> sampleRest;
-  std::vector<btVector3>
-      sampleNormals;                  ///< outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none
-  std::vector<int> sampleNodes;       ///< the node with the largest clamped weight
-  std::vector<btScalar> weights[4];   ///< the weights again, by node of the tet
-  std::vector<CarriedCells> carried;  ///< by tet; empty unless the cage is split
+  /// Outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none.
+  std::vector<btVector3> sampleNormals;
+  std::vector<int> sampleNodes;                   ///< the node with the largest clamped weight
+  std::vector<btScalar> weights[4];               ///< the weights again, by node of the tet
+  std::vector<CarriedCells> carried;              ///< by tet; empty unless the cage is split
   std::vector<FilledComponent> filled;            ///< by tet
   std::vector<std::vector<int>> otherComponents;  ///< by run: see tetsOfOtherComponents
   Bvh runTree;                                    ///< over all runs

@@ -116,8 +116,8 @@ void PinnedNodes::add(const Vector3d& point, const Vector3d& nodeVelocity) {
   }
   positions_ += arm;
   velocities_ += nodeVelocity;
-  positionsByPosition_ += arm * arm.transpose();
-  velocitiesByPosition_ += nodeVelocity * arm.transpose();
+  positionMoments_ += arm * arm.transpose();
+  velocityMoments_ += nodeVelocity * arm.transpose();
 }
 
 void PinnedNodes::finish(double seconds) {
@@ -127,9 +127,9 @@ void PinnedNodes::finish(double seconds) {
   centre = first_ + mean;
   velocity = velocities_ / count_;
   // Relative to the centre.
-  const Matrix3d rates = velocitiesByPosition_ - velocity * positions_.transpose();
+  const Matrix3d rates = velocityMoments_ - velocity * positions_.transpose();
   if (kind == Point || rates.isZero(0.0)) return;
-  const Matrix3d spread = positionsByPosition_ - positions_ * mean.transpose();
+  const Matrix3d spread = positionMoments_ - positions_ * mean.transpose();
   if (kind == Line) {
     const Vector3d moved = axis + seconds / axis.dot(spread * axis) * (rates * axis);
     turn = rotationBetween(axis.normalized(), moved.normalized());

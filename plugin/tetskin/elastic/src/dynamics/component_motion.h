@@ -32,9 +32,9 @@ class PinnedNodes {
  private:
   Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
   int count_ = 0;
-  Eigen::Vector3d positions_ = Eigen::Vector3d::Zero(),
-                  velocities_ = Eigen::Vector3d::Zero();  ///< sums
-  Eigen::Matrix3d positionsByPosition_ = Eigen::Matrix3d::Zero(), velocitiesByPosition_ = Eigen::Matrix3d::Zero();
+  // Sums over the nodes of x, v, x x^T and v x^T, with x relative to the first one.
+  Eigen::Vector3d positions_ = Eigen::Vector3d::Zero(), velocities_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d positionMoments_ = Eigen::Matrix3d::Zero(), velocityMoments_ = Eigen::Matrix3d::Zero();
 };
 
 /// Sums over the nodes of a component that are not pinned, about a point near them. They are plain numbers, as they are
