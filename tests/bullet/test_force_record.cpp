@@ -77,7 +77,7 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
     return static_cast<double>(origin.x() - centre.x()) + x;
   };
   const double a = -arm(left), b = arm(right);
-  EXPECT_GT(a, b + 0.1);
+  EXPECT_GT(a, b + 0.09);
   const btVector3 onLeft = forces->forcesOn(*left.body).total().force,
                   onRight = forces->forcesOn(*right.body).total().force;
   EXPECT_NEAR(-onLeft.y(), kWeight * b / (a + b), 0.01 * kWeight * b / (a + b));

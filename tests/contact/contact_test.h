@@ -5,6 +5,7 @@
 #pragma once
 
 #include "bullet/deformable_test.h"
+#include "support/points_within.h"
 
 #include <tetskin/contact/surface_contact.h>
 
@@ -16,18 +17,6 @@ namespace tetskin::test {
 
 /// The largest side of the cage's bounding box.
 constexpr double kBodySize = 1.0;
-
-/// Points in the cube of this half side, the same points each time.
-inline std::vector<btVector3> pointsWithin(btScalar reach, int count) {
-  std::mt19937 random(7);
-  std::vector<btVector3> points;
-  const auto coordinate = [&] { return reach * (btScalar(random()) / btScalar(0x80000000u) - 1); };
-  for (int k = 0; k < count; ++k) {
-    const btScalar x = coordinate(), y = coordinate(), z = coordinate();
-    points.emplace_back(x, y, z);
-  }
-  return points;
-}
 
 /// A ball around the origin, cut about as finely along its rings as across them.
 inline TriangleMesh ballMesh(int rings, double radius) {

@@ -7,7 +7,7 @@
 #include "contact_test.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
-#include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 
 #include <cmath>
 #include <memory>

@@ -3,7 +3,7 @@
 #include "contact_test.h"
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-#include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 
 namespace tetskin::test {
 namespace {

@@ -5,6 +5,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/shared/bodies/contact_filter.h>
+#include <tetskin/bullet/src/solver/node_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
 
 #include <cassert>
@@ -69,11 +70,26 @@ void DeformableSolver::predictMotion(btScalar dt) {
   impl.solving ? impl.predict() : btDeformableBodySolver::predictMotion(dt);
 }
 
+/// Returns false if Bullet has to search for the contacts.
+bool DeformableSolver::Impl::findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object) {
+  using Collision = btSoftBody::fCollision;
+  const std::size_t index = bodies.indexOf(&body);
+  if (index == bodies.bodies().size() || (body.m_cfg.collisions & Collision::RVSmask) != Collision::SDF_RD)
+    return false;
+  const SolvedBody& solved = bodies.bodies()[index];
+  if (!solved.paths) return false;
+  if ((body.m_cfg.collisions & Collision::SDF_RDN) != 0) {
+    findNodeContacts(body, object, *solved.paths, solved.elastic != nullptr);
+  }
+  return true;
+}
+
 /// Bullet calls this for a body and a rigid object whose boxes overlap.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
   if (impl_->solving) {
     if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
     impl_->obstacleChanges.notice(*body, *object);
+    if (impl_->findNodeContactsOf(*body, *object)) return;
   }
   btDeformableBodySolver::processCollision(body, object);
 }

@@ -10,9 +10,11 @@
 namespace tetskin {
 namespace {
 
-/// Padding of the leaves of a body's trees, in collision margins: with a larger one, contact searches visit more
-/// leaves, and the trees are refitted less often.
-constexpr btScalar kPadding = 2;
+/// Padding of the leaves, in collision margins, and for bodies that move faster in steps: with a larger one, rays visit
+/// more leaves, and the trees are refitted less often.
+constexpr btScalar kMinPadding = 2, kPaddingSteps = 10;
+/// Bound of the padding, in diagonals of the body's box.
+constexpr btScalar kMaxPadding = btScalar(0.1);
 
 }  // namespace
 
@@ -27,38 +29,31 @@ bool collidesByFaces(btSoftBody& body) {
 
 void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {
   assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
+  if (points_.size() != 3 * dynamics.nodeCount()) ready_ = false;
+  if (ready_) drift_ = farthest(dynamics);
+  fitAgain(body, dynamics, step);
+}
+
+void PaddedTrees::fitAgain(btSoftBody& body, Dynamics& dynamics, btScalar step) {
+  if (body.m_fdbvt.empty() || holds(step)) return;
   const btScalar margin = body.getCollisionShape()->getMargin();
-  if (pad != kPadding * margin) ready = false;
-  pad = kPadding * margin;
-  drift = ready ? furthest(dynamics) : pad;
-  if (holds(step)) return;
-  body.m_sst.radmrg = pad;
-  body.updateNodeTree(true, true);
-  if (!body.m_fdbvt.empty()) body.updateFaceTree(true, true);
+  const btScalar maximum = kMaxPadding * (body.m_bounds[1] - body.m_bounds[0]).length();
+  pad_ = std::max(kMinPadding * margin, std::min(kPaddingSteps * step, maximum));
+  body.m_sst.radmrg = pad_;
+  body.updateFaceTree(true, true);
   body.m_sst.radmrg = margin;
-  keep(dynamics);
+  points_.resize(3 * dynamics.nodeCount());
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points_[3 * n]);
+  drift_ = 0;
+  ready_ = true;
 }
 
-void PaddedTrees::fitBefore(btSoftBody& body, btScalar step) {
-  if (holds(step)) return;
-  body.updateNodeTree(true, false);
-  if (!body.m_fdbvt.empty()) body.updateFaceTree(true, false);
-  ready = false;
-}
-
-void PaddedTrees::keep(Dynamics& dynamics) {
-  points.resize(3 * dynamics.nodeCount());
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) std::copy_n(dynamics.point(n), 3, &points[3 * n]);
-  drift = 0;
-  ready = true;
-}
-
-btScalar PaddedTrees::furthest(Dynamics& dynamics) const {
-  assert(points.size() == 3 * dynamics.nodeCount());
+btScalar PaddedTrees::farthest(Dynamics& dynamics) const {
+  assert(points_.size() == 3 * dynamics.nodeCount());
   btScalar maximum = 0;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     const btScalar* now = dynamics.point(n);
-    const btScalar x = now[0] - points[3 * n], y = now[1] - points[3 * n + 1], z = now[2] - points[3 * n + 2];
+    const btScalar x = now[0] - points_[3 * n], y = now[1] - points_[3 * n + 1], z = now[2] - points_[3 * n + 2];
     maximum = std::max(maximum, x * x + y * y + z * z);
   }
   return btSqrt(maximum);
@@ -70,10 +65,10 @@ void HiddenBodies::hide(const std::vector<SolvedBody>& bodies, btScalar dt) {
     btSoftBody& body = *solved.body;
     const bool hides = body.isActive() && !collidesWithSoftBodies(body);
     if (!hides) {
-      solved.paddedTrees->ready = false;  // because Bullet fits them without padding
+      solved.paddedTrees->forget();  // because Bullet fits them without padding
       continue;
     }
-    solved.paddedTrees->fitBefore(body, btSqrt(body.m_maxSpeedSquared) * dt);
+    solved.paddedTrees->fitAgain(body, *solved.dynamics, btSqrt(body.m_maxSpeedSquared) * dt);
     hidden_.emplace_back(&body, body.getActivationState());
     body.forceActivationState(ISLAND_SLEEPING);
   }

@@ -112,8 +112,8 @@ void SolverBodies::lendKept() {
     body.touches = &kept.touches;
     body.wasTouched = kept.touches;
     body.paddedTrees = &kept.paddedTrees;
+    body.paths = &kept.paths;
     body.solve = &kept.solve;
-    if (kept.paddedTrees.points.size() != 3 * nodes) kept.paddedTrees.ready = false;
     if (body.elastic) {
       body.dynamics = body.elastic->dynamics.get();
       continue;

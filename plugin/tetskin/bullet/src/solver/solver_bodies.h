@@ -6,6 +6,7 @@
 
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/solver/contact_row.h>
+#include <tetskin/bullet/src/solver/node_paths.h>
 #include <tetskin/bullet/src/solver/padded_trees.h>
 
 #include <cassert>
@@ -37,6 +38,7 @@ struct SolvedBody {
   std::vector<Sticking>* sticking = nullptr;  ///< of the step before, by number of the point; for elastic bodies only
   PointContacts* bulletsContacts = nullptr;   ///< contacts of this step that Bullet has found
   PaddedTrees* paddedTrees = nullptr;
+  NodePaths* paths = nullptr;  ///< of this step, unless Bullet searches for the body's contacts
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;            ///< of this step; coupled bodies store them in the first one
   int rowCount = 0;              ///< rows of contacts and anchors
@@ -105,6 +107,7 @@ class SolverBodies {
     bool touches = false;  ///< true if any row acts on the body
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
+    NodePaths paths;
     elastic_detail::ConjugateGradient<btScalar> solve;
   };
 

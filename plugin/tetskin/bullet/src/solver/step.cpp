@@ -27,18 +27,38 @@
 namespace tetskin {
 namespace {
 
-void prepareStep(btSoftBody& body, btScalar dt) {
+/// The same as btSoftBody::updateBounds, which reads Bullet's nodes one by one.
+void updateBounds(const SolvedBody& solved) {
+  btSoftBody& body = *solved.body;
+  Dynamics& dynamics = *solved.dynamics;
+  assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
+  if (dynamics.nodeCount() == 0) return body.updateBounds();
+  btVector3 low = fromPoint(dynamics.point(0)), high = low;
+  for (std::size_t n = 1; n < dynamics.nodeCount(); ++n) {
+    const btVector3 x = fromPoint(dynamics.point(n));
+    low.setMin(x);
+    high.setMax(x);
+  }
+  const btScalar margin = body.getCollisionShape()->getMargin();
+  const btVector3 around(margin, margin, margin);
+  body.m_bounds[0] = low - around;
+  body.m_bounds[1] = high + around;
+}
+
+void prepareStep(const SolvedBody& solved, btScalar dt) {
   assert(dt > 0);
+  btSoftBody& body = *solved.body;
   body.m_sst.sdt = dt * body.m_cfg.timescale;
   body.m_sst.isdt = 1 / body.m_sst.sdt;
   body.m_sst.velmrg = body.m_sst.sdt * 3;
   body.m_sst.radmrg = body.getCollisionShape()->getMargin();
   body.m_sst.updmrg = body.m_sst.radmrg * btScalar(0.25);
-  body.updateBounds();
+  updateBounds(solved);
 }
 
-/// Moves the nodes by their velocities. Returns the square of the highest speed before it is bounded.
-double moveNodes(btSoftBody& body, btScalar dt) {
+/// Moves the nodes by their velocities, which are bounded before. Returns the square of the highest speed.
+double moveNodes(btSoftBody& body, btScalar dt, std::vector<NodeTravel>& travels) {
+  assert(travels.size() == static_cast<std::size_t>(body.m_nodes.size()));
   const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
   const btScalar kept = 1 - body.m_cfg.drag;
   double maximum = 0.0;
@@ -49,12 +69,25 @@ double moveNodes(btSoftBody& body, btScalar dt) {
     const double squared = toEigen(node.m_v).squaredNorm();
     const auto allowed = static_cast<double>(fastest);
     if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
-    maximum = std::max(maximum, squared);
+    maximum = std::max(maximum, std::min(squared, allowed * allowed));
     node.m_q = node.m_x + dt * node.m_v;
+    travels[static_cast<std::size_t>(n)] = {node.m_x, node.m_q};
     node.m_splitv.setZero();
     node.m_constrained = false;
   }
   return maximum;
+}
+
+btScalar fastestNode(const btSoftBody& body) {
+  btScalar squared = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) squared = std::max(squared, body.m_nodes[n].m_v.length2());
+  return btSqrt(squared);
+}
+
+void setBroadphaseBox(btSoftBody& body) {
+  const btSoftBodyWorldInfo& world = *body.getWorldInfo();
+  if (!body.getBroadphaseHandle()) return;
+  world.m_broadphase->setAabb(body.getBroadphaseHandle(), body.m_bounds[0], body.m_bounds[1], world.m_dispatcher);
 }
 
 void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
@@ -161,7 +194,6 @@ void DeformableSolver::Impl::predict() {
     writePrediction(body);
     clearContacts(*body.body);
     predictPositions(body);
-    if (body.elastic) speculate(body);
   }
 }
 
@@ -211,15 +243,20 @@ void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
 
 /// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees.
 void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
-  // Bullet's own function also refits the trees of faces.
+  // Bullet's own function also refits the trees of nodes and faces.
   if (body.body->m_bUpdateRtCst || collidesByFaces(*body.body)) {
-    body.paddedTrees->ready = false;
+    body.paddedTrees->forget();
+    body.paths = nullptr;
     solver.predictDeformableMotion(body.body, dt());
+    if (body.elastic) speculate(body, fastestNode(*body.body));
     return;
   }
-  prepareStep(*body.body, dt());
-  const double squaredSpeed = moveNodes(*body.body, dt());
-  body.paddedTrees->fit(*body.body, *body.dynamics, static_cast<btScalar>(std::sqrt(squaredSpeed)) * dt());
+  prepareStep(body, dt());
+  const double squared = moveNodes(*body.body, dt(), body.paths->begin(body.dynamics->nodeCount()));
+  const auto fastest = static_cast<btScalar>(std::sqrt(squared));
+  body.paddedTrees->fit(*body.body, *body.dynamics, fastest * dt());
+  if (body.elastic) speculate(body, fastest);
+  setBroadphaseBox(*body.body);
 }
 
 // ---- assemble

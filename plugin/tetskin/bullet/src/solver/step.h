@@ -58,6 +58,9 @@ struct DeformableSolver::Impl {
   void writePrediction(SolvedBody& body) const;
   void predictPositions(SolvedBody& body);
 
+  // Detection of contacts.
+  bool findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object);
+
   // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
   void readContacts(SolvedBody& body);
   void addOthers();
@@ -68,7 +71,8 @@ struct DeformableSolver::Impl {
   void collectRigidRowsOfWorlds();
   void joinByRows();
   void goOn(SolvedBody& body);
-  void speculate(const SolvedBody& body) const;
+  /// fastest  speed of the body's fastest node
+  void speculate(const SolvedBody& body, btScalar fastest) const;
 
   // Steps of the stage `solve`.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);

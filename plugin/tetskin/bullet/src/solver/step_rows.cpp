@@ -27,17 +27,18 @@ btDiscreteDynamicsWorld* worldOf(const SolvedBody& body) {
 /// The distance is twice the path of a body that gravity accelerates for a step: of two bodies in contact, the
 /// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
 /// of a body turns others towards the obstacle.
-void DeformableSolver::Impl::speculate(const SolvedBody& body) const {
-  constexpr btScalar kShareOfWay = btScalar(0.2);
+void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest) const {
+  constexpr btScalar kPathFraction = btScalar(0.2);
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = worldOf(body);
   if (!own || !world) return;
-  btScalar fastest = 0;
-  for (int n = 0; n < body.body->m_nodes.size(); ++n) fastest = std::max(fastest, body.body->m_nodes[n].m_v.length2());
   const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
-  own->setSpeculation(falls + kShareOfWay * btSqrt(fastest) * dt());
-  // The box in the broadphase includes this distance; the trees, which are fitted to the margin, do not.
-  body.body->updateBounds();
+  const btScalar distance = falls + kPathFraction * fastest * dt();
+  // The body's box includes this distance.
+  const btScalar more = distance - own->speculation();
+  own->setSpeculation(distance);
+  body.body->m_bounds[0] -= btVector3(more, more, more);
+  body.body->m_bounds[1] += btVector3(more, more, more);
 }
 
 std::vector<RowSource*> DeformableSolver::Impl::rowSources() {

@@ -5,7 +5,7 @@
 // the shape, and most points, are skipped.
 #pragma once
 
-#include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 
 #include <cassert>
 #include <cstddef>

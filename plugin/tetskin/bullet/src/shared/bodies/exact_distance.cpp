@@ -5,7 +5,7 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
-#include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 
 #include <algorithm>
 #include <cassert>

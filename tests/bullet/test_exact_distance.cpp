@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact_test.h"
+#include "support/points_within.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
-#include <tetskin/contact/src/rigid/exact_distance.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 
 namespace tetskin {
 namespace {

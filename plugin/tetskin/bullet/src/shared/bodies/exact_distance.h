@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceContact: the distances of points from shapes for which there are formulas.
+// Between the libraries: the distances of points from shapes for which there are formulas.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <tetskin/export.h>
 
 #include <optional>
 
@@ -18,7 +20,7 @@ struct ShapeDistance {
 
 /// A plane, a box, a sphere, a capsule or a cylinder with a circular section, as Bullet collides with it, including its
 /// own margin.
-class ExactShape {
+class TETSKIN_BULLET_API ExactShape {
  public:
   /// Empty for any other shape.
   static std::optional<ExactShape> exactShape(const btCollisionShape& shape);

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "deformable_test.h"
+#include "support/points_within.h"
+
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <BulletSoftBody/btSoftBodyInternals.h>
+#include <gtest/gtest.h>
+#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
+#include <tetskin/bullet/src/solver/node_contacts.h>
+
+#include <algorithm>
+#include <set>
+
+namespace tetskin {
+namespace {
+
+using test::pointsWithin;
+
+constexpr btScalar kMargin = btScalar(0.05);
+
+/// A body of scattered nodes that move, beside a shape.
+class NodeContacts : public testing::Test {
+ protected:
+  NodeContacts() : body_(&worldInfo_) {
+    worldInfo_.m_sparsesdf.Initialize();
+    body_.appendMaterial();
+    body_.getCollisionShape()->setMargin(kMargin);
+    body_.m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+    for (const btVector3& point : pointsWithin(2, 2000)) body_.appendNode(point, 1);
+    const std::vector<btVector3> motions = pointsWithin(btScalar(0.1), 2000);
+    std::vector<NodeTravel>& travels = paths_.begin(motions.size());
+    for (int n = 0; n < body_.m_nodes.size(); ++n) {
+      btSoftBody::Node& node = body_.m_nodes[n];
+      node.m_q = node.m_x + motions[static_cast<std::size_t>(n)];
+      node.m_effectiveMass_inv.setIdentity();
+      travels[static_cast<std::size_t>(n)] = {node.m_x, node.m_q};
+    }
+    object_.setWorldTransform(btTransform(btQuaternion(btVector3(1, 2, 3), btScalar(0.7)), {btScalar(0.3), 0, 0}));
+    btTransform predicted = object_.getWorldTransform();
+    predicted.getOrigin() += btVector3(0, btScalar(0.05), 0);
+    object_.setInterpolationWorldTransform(predicted);
+  }
+
+  /// Numbers of the nodes in contact.
+  std::set<long> find(btCollisionShape& shape, bool solved) {
+    object_.setCollisionShape(&shape);
+    body_.m_nodeRigidContacts.clear();
+    const btCollisionObjectWrapper wrapper(nullptr, &shape, &object_, object_.getWorldTransform(), -1, -1);
+    findNodeContacts(body_, wrapper, paths_, solved);
+    return nodesInContact();
+  }
+  std::set<long> findByBullet(btCollisionShape& shape) {
+    object_.setCollisionShape(&shape);
+    body_.m_nodeRigidContacts.clear();
+    const btCollisionObjectWrapper wrapper(nullptr, &shape, &object_, object_.getWorldTransform(), -1, -1);
+    btSoftColliders::CollideSDF_RD bullets;
+    bullets.psb = &body_;
+    bullets.m_colObj1Wrap = &wrapper;
+    bullets.m_rigidBody = nullptr;
+    bullets.dynmargin = bullets.stamargin = kMargin;
+    for (int n = 0; n < body_.m_nodes.size(); ++n) bullets.DoNode(body_.m_nodes[n]);
+    return nodesInContact();
+  }
+  std::set<long> nodesInContact() {
+    std::set<long> nodes;
+    for (int k = 0; k < body_.m_nodeRigidContacts.size(); ++k) {
+      nodes.insert(body_.m_nodeRigidContacts[k].m_node - &body_.m_nodes[0]);
+    }
+    EXPECT_EQ(nodes.size(), static_cast<std::size_t>(body_.m_nodeRigidContacts.size()));
+    return nodes;
+  }
+
+  btSoftBodyWorldInfo worldInfo_;
+  btSoftBody body_;
+  NodePaths paths_;
+  btCollisionObject object_;
+};
+
+btConvexHullShape pyramid() {
+  const btScalar points[] = {-1, 0, -1, 0, 1, 0, 0, 0, -1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0};
+  btConvexHullShape hull;
+  for (int k = 0; k + 2 < 21; k += 4) hull.addPoint(btVector3(points[k], points[k + 1], points[k + 2]));
+  return hull;
+}
+
+TEST_F(NodeContacts, AreTheNodesWhosePredictedPositionsAreWithinTheMarginOfAnExactShape) {
+  btBoxShape box(btVector3(1, btScalar(0.4), btScalar(0.7)));
+  btSphereShape sphere(1);
+  btCapsuleShape capsule(btScalar(0.5), 1);
+  btCylinderShape cylinder(btVector3(btScalar(0.6), 1, btScalar(0.6)));
+  for (btCollisionShape* shape : std::initializer_list<btCollisionShape*>{&box, &sphere, &capsule, &cylinder}) {
+    const auto exact = ExactShape::exactShape(*shape);
+    std::set<long> expected;
+    for (int n = 0; n < body_.m_nodes.size(); ++n) {
+      const btVector3 local = object_.getInterpolationWorldTransform().invXform(body_.m_nodes[n].m_q);
+      if (exact->distance(local).distance < kMargin) expected.insert(n);
+    }
+    EXPECT_GT(expected.size(), 20U) << shape->getName();
+    EXPECT_EQ(find(*shape, true), expected) << shape->getName();
+    for (int k = 0; k < body_.m_nodeRigidContacts.size(); ++k) {
+      const auto& contact = body_.m_nodeRigidContacts[k];
+      const ShapeDistance at = exact->distance(object_.getWorldTransform().invXform(contact.m_node->m_x));
+      EXPECT_NEAR(contact.m_cti.m_offset, at.distance - kMargin, 1e-6);
+      EXPECT_NEAR((contact.m_cti.m_normal - object_.getWorldTransform().getBasis() * at.normal).length(), 0, 1e-6);
+    }
+  }
+}
+
+TEST_F(NodeContacts, OfOtherShapesAreBullets) {
+  btConvexHullShape hull = pyramid();
+  const std::set<long> expected = findByBullet(hull);
+  EXPECT_GT(expected.size(), 20U);
+  EXPECT_EQ(find(hull, true), expected);
+}
+
+/// Bodies that Bullet's forces act on get Bullet's contacts, with Bullet's distances, whatever the shape.
+TEST_F(NodeContacts, OfBodiesThatAreNotSolvedHereAreBulletsToTheBit) {
+  btBoxShape box(btVector3(1, btScalar(0.4), btScalar(0.7)));
+  const std::set<long> expected = findByBullet(box);
+  std::vector<btScalar> offsets;
+  for (int k = 0; k < body_.m_nodeRigidContacts.size(); ++k)
+    offsets.push_back(body_.m_nodeRigidContacts[k].m_cti.m_offset);
+  ASSERT_EQ(find(box, false), expected);
+  for (int k = 0; k < body_.m_nodeRigidContacts.size(); ++k) {
+    EXPECT_EQ(body_.m_nodeRigidContacts[k].m_cti.m_offset, offsets[static_cast<std::size_t>(k)]);
+  }
+}
+
+TEST_F(NodeContacts, PassOverNodesThatAreAnchoredOrHeldAgainstWhatIsStatic) {
+  btSphereShape sphere(1);
+  const std::set<long> all = find(sphere, true);
+  const int anchored = static_cast<int>(*all.begin()), held = static_cast<int>(*std::next(all.begin()));
+  body_.m_nodes[anchored].m_battach = 1;
+  body_.m_nodes[held].m_im = 0;
+  std::set<long> expected = all;
+  expected.erase(anchored);
+  expected.erase(held);
+  EXPECT_EQ(find(sphere, true), expected);
+}
+
+/// The paths of the nodes are searched by boxes.
+TEST_F(NodeContacts, NodePathsListAllNodesNearABox) {
+  for (const btVector3& centre : pointsWithin(2, 50)) {
+    BvhBox<btScalar> box;
+    box.extend(centre);
+    box = box.grownBy(btScalar(0.3));
+    const std::vector<int> near = paths_.near(box);
+    EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
+    for (int n = 0; n < body_.m_nodes.size(); ++n) {
+      BvhBox<btScalar> path;
+      path.extend(body_.m_nodes[n].m_x);
+      path.extend(body_.m_nodes[n].m_q);
+      if (path.collides(box)) EXPECT_TRUE(std::binary_search(near.begin(), near.end(), n)) << n;
+    }
+    EXPECT_LT(near.size(), 500U);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin
