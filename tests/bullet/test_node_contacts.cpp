@@ -78,9 +78,11 @@ class NodeContacts : public testing::Test {
 };
 
 btConvexHullShape pyramid() {
-  const btScalar points[] = {-1, 0, -1, 0, 1, 0, 0, 0, -1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0};
   btConvexHullShape hull;
-  for (int k = 0; k + 2 < 21; k += 4) hull.addPoint(btVector3(points[k], points[k + 1], points[k + 2]));
+  for (const btScalar x : {-1, 1}) {
+    for (const btScalar z : {-1, 1}) hull.addPoint(btVector3(x, 0, z));
+  }
+  hull.addPoint(btVector3(0, btScalar(1.5), 0));
   return hull;
 }
 
