@@ -25,9 +25,9 @@ struct TETSKIN_CORE_API SkinnedMesh {
   std::vector<std::array<float, 4>> weights;
 
   std::size_t vertexCount() const { return bones.size(); }  ///< number of vertices
-  /// vertexCount, by bone: the weights in 65535ths, which sum to exactly 65535. Those below 0 become 0, and the others
-  /// are scaled to make up for it. A vertex inside moves by less than 2e-5 of its tet's size; a vertex outside follows
-  /// the tet's boundary instead of extrapolating.
+  /// vertexCount, by bone: the weights in 65535ths, which sum to exactly 65535. In a cage twisted by 1.5 radians over
+  /// its length, a vertex inside moves by 3e-5 of its tet's edge at most. Weights below 0 become 0, and the others are
+  /// scaled to make up for it, so that a vertex outside is off by up to about its distance from the cage.
   std::vector<std::array<std::uint16_t, 4>> normalisedWeights() const;
 };
 
