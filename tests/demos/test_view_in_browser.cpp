@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "command.h"
+#include "browser.h"
 
 namespace tetskin {
 namespace {
@@ -22,20 +22,10 @@ std::string withProbe(const CommandFolder& folder, const std::string& page) {
   return text.insert(text.rfind("</body>"), probe);
 }
 
-/// The results of the probe. Pages are drawn without a graphics card; one that does not end is stopped.
+/// The results of the probe.
 nlohmann::json seenIn(const CommandFolder& folder, const std::string& page, const std::string& windowSize) {
-  const std::string probed = folder.write("probed.html", withProbe(folder, page));
-  const CommandResult result = folder.run(
-      "timeout", {"100", TETSKIN_CHROMIUM, "--headless", "--no-sandbox", "--user-data-dir=" + folder.path("profile"),
-                  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=" + windowSize, "--dump-dom",
-                  "--enable-logging=stderr", "--v=0", "file://" + probed});
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.err.find("CONSOLE"), std::string::npos) << result.err;
-  const std::string begin = "<pre id=\"report\">";
-  const std::size_t at = result.out.find(begin), end = result.out.find("</pre>", at);
-  EXPECT_NE(at, std::string::npos) << result.err;
-  if (at == std::string::npos) return {};
-  return nlohmann::json::parse(result.out.substr(at + begin.size(), end - at - begin.size()));
+  folder.write("probed.html", withProbe(folder, page));
+  return test::reportOf(folder, "probed.html", windowSize);
 }
 
 /// Largest distance between what the page shows and a frame, relative to the frame's largest side.
