@@ -80,7 +80,6 @@ if(TETSKIN_DEMOS AND NOT (TETSKIN_THREE AND TETSKIN_ORBIT_CONTROLS))
   tetskin_lacks("three.js (libjs-three)" "test of pages")
 endif()
 
-
 # OpenGL without a display, for the recipe that draws bones.
 find_library(EGL_LIBRARY EGL)
 find_library(GL_LIBRARY NAMES GL OpenGL)
