@@ -40,6 +40,7 @@
 #include <tetskin/elastic/vibration_modes.h>
 #endif
 #ifdef TETSKIN_HAS_IO
+#include <tetskin/io/animation.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 #endif

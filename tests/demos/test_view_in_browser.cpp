@@ -4,10 +4,6 @@
 // Pages as a browser shows them: a probe is appended to a page, and writes its results into the page's document.
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <array>
-#include <cmath>
-
 #include "browser.h"
 
 namespace tetskin {
@@ -15,6 +11,7 @@ namespace {
 
 using test::CommandFolder;
 using test::CommandResult;
+using test::distance;
 
 std::string withProbe(const CommandFolder& folder, const std::string& page) {
   std::string text = folder.read(page);
@@ -26,20 +23,6 @@ std::string withProbe(const CommandFolder& folder, const std::string& page) {
 nlohmann::json seenIn(const CommandFolder& folder, const std::string& page, const std::string& windowSize) {
   folder.write("probed.html", withProbe(folder, page));
   return test::reportOf(folder, "probed.html", windowSize);
-}
-
-/// Largest distance between what the page shows and a frame, relative to the frame's largest side.
-double distance(const nlohmann::json& shown, const std::vector<std::array<double, 3>>& frame) {
-  const auto numbers = shown.get<std::vector<double>>();
-  EXPECT_EQ(numbers.size(), 3 * frame.size());
-  Eigen::AlignedBox3d box;
-  double farthest = 0.0;
-  for (std::size_t v = 0; v < frame.size() && 3 * v + 2 < numbers.size(); ++v) {
-    const Eigen::Vector3d expected(frame[v].data());
-    box.extend(expected);
-    farthest = std::max(farthest, (Eigen::Vector3d(&numbers[3 * v]) - expected).norm());
-  }
-  return farthest / box.sizes().maxCoeff();
 }
 
 /// The tolerance for equality; the two kinds of surface differ by more than that.
