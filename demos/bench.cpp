@@ -19,6 +19,7 @@
 
 #include "bench/body_cases.h"
 #include "bench/contact_cases.h"
+#include "bench/palette_cases.h"
 #include "bench/step_cases.h"
 #include "bench/touch_cases.h"
 #include "scenes/command_line.h"
@@ -324,6 +325,7 @@ void registerCases(const std::shared_ptr<Bench>& bench, std::size_t tets) {
   add("Update/quadratic", updateQuadratic, benchmark::kMicrosecond);
   add("Update/bullet", updateBullet, benchmark::kMicrosecond);
   add("Update/memcpy", updateMemcpy, benchmark::kMicrosecond);
+  bench::registerPaletteCases([bench]() -> const Model& { return bench->model; });
   add("Normals/transformed", normalsTransformed, benchmark::kMicrosecond);
   add("Normals/recomputed", normalsRecomputed, benchmark::kMicrosecond);
   add("BuildBody/tetskin", buildBodyTetskin, benchmark::kMillisecond);

@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator.
+// Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator; and a
+// sequence of deformed cages -> an animation.
+#include <tetskin/io/animation.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenes/command_line.h"
 #include "scenes/files.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
+#include "scenes/materials.h"
+#include "scenes/scene.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 
@@ -23,7 +30,8 @@ using namespace tetskin::scenes;
 struct DeformCommand {
   ModelOptions model;
   SkinOptions skin;
-  std::string deformed;
+  std::vector<std::string> deformed;  ///< at least one
+  double frameRate = kFrameRate;
   std::string output;
   std::string embedding;
   std::string json;
@@ -41,32 +49,33 @@ std::vector<Tet> sortedTets(const TetMesh& mesh) {
 
 /// Equal counts do not make it the same cage: in a cage with duplicate tets, a different order of nodes would carry
 /// vertices with the wrong duplicate, and nothing would show it.
-void requireSameTets(const DeformCommand& command, const TetMesh& deformed, const TetMesh& rest) {
+void requireSameTets(const DeformCommand& command, const std::string& name, const TetMesh& deformed,
+                     const TetMesh& rest) {
   const std::vector<Tet> now = sortedTets(deformed), then = sortedTets(rest);
   const auto [other, wanted] = std::mismatch(now.begin(), now.end(), then.begin(), then.end());
   if (other == now.end()) return;
   const bool extra = *other < *wanted;
   const Tet& tet = extra ? *other : *wanted;
-  throw InputError(command.deformed + ": has " + (extra ? "a" : "no") + " tet of nodes " + std::to_string(tet[0]) +
-                   ", " + std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + " and " + std::to_string(tet[3]) +
+  throw InputError(name + ": has " + (extra ? "a" : "no") + " tet of nodes " + std::to_string(tet[0]) + ", " +
+                   std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + " and " + std::to_string(tet[3]) +
                    ", but the rest cage " + command.model.cage + " has " + (extra ? "none" : "one") +
                    "; export both from one simulation, with its nodes in the same order");
 }
 
 /// The nodes of the deformed cage. Its tets only show whether it is the same cage: their order and orientation may
 /// differ, as simulators change them.
-TetMesh loadDeformed(const DeformCommand& command, const TetMesh& rest) {
-  Result<TetMesh> deformed = loadTetMesh(command.deformed);
+TetMesh loadDeformed(const DeformCommand& command, const std::string& name, const TetMesh& rest) {
+  Result<TetMesh> deformed = loadTetMesh(name);
   require(deformed.status());
   const auto demand = [&](std::size_t count, std::size_t wanted, const char* what) {
     if (count == wanted) return;
-    throw InputError(command.deformed + ": has " + std::to_string(count) + " " + what + ", but the rest cage " +
+    throw InputError(name + ": has " + std::to_string(count) + " " + what + ", but the rest cage " +
                      command.model.cage + " has " + std::to_string(wanted) +
                      "; export both from one simulation, with its nodes in the same order");
   };
   demand(deformed.value().nodeCount(), rest.nodeCount(), "nodes");
   demand(deformed.value().tetCount(), rest.tetCount(), "tets");
-  requireSameTets(command, deformed.value(), rest);
+  requireSameTets(command, name, deformed.value(), rest);
   return std::move(deformed).value();
 }
 
@@ -98,6 +107,58 @@ void writeSurface(const MeshSkin<double>& skin, const ObjLayout& layout, const s
   require(layout.writeTo(path, viewOf(std::as_const(rounded)), skin.normals()));
 }
 
+/// The format of the output: its extension in lower case.
+std::string formatOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// What the command line makes of the deformed cages, one after the other.
+class Output {
+ public:
+  Output(const DeformCommand& command, const Model& model, const SkinBinding<double>& binding)
+      : command_(command), format_(formatOf(command.output)) {
+    if (format_ == ".glb") {
+      auto writer = GlbWriter::create(command.output, command.frameRate);
+      require(writer.status());
+      glb_.emplace(std::move(writer).value());
+      glb_->setMaterials(surfaceMaterials());
+      const std::string name = std::filesystem::path(model.name).stem().string();
+      const auto added = glb_->addModel(name, model.cage, model.mesh, binding.embedding(), command.skin.interpolation);
+      require(added.status());
+      glb_->addBody(added.value(), name);
+    } else if (format_ == ".pc2") {
+      auto writer = Pc2Writer::create(command.output, model.mesh.vertexCount());
+      require(writer.status());
+      pc2_.emplace(std::move(writer).value());
+    }
+  }
+
+  void add(const TetMesh& deformed, const MeshSkin<double>& skin, const ObjLayout& layout) {
+    if (glb_) return require(glb_->addFrame({viewOf(deformed.nodes)}));
+    if (pc2_) return require(pc2_->addFrame(skin.positions()));
+    writeSurface(skin, layout, command_.output);
+  }
+  void finish() {
+    if (glb_) require(glb_->finish());
+    if (pc2_) require(pc2_->finish());
+  }
+
+ private:
+  const DeformCommand& command_;
+  std::string format_;
+  std::optional<GlbWriter> glb_;
+  std::optional<Pc2Writer> pc2_;
+};
+
+void requireOneFrame(const DeformCommand& command) {
+  if (command.deformed.size() == 1 || formatOf(command.output) != ".obj") return;
+  throw InputError(command.output + ": an OBJ file holds one frame, and --deformed names " +
+                   std::to_string(command.deformed.size()) + "; use .glb or .pc2");
+}
+
 nlohmann::ordered_json summarise(const Model& model, const DeformCommand& command, const EmbedReport& fit,
                                  const QuadraticReport& quadratic, double updateUs) {
   nlohmann::ordered_json json = summaryOf(model, fit);
@@ -105,30 +166,38 @@ nlohmann::ordered_json summarise(const Model& model, const DeformCommand& comman
     json["thin_nodes"] = quadratic.underdeterminedNodes;
     json["plain_nodes"] = quadratic.averagedNodes;
   }
+  json["frames"] = command.deformed.size();
   json["update_us"] = updateUs;
   json["out"] = command.output;
   return json;
 }
 
 int run(const DeformCommand& command) {
+  requireOneFrame(command);
   Model model;
   static_cast<Surface&>(model) = loadSurface(command.model);
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
   require(layout.status());
   model.cage = loadCage(command.model.cage, model);
-  const TetMesh deformed = loadDeformed(command, model.cage.mesh);
+  TetMesh deformed = loadDeformed(command, command.deformed.front(), model.cage.mesh);
 
   EmbedReport fit;
   auto made = SkinBinding<double>::create(model.cage, model.mesh, command.skin, &fit);
   requireFit(made.status(), fit, command.model);
   const SkinBinding<double>::Pointer binding = std::move(made).value();
   MeshSkin<double> skin;
-  const WallTimer timer;
-  const Status bound = skin.bind(binding, viewOf(deformed.nodes));
-  const double updateUs = timer.microseconds();
-  if (!bound.ok()) throw InputError(command.deformed + ": " + bound.message);
-
-  writeSurface(skin, layoutWith(command.skin.normals, layout.value()), command.output);
+  Output output(command, model, *binding);
+  const ObjLayout written = layoutWith(command.skin.normals, layout.value());
+  double updateUs = 0.0;
+  for (const std::string& name : command.deformed) {
+    if (&name != &command.deformed.front()) deformed = loadDeformed(command, name, model.cage.mesh);
+    const WallTimer timer;
+    const Status bound = skin.bind(binding, viewOf(std::as_const(deformed.nodes)));
+    updateUs += timer.microseconds() / static_cast<double>(command.deformed.size());
+    if (!bound.ok()) throw InputError(name + ": " + bound.message);
+    output.add(deformed, skin, written);
+  }
+  output.finish();
   if (!command.embedding.empty()) writeFile(command.embedding, embeddingText(binding->embedding()));
   if (!command.json.empty())
     writeJson(summarise(model, command, fit, binding->quadraticReport(), updateUs), command.json);
@@ -151,12 +220,16 @@ int main(int argc, char** argv) {
       {{{"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj",
          "the mesh, deformed as the cage is"},
         {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj --normals transformed",
-         "the deformed mesh with its normals"}},
+         "the deformed mesh with its normals"},
+        {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed rest.vtk now.vtk -o all.glb",
+         "the mesh moving as the cages do, one after the other; or all.pc2"}},
        ""});
   line.addInput("--mesh", command.model.mesh, "at rest", kRequired);
   line.addInput("--cage", command.model.cage, "at rest", kRequired);
-  line.addInput("--deformed", command.deformed, "", kRequired);
-  line.addOutput("-o,--output", command.output, "the deformed mesh, .obj", kRequired, {".obj"});
+  line.addInputs("--deformed", command.deformed, "several for .glb and .pc2: a frame each", kRequired);
+  line.addOutput("-o,--output", command.output, "the deformed mesh: .obj, .glb or .pc2", kRequired,
+                 {".obj", ".glb", ".pc2"});
+  line.addPositive("--frame-rate", command.frameRate, "Frames per second of a .glb");
   line.addInterpolationOption(command.skin);
   line.addSkinOptions(command.skin);
   line.addOutput("--dump-embedding", command.embedding);

@@ -22,9 +22,9 @@
 #include "scenes/placement.h"
 #include "scenes/playback.h"
 #include "scenes/printed_table.h"
+#include "scenes/recording.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
-#include "scenes/view_page.h"
 
 namespace {
 
@@ -130,8 +130,8 @@ class Drag {
   std::optional<double> stretch() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
   double nodeSpeed() const;
-  /// A page for the run that follows.
-  ViewPage page() const;
+  /// Records the run that follows.
+  Recording record(const std::string& view) const;
   ViewMoment moment() const;
 
  private:
@@ -303,14 +303,16 @@ Eigen::Affine3d affine(const btTransform& transform) {
   return result;
 }
 
-ViewPage Drag::page() const {
+Recording Drag::record(const std::string& view) const {
   std::vector<std::string> facts = factsOf(model_);
   facts.emplace_back("picked at the top, swung, hung on a ring, pushed");
-  ViewPage page(titleOf(model_.name), facts, Interpolation::Linear);
-  page.addBody({page.addModel(model_.cage, model_.mesh, binding_->embedding()), "", ""});
-  for (const TriangleMesh& prop : props_) page.addProp(prop);
-  page.setObstacles(floor());
-  return page;
+  const std::string title = titleOf(model_.name);
+  Recording recording(options_.output, view, title, facts, Interpolation::Linear);
+  if (!recording.wanted()) return recording;
+  recording.addBody({recording.addModel(title, model_.cage, model_.mesh, binding_->embedding()), "", ""});
+  for (const TriangleMesh& prop : props_) recording.addProp(prop);
+  recording.setObstacles(floor());
+  return recording;
 }
 
 ViewMoment Drag::moment() const {
@@ -389,7 +391,7 @@ class Phases {
   SolveTotals totalsBefore_, totalsNow_;
 };
 
-void printSummary(const nlohmann::ordered_json& json, const std::string& summary) {
+void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summary) {
   const auto percent = [&](const char* key) {
     return formatted("%.3f %% of the body's size", 100.0 * json.at(key).get<double>());
   };
@@ -408,7 +410,7 @@ void printSummary(const nlohmann::ordered_json& json, const std::string& summary
   const std::string pushed = formatted("%.0f vertices", json, "pushed_vertices");
   printValue("push", ifSo(json.at("pushed_vertices") > 0, pushed));
   printValue("frames", formatted("%.0f", json, "frames"));
-  printValue("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summary);
+  printValue("files", firstFileOf(output) + " ... " + summary);
 }
 
 int run(const DragOptions& options) {
@@ -416,8 +418,8 @@ int run(const DragOptions& options) {
   const std::string summary = summaryPath(output), view = viewPath(output);
   Drag drag(options);
   FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::create(drag.drawn()));
-  std::optional<ViewPage> page;
-  if (!view.empty()) page = drag.page();
+  Recording recording = drag.record(view);
+  if (recording.hasGlb()) writer.addOther(Recording::kGlbName, recording.glbBytes());
   Phases phases;
   double simulationMs = 0.0;
   const auto step = [&](int frame, Playback& run) {
@@ -429,13 +431,15 @@ int run(const DragOptions& options) {
   };
   const auto keep = [&](int frame) {
     phases.measure(frame, drag, simulationMs);
-    if (page) page->keep(drag.moment());
+    if (recording.wanted()) recording.keep(drag.moment());
   };
   const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = drag.surface();
     writer.write(frame, surface, boundingBox(surface), {});
   };
   const Playback run = playFrames("simulating", output, drag.world(), step, keep, write);
+  writer.finish();
+  recording.writeGlb();
   nlohmann::ordered_json json;
   drag.tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
@@ -447,9 +451,9 @@ int run(const DragOptions& options) {
   writeJson(json, summary);
   if (!output.quiet) {
     std::printf("\n%s\n", phases.table().c_str());
-    printSummary(json, summary);
+    printSummary(json, output, summary);
   }
-  if (page) page->write(view, output.quiet);
+  recording.writePage();
   if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_drag: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;

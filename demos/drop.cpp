@@ -14,8 +14,8 @@
 #include "scenes/materials.h"
 #include "scenes/player.h"
 #include "scenes/printed_table.h"
+#include "scenes/recording.h"
 #include "scenes/summary.h"
-#include "scenes/view_page.h"
 
 namespace {
 
@@ -105,8 +105,8 @@ class Drop {
   double floorY() { return player_.place().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
   const Totals& totals() const { return totals_; }
 
-  /// Adds a page for the run that follows.
-  ViewPage& addPage();
+  /// Records the run that follows.
+  Recording& record(const std::string& view);
   Playback simulate(FrameWriter& writer) {
     return player_.play(
         "simulating", options_.output, [&](int) { measure(); }, [&](int frame) { write(frame, writer); });
@@ -122,7 +122,7 @@ class Drop {
     totals_.extentMax = std::max(totals_.extentMax, bounds().sizes().maxCoeff() / restExtent_);
     totals_.lowest = std::min(totals_.lowest, bounds().min().y());
     totals_.speeds.push_back(player_.scene().nodeSpeed());
-    if (page_) page_->keep({{player_.nodes()}, {}});
+    if (recording_ && recording_->wanted()) recording_->keep({{player_.nodes()}, {}});
   }
   void write(int frame, FrameWriter& writer) {
     TetMesh cage;
@@ -138,17 +138,20 @@ class Drop {
   const Carried& surface_;
   double restExtent_;
   Totals totals_;
-  std::optional<ViewPage> page_;
+  std::optional<Recording> recording_;
 };
 
-ViewPage& Drop::addPage() {
+Recording& Drop::record(const std::string& view) {
   const Model& model = player_.model();
   std::vector<std::string> facts = factsOf(model);
   facts.push_back(factOf(options_.contactPossible(), player_.selfContact().shape != nullptr));
-  page_.emplace(titleOf(model.name), facts, options_.skin.interpolation);
-  page_->addBody({page_->addModel(model.cage, model.mesh, surface_.skin.binding()->embedding()), "", ""});
-  page_->setObstacles(obstacles());
-  return *page_;
+  const std::string title = titleOf(model.name);
+  recording_.emplace(options_.output, view, title, facts, options_.skin.interpolation);
+  if (!recording_->wanted()) return *recording_;
+  const Embedding& embedding = surface_.skin.binding()->embedding();
+  recording_->addBody({recording_->addModel(title, model.cage, model.mesh, embedding), "", ""});
+  recording_->setObstacles(obstacles());
+  return *recording_;
 }
 
 nlohmann::ordered_json Drop::summarise(const Playback& run) {
@@ -166,6 +169,7 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   tellSolve(player_.scene().world().solveTotals(), json);
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
+  json["glb_ms"] = recording_->glbMilliseconds();
   json["frames"] = run.frames;
   json["frames_written"] = run.written;
   json["floor_y"] = floorY();
@@ -181,7 +185,7 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   return json;
 }
 
-void printSummary(const nlohmann::ordered_json& json, const std::string& summaryPath) {
+void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summaryPath) {
   const auto number = [&](const char* key, const char* format) { return formatted(format, json, key); };
   std::printf("\n");
   printValue("model", json.at("model").get<std::string>());
@@ -209,7 +213,7 @@ void printSummary(const nlohmann::ordered_json& json, const std::string& summary
   printValue("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor at y = " + number("floor_y", "%.4g") +
                                  ", tolerance " + number("floor_tolerance", "%.2g"));
   printValue("frames", number("frames", "%.0f"));
-  printValue("files", json.at("out").get<std::string>() + "/frame_0000.obj ... " + summaryPath);
+  printValue("files", firstFileOf(output) + " ... " + summaryPath);
 }
 
 int run(const DropOptions& options) {
@@ -221,13 +225,16 @@ int run(const DropOptions& options) {
   plan.obstacles = drop.obstacles();
   if (options.model.mesh.empty()) plan.materials = materialLibrary(drop.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, drop.layout()));
-  const ViewPage* page = view.empty() ? nullptr : &drop.addPage();
+  Recording& recording = drop.record(view);
+  if (recording.hasGlb()) writer.addOther(Recording::kGlbName, recording.glbBytes());
 
   const Playback run = drop.simulate(writer);
+  writer.finish();
+  recording.writeGlb();
   const nlohmann::ordered_json json = drop.summarise(run);
   writeJson(json, path);
-  if (!output.quiet) printSummary(json, path);
-  if (page) page->write(view, output.quiet);
+  if (!output.quiet) printSummary(json, output, path);
+  recording.writePage();
   if (!run.finite) {
     std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", run.frames - 1);
     return kRunFailed;

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <deque>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "scenes/command_line.h"
 #include "scenes/deepest_vertex.h"
@@ -21,9 +20,9 @@
 #include "scenes/placement.h"
 #include "scenes/playback.h"
 #include "scenes/printed_table.h"
+#include "scenes/recording.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
-#include "scenes/view_page.h"
 
 namespace {
 
@@ -120,8 +119,8 @@ class Pile {
   /// Root mean square of the nodes' speeds, in body lengths per second.
   double nodeSpeed() const;
 
-  /// A page for the run that follows. Bodies of one model share it there.
-  ViewPage page(const PileOptions& options) const;
+  /// Records the run that follows. Bodies of one model share it there.
+  Recording record(const PileOptions& options, const std::string& view) const;
   ViewMoment moment() const;
 
  private:
@@ -196,19 +195,22 @@ double Pile::nodeSpeed() const {
   return std::sqrt(squared / count) / kSize;
 }
 
-ViewPage Pile::page(const PileOptions& options) const {
+Recording Pile::record(const PileOptions& options, const std::string& view) const {
   const Contact contact = options.contact;
-  ViewPage page("pile",
-                {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
-                 withCommas(bodyTets_) + " tets",
-                 contact == Contact::Surface ? factOf(contact, options.touchThemselves())
-                                             : "contact with the bowl at the cages' nodes"},
-                Interpolation::Linear);
-  for (const PileModel& model : models_) page.addModel(model.model.cage, model.model.mesh, model.binding->embedding());
-  for (std::size_t k = 0; k < bodies_.size(); ++k) page.addBody({k % models_.size(), "", ""});
-  page.setObstacles(obstacles());
-  page.setFocus({Vector3d(-1.5 * kSide, kFloorY, -kSide), Vector3d(1.5 * kSide, kFloorY + 2.0 * kSize, kSide)});
-  return page;
+  Recording recording(options.output, view, "pile",
+                      {std::to_string(bodies_.size()) + " soft bodies", withCommas(mesh_.vertexCount()) + " vertices",
+                       withCommas(bodyTets_) + " tets",
+                       contact == Contact::Surface ? factOf(contact, options.touchThemselves())
+                                                   : "contact with the bowl at the cages' nodes"},
+                      Interpolation::Linear);
+  if (!recording.wanted()) return recording;
+  for (const PileModel& model : models_) {
+    recording.addModel(titleOf(model.model.name), model.model.cage, model.model.mesh, model.binding->embedding());
+  }
+  for (std::size_t k = 0; k < bodies_.size(); ++k) recording.addBody({k % models_.size(), "", ""});
+  recording.setObstacles(obstacles());
+  recording.setFocus({Vector3d(-1.5 * kSide, kFloorY, -kSide), Vector3d(1.5 * kSide, kFloorY + 2.0 * kSize, kSide)});
+  return recording;
 }
 
 ViewMoment Pile::moment() const {
@@ -314,7 +316,7 @@ void printSummary(const nlohmann::ordered_json& json, const PileOptions& options
                                     percent("deepest_contact_at_end") + " at the end");
   printValue("speed at the end", formatted("%.3f body lengths per second", json, "node_speed_at_end"));
   printValue("frames", formatted("%.0f", json, "frames"));
-  printValue("files", options.output.out + "/frame_0000.obj ... " + summary);
+  printValue("files", firstFileOf(options.output) + " ... " + summary);
 }
 
 int run(const PileOptions& options) {
@@ -322,8 +324,8 @@ int run(const PileOptions& options) {
   const std::string summary = summaryPath(output), view = viewPath(output);
   Pile pile(options);
   FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::create(pile.mesh()));
-  std::optional<ViewPage> page;
-  if (!view.empty()) page = pile.page(options);
+  Recording recording = pile.record(options, view);
+  if (recording.hasGlb()) writer.addOther(Recording::kGlbName, recording.glbBytes());
   Depths depths(pile, options);
   double simulationMs = 0.0;
   const auto step = [&](int frame, Playback& run) {
@@ -335,20 +337,22 @@ int run(const PileOptions& options) {
   };
   const auto measure = [&](int frame) {
     depths.measure(frame, simulationMs);
-    if (page) page->keep(pile.moment());
+    if (recording.wanted()) recording.keep(pile.moment());
   };
   const auto write = [&](int frame) {
     const std::vector<Vector3d> surface = pile.surface();
     writer.write(frame, surface, boundingBox(surface), {});
   };
   const Playback run = playFrames("simulating", output, pile.world(), step, measure, write);
+  writer.finish();
+  recording.writeGlb();
   const nlohmann::ordered_json json = summarise(options, pile, depths, run);
   writeJson(json, summary);
   if (!output.quiet) {
     std::printf("\n%s\n", depths.table().c_str());
     printSummary(json, options, summary);
   }
-  if (page) page->write(view, output.quiet);
+  recording.writePage();
   if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_pile: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;

@@ -3,11 +3,11 @@
 # The packages that the library needs; what tetskin_drop needs in addition, and what all demos need; what the unit tests
 # need in addition to the library, and what all tests need in addition to all of these. For Debian 12, Ubuntu 24.04 and
 # later.
-library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev)
+library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libtinygltf-dev)
 drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
-check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium)
+check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium libegl-dev libgl1-mesa-dri)
 
 # Installs the packages that are missing, and prints their names first. Without root or sudo, or without apt, prints
 # what to do.
@@ -18,7 +18,7 @@ require_packages() {
     for tool in cmake c++; do
       if ! command -v "$tool" >/dev/null; then
         echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
-          "assimp, CLI11, nlohmann-json, three.js (for pages) and, for the tests, GoogleTest and Google Benchmark; then run this again. Missing: $tool" >&2
+          "assimp, tinygltf (for GLB), CLI11, nlohmann-json, three.js (for pages) and, for the tests, GoogleTest and Google Benchmark; then run this again. Missing: $tool" >&2
         exit 1
       fi
     done

@@ -7,15 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/joined_mesh.h"
 #include "scenes/materials.h"
 #include "scenes/player.h"
+#include "scenes/recording.h"
 #include "scenes/summary.h"
-#include "scenes/view_page.h"
 #include "scenes/wring.h"
 
 namespace {
@@ -170,7 +169,7 @@ nlohmann::ordered_json summarise(const Player& player, const TwistOptions& optio
   return json;
 }
 
-void printTable(const nlohmann::ordered_json& json, const std::string& summaryPath) {
+void printTable(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summaryPath) {
   const auto number = [&](const std::string& key) { return json.at(key).get<double>(); };
   const auto both = [&](const char* what, const char* format, const std::string& key, const char* end,
                         const char* unit) {
@@ -197,15 +196,17 @@ void printTable(const nlohmann::ordered_json& json, const std::string& summaryPa
   one("distance of both, RMS", "%22.2e", "difference_rms", "of the box's diagonal, when Bullet has turned the end");
   one("nodes off an even twist", "%22.2e", "nodes_off_twist_rms", "of the box's diagonal, RMS, at the same time");
   one("simulation", "%22.2f", "simulation_ms_per_frame", "ms per frame");
-  std::printf("  %s/frame_0000.obj ... %s\n", json.at("out").get<std::string>().c_str(), summaryPath.c_str());
+  std::printf("  %s ... %s\n", firstFileOf(output).c_str(), summaryPath.c_str());
 }
 
 /// Both surfaces on one cage, as they are in the frames.
-ViewPage pageOf(const Model& model, const Embedding& embedding) {
-  ViewPage page(titleOf(model.name) + ", a full turn", factsOf(model), Interpolation::Quadratic);
-  const std::size_t shared = page.addModel(model.cage, model.mesh, embedding);
-  for (const char* name : {"linear", "quadratic"}) page.addBody({shared, name, name});
-  return page;
+Recording record(const OutputOptions& output, const std::string& view, const Model& model, const Embedding& embedding) {
+  const std::string title = titleOf(model.name);
+  Recording recording(output, view, title + ", a full turn", factsOf(model), Interpolation::Quadratic);
+  if (!recording.wanted()) return recording;
+  const std::size_t shared = recording.addModel(title, model.cage, model.mesh, embedding);
+  for (const char* name : {"linear", "quadratic"}) recording.addBody({shared, name, name});
+  return recording;
 }
 
 int run(const TwistOptions& options) {
@@ -222,20 +223,22 @@ int run(const TwistOptions& options) {
   FramePlan plan = framePlanOf(options.output);
   if (options.model.mesh.empty()) plan.materials = materialLibrary(pair.mesh());
   FrameWriter writer(plan, layoutWith(options.skin.normals, pair.layout()));
-  std::optional<ViewPage> page;
-  if (!view.empty()) page = pageOf(player.model(), quadratic.skin.binding()->embedding());
+  Recording recording = record(options.output, view, player.model(), quadratic.skin.binding()->embedding());
+  if (recording.hasGlb()) writer.addOther(Recording::kGlbName, recording.glbBytes());
   Totals totals;
   const Playback run = player.play(
       "twisting", options.output,
       [&](int frame) {
         measure(player, linear, quadratic, frame, totals);
-        if (page) page->keep({{player.nodes(), pair.beside(player.nodes())}, {}});
+        if (recording.wanted()) recording.keep({{player.nodes(), pair.beside(player.nodes())}, {}});
       },
       [&](int frame) { pair.write(linear, quadratic, frame, writer); });
+  writer.finish();
+  recording.writeGlb();
   const nlohmann::ordered_json json = summarise(player, options, totals, run, linear, quadratic);
   writeJson(json, path);
-  if (!options.output.quiet) printTable(json, path);
-  if (page) page->write(view, options.output.quiet);
+  if (!options.output.quiet) printTable(json, options.output, path);
+  recording.writePage();
   if (run.finite) return kDone;
   std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", run.frames - 1);
   return kRunFailed;

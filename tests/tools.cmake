@@ -80,6 +80,15 @@ if(TETSKIN_DEMOS AND NOT (TETSKIN_THREE AND TETSKIN_ORBIT_CONTROLS))
   tetskin_lacks("three.js (libjs-three)" "test of pages")
 endif()
 
+# OpenGL without a display, for the recipe that draws bones.
+find_library(EGL_LIBRARY EGL)
+find_library(GL_LIBRARY NAMES GL OpenGL)
+find_path(EGL_INCLUDES EGL/eglext.h)
+find_path(GL_INCLUDES GL/glcorearb.h)
+if(NOT (EGL_LIBRARY AND GL_LIBRARY AND EGL_INCLUDES AND GL_INCLUDES))
+  tetskin_lacks("EGL with OpenGL (libegl-dev)" "test of bones in OpenGL")
+endif()
+
 if(TETSKIN_TEST_EVERYTHING AND missing_tools)
   list(JOIN missing_tools ", " missing_tools)
   message(FATAL_ERROR "Missing for all tests: ${missing_tools}. Install it, or leave out what needs it: "

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "scenes/files.h"
+#include "scenes/formats.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
@@ -265,6 +266,15 @@ void CommandLine::addInput(const std::string& name, std::string& value, const st
   addFiles([name, &value](NamedFiles& files) { files.reads(lastOf(name), value); });
 }
 
+void CommandLine::addInputs(const std::string& name, std::vector<std::string>& values, const std::string& text,
+                            Need need) {
+  CLI::Option* option = parser_->add(name, values, text)->check(isFileName())->expected(1, kMaxFrames);
+  labelled(option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll), "FILE ...")->required(need == Need::Required);
+  addFiles([name, &values](NamedFiles& files) {
+    for (const std::string& value : values) files.reads(lastOf(name), value);
+  });
+}
+
 void CommandLine::addOutput(const std::string& name, std::string& value, const std::string& text, Need need,
                             const std::vector<std::string>& extensions, const std::string& preset) {
   addName(name, value, text, need, "FILE", preset);
@@ -381,6 +391,8 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
   const auto inFolder = [&](const char* name) { return (std::filesystem::path(options.out) / name).string(); };
   addCount("--frames", options.frames, "", kMaxFrames);
   addFolder("--out", options.out, "", isOfFrames);
+  const std::vector<std::string> formats = {"obj", "glb", "pc2"};
+  labelled(parser_->add("--format", options.formats, "")->delimiter(',')->check(isOneOf(formats)), "LIST", "obj,glb");
   addCount("--every", options.every, "", kMaxFrames);
   addOutput("--view", options.view, "", Need::Optional, {}, options.viewByDefault ? inFolder("view.html") : "");
   if (options.viewByDefault) addFlag("--no-view", options.noView);
@@ -388,6 +400,7 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
   addFlag("--hash", options.hash);
   addQuietOption(options.quiet);
   addFiles([&options](NamedFiles& files) {
+    requireFormats(options);
     if (options.json.empty()) files.writes("--out", summaryPath(options));
     const bool hasView = options.viewByDefault && !options.noView && options.view.empty();
     if (hasView) files.writes("--out", (std::filesystem::path(options.out) / "view.html").string());

@@ -26,15 +26,16 @@ constexpr int kDone = 0, kRunFailed = 1, kBadInput = 2;
 
 /// Where and how results are written.
 struct OutputOptions {
-  std::string out;   ///< folder of the OBJ sequence
+  std::string out;   ///< folder of the frames
   std::string json;  ///< file of the summary; empty: summary.json in the folder
   int frames = 0;
-  int every = 1;  ///< write every n-th frame
+  int every = 1;  ///< write every n-th frame as OBJ and PC2
   bool quiet = false;
   std::string view = {};       ///< file of a page that plays the run; empty: none, unless there is one by default
   bool viewByDefault = false;  ///< by default view.html in the folder, where a page can be made
   bool noView = false;         ///< no page by default either
   bool hash = false;           ///< print a hash of the nodes of all frames
+  std::vector<std::string> formats = {};  ///< "obj", "glb", "pc2"; empty: see `formatsOf`
 };
 
 /// A whole command line, and a description of what it does.
@@ -72,6 +73,8 @@ class CommandLine {
   /// A file to be read.
   void addInput(const std::string& name, std::string& value, const std::string& text = "", Need need = Need::Optional,
                 const std::string& preset = "");
+  /// Files to be read, in this order: as many as follow the option.
+  void addInputs(const std::string& name, std::vector<std::string>& values, const std::string& text, Need need);
   /// A file to be written. extensions  permitted ones, with their dots; empty: any
   void addOutput(const std::string& name, std::string& value, const std::string& text = "", Need need = Need::Optional,
                  const std::vector<std::string>& extensions = {}, const std::string& preset = "");
@@ -114,8 +117,8 @@ class CommandLine {
   void addSummaryOption(std::string& path, const std::string& preset = "");
   /// Adds --quiet.
   void addQuietOption(bool& quiet);
-  /// Adds --frames, --out, --every, --view, --json, --hash, --quiet; --no-view where there is a page by default. The
-  /// defaults of `options` are the demo's.
+  /// Adds --frames, --out, --format, --every, --view, --json, --hash, --quiet; --no-view where there is a page by
+  /// default. The defaults of `options` are the demo's.
   void addOutputOptions(OutputOptions& options);
 
   /// True if an option was on the parsed command line.

@@ -23,6 +23,9 @@ namespace {
 constexpr const char* kListName = ".tetskin_frames";
 /// The material library of all frames.
 constexpr const char* kLibraryName = "tetskin_frames.mtl";
+constexpr const char* kCacheName = "animation.pc2";
+constexpr const char* kCacheMeshName = "animation.obj";
+constexpr std::size_t kCacheHeader = 32, kCachePoint = 12;  ///< bytes
 
 std::string cageName(int frame) {
   char name[32];
@@ -54,12 +57,18 @@ std::string framesText(int count) {
   return std::to_string(count) + (count == 1 ? " frame" : " frames");
 }
 
+/// A file that has its name only at the end of a run.
+bool isOfAllFrames(const std::string& name) {
+  return name == "animation.glb" || name == kCacheName || name == kCacheMeshName || name == "animation.mtl";
+}
+
 }  // namespace
 
 bool isOfFrames(const std::string& name) {
   for (const char* known : {kListName, kLibraryName, "obstacles.obj", "obstacles.mtl"}) {
     if (name == known) return true;
   }
+  if (isOfAllFrames(name)) return true;
   return isNumbered(name, "frame_", ".obj") || isNumbered(name, "frame_", ".mtl") || isNumbered(name, "cage_", ".vtk");
 }
 
@@ -97,7 +106,10 @@ void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const Out
                  [](const Eigen::Vector3d& p) { return p.cast<float>(); });
   std::vector<char> buffer;
   const FramePlan plan = framePlanOf(options);
-  requireRoom(plan, plan.count() * static_cast<double>(layout.format(viewOf(std::as_const(points)), buffer).size()));
+  double bytes = 0.0;
+  if (plan.formats.obj) bytes += static_cast<double>(layout.format(viewOf(std::as_const(points)), buffer).size());
+  if (plan.formats.pc2) bytes += static_cast<double>(kCachePoint * points.size());
+  requireRoom(plan, plan.count() * bytes);
 }
 
 bool fitsFloat(const Box3& box) {
@@ -108,6 +120,7 @@ bool fitsFloat(const Box3& box) {
 FramePlan framePlanOf(const OutputOptions& options) {
   FramePlan plan;
   plan.folder = options.out;
+  plan.formats = formatsOf(options);
   plan.frames = options.frames;
   plan.every = options.every;
   plan.quiet = options.quiet;
@@ -144,18 +157,47 @@ void FrameWriter::writeFrame(int frame, PointView<const Scalar> surface, PointVi
                              const TetMesh* cage) {
   if (frame == 0) {
     std::vector<char> buffer;
-    const std::size_t bytes = layout_.format(surface, buffer, normals).size() + plan_.materials.size();
-    begin(static_cast<double>(bytes + (cage ? vtkBytes(*cage) : 0)));
+    const std::size_t obj = layout_.format(surface, buffer, normals).size() + plan_.materials.size();
+    const std::size_t point = kCachePoint * surface.size(), beside = cage ? vtkBytes(*cage) : 0;
+    const auto [writesObj, writesGlb, writesCache] = plan_.formats;
+    const std::size_t ofFrame = (writesObj ? obj : 0) + (writesCache ? point : 0) + beside;
+    begin(plan_.count() * static_cast<double>(ofFrame) + static_cast<double>(writesCache ? obj + kCacheHeader : 0) +
+          otherBytes_);
+    if (writesCache) beginCache(surface, normals);
     layout_ = {};
   }
-  require(writer_.write(frame, surface, normals));
-  writeMaterials(fs::path(writer_.framePath(frame)).stem().string() + ".mtl", plan_.materials);
+  if (plan_.formats.obj) {
+    require(writer_.write(frame, surface, normals));
+    writeMaterials(fs::path(writer_.framePath(frame)).stem().string() + ".mtl", plan_.materials);
+  }
+  if (cache_) require(cache_->addFrame(surface));
   if (cage) require(saveTetMesh(*cage, pathOf(cageName(frame))));
 }
 
+template <class Scalar>
+void FrameWriter::beginCache(PointView<const Scalar> surface, PointView<const float> normals) {
+  require(layout_.writeTo(pathOf(kCacheMeshName), surface, normals));
+  writeMaterials("animation.mtl", plan_.materials);
+  Result<Pc2Writer> cache =
+      Pc2Writer::create(pathOf(kCacheName), surface.size(), 0.0f, static_cast<float>(plan_.every));
+  require(cache.status());
+  cache_.emplace(std::move(cache).value());
+}
+
+void FrameWriter::addOther(const std::string& name, double bytes) {
+  others_.push_back(name);
+  otherBytes_ += bytes;
+  refuseFramesOfOthers();
+}
+
+void FrameWriter::finish() {
+  if (!cache_) return;
+  require(cache_->finish());
+  cache_.reset();
+}
+
 /// All frames have about as many bytes as the first one.
-void FrameWriter::begin(double frameBytes) {
-  const double bytes = plan_.count() * frameBytes;
+void FrameWriter::begin(double bytes) {
   requireRoom(plan_, bytes);
   if (!plan_.quiet) std::printf("%s\n", announcement(bytes).c_str());
   replaceEarlierRun();
@@ -167,20 +209,31 @@ void FrameWriter::begin(double frameBytes) {
 }
 
 std::string FrameWriter::announcement(double bytes) const {
-  return "writing " + framesText(plan_.count()) + ", about " + sizeText(bytes) + ", to " + plan_.folder;
+  std::vector<std::string> parts;
+  if (plan_.formats.obj || plan_.cages) parts.push_back(framesText(plan_.count()));
+  if (plan_.formats.pc2) parts.emplace_back(kCacheName);
+  parts.insert(parts.end(), others_.begin(), others_.end());
+  std::string text = "writing ";
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 < parts.size() ? ", " : " and ") + parts[k];
+  }
+  return text + ", about " + sizeText(bytes) + ", to " + plan_.folder;
 }
 
 std::vector<std::string> FrameWriter::filesOf(int frame) const {
   const fs::path path = fs::path(writer_.framePath(frame)).filename();
-  std::vector<std::string> names = {path.string()};
-  if (!plan_.materials.empty()) names.push_back(path.stem().string() + ".mtl");
+  std::vector<std::string> names;
+  if (plan_.formats.obj) names.push_back(path.string());
+  if (plan_.formats.obj && !plan_.materials.empty()) names.push_back(path.stem().string() + ".mtl");
   if (plan_.cages) names.push_back(cageName(frame));
   return names;
 }
 
 std::vector<std::string> FrameWriter::filesOfAllFrames() const {
-  std::vector<std::string> names;
+  std::vector<std::string> names = others_;
   if (!plan_.materials.empty()) names.emplace_back(kLibraryName);
+  if (plan_.formats.pc2) names.insert(names.end(), {kCacheName, kCacheMeshName});
+  if (plan_.formats.pc2 && !plan_.materials.empty()) names.emplace_back("animation.mtl");
   if (!plan_.obstacles.positions.empty()) names.insert(names.end(), {"obstacles.obj", "obstacles.mtl"});
   for (int count = 0; count < plan_.count(); ++count) {
     for (std::string& name : filesOf(count * plan_.every)) names.push_back(std::move(name));
@@ -191,12 +244,15 @@ std::vector<std::string> FrameWriter::filesOfAllFrames() const {
 /// Two sequences in one folder would be mistaken for one.
 void FrameWriter::refuseFramesOfOthers() const {
   const std::set<std::string> known = filesOfEarlierRun(plan_.folder);
+  const std::vector<std::string> ours = filesOfAllFrames();
   for (const fs::directory_entry& entry : fs::directory_iterator(plan_.folder)) {
     const std::string name = entry.path().filename().string();
-    if (name.rfind("frame_", 0) != 0 || entry.path().extension() != ".obj" || known.count(name) > 0) continue;
+    const bool frame = name.rfind("frame_", 0) == 0 && entry.path().extension() == ".obj";
+    const bool all = isOfAllFrames(name) && std::count(ours.begin(), ours.end(), name) > 0;
+    if ((!frame && !all) || known.count(name) > 0) continue;
     throw InputError(
         plan_.folder + ": " + name +
-        " was not written by an earlier tetskin run and would be mixed with the frames of this one; move it, or "
+        " was not written by an earlier tetskin run and would be mixed with the files of this one; move it, or "
         "choose another folder with --out");
   }
 }
@@ -205,7 +261,7 @@ void FrameWriter::replaceEarlierRun() const {
   const std::vector<std::string> names = filesOfAllFrames();
   const std::set<std::string> kept(names.begin(), names.end());
   for (const std::string& name : filesOfEarlierRun(plan_.folder)) {
-    if (kept.count(name) > 0) continue;
+    if (kept.count(name) > 0 && !isOfAllFrames(name)) continue;
     std::error_code error;
     fs::remove(pathOf(name), error);
     if (error)

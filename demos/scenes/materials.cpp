@@ -41,6 +41,20 @@ const Material* materialNamed(const std::string& name) {
   return found == std::end(kMaterials) ? nullptr : found;
 }
 
+std::vector<SurfaceMaterial> surfaceMaterials() {
+  std::vector<SurfaceMaterial> all;
+  for (const Material& material : kMaterials) {
+    SurfaceMaterial& added = all.emplace_back();
+    added.name = material.name;
+    for (std::size_t k = 0; k < 3; ++k) {
+      added.colour[static_cast<Eigen::Index>(k)] = static_cast<float>(material.colour[k]);
+    }
+    added.opacity = static_cast<float>(material.opacity);
+    added.roughness = static_cast<float>(1.0 - material.shine);
+  }
+  return all;
+}
+
 std::string materialLibrary(const TriangleMesh& mesh) {
   std::set<std::string> names;
   for (const TriangleGroup& group : mesh.groups) names.insert(group.material);

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
+#include <tetskin/io/animation.h>
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace tetskin::scenes {
 
@@ -23,5 +25,8 @@ const Material* materialNamed(const std::string& name);
 
 /// The mesh's materials that are in the table, as a Wavefront material library. Empty if none is.
 std::string materialLibrary(const TriangleMesh& mesh);
+
+/// The whole table, for GLB.
+std::vector<SurfaceMaterial> surfaceMaterials();
 
 }  // namespace tetskin::scenes

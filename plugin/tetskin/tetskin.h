@@ -14,6 +14,7 @@
 #define TETSKIN_VERSION \
   TETSKIN_TEXT(TETSKIN_VERSION_MAJOR) "." TETSKIN_TEXT(TETSKIN_VERSION_MINOR) "." TETSKIN_TEXT(TETSKIN_VERSION_PATCH)
 
+#include <tetskin/core/bone_palette.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh.h>
@@ -39,6 +40,7 @@
 #include <tetskin/elastic/vibration_modes.h>
 #endif
 #ifdef TETSKIN_HAS_IO
+#include <tetskin/io/animation.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 #endif

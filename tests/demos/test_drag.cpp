@@ -54,7 +54,7 @@ TEST(Drag, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
   };
   const CommandResult result = run("3");
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_LT(result.out.find("writing 3 frames, about "), result.out.find("simulating")) << result.out;
+  EXPECT_LT(result.out.find("writing 3 frames and animation.glb, about "), result.out.find("simulating")) << result.out;
   EXPECT_NE(folder.read("out/drag/frame_0002.mtl").find("newmtl hat\n"), std::string::npos);
   ASSERT_EQ(run("2").status, 0);
   EXPECT_EQ(folder.count("out/drag", ".obj"), 2u + 1u);

@@ -64,19 +64,23 @@ TEST_F(DropFrames, SaysHowMuchItWritesBeforeItDoes) {
   const CommandResult result =
       drop({"--mesh", "box.obj", "--tets", "3000", "--frames", "60", "--every", "30", "--write-cage", "--out", "o"});
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::size_t index = result.out.find("writing 2 frames, about ");
+  const std::string announced = "writing 2 frames and animation.glb, about ";
+  const std::size_t index = result.out.find(announced);
   ASSERT_NE(index, std::string::npos) << result.out;
   EXPECT_LT(index, result.out.find("simulating"));
   const double written =
       static_cast<double>(folder.read("o/frame_0000.obj").size() + folder.read("o/cage_0000.vtk").size() +
-                          folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size());
-  EXPECT_NEAR(std::stod(result.out.substr(index + 24)), 1e-3 * written, 1.0 + 0.1e-3 * written) << result.out;
+                          folder.read("o/frame_0030.obj").size() + folder.read("o/cage_0030.vtk").size() +
+                          folder.read("o/animation.glb").size());
+  EXPECT_NEAR(std::stod(result.out.substr(index + announced.size())), 1e-3 * written, 1.0 + 0.1e-3 * written)
+      << result.out;
   EXPECT_NE(result.out.find("kB, to o\n"), std::string::npos) << result.out;
 }
 
 TEST_F(DropFrames, SpeaksOfOneFrameAndOfFewBytesAsTheyAre) {
   folder.write("box.obj", boxObj());
-  const CommandResult result = drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--out", "o"});
+  const CommandResult result =
+      drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--format", "obj", "--out", "o"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("writing 1 frame, about "), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(" kB, to o\n"), std::string::npos) << result.out;

@@ -65,7 +65,7 @@ TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
   };
   const CommandResult result = run("3");
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_LT(result.out.find("writing 3 frames, about "), result.out.find("simulating")) << result.out;
+  EXPECT_LT(result.out.find("writing 3 frames and animation.glb, about "), result.out.find("simulating")) << result.out;
   EXPECT_EQ(folder.count("out/pile", ".obj"), 3u + 1u);
   ASSERT_EQ(run("2").status, 0);
   EXPECT_EQ(folder.count("out/pile", ".obj"), 2u + 1u);

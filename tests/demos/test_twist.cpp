@@ -92,7 +92,7 @@ double turnOf(const TriangleMesh& rest, const TriangleMesh& now, std::size_t cou
 TEST_F(TwistCommand, TurnsOneEndAFullTurnHoldsItAndLetsItGo) {
   const CommandResult result = twist({"--triangles", "4000", "--tets", "600", "--every", "10"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("writing 24 frames, about "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("writing 24 frames and animation.glb, about "), std::string::npos) << result.out;
   const auto json = folder.json("out/twist/summary.json");
   EXPECT_EQ(json["frames"], 240);
   EXPECT_EQ(json["frames_written"], 24);

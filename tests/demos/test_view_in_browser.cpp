@@ -4,17 +4,14 @@
 // Pages as a browser shows them: a probe is appended to a page, and writes its results into the page's document.
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <array>
-#include <cmath>
-
-#include "command.h"
+#include "browser.h"
 
 namespace tetskin {
 namespace {
 
 using test::CommandFolder;
 using test::CommandResult;
+using test::distance;
 
 std::string withProbe(const CommandFolder& folder, const std::string& page) {
   std::string text = folder.read(page);
@@ -22,34 +19,10 @@ std::string withProbe(const CommandFolder& folder, const std::string& page) {
   return text.insert(text.rfind("</body>"), probe);
 }
 
-/// The results of the probe. Pages are drawn without a graphics card; one that does not end is stopped.
+/// The results of the probe.
 nlohmann::json seenIn(const CommandFolder& folder, const std::string& page, const std::string& windowSize) {
-  const std::string probed = folder.write("probed.html", withProbe(folder, page));
-  const CommandResult result = folder.run(
-      "timeout", {"100", TETSKIN_CHROMIUM, "--headless", "--no-sandbox", "--user-data-dir=" + folder.path("profile"),
-                  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=" + windowSize, "--dump-dom",
-                  "--enable-logging=stderr", "--v=0", "file://" + probed});
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.err.find("CONSOLE"), std::string::npos) << result.err;
-  const std::string begin = "<pre id=\"report\">";
-  const std::size_t at = result.out.find(begin), end = result.out.find("</pre>", at);
-  EXPECT_NE(at, std::string::npos) << result.err;
-  if (at == std::string::npos) return {};
-  return nlohmann::json::parse(result.out.substr(at + begin.size(), end - at - begin.size()));
-}
-
-/// Largest distance between what the page shows and a frame, relative to the frame's largest side.
-double distance(const nlohmann::json& shown, const std::vector<std::array<double, 3>>& frame) {
-  const auto numbers = shown.get<std::vector<double>>();
-  EXPECT_EQ(numbers.size(), 3 * frame.size());
-  Eigen::AlignedBox3d box;
-  double farthest = 0.0;
-  for (std::size_t v = 0; v < frame.size() && 3 * v + 2 < numbers.size(); ++v) {
-    const Eigen::Vector3d expected(frame[v].data());
-    box.extend(expected);
-    farthest = std::max(farthest, (Eigen::Vector3d(&numbers[3 * v]) - expected).norm());
-  }
-  return farthest / box.sizes().maxCoeff();
+  folder.write("probed.html", withProbe(folder, page));
+  return test::reportOf(folder, "probed.html", windowSize);
 }
 
 /// The tolerance for equality; the two kinds of surface differ by more than that.

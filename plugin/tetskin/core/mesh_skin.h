@@ -102,7 +102,7 @@ class TETSKIN_CORE_API SkinBinding {
  public:
   using Pointer = std::shared_ptr<const SkinBinding>;  ///< shared ownership by all skins that use the binding
 
-  /// Embeds the mesh in the cage at rest, and precomputes what the options need. Cage and mesh are not kept.
+  /// Embeds the mesh in the cage at rest, and precomputes what the options need; keeps only the rest nodes.
   /// report  of the fit, written if not null, also on failure
   /// Errors  those of `embed`; before anything is embedded, SizeMismatch if the mesh's normals or tangents are not one
   ///         per vertex, and InvalidOption for a hardEdgeDegrees below 0 or NaN

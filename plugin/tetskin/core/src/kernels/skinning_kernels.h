@@ -74,6 +74,23 @@ struct EdgeWork {
   Scalar* edges = nullptr;  ///< 4 per edge; the fourth is not changed
 };
 
+/// What a bone's matrix [ A | t ] holds: half the node's gradient, or the whole gradient beside the displacement.
+enum class BoneContent { HalfGradient, Gradient };
+
+template <class Scalar>
+struct BoneWork {
+  std::size_t firstNode = 0, lastNode = 0;
+  BoneContent content = BoneContent::HalfGradient;
+  bool columns = false;                       ///< four columns of four floats each, otherwise three rows
+  const std::uint32_t* gradientOf = nullptr;  ///< by node: index of its gradient
+  const Scalar* gradients = nullptr;
+  const Scalar* restNodes = nullptr;  ///< 4 scalars per node
+  const Scalar* nodes = nullptr;      ///< current positions, as in Work
+  Scalar shift[4] = {};               ///< added to them
+  float* bones = nullptr;             ///< that of node 0; never read
+  std::size_t strideBytes = 0;
+};
+
 /// Directions carried by the map's gradient. A normal is the sum of factor k times the cross product of the other two
 /// columns; a tangent is the sum of factor k times column k.
 enum class Direction { Normal, Tangent };
@@ -104,6 +121,7 @@ struct Table {
   void (*directions)(const Work<Scalar>&, const DirectionPlanes&, float* out);
   void (*gradients)(const GradientWork<Scalar>&);
   void (*edges)(const EdgeWork<Scalar>&);
+  void (*bones)(const BoneWork<Scalar>&);
   void (*pathNormals)(const PathWork<Scalar>&);
 };
 

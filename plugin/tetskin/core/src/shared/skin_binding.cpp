@@ -70,6 +70,10 @@ std::unique_ptr<const SkinData<Scalar>> componentsFor(const Cage& cage, const Tr
   auto made = std::make_unique<SkinData<Scalar>>();
   made->options = options;
   made->embedding = embedding;
+  made->restNodes.reserve(4 * cage.mesh.nodeCount());
+  for (const Eigen::Vector3d& p : cage.mesh.nodes) {
+    for (const double x : {p.x(), p.y(), p.z(), 0.0}) made->restNodes.push_back(static_cast<Scalar>(x));
+  }
   if (options.interpolation == Interpolation::Quadratic) addQuadratic(cage, *made);
   if (options.normals == Normals::Transformed) {
     made->normals = DirectionFactors::ofNormals(cage.mesh, made->embedding, restNormals(mesh));

@@ -10,6 +10,7 @@
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <optional>
+#include <vector>
 
 namespace tetskin {
 
@@ -17,6 +18,7 @@ template <class Scalar>
 struct SkinData {
   BindingOptions options;
   Embedding embedding;
+  std::vector<Scalar> restNodes;  ///< 4 per node: its rest position, and a 0
   std::optional<QuadraticStencils<Scalar>> quadratic;
   QuadraticReport quadraticReport;
   std::optional<DirectionFactors> normals;   ///< for transformed normals

@@ -61,6 +61,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
     if (gradientOf[node] == kNone) continue;
     const GradientStencil stencil = neighbours.stencilOf(node);
     gradientOf[node] = static_cast<std::uint32_t>(gradientCount());
+    gradientNodes_.push_back(node);
     thinCount_ += stencil.kind == GradientStencil::Kind::Thin;
     plainCount_ += stencil.kind == GradientStencil::Kind::Plain;
     entryNodes_.insert(entryNodes_.end(), stencil.nodes.begin(), stencil.nodes.end());
@@ -88,6 +89,32 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
 }
 
 template <class Scalar>
+NodeGradients<Scalar>::NodeGradients(std::size_t count) : gradients_(count + 1) {
+  for (std::size_t k = 0; k < 3; ++k) gradients_.back().columns[5 * k] = Scalar(1);
+}
+
+template <class Scalar>
+void NodeGradients<Scalar>::update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
+                                   ParallelFor* threads) {
+  using namespace skin_tasks;
+  assert(count() == stencils.gradientCount());
+  const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
+  kernels::GradientWork<Scalar> work;
+  work.starts = stencils.starts().data();
+  work.neighbours = stencils.entryNodes().data();
+  work.factors = stencils.entryFactors().data();
+  work.nodes = nodes.data();
+  work.gradients = gradients_.front().columns;
+  const std::size_t tasks = taskCount(count(), kGradientsPerTask);
+  runTasks(threads, tasks, [&](std::size_t task) {
+    kernels::GradientWork<Scalar> part = work;
+    part.firstNode = firstItem(count(), tasks, task);
+    part.lastNode = firstItem(count(), tasks, task + 1);
+    table.gradients(part);
+  });
+}
+
+template <class Scalar>
 EdgeVectors<Scalar>::EdgeVectors(const QuadraticStencils<Scalar>& stencils)
     : gradients_(stencils.gradientCount()), edges_(4 * stencils.edgeCount()) {
   for (std::size_t e = 0; e < stencils.edgeCount(); ++e) edges_[4 * e + 3] = stencils.restLengths()[e];
@@ -98,33 +125,18 @@ void EdgeVectors<Scalar>::update(const QuadraticStencils<Scalar>& stencils, cons
                                  ParallelFor* threads) {
   using namespace skin_tasks;
   assert(edges_.size() == 4 * stencils.edgeCount());
-  const kernels::Table<Scalar>& table = kernels::tableInUse<Scalar>();
-
-  kernels::GradientWork<Scalar> gradients;
-  gradients.starts = stencils.starts().data();
-  gradients.neighbours = stencils.entryNodes().data();
-  gradients.factors = stencils.entryFactors().data();
-  gradients.nodes = nodes.data();
-  gradients.gradients = gradients_.empty() ? nullptr : gradients_.front().columns;
-  std::size_t tasks = taskCount(stencils.gradientCount(), kGradientsPerTask);
-  runTasks(threads, tasks, [&](std::size_t task) {
-    kernels::GradientWork<Scalar> part = gradients;
-    part.firstNode = firstItem(stencils.gradientCount(), tasks, task);
-    part.lastNode = firstItem(stencils.gradientCount(), tasks, task + 1);
-    table.gradients(part);
-  });
-
+  gradients_.update(stencils, nodes, threads);
   kernels::EdgeWork<Scalar> edges;
   edges.gradientOf = stencils.edgeGradients().data();
   edges.halfRest = stencils.halfRest().data();
-  edges.gradients = gradients.gradients;
+  edges.gradients = gradients_.data();
   edges.edges = edges_.data();
-  tasks = taskCount(stencils.edgeCount(), kEdgesPerTask);
+  const std::size_t tasks = taskCount(stencils.edgeCount(), kEdgesPerTask);
   runTasks(threads, tasks, [&](std::size_t task) {
     kernels::EdgeWork<Scalar> part = edges;
     part.firstEdge = firstItem(stencils.edgeCount(), tasks, task);
     part.lastEdge = firstItem(stencils.edgeCount(), tasks, task + 1);
-    table.edges(part);
+    kernels::tableInUse<Scalar>().edges(part);
   });
 }
 
@@ -143,6 +155,7 @@ void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& 
 
 #define TETSKIN_INSTANTIATE(Scalar)         \
   template class QuadraticStencils<Scalar>; \
+  template class NodeGradients<Scalar>;     \
   template class EdgeVectors<Scalar>;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

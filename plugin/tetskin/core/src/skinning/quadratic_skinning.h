@@ -34,6 +34,8 @@ class QuadraticStencils {
   std::size_t thinCount() const { return thinCount_; }
   std::size_t plainCount() const { return plainCount_; }
 
+  /// By gradient: its node, ascending.
+  const std::vector<std::uint32_t>& gradientNodes() const { return gradientNodes_; }
   /// By gradient, and the end: its first entry. An entry is a node and a factor: F = sum of x_node factor^T.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   const std::vector<std::uint32_t>& entryNodes() const { return entryNodes_; }
@@ -47,6 +49,7 @@ class QuadraticStencils {
 
  private:
   std::size_t thinCount_ = 0, plainCount_ = 0;
+  std::vector<std::uint32_t> gradientNodes_;
   std::vector<std::uint32_t> starts_ = {0};
   std::vector<std::uint32_t> entryNodes_;
   std::vector<Scalar> entryFactors_;
@@ -54,6 +57,30 @@ class QuadraticStencils {
   std::vector<Scalar> halfRest_;
   std::vector<Scalar> restLengths_;
   std::vector<std::uint32_t> runEdges_;
+};
+
+/// The nodes' current gradients.
+template <class Scalar>
+class NodeGradients {
+ public:
+  NodeGradients() = default;
+  /// One gradient more than there are nodes with a gradient: the last one is the identity, and stays so.
+  explicit NodeGradients(std::size_t count);
+
+  /// Computes them for the current nodes. Cost O(nodes x neighbours), no allocation.
+  void update(const QuadraticStencils<Scalar>& stencils, const PackedNodes<Scalar>& nodes,
+              ParallelFor* threads = nullptr);
+
+  std::size_t count() const { return gradients_.empty() ? 0 : gradients_.size() - 1; }
+  /// kGradientStride scalars per gradient: its columns, of four scalars each.
+  const Scalar* data() const { return gradients_.empty() ? nullptr : gradients_.front().columns; }
+
+ private:
+  /// A gradient takes one cache line, or two.
+  struct alignas(64) Gradient {
+    Scalar columns[kernels::kGradientStride] = {};
+  };
+  std::vector<Gradient> gradients_;
 };
 
 /// The cage's current edge vectors: each body has its own.
@@ -72,11 +99,7 @@ class EdgeVectors {
   const Scalar* data() const { return edges_.data(); }
 
  private:
-  /// A gradient takes one cache line, or two.
-  struct alignas(64) Gradient {
-    Scalar columns[kernels::kGradientStride];
-  };
-  std::vector<Gradient> gradients_;
+  NodeGradients<Scalar> gradients_;
   std::vector<Scalar> edges_;
 };
 

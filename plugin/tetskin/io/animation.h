@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A whole run in one file: GLB, a skinned mesh that every engine and viewer plays, and PC2, a cache of all positions.
+#pragma once
+
+#include <tetskin/core/cage.h>
+#include <tetskin/core/embedding.h>
+#include <tetskin/core/mesh.h>
+#include <tetskin/core/mesh_skin.h>
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tetskin {
+
+/// How a material looks. Groups of a mesh name theirs by `TriangleGroup::material`.
+struct SurfaceMaterial {
+  std::string name;                                          ///< as groups name it
+  Eigen::Vector3f colour = Eigen::Vector3f::Constant(0.8f);  ///< red, green and blue, 0 to 1, sRGB
+  float opacity = 1.0f;                                      ///< below 1: transparent
+  float roughness = 0.8f;                                    ///< 0: a mirror, 1: matt
+};
+
+/// Writes bodies that follow the nodes of their cages, and rigid objects, as one animation: binary glTF 2.0, which
+/// holds each mesh once and the bones' motion per frame, a hundredth of an OBJ sequence.
+///
+/// Each node of a cage that carries a vertex is a bone, and each vertex follows the four of its tet:
+/// - Linear: bones move by translation, which is linear skinning exactly. The mesh has no normals, as bones that do not
+///   turn would leave them as they are at rest: viewers shade such a mesh by its triangles, flat.
+/// - Quadratic: bone i is the affine map [F_i / 2 | x_i - F_i X_i / 2], with its position x_i, X_i at rest, and the
+///   deformation gradient F_i there: quadratic skinning, except where that limits its correction (`MeshSkin`). A bone
+///   is two nodes, as F = U S V^T is a rotation and a scale above a rotation, which holds any F; the mesh has normals,
+///   which viewers turn with the bones, about as the surface turns.
+///
+/// A vertex outside of its tet would need weights below 0, which glTF has not: it takes those of the tet's closest
+/// point
+/// (`EmbeddedPoint::clampedWeights`). A linear surface then keeps the vertex' distance vector to that point, as at
+/// rest, instead of turning it with the tet; a quadratic one differs to second order in that distance.
+///
+/// Coordinates are float; of bodies that are far from the origin for their size, they are relative to a point near
+/// them, which the scene's `extras` have as `origin`.
+/// Memory: the keyframes, 12 bytes per bone and frame, 56 if quadratic, until `finish`. Can be moved, not copied.
+class TETSKIN_IO_API GlbWriter {
+ public:
+  /// Why this build cannot write GLB: it was made without tinygltf. Empty if it can.
+  static std::string whyNot();
+
+  /// Creates a writer that has nothing to write yet, and tests whether the file can be.
+  /// framesPerSecond  above 0
+  /// Errors  UnsupportedFormat if `whyNot`; FileNotWritable; InvalidOption for another rate
+  static Result<GlbWriter> create(const std::string& path, double framesPerSecond);
+  ~GlbWriter();
+  GlbWriter(GlbWriter&& other) noexcept;
+  GlbWriter& operator=(GlbWriter&& other) noexcept;
+
+  /// Sets how materials look. Groups with other materials are of a light grey.
+  void setMaterials(std::vector<SurfaceMaterial> materials);
+
+  // What is shown, before the first frame.
+
+  /// Adds a mesh in its cage at rest, which any number of bodies may share. Returns its number, from 0. Nothing is
+  /// kept. embedding  of the mesh in the cage Errors     Empty for a mesh without triangles; those of
+  /// `SkinBinding::create`; TooLarge: 65,536 bones or more
+  Result<std::size_t> addModel(const std::string& name, const Cage& cage, const TriangleMesh& mesh,
+                               const Embedding& embedding, Interpolation interpolation);
+  /// Adds a body of a model, below the number of models.
+  void addBody(std::size_t model, const std::string& name);
+  /// Adds a rigid object, which stays, or moves. Error: Empty for a mesh without triangles.
+  Status addObject(const std::string& name, const TriangleMesh& mesh, bool moves);
+
+  /// About how many bytes the file will have with so many frames.
+  double bytesFor(int frames) const;
+
+  /// Adds the next frame.
+  /// nodes   by body: its cage's nodes, nodeCount x 3, world space
+  /// places  by object that moves: rigid
+  /// Errors  SizeMismatch; NonFinite; TooLarge: beyond the 4 GB that a GLB can have
+  Status addFrame(const std::vector<PointView<const double>>& nodes, const std::vector<Eigen::Affine3d>& places = {});
+
+  /// Writes the file, complete or not at all. The writer is then empty. Cost: some 10 ns per byte.
+  /// Errors: Empty without frames; FileNotWritable.
+  Status finish();
+
+ private:
+  struct Impl;
+  explicit GlbWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;  ///< null after `finish`
+};
+
+/// Writes the positions of a deforming mesh's vertices in every frame: the point cache PC2, which Blender (modifier
+/// Mesh Cache), Maya and 3ds Max apply to a mesh with as many vertices in the same order. It holds any deformation, as
+/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, nothing is left.
+class TETSKIN_IO_API Pc2Writer {
+ public:
+  /// Creates a writer.
+  /// vertexCount  of the mesh
+  /// first, step  the number of the first frame, and from one frame to the next
+  /// Errors       FileNotWritable, also for what is no regular file; TooLarge: 2^31 vertices or more
+  static Result<Pc2Writer> create(const std::string& path, std::size_t vertexCount, float first = 0.0f,
+                                  float step = 1.0f);
+  ~Pc2Writer();
+  Pc2Writer(Pc2Writer&& other) noexcept;
+  Pc2Writer& operator=(Pc2Writer&& other) noexcept;
+
+  /// Appends a frame to the file, which does not have its name yet. Positions are vertexCount x 3, finite.
+  /// Errors: SizeMismatch; NonFinite; FileNotWritable.
+  Status addFrame(PointView<const float> positions);
+  /// Overload for positions in double, which are rounded to float.
+  Status addFrame(PointView<const double> positions);
+
+  /// Completes the file, and gives it its name. Errors: Empty without frames; FileNotWritable.
+  Status finish();
+
+ private:
+  struct Impl;
+  explicit Pc2Writer(std::unique_ptr<Impl> impl);
+  template <class Scalar>
+  Status add(PointView<const Scalar> positions);
+  std::unique_ptr<Impl> impl_;  ///< null after `finish`
+};
+
+}  // namespace tetskin
