@@ -41,7 +41,8 @@ struct DragOptions {
 
 constexpr double kFrame = 1.0 / 60.0;
 constexpr int kSubsteps = 4;
-constexpr double kMax = 100.0 * kSize;
+/// A body with a coordinate beyond this has exploded.
+constexpr double kMaxCoordinate = 100.0 * kSize;
 /// Times of the script, in seconds: the body lies, is lifted, is swung one turn per second, is carried to the ring, is
 /// let go there, is pushed.
 constexpr double kPicked = 0.25, kLifted = 1.5, kSwung = 4.5, kThere = 5.5, kPushed = 7.0;
@@ -255,7 +256,7 @@ bool Drag::step(int frame) {
   }
   for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
   measure(t);
-  return skin_.update() == StatusCode::Ok && maxCoordinate(skin_.bounds()) < kMax;
+  return skin_.update() == StatusCode::Ok && maxCoordinate(skin_.bounds()) < kMaxCoordinate;
 }
 
 std::optional<double> Drag::stretch() const {

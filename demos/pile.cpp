@@ -48,7 +48,7 @@ constexpr std::array<BuiltIn, 3> kModels = {BuiltIn::Serpent, BuiltIn::Hand, Bui
 /// Lengths in the world; the largest side of each body is kSize.
 constexpr double kApart = 1.1 * kSize, kFloorY = 0.0, kSide = 1.1 * kSize, kPole = 0.02 * kSize;
 /// A body farther from the bowl than any can be thrown has exploded.
-constexpr double kMax = 100.0 * kSize;
+constexpr double kMaxCoordinate = 100.0 * kSize;
 
 /// A model scaled to the world about the origin, and what all bodies of it share.
 struct PileModel {
@@ -150,7 +150,7 @@ bool Pile::step() {
   return std::all_of(skins_.begin(), skins_.end(), [](SoftBodySkin& skin) {
     const StatusCode status = skin.update();
     const bool followed = status == StatusCode::Ok || status == StatusCode::Asleep;
-    return followed && maxCoordinate(skin.bounds()) < kMax;
+    return followed && maxCoordinate(skin.bounds()) < kMaxCoordinate;
   });
 }
 

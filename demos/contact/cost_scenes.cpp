@@ -68,13 +68,13 @@ double millisecondsOfSprings(Run& run, int count) {
 }
 
 void manySprings(Run& run) {
-  double ofThousand = 0.0, ofMax = 0.0;
+  double few = 0.0, many = 0.0;
   for (const int count : {100, 1000, 10000, 64000}) {
     const double milliseconds = millisecondsOfSprings(run, count);
     run.report("ms per step, springs: " + std::to_string(count), milliseconds);
-    (count == 1000 ? ofThousand : ofMax) = milliseconds;
+    (count == 1000 ? few : many) = milliseconds;
   }
-  run.report("growth from 1,000 to 64,000 over 64", ofMax / ofThousand / 64.0);
+  run.report("growth from 1,000 to 64,000 over 64", many / few / 64.0);
 }
 
 /// A thousand rotating cubes, two of their sizes apart.

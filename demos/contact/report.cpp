@@ -27,7 +27,7 @@ nlohmann::ordered_json toJson(const SceneResult& result, const Figure& figure) {
     if (std::isfinite(promise->minimum)) json["least"] = promise->minimum;
     if (std::isfinite(promise->maximum)) json["most"] = promise->maximum;
   }
-  json["held"] = holds(result, figure);
+  json["passed"] = holds(result, figure);
   return json;
 }
 

@@ -90,7 +90,7 @@ nlohmann::ordered_json toJson(const std::vector<GapRow>& rows) {
     one["cage"] = jsonOf(row.cage);
     one["deepest_surface"] = row.deepest;
     one["deepest_cage"] = row.deepestByCage;
-    one["held"] = holds(row);
+    one["passed"] = holds(row);
     json.push_back(std::move(one));
   }
   return json;

@@ -17,8 +17,8 @@ namespace tetskin::scenes {
 struct ImplicitSolid {
   Box3 box;                                             ///< in lattice space; contains the solid
   std::function<double(const Eigen::Vector3d&)> value;  ///< negative inside, for a point of lattice space
-  std::function<Eigen::Vector3d(const Eigen::Vector3d&)>
-      position;  ///< from there to the mesh's space; keeps orientation
+  /// From there to the mesh's space; keeps orientation.
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> position;
 };
 
 /// A conforming mesh of positive tets with the nodes of its boundary on the surface. Components or limbs of the solid

@@ -14,7 +14,7 @@ namespace {
 constexpr double kModuli[] = {1, 1e3, 1e5, 1e7, 1e9}, kDensities[] = {0, 1000}, kDampings[] = {0, 0.02};
 constexpr double kSpins[] = {0, 0.1, 1, 10}, kSteps[] = {1.0 / 60, 1.0 / 240, 1.0 / 1000}, kTolerances[] = {5e-3, 1e-6};
 constexpr Claim::Shape kShapes[] = {Claim::Shape::Sphere, Claim::Shape::Bar, Claim::Shape::Serpent};
-constexpr ClaimEvent kEvents[] = {ClaimEvent::Free, ClaimEvent::Landing, ClaimEvent::Dragged};
+constexpr ClaimEvent kClaimEvents[] = {ClaimEvent::Free, ClaimEvent::Landing, ClaimEvent::Dragged};
 
 /// The index of the value of each kind.
 using Choice = std::vector<int>;
@@ -72,7 +72,7 @@ std::vector<Claim> allClaims() {
     }
     claims = std::move(more);
   };
-  forEach(kEvents, &Claim::event);
+  forEach(kClaimEvents, &Claim::event);
   forEach(kShapes, &Claim::shape);
   forEach(kModuli, &Claim::youngsModulus);
   forEach(kDensities, &Claim::density);

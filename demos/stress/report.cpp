@@ -94,7 +94,7 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["energy_stored"] = verdict.energyStored;
     row["momentum_lost"] = verdict.momentumLost;
     row["expected"] = toString(stressCase.simulation);
-    row["held"] = verdict.passed();
+    row["passed"] = verdict.passed();
     row["broken"] = verdict.broken;
     const std::optional<bool> cannot = bulletCannot(each, rows);
     row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();

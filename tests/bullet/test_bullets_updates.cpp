@@ -15,7 +15,7 @@ namespace {
 using test::figure;
 using test::Points;
 
-constexpr btScalar kStep = btScalar(1) / 240;
+constexpr btScalar kFixedStep = btScalar(1) / 240;
 /// A position that no update gives to a vertex.
 const btVector3 kNowhere(-77, -77, -77);
 
@@ -50,11 +50,11 @@ struct Both {
   /// Steps until the body sleeps, and then one step more.
   void letSleep() {
     for (int step = 0; step < 3000 && body.isActive(); ++step) {
-      world.world->stepSimulation(kStep, 1, kStep);
+      world.world->stepSimulation(kFixedStep, 1, kFixedStep);
       (void)skin.update();
     }
     ASSERT_FALSE(body.isActive());
-    world.world->stepSimulation(kStep, 1, kStep);
+    world.world->stepSimulation(kFixedStep, 1, kFixedStep);
     (void)skin.update();
   }
 };
@@ -79,7 +79,7 @@ TEST(BulletsUpdates, HappenInEverySubstep) {
   Both<test::DeformableWorld> both;
   CountUpdates updates(both);
   both.forget();
-  ASSERT_EQ(both.world.world->stepSimulation(btScalar(10.01) * kStep, 10, kStep), 10);
+  ASSERT_EQ(both.world.world->stepSimulation(btScalar(10.01) * kFixedStep, 10, kFixedStep), 10);
   figure("Bullet's updates in a frame of 10 substeps", updates.count);
   EXPECT_EQ(updates.count, 10);
   EXPECT_EQ(both.skin.update(), StatusCode::Ok);  // the library's only update for this frame
@@ -89,7 +89,7 @@ TEST(BulletsUpdates, HappenWhileTheBodySleeps) {
   Both<test::DeformableWorld> both;
   both.letSleep();
   both.forget();
-  both.world.world->stepSimulation(kStep, 1, kStep);
+  both.world.world->stepSimulation(kFixedStep, 1, kFixedStep);
   EXPECT_TRUE(both.bulletHasUpdated());
   EXPECT_EQ(both.skin.update(), StatusCode::Asleep);
 }
@@ -97,7 +97,7 @@ TEST(BulletsUpdates, HappenWhileTheBodySleeps) {
 TEST(BulletsUpdates, NeverHappenInASoftRigidWorld) {
   Both<test::RigidWorld> both;
   both.forget();
-  for (int step = 0; step < 100; ++step) both.world.world->stepSimulation(kStep, 1, kStep);
+  for (int step = 0; step < 100; ++step) both.world.world->stepSimulation(kFixedStep, 1, kFixedStep);
   EXPECT_FALSE(both.bulletHasUpdated());
   const double before = both.skin.bounds().min().y();
   EXPECT_EQ(both.skin.update(), StatusCode::Ok);
@@ -107,7 +107,7 @@ TEST(BulletsUpdates, NeverHappenInASoftRigidWorld) {
 TEST(BulletsUpdates, HappenInASoftMultiBodyWorldAsOursDo) {
   Both<test::MultiBodyWorld> both;
   both.forget();
-  both.world.world->stepSimulation(kStep, 1, kStep);
+  both.world.world->stepSimulation(kFixedStep, 1, kFixedStep);
   EXPECT_TRUE(both.bulletHasUpdated());
   EXPECT_EQ(both.skin.update(), StatusCode::Ok);
 }
@@ -164,7 +164,7 @@ TEST(BulletsUpdates, LeaveNodeNormalsASubstepBehind) {
     const btVector3 arm = both.body.m_nodes[n].m_x - both.body.m_nodes[0].m_x;
     both.body.m_nodes[n].m_v = btVector3(0, 0, 20).cross(arm);
   }
-  both.world.world->stepSimulation(kStep, 1, kStep);
+  both.world.world->stepSimulation(kFixedStep, 1, kFixedStep);
   std::vector<btVector3> left;
   for (int n = 0; n < both.body.m_nodes.size(); ++n) left.push_back(both.body.m_nodes[n].m_n);
   both.body.updateNormals();
@@ -208,7 +208,7 @@ TEST_F(BulletsUpdatesDeathTest, CrashOnRenderNodesThatWereNeverBound) {
       {
         test::DeformableWorld world(cube());
         test::setRenderNodes(world.body(), someVertices());
-        world.world->stepSimulation(kStep, 1, kStep);
+        world.world->stepSimulation(kFixedStep, 1, kFixedStep);
       },
       "");
   SoftBodySkin unbound;
@@ -224,7 +224,7 @@ TEST_F(BulletsUpdatesDeathTest, CrashOnABodyWithoutFaces) {
         while (world.body().m_faces.size() > 0) world.body().m_faces.pop_back();
         test::setRenderNodes(world.body(), someVertices());
         btSoftBodyHelpers::extrapolateBarycentricWeights(&world.body());
-        world.world->stepSimulation(kStep, 1, kStep);
+        world.world->stepSimulation(kFixedStep, 1, kFixedStep);
       },
       "");
 }

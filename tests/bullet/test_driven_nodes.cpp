@@ -11,7 +11,7 @@
 namespace tetskin::test {
 namespace {
 
-constexpr btScalar kStep = btScalar(1) / 240;
+constexpr btScalar kDrivenStep = btScalar(1) / 240;
 
 TetMesh bar(double height) {
   TetMesh cage = latticeCage(10, 2, 2, 0.2);  // 2 long, along x
@@ -38,7 +38,7 @@ struct LedBar {
   void place(btScalar offset) {
     forPinned([&](btSoftBody::Node& node) { node.m_x.setX(offset); });
   }
-  void steps(int count) { world.deformable().stepSimulation(count * kStep, count, kStep); }
+  void steps(int count) { world.deformable().stepSimulation(count * kDrivenStep, count, kDrivenStep); }
   double length() {
     double minimum = HUGE_VAL, maximum = -HUGE_VAL;
     for (int n = 0; n < soft().m_nodes.size(); ++n) {
@@ -95,8 +95,9 @@ TEST(DrivenNodes, AreLedBySetPinnedPositionAsByTheirPositions) {
 TEST(DrivenNodes, ByPositionMoveTheBodyAsByVelocity) {
   LedBar byPosition, byVelocity;
   for (int k = 1; k <= 240; ++k) {
-    byPosition.place(directionAfter(k * kStep, 5));
-    const btScalar speed = (directionAfter(k * kStep, 5) - directionAfter((k - 1) * kStep, 5)) / kStep;
+    byPosition.place(directionAfter(k * kDrivenStep, 5));
+    const btScalar speed =
+        (directionAfter(k * kDrivenStep, 5) - directionAfter((k - 1) * kDrivenStep, 5)) / kDrivenStep;
     byVelocity.forPinned([&](btSoftBody::Node& node) { node.m_v = btVector3(speed, 0, 0); });
     byPosition.steps(1);
     byVelocity.steps(1);
@@ -109,14 +110,14 @@ TEST(DrivenNodes, ByPositionMoveTheBodyAsByVelocity) {
 TEST(DrivenNodes, ThatAreMovedOnceAFrameHaveTheFramesVelocityInAllItsSteps) {
   LedBar bar;
   for (int f = 1; f <= 60; ++f) {
-    bar.place(directionAfter(4 * f * kStep, 5));
+    bar.place(directionAfter(4 * f * kDrivenStep, 5));
     bar.steps(4);
   }
   EXPECT_NEAR(bar.length(), 2.0, 0.02);
   bar.forPinned([](const btSoftBody::Node& node) { EXPECT_NEAR(node.m_v.x(), 5, 0.05); });
   double slowest = HUGE_VAL, fastest = 0;
   for (int k = 0; k < 12; ++k) {
-    if (k % 4 == 0) bar.place(directionAfter((244 + k) * kStep, 5));
+    if (k % 4 == 0) bar.place(directionAfter((244 + k) * kDrivenStep, 5));
     bar.steps(1);
     bar.forPinned([&](const btSoftBody::Node& node) {
       slowest = std::min<double>(slowest, node.m_v.x());
@@ -134,7 +135,7 @@ TEST(DrivenNodes, AreWhereTheyWerePutAfterAnyNumberOfSteps) {
   for (int f = 0; f < 80; ++f) {
     const int count = counts[f % 8];
     const btScalar before = directionAfter(time, 3);
-    time += count * kStep;
+    time += count * kDrivenStep;
     absolute.place(directionAfter(time, 3));
     relative.forPinned([&](btSoftBody::Node& node) { node.m_x += btVector3(directionAfter(time, 3) - before, 0, 0); });
     absolute.steps(count);
@@ -162,7 +163,7 @@ TEST(DrivenNodes, GoByTheirVelocityWhereTheApplicationSetsThatToo) {
   LedBar both, velocity;
   for (int k = 1; k <= 120; ++k) {
     both.forPinned([&](btSoftBody::Node& node) {
-      node.m_x.setX(btScalar(k - 1) * 2 * kStep);  // its current position, except for rounding
+      node.m_x.setX(btScalar(k - 1) * 2 * kDrivenStep);  // its current position, except for rounding
       node.m_v = btVector3(2, 0, 0);
     });
     velocity.forPinned([&](btSoftBody::Node& node) { node.m_v = btVector3(2, 0, 0); });
@@ -210,7 +211,7 @@ TEST(DrivenNodes, GetNoVelocityFromAStateThatIsPutIn) {
 TEST(DrivenNodes, KeepTheirVelocityWhenTheyAreLetGo) {
   LedBar bar;
   for (int f = 1; f <= 60; ++f) {
-    bar.place(directionAfter(4 * f * kStep, 2));
+    bar.place(directionAfter(4 * f * kDrivenStep, 2));
     bar.steps(4);
   }
   for (int n = 0; n < bar.soft().m_nodes.size(); ++n) {

@@ -10,8 +10,6 @@
 namespace tetskin::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 void addQuad(TriangleMesh& mesh, int a, int b, int c, int d) {
   mesh.triangles.push_back({a, b, c});
   mesh.triangles.push_back({a, c, d});

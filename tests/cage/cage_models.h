@@ -10,6 +10,8 @@
 
 namespace tetskin::test {
 
+constexpr double kPi = 3.14159265358979323846;
+
 /// Unit sphere about the origin; see `sphere` in tests/support.
 TriangleMesh unitSphere(int rings);
 /// The part of a unit sphere with polar angles up to `openingRadians` (pi / 2: a hemisphere), facing outwards.

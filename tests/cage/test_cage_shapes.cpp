@@ -14,7 +14,8 @@
 namespace tetskin::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using test::kPi;
+
 const char* const kNoFault = "";
 /// Debug builds are a hundred times slower, especially with sanitizers.
 #ifdef NDEBUG

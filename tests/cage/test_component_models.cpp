@@ -9,15 +9,16 @@
 #include <cmath>
 #include <limits>
 
+#include "cage_models.h"
 #include "support/odd_meshes.h"
 #include "support/surface_checks.h"
 
 namespace tetskin::test {
 namespace {
 
-using Eigen::Vector3d;
+using test::kPi;
 
-constexpr double kPi = 3.14159265358979323846;
+using Eigen::Vector3d;
 
 bool isOpen(const ComponentModel& model) {
   return model.name.find("sheet") != std::string::npos;

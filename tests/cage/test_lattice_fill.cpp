@@ -17,9 +17,10 @@
 namespace tetskin::test {
 namespace {
 
+using test::kPi;
+
 using namespace cage_detail;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kNoLimit = 100'000'000;
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 /// The origin lies away from round coordinates.

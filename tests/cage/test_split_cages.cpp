@@ -21,9 +21,9 @@ using Eigen::Vector3d;
 
 /// Debug builds are a hundred times slower, especially with sanitizers.
 #ifdef NDEBUG
-constexpr std::size_t kMany = 30000;
+constexpr std::size_t kManyTets = 30000;
 #else
-constexpr std::size_t kMany = 6000;
+constexpr std::size_t kManyTets = 6000;
 #endif
 
 struct Built {
@@ -77,7 +77,7 @@ TEST(SplitCages, KeepPartsApartAndAreFilledByTheirVolumeAt3000Tets) {
 }
 
 TEST(SplitCages, KeepPartsApartAtManyTets) {
-  expectComponents(jaw(0.04), build(jaw(0.04).mesh, kMany));
+  expectComponents(jaw(0.04), build(jaw(0.04).mesh, kManyTets));
 }
 
 TEST(SplitCages, TellPlatesApartThatAreAFifthOfATetApart) {

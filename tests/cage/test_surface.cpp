@@ -10,10 +10,11 @@
 namespace tetskin::test {
 namespace {
 
+using test::kPi;
+
 using cage_detail::prepareSurface;
 using cage_detail::Surface;
 
-constexpr double kPi = 3.14159265358979323846;
 /// The allowed error of the winding number; see WindingTree.
 constexpr double kDipoleError = 0.03;
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();

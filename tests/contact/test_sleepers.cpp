@@ -16,7 +16,7 @@
 namespace tetskin::test {
 namespace {
 
-enum class By { Nodes, Surface };
+enum class TouchedBy { Nodes, Surface };
 
 /// Steps until all bodies sleep; fails if one does not.
 void letSleep(EmptyWorld& world, const std::vector<btSoftBody*>& bodies, int frames = 900) {
@@ -50,14 +50,14 @@ void moveTo(btRigidBody& body, const btVector3& at) {
 }
 
 /// A body asleep on a platform high above the floor.
-class Sleepers : public testing::TestWithParam<By> {
+class Sleepers : public testing::TestWithParam<TouchedBy> {
  protected:
   void SetUp() override { rest(btVector3(0, 0, 0)); }
 
   void rest(const btVector3& at) {
     platform.emplace(world, std::make_unique<btBoxShape>(btVector3(2, 1, 2)), placeAt(at + btVector3(0, 4, 0)));
     makeKinematic(platform->body());
-    const bool nodes = GetParam() == By::Nodes;
+    const bool nodes = GetParam() == TouchedBy::Nodes;
     body = std::make_unique<TouchingBody>(world, ballMesh(12, 0.35),
                                           at + btVector3(0, nodes ? btScalar(5.52) : btScalar(5.37), 0));
     if (nodes) body->contact.reset();
@@ -158,7 +158,7 @@ TEST_P(Sleepers, WakeWhereAStaticBodyIsPutIntoThem) {
                 placeAt(btVector3(-3, btScalar(5.6), 0)));
   step(world, 60);
   ASSERT_FALSE(soft().isActive()) << "it was far away";
-  moveTo(wall.body(), btVector3(GetParam() == By::Nodes ? btScalar(-0.95) : btScalar(-0.75), btScalar(5.6), 0));
+  moveTo(wall.body(), btVector3(GetParam() == TouchedBy::Nodes ? btScalar(-0.95) : btScalar(-0.75), btScalar(5.6), 0));
   step(world, 60);
   EXPECT_GT(centreOf(soft()).x(), 0.02);
 }
@@ -212,7 +212,7 @@ TEST_P(Sleepers, FollowTheHookThatTheyAreAnchoredTo) {
 TEST_P(Sleepers, SleepOnWhereTheyWereAddedAsleep) {
   const std::vector<Eigen::Vector3d> before = body->surface();
   TouchingBody added(world, ballMesh(12, 0.35), btVector3(10, btScalar(0.36), 0));
-  if (GetParam() == By::Nodes) added.contact.reset();
+  if (GetParam() == TouchedBy::Nodes) added.contact.reset();
   added.body->body().forceActivationState(ISLAND_SLEEPING);
   step(world, 20);
   EXPECT_FALSE(added.body->body().isActive());
@@ -226,14 +226,14 @@ TEST_P(Sleepers, FallAsleepFarFromTheOrigin) {
     platform.reset();
     platform.emplace(world, std::make_unique<btBoxShape>(btVector3(5, 1, 5)), placeAt(btVector3(far, 4, far)));
     body = std::make_unique<TouchingBody>(world, ballMesh(12, 0.35), btVector3(far, btScalar(5.6), far));
-    if (GetParam() == By::Nodes) body->contact.reset();
+    if (GetParam() == TouchedBy::Nodes) body->contact.reset();
     step(world, 480);
     EXPECT_FALSE(soft().isActive()) << far;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(By, Sleepers, testing::Values(By::Nodes, By::Surface),
-                         [](const auto& by) { return by.param == By::Nodes ? "Nodes" : "Surface"; });
+INSTANTIATE_TEST_SUITE_P(By, Sleepers, testing::Values(TouchedBy::Nodes, TouchedBy::Surface),
+                         [](const auto& by) { return by.param == TouchedBy::Nodes ? "Nodes" : "Surface"; });
 
 /// Two plates, one on the other; the lower one lies on a platform.
 struct SoftPile {

@@ -15,7 +15,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-const Box3 kUnitBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+const Box3 kSampledBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
 
 TEST(EmbedReport, ReportNamesTheWorstVertex) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
@@ -79,7 +79,7 @@ TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {
 
 TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-  const Points metres = test::randomPoints(200, kUnitBox, 26);
+  const Points metres = test::randomPoints(200, kSampledBox, 26);
   Embedding embedding;
   EXPECT_FALSE(embedInto(cage, viewOf(metres), {}, embedding).unitsDiffer());
   EXPECT_EQ(embedInto(cage, viewOf(metres), {}, embedding).unitsMessage(), "");
@@ -95,7 +95,7 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
 
 TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
-  const Points vertices = test::scaledAndMoved(test::randomPoints(10, kUnitBox, 27), 1.0, {5, 0, 0});
+  const Points vertices = test::scaledAndMoved(test::randomPoints(10, kSampledBox, 27), 1.0, {5, 0, 0});
   Embedding embedding;
   const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
   EXPECT_TRUE(report.unitsDiffer());

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kCentre = Vector3d::Constant(0.5);
+const Vector3d kBoxCentre = Vector3d::Constant(0.5);
 
 /// Looks up vectors by node index, in an array of doubles.
 template <class Scalar>
@@ -45,7 +45,7 @@ using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(EmbeddedPoints, Scalars);
 
 TYPED_TEST(EmbeddedPoints, AreWhereTheEmbeddingHasItsVertices) {
-  const Points nodes = smoothMaps(kCentre)[0](this->cage.nodes);
+  const Points nodes = smoothMaps(kBoxCentre)[0](this->cage.nodes);
   this->carried.move(nodes);
   const Points expected = this->carried.linear();
   for (std::size_t v = 0; v < this->vertexCount(); ++v) {
@@ -71,7 +71,7 @@ TYPED_TEST(EmbeddedPoints, AreTheBindingsOfTheirVertices) {
 }
 
 TYPED_TEST(EmbeddedPoints, MoveByTheGradientsOfTheirPositions) {
-  const Points velocities = randomPoints(this->cage.nodeCount(), {-kCentre, kCentre}, 6);
+  const Points velocities = randomPoints(this->cage.nodeCount(), {-kBoxCentre, kBoxCentre}, 6);
   const auto positions = vectorsIn<TypeParam>(this->cage.nodes);
   for (std::size_t v = 0; v < this->vertexCount(); v += 5) {
     const EmbeddedPoint<TypeParam> point = this->at(v);
@@ -116,7 +116,7 @@ TYPED_TEST(EmbeddedPoints, ClampToTheClosestPointOfTheirTet) {
 
 TYPED_TEST(EmbeddedPoints, ShareImpulsesOutByMomentum) {
   const Vector3d impulse(0.3, -1.1, 0.7);
-  const Points start = randomPoints(this->cage.nodeCount(), {-kCentre, kCentre}, 7);
+  const Points start = randomPoints(this->cage.nodeCount(), {-kBoxCentre, kBoxCentre}, 7);
   const auto inverseMassOf = [](int node) { return TypeParam(0.5) + static_cast<TypeParam>(node % 5); };
   for (std::size_t v = 0; v < this->vertexCount(); v += 3) {
     const EmbeddedPoint<TypeParam> point = this->at(v);
@@ -183,8 +183,8 @@ TEST(EmbeddedPointsInFloat, KeepTheirDigitsFarFromTheOrigin) {
 
 TEST(EmbeddingAt, IsByVertexWhateverTheOrderOfTheSkin) {
   const TetMesh cage = latticeCage(3, 3, 3, 1.0 / 3.0);
-  const TriangleMesh mesh = sphere(14, 0.53, kCentre);
-  const Points nodes = smoothMaps(kCentre)[1](cage.nodes);
+  const TriangleMesh mesh = sphere(14, 0.53, kBoxCentre);
+  const Points nodes = smoothMaps(kBoxCentre)[1](cage.nodes);
   for (const VertexOrder order : {VertexOrder::Mesh, VertexOrder::Sorted}) {
     SkinOptions options;
     options.order = order;

@@ -12,7 +12,7 @@
 namespace tetskin::test {
 namespace {
 
-const Eigen::Vector3d kCentre = Eigen::Vector3d::Constant(0.5);
+const Eigen::Vector3d kCageCentre = Eigen::Vector3d::Constant(0.5);
 
 /// Points in and around a jittered cage, skinned all at once and one by one.
 template <class Scalar>
@@ -42,7 +42,7 @@ using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(QuadraticPoints, Scalars);
 
 TYPED_TEST(QuadraticPoints, AreWhereQuadraticSkinningDrawsAllVertices) {
-  for (const SmoothMap& map : smoothMaps(kCentre)) {
+  for (const SmoothMap& map : smoothMaps(kCageCentre)) {
     const Points nodes = map(this->cage.nodes);
     this->all.move(nodes);
     const Points expected = this->all.quadratic();
@@ -59,7 +59,7 @@ TYPED_TEST(QuadraticPoints, AreBoundedAsTheirSurfaceIs) {
 
 TYPED_TEST(QuadraticPoints, AreLinearInTetsWithoutVerticesOfTheEmbedding) {
   const CarriedPoints<TypeParam> few(this->cage, Points(this->vertices.begin(), this->vertices.begin() + 3));
-  const Points nodes = smoothMaps(kCentre)[0](this->cage.nodes);
+  const Points nodes = smoothMaps(kCageCentre)[0](this->cage.nodes);
   this->all.move(nodes);
   const Points linear = this->all.linear(), quadratic = this->all.quadratic();
   const Points found = this->oneByOne(few, nodes);

@@ -18,7 +18,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-const Box3 kUnitBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+const Box3 kSearchedBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
 
 using test::around;
 
@@ -162,7 +162,7 @@ TEST(Embed, MatchesBruteForceAtAnyDistanceOutside) {
   for (const double sizes : {1e-6, 0.1, 10.0, 10000.0}) {
     Points vertices;
     const Box3 box = boundingBox(cage.nodes);
-    for (const Eigen::Vector3d& p : test::randomPoints(60, kUnitBox, 9)) {
+    for (const Eigen::Vector3d& p : test::randomPoints(60, kSearchedBox, 9)) {
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::Vector3d below = p, above = p;
         below[axis] = box.min()[axis] - 0.2 * sizes;
@@ -226,7 +226,7 @@ TEST(Embed, MatchesBruteForceInNeedlesAndSlivers) {
     for (Eigen::Vector3d& p : cage.nodes) p = p.cwiseProduct(squeeze);
     Points vertices = test::randomPoints(400, around(cage, 1.3), 34);
     vertices.insert(vertices.end(), cage.nodes.begin(), cage.nodes.end());
-    const Points wide = test::randomPoints(100, kUnitBox, 35);
+    const Points wide = test::randomPoints(100, kSearchedBox, 35);
     vertices.insert(vertices.end(), wide.begin(), wide.end());
     expectBruteForceUnderBothRules(cage, vertices);
   }
@@ -301,7 +301,7 @@ TEST(Embed, NearestRuleKeepsVerticesOnAThinLayer) {
   // The barycentric distance is a distance divided by an altitude: it favours the big tets below the layer.
   const TetMesh cage = test::thinLayerCage(0.02);
   Points vertices;
-  for (const Eigen::Vector3d& p : test::randomPoints(400, kUnitBox, 17)) vertices.emplace_back(p.x(), 0.57, p.z());
+  for (const Eigen::Vector3d& p : test::randomPoints(400, kSearchedBox, 17)) vertices.emplace_back(p.x(), 0.57, p.z());
   const auto onLayer = [&](OutsideRule rule) {
     Embedding embedding;
     EXPECT_TRUE(embedInto(cage, viewOf(vertices), {rule}, embedding).ok());

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Box3 kAround(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
+const Box3 kAroundTriangles(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
 
 Vector3d pointOf(const ClosestPoint& closest, const TriangleCorners& t) {
   return closest.weights[0] * t[0] + closest.weights[1] * t[1] + closest.weights[2] * t[2];
@@ -41,7 +41,8 @@ TEST(ClosestPointOnTriangle, CoversItsSevenRegions) {
 }
 
 TEST(ClosestPointOnTriangle, IsAsNearAsAnyPointOfIt) {
-  const std::vector<Vector3d> corners = randomPoints(90, kAround, 1), points = randomPoints(30, kAround, 2);
+  const std::vector<Vector3d> corners = randomPoints(90, kAroundTriangles, 1),
+                              points = randomPoints(30, kAroundTriangles, 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const TriangleCorners t = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
     const ClosestPoint closest = closestPointOnTriangle(points[i], t);
@@ -55,7 +56,8 @@ TEST(ClosestPointOnTriangle, IsAsNearAsAnyPointOfIt) {
 }
 
 TEST(ClosestPointOnTriangle, IsThatOfTheSidesWhereThereIsNoArea) {
-  const std::vector<Vector3d> ends = randomPoints(60, kAround, 3), points = randomPoints(30, kAround, 4);
+  const std::vector<Vector3d> ends = randomPoints(60, kAroundTriangles, 3),
+                              points = randomPoints(30, kAroundTriangles, 4);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3d &a = ends[2 * i], &b = ends[2 * i + 1];
     const double along = std::min(std::max((points[i] - a).dot(b - a) / (b - a).squaredNorm(), 0.0), 1.0);

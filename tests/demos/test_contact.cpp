@@ -43,7 +43,7 @@ TEST(Contact, SaysWhatIsPromisedAndWhetherItHolds) {
   ASSERT_EQ(result.status, 0) << result.out << result.err;
   for (const auto& scene : folder.json("c.json")) {
     const auto gap = figuresOf(scene).at("least gap, S");
-    EXPECT_TRUE(gap["held"].get<bool>()) << scene;
+    EXPECT_TRUE(gap["passed"].get<bool>()) << scene;
     EXPECT_GE(gap["value"].get<double>(), gap["least"].get<double>()) << scene;
     EXPECT_EQ(gap.count("most"), 0u) << scene;
   }
@@ -62,7 +62,7 @@ TEST(Contact, HoldsWhatIsPromisedOfSoftBodiesAmongThemselves) {
       int promised = 0;
       for (const auto& figure : scene["figures"]) {
         promised += figure.contains("least") || figure.contains("most");
-        EXPECT_TRUE(figure["held"].get<bool>()) << scene["scene"] << figure;
+        EXPECT_TRUE(figure["passed"].get<bool>()) << scene["scene"] << figure;
       }
       EXPECT_GT(promised, 0) << scene;
     }
@@ -87,7 +87,7 @@ TEST(Contact, PromisesNothingOfBulletsSolver) {
   ASSERT_EQ(result.status, 0) << result.out << result.err;
   EXPECT_NE(result.out.find("FAILED"), std::string::npos) << result.out;
   const auto bullet = folder.json("b.json");
-  EXPECT_FALSE(figuresOf(bullet[0]).at("linear momentum lost")["held"].get<bool>()) << bullet;
+  EXPECT_FALSE(figuresOf(bullet[0]).at("linear momentum lost")["passed"].get<bool>()) << bullet;
 
   const CommandResult beside = folder.run(
       TETSKIN_CONTACT, {"--only", "free flight/k500", "--bullet", "b.json", "--markdown", "c.md", "--quiet"});

@@ -20,7 +20,7 @@ using elastic_detail::BlockMatrix;
 using test::AssembledBody;
 using test::onEachInstructionSet;
 
-TetMesh smallCage() {
+TetMesh cageForMatrix() {
   return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
 }
 
@@ -42,7 +42,7 @@ Eigen::MatrixXd columnsOf(const AssembledBody<S>& body) {
 }
 
 TYPED_TEST(BlockMatrixOf, IsThatOfThePaperAndSymmetric) {
-  for (const TetMesh& cage : {smallCage(), test::singleTet(), test::bodyCentredCage(2, 1, 2)}) {
+  for (const TetMesh& cage : {cageForMatrix(), test::singleTet(), test::bodyCentredCage(2, 1, 2)}) {
     onEachInstructionSet([&] {
       AssembledBody<TypeParam> body(cage);
       body.hold(1);
@@ -57,7 +57,8 @@ TYPED_TEST(BlockMatrixOf, IsThatOfThePaperAndSymmetric) {
 
 TYPED_TEST(BlockMatrixOf, MeetsATranslationWithTheMassesAlone) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage(), 0.1, 1e3);  // so stiff that an effect of the stiffness would be noticed
+    AssembledBody<TypeParam> body(cageForMatrix(), 0.1,
+                                  1e3);  // so stiff that an effect of the stiffness would be noticed
     body.hold(4);
     body.assemble();
     const Vector3d shift(1, -2, 0.5);
@@ -89,7 +90,7 @@ TYPED_TEST(BlockMatrixOf, WithoutTetsIsTheMasses) {
 
 TYPED_TEST(BlockMatrixOf, OneRowIsThatOfTheProduct) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(cageForMatrix());
     const TypeParam across[6] = {4, 0, 0, 0, 0, 4};  // the y axis
     body.matrix.resist(3, across);
     const VectorXd x = test::Random(34).vector(3 * body.nodes.size());
@@ -106,7 +107,7 @@ TYPED_TEST(BlockMatrixOf, OneRowIsThatOfTheProduct) {
 
 TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(cageForMatrix());
     BlockMatrix<TypeParam>& matrix = body.matrix;
     // The lower triangle of blocks in the order of slots, which is the order of colours.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());

@@ -21,7 +21,7 @@ using test::AssembledBody;
 using test::onEachInstructionSet;
 using test::Points;
 
-TetMesh smallCage() {
+TetMesh cageForDynamics() {
   return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
 }
 
@@ -53,7 +53,7 @@ TYPED_TEST_SUITE(BodyDynamicsOf, Scalars);
 
 TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatDeviatesFromIt) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
+    AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
     // The drift is so fast that rounding errors in its stiffness forces would be noticed.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     const VectorXd v = test::Random(51).vector(3 * body.nodes.size()) + VectorXd::Constant(size, 100.0);
@@ -91,7 +91,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
 }
 
 TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
-  AssembledBody<TypeParam> body(smallCage(), 0.0, kAlpha);
+  AssembledBody<TypeParam> body(cageForDynamics(), 0.0, kAlpha);
   for (test::Lame& lame : body.material) lame = {1e6, 1e6};
   const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
   for (const bool pinned : {false, true}) {
@@ -119,7 +119,7 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
 
 TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage(), 0.1, kAlpha);
+    AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, 1e-3 * test::Random(51).vector(3 * body.nodes.size()));
     dynamics.prepare(kSeconds, nullptr);
     dynamics.predict(kSeconds, nullptr);  // the matrix is the previous one: it has hardly turned
@@ -145,7 +145,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
 }
 
 TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChangesNothingElse) {
-  AssembledBody<TypeParam> body(smallCage());
+  AssembledBody<TypeParam> body(cageForDynamics());
   for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step
     const VectorXd v = speed * test::Random(51).vector(3 * body.nodes.size());
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
@@ -183,7 +183,7 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
 /// Whether the matrix takes account of a change of the body at the next `prepare`.
 template <class Change>
 bool changesTheMatrix(Change&& change) {
-  AssembledBody<double> body(smallCage(), 0.0, kAlpha);
+  AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
   BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
   for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
   const std::vector<double> x = body.toPoints(test::Random(54).vector(3 * body.nodes.size()));
@@ -312,7 +312,7 @@ TetMesh twoComponents(TetMesh cage) {
 }
 
 TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAreTaken) {
-  AssembledBody<TypeParam> body(twoComponents(smallCage()));
+  AssembledBody<TypeParam> body(twoComponents(cageForDynamics()));
   body.hold(3);  // belongs to the first component
   const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
@@ -351,7 +351,7 @@ TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAre
 
 TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
   for (const std::vector<std::size_t>& pinned : std::vector<std::vector<std::size_t>>{{}, {3}, {3, 6}, {0, 3, 6, 9}}) {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(cageForDynamics());
     for (const std::size_t n : pinned) body.hold(n);
     const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
@@ -398,7 +398,7 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
 }
 
 TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
-  const AssembledBody<TypeParam> body(twoComponents(smallCage()));
+  const AssembledBody<TypeParam> body(twoComponents(cageForDynamics()));
   const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
   dynamics.predict(kSeconds, nullptr);

@@ -79,14 +79,15 @@ TEST(SurfaceForces, OfAnExplosionAddUpToWhatIsTold) {
     auto world = deformableWorld();
     TouchedBody body(*world, TouchModel(radius, 3.0));
     deform(body.body());
-    const RadialImpulse blast{btVector3(btScalar(0.2), btScalar(2.9), btScalar(0.3)), btScalar(0.7), 2};
-    const ImpulseResult push = body.tree.applyImpulse(body.body(), blast);
+    const RadialImpulse impulse{btVector3(btScalar(0.2), btScalar(2.9), btScalar(0.3)), btScalar(0.7), 2};
+    const ImpulseResult push = body.tree.applyImpulse(body.body(), impulse);
     ASSERT_EQ(push.status, StatusCode::Ok);
     EXPECT_GT(push.vertices, 50u);
     const Momentum after(body.body());
     EXPECT_LT((after.linear - toEigen(push.linear)).norm(), 2e-6);
     EXPECT_LT((after.angular - toEigen(push.angular)).norm(), 1e-5);
-    EXPECT_GT(toEigen(push.linear).dot(Vector3d(0.5, 3.4, 0.5) - toEigen(blast.centre)), 0.1);  // away from the centre
+    EXPECT_GT(toEigen(push.linear).dot(Vector3d(0.5, 3.4, 0.5) - toEigen(impulse.centre)),
+              0.1);  // away from the centre
     EXPECT_LE(push.linear.length(), 2);
   }
 }
@@ -94,8 +95,8 @@ TEST(SurfaceForces, OfAnExplosionAddUpToWhatIsTold) {
 TEST(SurfaceForces, OfAContinuousExplosionAreTheSameThroughAStep) {
   auto world = deformableWorld();
   TouchedBody body(*world, TouchModel(0.38, 3.0));
-  const RadialImpulse blast{btVector3(btScalar(0.2), btScalar(2.9), btScalar(0.3)), btScalar(0.7), 240};
-  const ImpulseResult push = body.tree.applyForce(body.body(), blast);
+  const RadialImpulse force{btVector3(btScalar(0.2), btScalar(2.9), btScalar(0.3)), btScalar(0.7), 240};
+  const ImpulseResult push = body.tree.applyForce(body.body(), force);
   ASSERT_EQ(push.status, StatusCode::Ok);
   substep(*world);
   EXPECT_LT((Momentum(body.body()).linear - toEigen(push.linear) / 240).norm(), 0.01);
@@ -105,7 +106,7 @@ TEST(RadialImpulse, IsWeightedByAreaAndDistance) {
   auto world = deformableWorld();
   TouchedBody body(*world, TouchModel(0.38));
   const Vector3d centre(0.5, 1.1, 0.5);
-  const RadialImpulse blast{toBullet(centre), btScalar(0.6), 3};
+  const RadialImpulse impulse{toBullet(centre), btScalar(0.6), 3};
   // The same sum, computed over all vertices.
   Vector3d sum = Vector3d::Zero();
   double total = 0;
@@ -124,7 +125,7 @@ TEST(RadialImpulse, IsWeightedByAreaAndDistance) {
     total += part;
     ++count;
   }
-  const ImpulseResult push = body.tree.applyImpulse(body.body(), blast);
+  const ImpulseResult push = body.tree.applyImpulse(body.body(), impulse);
   EXPECT_EQ(push.vertices, count);
   EXPECT_LT((toEigen(push.linear) - 3 / total * sum).norm(), 1e-4);
 }

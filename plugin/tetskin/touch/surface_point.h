@@ -185,12 +185,12 @@ class TETSKIN_TOUCH_API SurfaceTree {
   /// Cost O(vertices).
   /// Errors: in the result: NoHit, OtherBody for a body of another cage, InvalidOption for a radius not above 0, and
   /// those of `SurfacePoint::applyImpulse`.
-  ImpulseResult applyImpulse(btSoftBody& body, const RadialImpulse& blast) const;
+  ImpulseResult applyImpulse(btSoftBody& body, const RadialImpulse& impulse) const;
   /// Applies a radial force through the next steps, as `SurfacePoint::applyForce` does, by the current surface. Cost
   /// O(vertices).
   /// Errors: in the result: NoHit, OtherBody for a body of another cage, and those of `SurfacePoint::applyForce`;
   /// InvalidOption for a radius not above 0, or a body not created by `createSoftBody`.
-  ImpulseResult applyForce(btSoftBody& body, const RadialImpulse& blast, int steps = 1) const;
+  ImpulseResult applyForce(btSoftBody& body, const RadialImpulse& force, int steps = 1) const;
 
  private:
   struct Impl;

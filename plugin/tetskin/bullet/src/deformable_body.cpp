@@ -107,16 +107,16 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
 
 /// Rejects gravity with which bodies move farther in a step than numbers of this precision can represent.
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
-  constexpr double kMax = 1e6;
+  constexpr double kMaxBodyLengths = 1e6;
   double volume = 0.0;
   for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
   const double size = std::cbrt(volume), length = static_cast<double>(gravity.length());
-  if (length <= kMax * size) return {};
+  if (length <= kMaxBodyLengths * size) return {};
   char text[160];
   std::snprintf(text, sizeof text,
                 "a gravity of %.3g must be finite, and for a body of size %.3g at most %.3g (1e6 body lengths per "
                 "second squared)",
-                length, size, kMax * size);
+                length, size, kMaxBodyLengths * size);
   return invalid(text);
 }
 
@@ -314,11 +314,11 @@ bool DeformableBody::isPinned(int node) const {
 
 Status DeformableBody::setPinned(int node, bool pinned) {
   if (Status status = impl_->checkNode(node); !status.ok()) return status;
-  btSoftBody::Node& held = body().m_nodes[node];
+  btSoftBody::Node& pinnedNode = body().m_nodes[node];
   btScalar& mass = impl_->masses[static_cast<std::size_t>(node)];
   if (pinned) {
-    if (held.m_im > 0) mass = 1 / held.m_im;
-    for (btVector3* rate : {&held.m_v, &held.m_vn, &held.m_splitv}) rate->setZero();
+    if (pinnedNode.m_im > 0) mass = 1 / pinnedNode.m_im;
+    for (btVector3* rate : {&pinnedNode.m_v, &pinnedNode.m_vn, &pinnedNode.m_splitv}) rate->setZero();
     body().setMass(node, 0);
   } else if (isPinned(node)) {
     body().setMass(node, mass);

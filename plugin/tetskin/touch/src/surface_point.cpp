@@ -133,8 +133,8 @@ std::optional<btVector3> SurfacePoint::velocity() const {
 
 btScalar SurfacePoint::effectiveMass() const {
   if (status() != StatusCode::Ok) return 0;
-  const PointJacobian lever = touch_detail::leverOf(data_, *body_);
-  return static_cast<btScalar>(touch_detail::massOf(touch_detail::linearResponse(lever, *body_)));
+  const PointJacobian jacobian = touch_detail::jacobianAt(data_, *body_);
+  return static_cast<btScalar>(touch_detail::massOf(touch_detail::linearResponse(jacobian, *body_)));
 }
 
 StatusCode SurfacePoint::applyImpulse(const btVector3& impulse) {
@@ -142,7 +142,7 @@ StatusCode SurfacePoint::applyImpulse(const btVector3& impulse) {
   if (!touch_detail::isFiniteVector(impulse)) return StatusCode::NonFinite;
   if (touch_detail::isReduced(*body_)) return StatusCode::InvalidOption;
   touch_detail::NodePushes pushes;
-  touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(impulse), pushes);
+  touch_detail::addPush(touch_detail::jacobianAt(data_, *body_), toEigen(impulse), pushes);
   touch_detail::applyImpulses(pushes, *body_);
   return StatusCode::Ok;
 }
@@ -151,7 +151,7 @@ StatusCode SurfacePoint::applyForce(const btVector3& force, int steps) {
   if (const StatusCode now = status(); now != StatusCode::Ok) return now;
   if (!touch_detail::isFiniteVector(force)) return StatusCode::NonFinite;
   touch_detail::NodePushes pushes;
-  touch_detail::addPush(touch_detail::leverOf(data_, *body_), toEigen(force), pushes);
+  touch_detail::addPush(touch_detail::jacobianAt(data_, *body_), toEigen(force), pushes);
   return touch_detail::applyForces(std::move(pushes), steps, *body_, watched_ ? nullptr : &forces_);
 }
 

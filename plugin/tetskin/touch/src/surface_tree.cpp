@@ -145,22 +145,22 @@ Result<SurfacePoint> SurfaceTree::pointAtRest(btSoftBody& body, const Eigen::Vec
                         {static_cast<btScalar>(w[0]), static_cast<btScalar>(w[1]), static_cast<btScalar>(w[2])}, 0);
 }
 
-ImpulseResult SurfaceTree::applyImpulse(btSoftBody& body, const RadialImpulse& blast) const {
+ImpulseResult SurfaceTree::applyImpulse(btSoftBody& body, const RadialImpulse& impulse) const {
   touch_detail::NodePushes pushes;
   ImpulseResult push = {StatusCode::OtherBody};
   if (!impl().checkBody(body).ok()) return push;
-  push = touch_detail::pushesOf(blast, impl().binding->embedding(), impl().areas, body, pushes);
+  push = touch_detail::pushesOf(impulse, impl().binding->embedding(), impl().areas, body, pushes);
   if (push.status != StatusCode::Ok) return push;
   if (touch_detail::isReduced(body)) return {StatusCode::InvalidOption};
   touch_detail::applyImpulses(pushes, body);
   return push;
 }
 
-ImpulseResult SurfaceTree::applyForce(btSoftBody& body, const RadialImpulse& blast, int steps) const {
+ImpulseResult SurfaceTree::applyForce(btSoftBody& body, const RadialImpulse& force, int steps) const {
   touch_detail::NodePushes pushes;
   ImpulseResult push = {StatusCode::OtherBody};
   if (!impl().checkBody(body).ok()) return push;
-  push = touch_detail::pushesOf(blast, impl().binding->embedding(), impl().areas, body, pushes);
+  push = touch_detail::pushesOf(force, impl().binding->embedding(), impl().areas, body, pushes);
   if (push.status != StatusCode::Ok) return push;
   const StatusCode done = touch_detail::applyForces(std::move(pushes), steps, body, nullptr);
   if (done != StatusCode::Ok) return {done};

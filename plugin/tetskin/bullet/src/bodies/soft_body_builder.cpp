@@ -16,7 +16,7 @@ namespace tetskin {
 namespace {
 
 /// Least mass of a node relative to the mean: lighter nodes explode on cages with slivers.
-constexpr double kMinNode = 0.3;
+constexpr double kMinNodeMass = 0.3;
 /// Default margin relative to the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
 constexpr double kMarginFraction = 0.02;
 /// With Bullet's default of one pass over the links, a body of thousands of tets collapses.
@@ -165,7 +165,7 @@ std::vector<double> lumpedMasses(const TetMesh& cage, double totalMass) {
     for (const int n : t) masses[n] += quarter;
     sum += 4.0 * quarter;
   }
-  const double lightest = kMinNode * sum / static_cast<double>(cage.nodeCount());
+  const double lightest = kMinNodeMass * sum / static_cast<double>(cage.nodeCount());
   for (double& m : masses) m = std::max(m, lightest);
   const double scale = totalMass / std::accumulate(masses.begin(), masses.end(), 0.0);
   for (double& m : masses) m *= scale;

@@ -28,9 +28,11 @@ void prefetch(const void* where) {
 #endif
 }
 
-/// Gives access to the state by which Bullet marks sleeping bodies.
+/// Gives the address of the state by which Bullet marks sleeping bodies.
 struct ActivationState : btCollisionObject {
-  static const void* item(const btCollisionObject& object) { return &(object.*(&ActivationState::m_activationState1)); }
+  static const void* addressIn(const btCollisionObject& object) {
+    return &(object.*(&ActivationState::m_activationState1));
+  }
 };
 
 /// Number of skins that are decided on before any is computed.
@@ -191,7 +193,7 @@ void SoftBodySkin::fetch() const {
 void SoftBodySkin::fetchBody() const {
   if (!skin_.bound() || !visible_) return;
   prefetch(&body_->m_nodes);
-  prefetch(ActivationState::item(*body_));
+  prefetch(ActivationState::addressIn(*body_));
 }
 
 void SoftBodySkin::fetchNodes() const {

@@ -16,7 +16,7 @@ namespace {
 constexpr int kFull = 255;
 /// Mass of the lightest node, relative to the mean. Mass added to reach it is not where the mesh's mass is: with a
 /// fifth, the load of thin ends makes the serpent's sag wrong by half as much again.
-constexpr double kMinNode = 0.1;
+constexpr double kMinNodeMass = 0.1;
 /// Number of rounds in which light nodes take mass from those around them, and the fraction of a node's surplus that
 /// each may take, as others may, too.
 constexpr int kMassRounds = 20;
@@ -175,7 +175,7 @@ std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& f
   if (!fill.empty() && !(sum > 0.0)) return nodeMasses(mesh, {}, volume);
   assert(sum > 0.0 && volume > 0.0);
   for (double& mass : masses) mass *= volume / sum;
-  const double minimum = kMinNode * volume / static_cast<double>(masses.size());
+  const double minimum = kMinNodeMass * volume / static_cast<double>(masses.size());
   const auto edges = uniqueEdges(mesh);
   for (int round = 0; round < kMassRounds; ++round) drawFromNeighbours(edges, minimum, masses);
   keepAtLeast(minimum, masses);

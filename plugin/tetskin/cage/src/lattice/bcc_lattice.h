@@ -125,8 +125,8 @@ class LatticeSet {
 struct LatticeMesh {
   TetMesh mesh;
   std::vector<std::int32_t> tetOf;  ///< 12 per cube of the set: index of its tet t at 12 i + t, or -1
-  std::vector<std::uint8_t>
-      openFaces;  ///< one per tet: bit c is set if no tet lies beyond the face opposite to corner c
+  /// One per tet: bit c is set if no tet lies beyond the face opposite to corner c.
+  std::vector<std::uint8_t> openFaces;
 
   /// Index of a tet of the set that the mesh was made of, or -1 if the tet is not in it.
   int indexOf(const LatticeSet& set, const LatticeTet& tet) const {

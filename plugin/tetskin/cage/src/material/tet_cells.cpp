@@ -77,7 +77,7 @@ int cornerTowards(int local, const LatticeTet& beyond) {
   return 0;
 }
 
-CellTables makeTables() {
+CellTables makeCellTables() {
   CellTables tables{};
   const CellNumbers& numbers = cellNumbers();
   for (int local = 0; local < kTetsPerCube; ++local) {
@@ -111,7 +111,7 @@ int lowestCell(CellMask cells) {
 }  // namespace
 
 const CellTables& cellTables() {
-  static const CellTables tables = makeTables();
+  static const CellTables tables = makeCellTables();
   return tables;
 }
 

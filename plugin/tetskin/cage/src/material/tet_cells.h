@@ -35,11 +35,11 @@ struct CellTables {
     std::uint8_t beyond = 0;  ///< cell of the tet beyond, on the other side of the same face of a cell
   };
 
-  std::array<std::array<Eigen::Vector3d, kCellsPerTet>, kTetsPerCube>
-      centroids;  ///< lattice coordinates relative to the cube
+  /// Lattice coordinates relative to the cube.
+  std::array<std::array<Eigen::Vector3d, kCellsPerTet>, kTetsPerCube> centroids;
   std::array<CellGraph, kTetsPerCube> adjacent;
-  std::array<std::array<std::array<Crossing, kCellsPerFace>, 4>, kTetsPerCube>
-      crossings;  ///< by the corner opposite to the face
+  /// By the corner opposite to the face.
+  std::array<std::array<std::array<Crossing, kCellsPerFace>, 4>, kTetsPerCube> crossings;
 };
 const CellTables& cellTables();
 

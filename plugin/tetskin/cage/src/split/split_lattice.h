@@ -12,8 +12,8 @@ namespace tetskin::cage_detail {
 /// A cage on the lattice, which may contain duplicate tets, with the points that it contains.
 struct CageTets {
   TetMesh mesh;
-  std::vector<std::uint8_t>
-      openFaces;                 ///< by tet: bit c is set if no other tet lies beyond the face opposite to corner c
+  /// By tet: bit c is set if no other tet lies beyond the face opposite to corner c.
+  std::vector<std::uint8_t> openFaces;
   std::vector<int> latticeTets;  ///< by tet: its tet in the lattice mesh; duplicates share it
   std::vector<CellMask> cells;   ///< by tet: its own material
   std::vector<int> tetOf;        ///< by point: the tet that contains it, or -1

@@ -16,8 +16,8 @@ struct SurfaceSamples {
   /// apart.
   std::vector<Eigen::Vector3d> points;
   std::vector<int> triangleOf;  ///< by point after the surface's own: its triangle
-  std::vector<std::array<int, 2>>
-      steps;  ///< pairs of points that the surface connects over a distance of at most some two steps
+  /// Pairs of points that the surface connects over a distance of at most some two steps.
+  std::vector<std::array<int, 2>> steps;
 };
 
 /// The number of points is O(points + area / step^2 + length / step).

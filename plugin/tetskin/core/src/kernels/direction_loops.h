@@ -97,17 +97,17 @@ void directionsOf(const Work<S>& given, const DirectionPlanes& givenPlanes, floa
   const Work<S> work = given;  // copied, as in positionsOf
   const DirectionPlanes planes = givenPlanes;
   // Runs are short: their sums are collected, and normalised four registers at a time.
-  constexpr std::size_t kMax = 64 * P;
-  alignas(64) S sums[4 * (kMax + 4 * P)] = {};
+  constexpr std::size_t kMaxSums = 64 * P;
+  alignas(64) S sums[4 * (kMaxSums + 4 * P)] = {};
   std::size_t first = work.runs[work.firstRun].firstSlot;  // first slot for which there is a sum
   for (std::size_t r = work.firstRun; r < work.lastRun; ++r) {
     const Directions tet(work, planes.kind, r);
     const std::size_t runEnd = work.runs[r + 1].firstSlot;
     for (std::size_t slot = work.runs[r].firstSlot; slot < runEnd; slot += P) {
-      if (slot - first >= kMax) {
-        normalise<S, P>(sums, kMax, out + 3 * first);
-        ::memcpy(sums, sums + 4 * kMax, 4 * P * sizeof(S));
-        first += kMax;
+      if (slot - first >= kMaxSums) {
+        normalise<S, P>(sums, kMaxSums, out + 3 * first);
+        ::memcpy(sums, sums + 4 * kMaxSums, 4 * P * sizeof(S));
+        first += kMaxSums;
       }
       const Points<S, P> d = tet.sum(work, planes.kind, slot, Weights<S, P>(planes.factors, slot));
       ::memcpy(sums + 4 * (slot - first), &d, sizeof d);

@@ -90,11 +90,11 @@ class SpatialHash {
 inline SpatialHash::Cell SpatialHash::cellOf(const Eigen::Vector3d& p) const {
   // Far beyond any sensible grid, but it still fits 64 bits. Every step keeps the order of points, so a box covers the
   // cells of the points in it.
-  constexpr double kMax = 1e15;
+  constexpr double kMaxCell = 1e15;
   Cell cell;
   for (int k = 0; k < 3; ++k) {
     cell[static_cast<std::size_t>(k)] =
-        static_cast<std::int64_t>(std::min((p[k] - box_.min()[k]) * inverseCellSize_, kMax));
+        static_cast<std::int64_t>(std::min((p[k] - box_.min()[k]) * inverseCellSize_, kMaxCell));
   }
   return cell;
 }

@@ -17,7 +17,7 @@ constexpr double kFloatError = 0x1p-19;
 /// it has the rounding errors of the largest.
 constexpr double kDoubleError = 0x1p-48;
 /// Planes with larger coefficients could overflow a float; the filter then passes all points.
-constexpr double kMax = 1e30;
+constexpr double kMaxCoefficient = 1e30;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ TetFilter::TetFilter(const BarycentricMap& map, const SpatialHash::Frame& frame,
   }
   for (int i = 0; i < 4; ++i) size[i] = std::abs(n[i][0]) + std::abs(n[i][1]) + std::abs(n[i][2]) + std::abs(c[i]);
   const double sum = size[0] + size[1] + size[2] + size[3];
-  const bool usable = sum < kMax;
+  const bool usable = sum < kMaxCoefficient;
   for (int i = 0; i < 4; ++i) {
     const double inverse = usable ? 1.0 / lengths[i] : 0.0;
     for (int k = 0; k < 3; ++k) planes_.normal[i][k] = static_cast<float>(n[i][k] * inverse);

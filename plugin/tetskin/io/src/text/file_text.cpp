@@ -79,11 +79,11 @@ std::string lowerExtension(const std::string& path) {
 }
 
 std::string excerpt(std::string_view text) {
-  constexpr std::size_t kMax = 40;
-  std::string result(text.substr(0, kMax));
+  constexpr std::size_t kMaxCharacters = 40;
+  std::string result(text.substr(0, kMaxCharacters));
   std::replace_if(
       result.begin(), result.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + result + (text.size() > kMax ? "...'" : "'");
+  return "'" + result + (text.size() > kMaxCharacters ? "...'" : "'");
 }
 
 std::string systemReason() {

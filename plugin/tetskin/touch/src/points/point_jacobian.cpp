@@ -45,27 +45,28 @@ struct Turning {
   Matrix3d value(std::size_t k) const { return inverse * crossMatrix(arms[k]); }
 };
 
-PointJacobianNode& nodeIn(PointJacobian& lever, int node) {
-  const auto found = std::find_if(lever.begin(), lever.end(),
+PointJacobianNode& nodeIn(PointJacobian& jacobian, int node) {
+  const auto found = std::find_if(jacobian.begin(), jacobian.end(),
                                   [&](const PointJacobianNode& thisNode) { return thisNode.node == node; });
-  if (found != lever.end()) return *found;
-  lever.emplace_back().node = node;
-  return lever.back();
+  if (found != jacobian.end()) return *found;
+  jacobian.emplace_back().node = node;
+  return jacobian.back();
 }
 
 void addWeights(const std::array<int, 4>& nodes, const std::array<btScalar, 4>& weights, double fraction,
-                PointJacobian& lever) {
+                PointJacobian& jacobian) {
   double left = 1.0;
   for (std::size_t k = 0; k < 4; ++k) {
     const double weight = k < 3 ? static_cast<double>(weights[k]) : left;
     left -= weight;
-    nodeIn(lever, nodes[k]).linear += fraction * weight * Matrix3d::Identity();
+    nodeIn(jacobian, nodes[k]).linear += fraction * weight * Matrix3d::Identity();
   }
 }
 
-void addCorner(const EmbeddedPoint<btScalar>& corner, double fraction, const btSoftBody& body, PointJacobian& lever) {
+void addCorner(const EmbeddedPoint<btScalar>& corner, double fraction, const btSoftBody& body,
+               PointJacobian& jacobian) {
   assert(corner.tet >= 0);
-  if (corner.inside) return addWeights(corner.nodes, corner.weights, fraction, lever);
+  if (corner.inside) return addWeights(corner.nodes, corner.weights, fraction, jacobian);
   std::vector<Vector3d> positions;
   Vector3d beyond = Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k) {
@@ -73,27 +74,27 @@ void addCorner(const EmbeddedPoint<btScalar>& corner, double fraction, const btS
     beyond += static_cast<double>(corner.weights[k] - corner.clampedWeights[k]) * (positions[k] - positions[0]);
   }
   const Turning turning(std::move(positions));
-  if (!turning.possible) return addWeights(corner.nodes, corner.weights, fraction, lever);
-  addWeights(corner.nodes, corner.clampedWeights, fraction, lever);
+  if (!turning.possible) return addWeights(corner.nodes, corner.weights, fraction, jacobian);
+  addWeights(corner.nodes, corner.clampedWeights, fraction, jacobian);
   for (std::size_t k = 0; k < 4; ++k) {
-    nodeIn(lever, corner.nodes[k]).linear -= fraction * crossMatrix(beyond) * turning.value(k);
+    nodeIn(jacobian, corner.nodes[k]).linear -= fraction * crossMatrix(beyond) * turning.value(k);
   }
 }
 
 }  // namespace
 
-PointJacobian leverOf(const PointData& point, const btSoftBody& body) {
-  PointJacobian lever;
+PointJacobian jacobianAt(const PointData& point, const btSoftBody& body) {
+  PointJacobian jacobian;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (point.weights[c] != 0) addCorner(point.corners[c], static_cast<double>(point.weights[c]), body, lever);
+    if (point.weights[c] != 0) addCorner(point.corners[c], static_cast<double>(point.weights[c]), body, jacobian);
   }
-  return lever;
+  return jacobian;
 }
 
-Matrix3d linearResponse(const PointJacobian& lever, const btSoftBody& body) {
-  assert(lever.size() <= 12);
+Matrix3d linearResponse(const PointJacobian& jacobian, const btSoftBody& body) {
+  assert(jacobian.size() <= 12);
   Matrix3d sum = Matrix3d::Zero();
-  for (const PointJacobianNode& node : lever) {
+  for (const PointJacobianNode& node : jacobian) {
     sum += static_cast<double>(body.m_nodes[node.node].m_im) * node.linear * node.linear.transpose();
   }
   return sum;

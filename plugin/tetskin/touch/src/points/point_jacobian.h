@@ -12,7 +12,7 @@
 
 namespace tetskin::touch_detail {
 
-/// One node of a lever: the point's velocity is the sum of `linear` times the nodes' velocities. The transposed
+/// One node of a Jacobian: the point's velocity is the sum of `linear` times the nodes' velocities. The transposed
 /// matrices divide a push among the nodes, so that the work at the point equals the work at the nodes, and momentum is
 /// preserved.
 struct PointJacobianNode {
@@ -21,13 +21,13 @@ struct PointJacobianNode {
 };
 using PointJacobian = std::vector<PointJacobianNode>;  ///< 4 to 12 nodes, all distinct
 
-/// The lever of a point at the current node positions. A corner inside its tet uses barycentric weights. A corner
+/// The Jacobian of a point at the current node positions. A corner inside its tet uses barycentric weights. A corner
 /// outside uses those of the tet's closest point, and a couple: with weights that extrapolate, single nodes would get
 /// very large shares.
-PointJacobian leverOf(const PointData& point, const btSoftBody& body);
+PointJacobian jacobianAt(const PointData& point, const btSoftBody& body);
 
 /// Inverse mass: the velocity of the point per unit impulse.
-Eigen::Matrix3d linearResponse(const PointJacobian& lever, const btSoftBody& body);
+Eigen::Matrix3d linearResponse(const PointJacobian& jacobian, const btSoftBody& body);
 
 /// The mass to which this response belongs: infinite if nothing can move.
 double massOf(const Eigen::Matrix3d& response);

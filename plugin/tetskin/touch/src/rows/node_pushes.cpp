@@ -58,8 +58,8 @@ std::shared_ptr<SurfaceJointRows> forceFor(DeformableSolver& solver, std::shared
 
 }  // namespace
 
-void addPush(const PointJacobian& lever, const Eigen::Vector3d& push, NodePushes& pushes) {
-  for (const PointJacobianNode& node : lever) pushes.push_back({node.node, node.linear.transpose() * push});
+void addPush(const PointJacobian& jacobian, const Eigen::Vector3d& push, NodePushes& pushes) {
+  for (const PointJacobianNode& node : jacobian) pushes.push_back({node.node, node.linear.transpose() * push});
 }
 
 void applyImpulses(const NodePushes& impulses, btSoftBody& body) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: applies the impulses and forces on nodes into which a lever has divided a push.
+// Internal to tetskin::touch: applies the impulses and forces on nodes among which a Jacobian has divided a push.
 #pragma once
 
 #include <tetskin/touch/src/points/point_jacobian.h>
@@ -16,7 +16,7 @@ struct NodePush {
 };
 using NodePushes = std::vector<NodePush>;  ///< a node may have several
 
-void addPush(const PointJacobian& lever, const Eigen::Vector3d& push, NodePushes& pushes);
+void addPush(const PointJacobian& jacobian, const Eigen::Vector3d& push, NodePushes& pushes);
 
 /// Adds the impulses to the nodes' velocities at once; those on pinned nodes are lost. Wakes the body.
 void applyImpulses(const NodePushes& impulses, btSoftBody& body);

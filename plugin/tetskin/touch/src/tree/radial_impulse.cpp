@@ -17,11 +17,11 @@ struct Reached {
   Vector3d position, push;
 };
 
-std::vector<Reached> reachedBy(const RadialImpulse& blast, const Embedding& embedding, const std::vector<double>& areas,
-                               const btSoftBody& body) {
+std::vector<Reached> reachedBy(const RadialImpulse& impulse, const Embedding& embedding,
+                               const std::vector<double>& areas, const btSoftBody& body) {
   std::vector<Reached> reached;
-  const Vector3d centre = toEigen(blast.centre);
-  const auto radius = static_cast<double>(blast.radius);
+  const Vector3d centre = toEigen(impulse.centre);
+  const auto radius = static_cast<double>(impulse.radius);
   assert(radius > 0.0);
   double sum = 0.0;
   for (std::size_t v = 0; v < areas.size(); ++v) {
@@ -33,7 +33,7 @@ std::vector<Reached> reachedBy(const RadialImpulse& blast, const Embedding& embe
     reached.push_back({vertex, position, part / distance * away});
     sum += part;
   }
-  for (Reached& near : reached) near.push *= static_cast<double>(blast.strength) / sum;
+  for (Reached& near : reached) near.push *= static_cast<double>(impulse.strength) / sum;
   return reached;
 }
 
@@ -50,22 +50,22 @@ std::vector<double> vertexAreas(const TriangleMesh& mesh) {
   return areas;
 }
 
-ImpulseResult pushesOf(const RadialImpulse& blast, const Embedding& embedding, const std::vector<double>& areas,
+ImpulseResult pushesOf(const RadialImpulse& impulse, const Embedding& embedding, const std::vector<double>& areas,
                        const btSoftBody& body, NodePushes& pushes) {
   assert(areas.size() == embedding.vertexCount());
   ImpulseResult done;
-  const btVector3 sizes(blast.radius, blast.strength, 0);
-  if (!isFiniteVector(blast.centre) || !isFiniteVector(sizes)) return {StatusCode::NonFinite};
+  const btVector3 sizes(impulse.radius, impulse.strength, 0);
+  if (!isFiniteVector(impulse.centre) || !isFiniteVector(sizes)) return {StatusCode::NonFinite};
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     if (!isFiniteVector(body.m_nodes[n].m_x)) return {StatusCode::NonFinite};
   }
-  if (!(blast.radius > 0)) return {StatusCode::InvalidOption};
+  if (!(impulse.radius > 0)) return {StatusCode::InvalidOption};
   Vector3d linear = Vector3d::Zero(), angular = Vector3d::Zero();
   std::vector<Vector3d> ofNodes(static_cast<std::size_t>(body.m_nodes.size()), Vector3d::Zero());
-  for (const Reached& reached : reachedBy(blast, embedding, areas, body)) {
+  for (const Reached& reached : reachedBy(impulse, embedding, areas, body)) {
     PointData point;
     point.corners[0] = reached.vertex;
-    for (const PointJacobianNode& node : leverOf(point, body)) {
+    for (const PointJacobianNode& node : jacobianAt(point, body)) {
       ofNodes[static_cast<std::size_t>(node.node)] += node.linear.transpose() * reached.push;
     }
     linear += reached.push;

@@ -17,7 +17,7 @@ std::vector<double> vertexAreas(const TriangleMesh& mesh);
 /// The pushes on the nodes of a body of the embedding's cage, for the current linear surface; none unless the status is
 /// Ok.
 /// Errors  NonFinite; InvalidOption for a radius that is not above 0; Miss
-ImpulseResult pushesOf(const RadialImpulse& blast, const Embedding& embedding, const std::vector<double>& areas,
+ImpulseResult pushesOf(const RadialImpulse& impulse, const Embedding& embedding, const std::vector<double>& areas,
                        const btSoftBody& body, NodePushes& pushes);
 
 }  // namespace tetskin::touch_detail
