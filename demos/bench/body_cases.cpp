@@ -7,7 +7,13 @@
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/elastic/elastic_body.h>
+#ifdef TETSKIN_BENCH_THREADS
+#include <tetskin/threads/thread_pool.h>
+#endif
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -73,9 +79,42 @@ void step(State& state, int bodies, bool faceTree) {
   for (auto _ : state) scene->step(1);
 }
 
+#ifdef TETSKIN_BENCH_THREADS
+/// A step of a body that falls and wobbles, held at its lowest node: its elastic part alone, in wall time.
+void stepWithThreads(State& state, std::size_t tets, std::size_t threads) {
+  constexpr double kSeconds = 1.0 / 240.0;
+  const TetMesh cage = serpentCage(tets);
+  ElasticOptions options;
+  options.youngsModulus = 1e3;
+  auto body = ElasticBody<float>::create(cage, options).value();
+  const auto lower = [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p.y() < q.y(); };
+  const auto lowest = std::min_element(cage.nodes.begin(), cage.nodes.end(), lower);
+  body.setPinned(static_cast<std::size_t>(lowest - cage.nodes.begin()));
+  ThreadPool pool(threads);
+  int iterations = 0;
+  for (auto _ : state) iterations += body.step(kSeconds, {0.0, -9.81, 0.0}, threads > 1 ? &pool : nullptr);
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["tets"] = static_cast<double>(cage.tetCount());
+}
+
+void registerThreads() {
+  for (const std::size_t tets : {3000, 30000}) {
+    for (const std::size_t threads : {1, 2, 4}) {
+      const std::string name = "Step/threads:" + std::to_string(threads) + "/tets:" + std::to_string(tets);
+      benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { stepWithThreads(state, tets, threads); })
+          ->Unit(benchmark::kMicrosecond)
+          ->UseRealTime();
+    }
+  }
+}
+#endif
+
 }  // namespace
 
 void registerBodyCases() {
+#ifdef TETSKIN_BENCH_THREADS
+  registerThreads();
+#endif
   benchmark::RegisterBenchmark("FaceTree/60000", [](State& state) {
     buildFaceTree(state, 60000);
   })->Unit(benchmark::kMillisecond);

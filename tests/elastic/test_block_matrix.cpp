@@ -109,7 +109,7 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForMatrix());
     BlockMatrix<TypeParam>& matrix = body.matrix;
-    // The lower triangle of blocks in the order of slots, which is the order of colours.
+    // The lower triangle of blocks in the order of slots, in which they are swept.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     Eigen::MatrixXd dense = body.dense(), lower = Eigen::MatrixXd::Zero(size, size), diagonal = lower;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
@@ -129,7 +129,7 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
 }
 
 TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
-  const TetMesh cage = test::latticeCage(12, 12, 12);  // several tasks for one colour
+  const TetMesh cage = test::latticeCage(120, 7, 7);  // several parts
   const AssembledBody<TypeParam> fresh(cage);
   const VectorXd x = test::Random(36).vector(3 * cage.nodeCount());
   const auto everything = [&](ParallelFor* threads) {
@@ -157,8 +157,8 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
   for (const int count : {1, 2, 3}) {
     test::ShuffledThreads threads(count);
     EXPECT_EQ(everything(&threads), expected);
-    EXPECT_GT(threads.maxTasks, 8u);
-    EXPECT_GT(threads.runs, 20) << "colours have tasks to share out";
+    EXPECT_GT(threads.maxTasks, 4u);
+    EXPECT_GE(threads.runs, 9) << "the parts of a sweep, and its separators";
   }
 }
 

@@ -23,7 +23,7 @@ using kernels::kGroup;
 /// The cages for the tests of the pattern; one of them has nodes that no tet uses.
 std::vector<TetMesh> patternCages() {
   std::vector<TetMesh> cages{test::singleTet(), test::latticeCage(3, 2, 1), test::bodyCentredCage(3, 3, 2),
-                             test::latticeCage(12, 12, 12)};
+                             test::latticeCage(12, 12, 12), test::latticeCage(120, 7, 7)};
   cages[1].nodes.insert(cages[1].nodes.end(), 3, Vector3d(5, 5, 5));
   return cages;
 }
@@ -40,18 +40,39 @@ std::vector<int> nodesOf(const BlockPattern& pattern) {
   return nodes;
 }
 
-std::vector<std::size_t> coloursOfChunks(const BlockPattern& pattern) {
-  std::vector<std::size_t> colours(pattern.chunkCount(), 999);
-  for (std::size_t c = 0; c + 1 < pattern.colours.size(); ++c) {
-    for (std::size_t chunk = pattern.taskChunks[pattern.colours[c]]; chunk < pattern.taskChunks[pattern.colours[c + 1]];
-         ++chunk) {
-      colours[chunk] = c;
-    }
+constexpr std::size_t kNone = 999;
+
+/// By chunk: its task.
+std::vector<std::size_t> tasksOfChunks(const BlockPattern& pattern) {
+  std::vector<std::size_t> tasks(pattern.chunkCount(), kNone);
+  for (std::size_t t = 0; t < pattern.taskCount(); ++t) {
+    const std::size_t first = pattern.rangeChunks[pattern.tasks[t]], last = pattern.rangeChunks[pattern.tasks[t + 1]];
+    for (std::size_t chunk = first; chunk < last; ++chunk) tasks[chunk] = t;
   }
-  return colours;
+  return tasks;
 }
 
-TEST(BlockPattern, EveryNodeHasASlotOfItsOwnAndEveryChunkATaskAndAColour) {
+/// By chunk: its range.
+std::vector<std::size_t> rangesOfChunks(const BlockPattern& pattern) {
+  std::vector<std::size_t> ranges(pattern.chunkCount(), kNone);
+  for (std::size_t r = 0; r < pattern.rangeCount(); ++r) {
+    for (std::size_t chunk = pattern.rangeChunks[r]; chunk < pattern.rangeChunks[r + 1]; ++chunk) ranges[chunk] = r;
+  }
+  return ranges;
+}
+
+std::size_t phaseOf(const BlockPattern& pattern, std::size_t task) {
+  return static_cast<std::size_t>(std::upper_bound(pattern.phases.begin(), pattern.phases.end(), task) -
+                                  pattern.phases.begin());
+}
+
+void expectDivided(const std::vector<std::uint32_t>& starts, std::size_t count) {
+  EXPECT_EQ(starts.front(), 0u);
+  EXPECT_EQ(starts.back(), count);
+  EXPECT_TRUE(std::is_sorted(starts.begin(), starts.end()));
+}
+
+TEST(BlockPattern, EveryNodeHasASlotOfItsOwnAndEveryChunkATaskAndARange) {
   for (const TetMesh& cage : patternCages()) {
     const BlockPattern pattern = patternOf(cage);
     ASSERT_EQ(pattern.slotOf.size(), cage.nodeCount());
@@ -60,22 +81,20 @@ TEST(BlockPattern, EveryNodeHasASlotOfItsOwnAndEveryChunkATaskAndAColour) {
       EXPECT_LT(slot, pattern.slotCount());
       EXPECT_TRUE(slots.insert(slot).second) << slot;
     }
-    EXPECT_EQ(pattern.taskChunks.front(), 0u);
-    EXPECT_EQ(pattern.taskChunks.back(), pattern.chunkCount());
-    EXPECT_TRUE(std::is_sorted(pattern.taskChunks.begin(), pattern.taskChunks.end()));
-    EXPECT_EQ(pattern.colours.front(), 0u);
-    EXPECT_EQ(pattern.colours.back(), pattern.taskCount());
-    EXPECT_TRUE(std::is_sorted(pattern.colours.begin(), pattern.colours.end()));
-    const std::vector<std::size_t> colours = coloursOfChunks(pattern);
-    EXPECT_EQ(std::count(colours.begin(), colours.end(), 999u), 0);
+    expectDivided(pattern.rangeChunks, pattern.chunkCount());
+    expectDivided(pattern.tasks, pattern.rangeCount());
+    expectDivided(pattern.phases, pattern.taskCount());
+    const std::vector<std::size_t> tasks = tasksOfChunks(pattern), ranges = rangesOfChunks(pattern);
+    EXPECT_EQ(std::count(tasks.begin(), tasks.end(), kNone), 0);
+    EXPECT_EQ(std::count(ranges.begin(), ranges.end(), kNone), 0);
   }
 }
 
-TEST(BlockPattern, NeighboursAreThereOnceFromEachSideAndNeverOfOneColour) {
+TEST(BlockPattern, NeighboursAreThereOnceFromEachSideAndNeverInOneRange) {
   for (const TetMesh& cage : patternCages()) {
     const BlockPattern pattern = patternOf(cage);
     const std::vector<int> nodes = nodesOf(pattern);
-    const std::vector<std::size_t> colours = coloursOfChunks(pattern);
+    const std::vector<std::size_t> ranges = rangesOfChunks(pattern);
     std::map<std::pair<int, int>, int> lower, upper;
     for (std::size_t chunk = 0; chunk < pattern.chunkCount(); ++chunk) {
       for (std::size_t e = pattern.starts[2 * chunk]; e < pattern.starts[2 * chunk + 2]; ++e) {
@@ -85,8 +104,8 @@ TEST(BlockPattern, NeighboursAreThereOnceFromEachSideAndNeverOfOneColour) {
           if (other == own) continue;  // padding
           ASSERT_GE(nodes[own], 0);
           ASSERT_GE(nodes[other], 0);
-          const std::size_t otherColour = colours[other / kGroup];
-          EXPECT_TRUE(isLower ? otherColour < colours[chunk] : otherColour > colours[chunk]) << own << " " << other;
+          const std::size_t otherRange = ranges[other / kGroup];
+          EXPECT_TRUE(isLower ? otherRange < ranges[chunk] : otherRange > ranges[chunk]) << own << " " << other;
           ++(isLower ? lower : upper)[{nodes[own], nodes[other]}];
         }
       }
@@ -100,6 +119,33 @@ TEST(BlockPattern, NeighboursAreThereOnceFromEachSideAndNeverOfOneColour) {
     EXPECT_EQ(both.size(), 2 * edges.size());
     for (const auto& [a, b] : edges) EXPECT_EQ(both.count({a, b}) + both.count({b, a}), 2u) << a << " " << b;
   }
+}
+
+TEST(BlockPattern, NoTasksOfOnePhaseAreNeighbours) {
+  for (const TetMesh& cage : patternCages()) {
+    const BlockPattern pattern = patternOf(cage);
+    const std::vector<std::size_t> tasks = tasksOfChunks(pattern);
+    for (const auto& [a, b] : uniqueEdges(cage)) {
+      const std::size_t one = tasks[pattern.slotOf[static_cast<std::size_t>(a)] / kGroup];
+      const std::size_t other = tasks[pattern.slotOf[static_cast<std::size_t>(b)] / kGroup];
+      EXPECT_TRUE(one == other || phaseOf(pattern, one) != phaseOf(pattern, other)) << a << " " << b;
+    }
+  }
+}
+
+TEST(BlockPattern, LargeBodiesHavePartsOfSimilarSizeAndFewSeparators) {
+  const BlockPattern pattern = patternOf(test::latticeCage(120, 7, 7));
+  ASSERT_EQ(pattern.phases.size(), 3u);
+  const std::size_t parts = pattern.phases[1];
+  ASSERT_GE(parts, 3u);
+  EXPECT_EQ(pattern.phases[2], 2 * parts - 1);
+  const auto chunksOf = [&](std::size_t first, std::size_t last) {
+    return pattern.rangeChunks[pattern.tasks[last]] - pattern.rangeChunks[pattern.tasks[first]];
+  };
+  for (std::size_t t = 0; t < parts; ++t) {
+    EXPECT_NEAR(static_cast<double>(parts * chunksOf(t, t + 1)) / pattern.chunkCount(), 1.0, 0.2) << t;
+  }
+  EXPECT_LT(chunksOf(parts, 2 * parts - 1), pattern.chunkCount() / 10);
 }
 
 TEST(BlockPattern, EveryTetHasATermInEachOfItsBlocks) {

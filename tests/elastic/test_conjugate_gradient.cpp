@@ -102,7 +102,7 @@ TEST(ConjugateGradient, GoesOnWhereItStopped) {
 }
 
 TEST(ConjugateGradient, HasTheSameBitsOnAnyThreads) {
-  AssembledBody<float> body(test::latticeCage(12, 12, 12));
+  AssembledBody<float> body(test::latticeCage(120, 7, 7));
   const VectorXd b = test::Random(45).vector(3 * body.nodes.size());
   const auto solved = [&](ParallelFor* threads) {
     body.toWide(VectorXd::Zero(b.size()), body.matrix.solution());
@@ -116,7 +116,7 @@ TEST(ConjugateGradient, HasTheSameBitsOnAnyThreads) {
   for (const int count : {1, 2}) {
     test::ShuffledThreads threads(count);
     EXPECT_EQ(solved(&threads), alone);
-    EXPECT_GT(threads.runs, 20);
+    EXPECT_GT(threads.runs, 10);  // five per iteration
   }
 }
 

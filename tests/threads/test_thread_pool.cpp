@@ -48,6 +48,31 @@ TEST(ThreadPool, ManyRunsInARow) {
   for (std::size_t k = 0; k < sums.size(); ++k) EXPECT_EQ(sums[k], 20000 * k + 20000u * 19999 / 2);
 }
 
+TEST(ThreadPool, RunsAgainWhenItsThreadsSleep) {
+  ThreadPool pool(3);
+  for (int round = 0; round < 50; ++round) {
+    std::this_thread::sleep_for(std::chrono::microseconds(40 * round));  // shorter and longer than they look for work
+    expectEachTaskOnce(pool, 7);
+  }
+}
+
+TEST(ThreadPool, ACallerSleepsUntilTheLastTaskEnds) {
+  ThreadPool pool(2);
+  const auto caller = std::this_thread::get_id();
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> started{0};
+    std::atomic<bool> ended{false};
+    runTasks(&pool, 2, [&](std::size_t) {
+      ++started;
+      while (started.load() < 2) std::this_thread::yield();
+      if (std::this_thread::get_id() == caller) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ended = true;
+    });
+    EXPECT_TRUE(ended);
+  }
+}
+
 TEST(ThreadPool, HasTheMachinesThreadsByDefault) {
   const ThreadPool pool;
   EXPECT_EQ(pool.threadCount(), std::max(1u, std::thread::hardware_concurrency()));

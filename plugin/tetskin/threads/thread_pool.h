@@ -11,7 +11,8 @@
 
 namespace tetskin {
 
-/// A fixed number of threads that sleep until there is work: for applications that have no scheduler of their own.
+/// A fixed number of threads: for applications that have no scheduler of their own. They sleep until there is work;
+/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it.
 ///
 ///     ThreadPool pool;                 // as many threads as the machine has
 ///     options.threads = &pool;         // of a skin; the pool outlives it
@@ -29,8 +30,9 @@ class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
   /// Number of threads, including the calling one. Less than requested if the system provided fewer.
   std::size_t threadCount() const;
 
-  /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and sleeps only
-  /// while others finish their last task. Allocates nothing; costs some microseconds to wake the others. Calls from
+  /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and waits only
+  /// while others finish their last task. Allocates nothing; costs less than a microsecond where the last run has just
+  /// ended, otherwise some to wake the others. Calls from
   /// several threads wait for each other; a call from within a task never returns.
   void run(std::size_t count, Task task) override;
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -14,7 +16,36 @@
 
 namespace tetskin {
 
-/// One `run` at a time. Threads take the next task from a counter; sleeping threads are woken by a condition variable.
+namespace {
+
+/// How long threads look for work, and a caller for the end of others' tasks, before they sleep: longer than waking a
+/// thread takes, and short, as a thread that another program has displaced ends its task only when it gets a core.
+constexpr std::chrono::microseconds kSpin{20};
+
+void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+/// Looks for kSpin whether a condition holds. Returns whether it does.
+template <class Condition>
+bool spinUntil(Condition&& holds) {
+  constexpr int kLooksPerClock = 16;
+  const auto begin = std::chrono::steady_clock::now();
+  do {
+    for (int k = 0; k < kLooksPerClock; ++k) {
+      if (holds()) return true;
+      pause();
+    }
+  } while (std::chrono::steady_clock::now() - begin < kSpin);
+  return holds();
+}
+
+}  // namespace
+
+/// One `run` at a time. Threads enter a run that is open, take the next task from a counter, and leave when there is
+/// none. The caller closes the run when all tasks are taken, and waits for those that have entered only.
 class ThreadPool::Workers {
  public:
   explicit Workers(std::size_t count) {
@@ -29,7 +60,7 @@ class ThreadPool::Workers {
   ~Workers() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      ending_ = true;
+      ending_.store(true);
     }
     wake_.notify_all();
     for (std::thread& thread : threads_) thread.join();
@@ -42,58 +73,88 @@ class ThreadPool::Workers {
   void run(std::size_t count, Task task) {
     assert(count > 0 && !threads_.empty());
     const std::lock_guard<std::mutex> one(oneAtATime_);
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      task_ = task;
-      count_ = count;
-      next_.store(0, std::memory_order_relaxed);
-      ++round_;
-    }
-    // No more than there is work for: the caller does at least one task.
-    const std::size_t wanted = std::min(threads_.size(), count - 1);
-    for (std::size_t k = 0; k < wanted; ++k) wake_.notify_one();
-    takeTasks(task, count);
+    assert((state_.load() & (kOpen | kInside)) == 0);
+    task_ = task;
+    count_ = count;
+    next_.store(0, std::memory_order_relaxed);
+    state_.store(((state_.load() & kRound) + kOneRound) | kOpen);
+    wakeSleepers(count);
+    takeTasks();
+    if ((state_.fetch_and(~kOpen) & kInside) == 0) return;
+    const auto allLeft = [this] { return (state_.load() & kInside) == 0; };
+    if (spinUntil(allLeft)) return;
     std::unique_lock<std::mutex> lock(mutex_);
-    idle_.wait(lock, [this] { return busy_ == 0; });
-    task_.reset();  // a thread that wakes later finds nothing
+    callerSleeps_.store(true);
+    idle_.wait(lock, allLeft);
+    callerSleeps_.store(false);
   }
 
  private:
-  void takeTasks(Task task, std::size_t count) {
+  // Parts of the state: the number of the run, whether it is open, and how many threads have entered it.
+  static constexpr std::uint64_t kInside = 0xFFFF, kOpen = 0x10000, kOneRound = 0x100000000, kRound = ~0xFFFFFFFFull;
+
+  /// No more than there is work for: the caller does at least one task.
+  void wakeSleepers(std::size_t count) {
+    const std::size_t wanted = std::min(sleeping_.load(), count - 1);
+    if (wanted == 0) return;
+    { const std::lock_guard<std::mutex> lock(mutex_); }  // those that are about to sleep do
+    for (std::size_t k = 0; k < wanted; ++k) wake_.notify_one();
+  }
+
+  void takeTasks() {
     for (;;) {
       const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
-      if (k >= count) return;
-      task(k);
+      if (k >= count_) return;
+      (*task_)(k);
     }
   }
 
+  /// Enters the open run, if it is not the last one in which this thread has been.
+  bool enter(std::uint64_t& seen) {
+    std::uint64_t state = state_.load();
+    while ((state & kOpen) != 0 && (state & kRound) != seen) {
+      if (!state_.compare_exchange_weak(state, state + 1)) continue;
+      seen = state & kRound;
+      return true;
+    }
+    return false;
+  }
+
+  void leave() {
+    if (((state_.fetch_sub(1) - 1) & (kOpen | kInside)) != 0) return;
+    if (!callerSleeps_.load()) return;
+    { const std::lock_guard<std::mutex> lock(mutex_); }  // a caller that is about to sleep does
+    idle_.notify_one();
+  }
+
   void work() {
-    std::size_t seen = 0;
-    std::unique_lock<std::mutex> lock(mutex_);
-    for (;;) {
-      wake_.wait(lock, [&] { return ending_ || (task_ && round_ != seen); });
-      if (ending_) return;
-      seen = round_;
-      const Task task = *task_;
-      const std::size_t count = count_;
-      ++busy_;
-      lock.unlock();
-      takeTasks(task, count);
-      lock.lock();
-      if (--busy_ == 0) idle_.notify_one();
+    std::uint64_t seen = 0;
+    while (!ending_.load()) {
+      bool entered = spinUntil([&] { return enter(seen) || ending_.load(); }) && !ending_.load();
+      if (!entered) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        ++sleeping_;
+        wake_.wait(lock, [&] { return ending_.load() || (entered = enter(seen)); });
+        --sleeping_;
+      }
+      if (!entered) continue;
+      takeTasks();
+      leave();
     }
   }
 
   std::vector<std::thread> threads_;
   std::mutex oneAtATime_;
-  std::mutex mutex_;  ///< guards everything below
-  std::condition_variable wake_, idle_;
-  std::optional<Task> task_;  ///< set during a run
+  // Written while no thread is inside a run.
+  std::optional<Task> task_;
   std::size_t count_ = 0;
-  std::size_t round_ = 0;  ///< number of the run
-  std::size_t busy_ = 0;   ///< threads in takeTasks, without the caller
-  bool ending_ = false;
+
+  std::atomic<std::uint64_t> state_{0};
   std::atomic<std::size_t> next_{0};  ///< first task that has not been taken
+  std::mutex mutex_;                  ///< of those who sleep
+  std::condition_variable wake_, idle_;
+  std::atomic<std::size_t> sleeping_{0};
+  std::atomic<bool> callerSleeps_{false}, ending_{false};
 };
 
 ThreadPool::ThreadPool(std::optional<std::size_t> threadCount) {

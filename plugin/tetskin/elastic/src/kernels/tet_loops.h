@@ -274,9 +274,26 @@ TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S
           r.at[6] * x + r.at[7] * y + r.at[8] * z};
 }
 
+/// Adds the corners of W tets to the points of their nodes, tet by tet.
+template <class S, int W>
+TETSKIN_INLINE void addCorners(const TetPack<S>& pack, int lane, const S* corners, S* sums) {
+  using V = Lanes<S, 4>;
+  for (int i = 0; i < W; ++i) {
+    for (int a = 0; a < 4; ++a) {
+      S* const to = sums + 4 * static_cast<std::size_t>(pack.nodes[a][lane + i]);
+      V force, sum;
+      ::memcpy(&force, corners + kCorners * static_cast<std::size_t>(i) + 4 * a, sizeof force);
+      ::memcpy(&sum, to, sizeof sum);
+      sum += force;
+      ::memcpy(to, &sum, sizeof sum);
+    }
+  }
+}
+
 template <class S, int W>
 TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
   using V = Lanes<S, W>;
+  alignas(64) S own[kCorners * W];
   V maxTurned{}, turned{};
   double energy = 0.0;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
@@ -302,12 +319,13 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
       const V pressure = wide<S, W>(pack.bulk + lane) * trace;
       const V s0 = shear * e0 + pressure, s4 = shear * e4 + pressure, s8 = shear * e8 + pressure;
       const V s1 = shear * e1, s2 = shear * e2, s5 = shear * e5;
-      putCorners<S, W>(pack, lane, V{}, work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane)),
-                       [&](const V& gx, const V& gy, const V& gz) {
-                         const WideVector<S, W> v = rotated<S, W>(
-                             r, s0 * gx + s1 * gy + s2 * gz, s1 * gx + s4 * gy + s5 * gz, s2 * gx + s5 * gy + s8 * gz);
-                         return WideVector<S, W>{-v.x, -v.y, -v.z};
-                       });
+      S* const corners = work.sums ? own : work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane));
+      putCorners<S, W>(pack, lane, V{}, corners, [&](const V& gx, const V& gy, const V& gz) {
+        const WideVector<S, W> v =
+            rotated<S, W>(r, s0 * gx + s1 * gy + s2 * gz, s1 * gx + s4 * gy + s5 * gz, s2 * gx + s5 * gy + s8 * gz);
+        return WideVector<S, W>{-v.x, -v.y, -v.z};
+      });
+      if (work.sums) addCorners<S, W>(pack, lane, own, work.sums);
       if (withEnergy) {
         const V squares = e0 * e0 + e4 * e4 + e8 * e8 + S(2) * (e1 * e1 + e2 * e2 + e5 * e5);
         energy += 0.5 * static_cast<double>(laneSum<S, W>(shear * squares + pressure * trace));

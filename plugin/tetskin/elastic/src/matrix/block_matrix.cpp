@@ -42,7 +42,7 @@ BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std
     v->assign(chunks * kWideSymmetric, S(0));
   for (AlignedVector<S>* v : {&residual_, &direction_, &rest_, &step_, &solution_}) v->assign(wideSize(), S(0));
   for (AlignedVector<S>* v : {&stepPoints_, &lowerPoints_}) v->assign(4 * slots, S(0));
-  partial_.assign(pattern_.taskCount(), S(0));
+  partial_.assign(pattern_.rangeCount(), S(0));
 }
 
 template <class S>
@@ -76,23 +76,40 @@ double BlockMatrix<S>::totalMass() const {
   return std::accumulate(masses_.begin(), masses_.end(), 0.0);
 }
 
+/// Calls kernel(range, first chunk, last chunk) for all ranges.
 template <class S>
 template <class Kernel>
 void BlockMatrix<S>::everywhere(ParallelFor* threads, Kernel&& kernel) const {
-  runTasks(threads, pattern_.taskCount(),
-           [&](std::size_t task) { kernel(task, pattern_.taskChunks[task], pattern_.taskChunks[task + 1]); });
+  runTasks(threads, pattern_.taskCount(), [&](std::size_t task) {
+    for (std::size_t r = pattern_.tasks[task]; r < pattern_.tasks[task + 1]; ++r) {
+      kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
+    }
+  });
 }
 
-/// Processes one colour after the other.
+/// The same, each row after those of its neighbours that are before it.
 template <class S>
 template <class Kernel>
-void BlockMatrix<S>::byColours(bool forwards, ParallelFor* threads, Kernel&& kernel) const {
-  const std::size_t colours = pattern_.colours.size() - 1;
-  for (std::size_t k = 0; k < colours; ++k) {
-    const std::size_t c = forwards ? k : colours - 1 - k;
-    const std::size_t first = pattern_.colours[c];
-    runTasks(threads, pattern_.colours[c + 1] - first, [&](std::size_t task) {
-      kernel(first + task, pattern_.taskChunks[first + task], pattern_.taskChunks[first + task + 1]);
+void BlockMatrix<S>::forwards(ParallelFor* threads, Kernel&& kernel) const {
+  for (std::size_t phase = 0; phase + 1 < pattern_.phases.size(); ++phase) {
+    const std::size_t first = pattern_.phases[phase];
+    runTasks(threads, pattern_.phases[phase + 1] - first, [&](std::size_t k) {
+      for (std::size_t r = pattern_.tasks[first + k]; r < pattern_.tasks[first + k + 1]; ++r) {
+        kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
+      }
+    });
+  }
+}
+
+template <class S>
+template <class Kernel>
+void BlockMatrix<S>::backwards(ParallelFor* threads, Kernel&& kernel) const {
+  for (std::size_t phase = pattern_.phases.size() - 1; phase-- > 0;) {
+    const std::size_t first = pattern_.phases[phase];
+    runTasks(threads, pattern_.phases[phase + 1] - first, [&](std::size_t k) {
+      for (std::size_t r = pattern_.tasks[first + k + 1]; r-- > pattern_.tasks[first + k];) {
+        kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
+      }
     });
   }
 }
@@ -270,8 +287,8 @@ void BlockMatrix<S>::rowTimesSolution(std::size_t node, S out[3]) const {
 template <class S>
 double BlockMatrix<S>::lower(ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
-  byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
-    partial_[task] = table.lower(work(first, last));
+  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
+    partial_[range] = table.lower(work(first, last));
   });
   return summed();
 }
@@ -279,7 +296,7 @@ double BlockMatrix<S>::lower(ParallelFor* threads) {
 template <class S>
 void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
-  byColours(false, threads, [&](std::size_t, std::size_t first, std::size_t last) {
+  backwards(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.factor = factor;
     table.backward(part);
@@ -289,10 +306,10 @@ void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
 template <class S>
 double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
-  byColours(true, threads, [&](std::size_t task, std::size_t first, std::size_t last) {
+  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.extra = extra;
-    partial_[task] = table.forward(part);
+    partial_[range] = table.forward(part);
   });
   return summed();
 }
@@ -305,10 +322,10 @@ void BlockMatrix<S>::clear() {
 template <class S>
 double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
-  everywhere(threads, [&](std::size_t task, std::size_t first, std::size_t last) {
+  everywhere(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.factor = factor;
-    partial_[task] = table.advance(part);
+    partial_[range] = table.advance(part);
   });
   return summed();
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The matrix A = M + alpha K of one body: 3x3 blocks, one row per node, symmetric and positive. Rows are sorted by
-// colour, so that a Gauss-Seidel sweep processes eight of them at once, on any number of threads: see
-// elastic_kernels.h.
+// The matrix A = M + alpha K of one body: 3x3 blocks, one row per node, symmetric and positive. A large body is divided
+// into parts, and separators between them, so that a Gauss-Seidel sweep processes first all parts and then all
+// separators, on any number of threads. The rows of each are sorted by colour, so that eight of them are processed at
+// once: see elastic_kernels.h.
 #pragma once
 
 #include <tetskin/core/mesh.h>
@@ -24,12 +25,15 @@ struct BlockPattern {
   std::vector<std::uint32_t> neighbours;  ///< by entry, 8 each
   std::vector<std::uint32_t> sums;        ///< by entry, and the end
   std::vector<std::uint32_t> terms;       ///< 16 per term
-  std::vector<std::uint32_t> taskChunks;  ///< by task, and the end: its first chunk; no task has rows of two colours
-  std::vector<std::uint32_t> colours;     ///< by colour, and the end: its first task
+  std::vector<std::uint32_t>
+      rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are no neighbours
+  std::vector<std::uint32_t> tasks;   ///< by task, and the end: its first range; they are swept in this order
+  std::vector<std::uint32_t> phases;  ///< by phase, and the end: its first task; rows of two tasks are no neighbours
 
   std::size_t chunkCount() const { return starts.size() / 2; }
   std::size_t slotCount() const { return chunkCount() * kernels::kGroup; }
-  std::size_t taskCount() const { return taskChunks.size() - 1; }
+  std::size_t rangeCount() const { return rangeChunks.size() - 1; }
+  std::size_t taskCount() const { return tasks.size() - 1; }
 };
 
 /// Corners of tet t are 4 t to 4 t + 3; those of tet `noTet` are 0. Cost O(T).
@@ -111,7 +115,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   template <class Kernel>
   void everywhere(ParallelFor* threads, Kernel&& kernel) const;
   template <class Kernel>
-  void byColours(bool forwards, ParallelFor* threads, Kernel&& kernel) const;
+  void forwards(ParallelFor* threads, Kernel&& kernel) const;
+  template <class Kernel>
+  void backwards(ParallelFor* threads, Kernel&& kernel) const;
   double summed() const;
   void setInverse(std::size_t slot, const S inverse[6]);
   /// The first scalar of the block of two slots, which is one of nine per lane of a group; null if there is none.
@@ -128,7 +134,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   AlignedVector<S> masses_, blocks_, diagonal_, inverse_, freeDiagonal_, freeInverse_;
   AlignedVector<S> residual_, direction_, rest_, step_, solution_;  // in the wide layout
   AlignedVector<S> stepPoints_, lowerPoints_;
-  mutable std::vector<S> partial_;  // by task
+  mutable std::vector<S> partial_;  // by range
   std::vector<SavedBlock> saved_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/base/disjoint_sets.h>
 #include <tetskin/core/src/shared/base/lists.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -12,8 +13,13 @@ namespace {
 
 using kernels::kGroup;
 
-/// Handing work to another thread costs some microseconds, in which this many chunks are swept.
-constexpr std::size_t kChunksPerTask = 24;
+/// Sums over more chunks than this would lose digits of float.
+constexpr std::size_t kChunksPerRange = 24;
+/// Nodes of a part: what a sweep of it reads again stays in the first-level cache, and takes longer than handing it to
+/// another thread.
+constexpr std::size_t kNodesPerPart = 1800;
+/// Most separators, as a fraction of all nodes.
+constexpr double kMaxSeparated = 0.25;
 
 /// Two corners of a tet that contribute to the block of a pair of nodes.
 struct Term {
@@ -74,23 +80,113 @@ std::vector<std::uint32_t> coloursOf(const std::vector<Row>& rows) {
   return colours;
 }
 
+/// Appends the nodes that a node is connected with, by distance from it; nodes that `found` are not appended, and those
+/// that are become found.
+void appendByDistance(const std::vector<Row>& rows, std::uint32_t start, std::vector<char>& found,
+                      std::vector<std::uint32_t>& order) {
+  assert(!found[start]);
+  std::size_t next = order.size();
+  found[start] = 1;
+  order.push_back(start);
+  for (; next < order.size(); ++next) {
+    for (const std::uint32_t m : rows[order[next]].neighbours) {
+      if (found[m]) continue;
+      found[m] = 1;
+      order.push_back(m);
+    }
+  }
+}
+
+/// All nodes, component by component, each by distance from a node at one of its ends: E. Cuthill, J. McKee, "Reducing
+/// the bandwidth of sparse symmetric matrices", ACM '69, doi 10.1145/800195.805928.
+std::vector<std::uint32_t> orderByDistance(const std::vector<Row>& rows) {
+  std::vector<std::uint32_t> order;
+  std::vector<char> found(rows.size(), 0), foundAgain(rows.size(), 0);
+  for (std::uint32_t n = 0; n < rows.size(); ++n) {
+    if (found[n]) continue;
+    std::vector<std::uint32_t> component;
+    appendByDistance(rows, n, found, component);
+    appendByDistance(rows, component.back(), foundAgain, order);
+  }
+  assert(order.size() == rows.size());
+  return order;
+}
+
+/// Tasks of a sweep: parts of the body, and separators, the nodes of a part that have neighbours in later parts. No two
+/// parts are neighbours, nor two separators.
+struct Division {
+  std::vector<std::uint32_t> taskOf;  ///< by node; parts are followed by separators
+  std::uint32_t parts = 1, separators = 0;
+};
+
+Division divide(const std::vector<Row>& rows, const std::vector<std::uint32_t>& order, std::uint32_t parts) {
+  assert(parts > 0 && order.size() == rows.size());
+  Division division;
+  division.parts = parts;
+  std::vector<std::uint32_t> partOf(rows.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    partOf[order[k]] = static_cast<std::uint32_t>(k * parts / order.size());
+  const auto separates = [&](std::uint32_t n) {
+    return std::any_of(rows[n].neighbours.begin(), rows[n].neighbours.end(),
+                       [&](std::uint32_t m) { return partOf[m] > partOf[n]; });
+  };
+  division.taskOf = partOf;
+  std::vector<std::uint32_t> separators;
+  for (std::uint32_t n = 0; n < rows.size(); ++n) {
+    if (separates(n)) separators.push_back(n);
+  }
+  for (const std::uint32_t n : separators) division.taskOf[n] = parts + partOf[n];
+  // Separators that are neighbours, as parts are thin, become one.
+  DisjointSets sets(parts);
+  for (const std::uint32_t n : separators) {
+    for (const std::uint32_t m : rows[n].neighbours) {
+      if (division.taskOf[m] >= parts) sets.unite(static_cast<int>(partOf[n]), static_cast<int>(partOf[m]));
+    }
+  }
+  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  std::vector<std::uint32_t> numbers(parts, kNone);
+  for (const std::uint32_t n : separators) {
+    std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(partOf[n])))];
+    if (number == kNone) number = division.separators++;
+    division.taskOf[n] = parts + number;
+  }
+  return division;
+}
+
+/// Divides large bodies into parts, with few separators.
+Division divide(const std::vector<Row>& rows) {
+  auto parts = static_cast<std::uint32_t>(rows.size() / kNodesPerPart);
+  if (parts > 1) {
+    const std::vector<std::uint32_t> order = orderByDistance(rows);
+    for (; parts > 1; parts /= 2) {
+      Division division = divide(rows, order, parts);
+      const auto separated = static_cast<double>(std::count_if(division.taskOf.begin(), division.taskOf.end(),
+                                                               [&](std::uint32_t task) { return task >= parts; }));
+      if (separated <= kMaxSeparated * static_cast<double>(rows.size())) return division;
+    }
+  }
+  Division whole;
+  whole.taskOf.assign(rows.size(), 0);
+  return whole;
+}
+
 /// The number of neighbours that are swept before a row.
-std::size_t lowerCount(const Row& row, std::uint32_t colour, const std::vector<std::uint32_t>& colours) {
-  return static_cast<std::size_t>(std::count_if(row.neighbours.begin(), row.neighbours.end(),
-                                                [&](std::uint32_t m) { return colours[m] < colour; }));
+std::size_t lowerCount(const Row& row, std::uint32_t level, const std::vector<std::uint32_t>& levels) {
+  return static_cast<std::size_t>(
+      std::count_if(row.neighbours.begin(), row.neighbours.end(), [&](std::uint32_t m) { return levels[m] < level; }));
 }
 
 /// Creates the chunks of up to eight rows one after the other.
 class PatternMaker {
  public:
-  PatternMaker(BlockPattern& pattern, const std::vector<Row>& rows, const std::vector<std::uint32_t>& colours,
+  PatternMaker(BlockPattern& pattern, const std::vector<Row>& rows, const std::vector<std::uint32_t>& levels,
                std::size_t noTet)
-      : pattern_(pattern), rows_(rows), colours_(colours), none_(static_cast<std::uint32_t>(4 * noTet)) {
+      : pattern_(pattern), rows_(rows), levels_(levels), none_(static_cast<std::uint32_t>(4 * noTet)) {
     pattern_.starts.push_back(0);
     pattern_.sums.push_back(0);
   }
 
-  /// nodes  of the chunk; fewer than eight if no more nodes have this colour
+  /// nodes  of the chunk; fewer than eight if no more nodes are on this level
   void addChunk(const std::uint32_t* nodes, std::size_t count, std::uint32_t firstSlot) {
     assert(count > 0 && count <= kGroup && firstSlot % kGroup == 0);
     for (const bool lower : {true, false}) {
@@ -99,7 +195,7 @@ class PatternMaker {
       for (std::size_t i = 0; i < count; ++i) {
         const Row& row = rows_[nodes[i]];
         for (std::size_t k = 0; k < row.neighbours.size(); ++k) {
-          if ((colours_[row.neighbours[k]] < colours_[nodes[i]]) == lower) indices[i].push_back(k);
+          if ((levels_[row.neighbours[k]] < levels_[nodes[i]]) == lower) indices[i].push_back(k);
         }
         longest = std::max(longest, indices[i].size());
       }
@@ -134,7 +230,7 @@ class PatternMaker {
 
   BlockPattern& pattern_;
   const std::vector<Row>& rows_;
-  const std::vector<std::uint32_t>& colours_;
+  const std::vector<std::uint32_t>& levels_;
   std::uint32_t none_;
 };
 
@@ -145,43 +241,52 @@ BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::
   const std::vector<Row> rows = rowsOf(nodes, tets);
   const std::vector<std::uint32_t> colours = coloursOf(rows);
   const std::uint32_t colourCount = colours.empty() ? 0 : *std::max_element(colours.begin(), colours.end()) + 1;
-  Lists<> ofColour = packLists(colourCount, [&](auto&& visit) {
-    for (std::uint32_t n = 0; n < nodes; ++n) visit(colours[n], n);
+  const Division division = divide(rows);
+  const std::uint32_t taskCount = division.parts + division.separators, levelCount = taskCount * colourCount;
+  // Rows of one level are no neighbours, and levels are swept one after the other, except for those of other tasks.
+  std::vector<std::uint32_t> levels(nodes);
+  for (std::size_t n = 0; n < nodes; ++n) levels[n] = division.taskOf[n] * colourCount + colours[n];
+  Lists<> onLevel = packLists(levelCount, [&](auto&& visit) {
+    for (std::uint32_t n = 0; n < nodes; ++n) visit(levels[n], n);
   });
 
   // Rows of similar length are put in one chunk, since the shorter rows of a chunk are padded.
   BlockPattern pattern;
   pattern.slotOf.resize(nodes);
   std::uint32_t slot = 0;
-  for (std::uint32_t c = 0; c < colourCount; ++c) {
-    const auto first = ofColour.values.begin() + ofColour.starts[c],
-               last = ofColour.values.begin() + ofColour.starts[c + 1];
+  for (std::uint32_t level = 0; level < levelCount; ++level) {
+    const auto first = onLevel.values.begin() + onLevel.starts[level],
+               last = onLevel.values.begin() + onLevel.starts[level + 1];
     const auto lengths = [&](std::uint32_t n) {
-      return std::make_pair(lowerCount(rows[n], c, colours), rows[n].neighbours.size());
+      return std::make_pair(lowerCount(rows[n], level, levels), rows[n].neighbours.size());
     };
     std::stable_sort(first, last, [&](std::uint32_t n, std::uint32_t m) { return lengths(n) < lengths(m); });
     for (auto n = first; n != last; ++n) pattern.slotOf[*n] = slot++;
     slot = (slot + kGroup - 1) / kGroup * kGroup;
   }
 
-  PatternMaker maker(pattern, rows, colours, noTet);
+  PatternMaker maker(pattern, rows, levels, noTet);
   std::uint32_t chunk = 0;
-  pattern.taskChunks.push_back(0);
-  pattern.colours.push_back(0);
-  for (std::uint32_t c = 0; c < colourCount; ++c) {
-    const std::size_t first = ofColour.starts[c], last = ofColour.starts[c + 1];
+  pattern.rangeChunks.push_back(0);
+  pattern.tasks.push_back(0);
+  for (std::uint32_t level = 0; level < levelCount; ++level) {
+    const std::size_t first = onLevel.starts[level], last = onLevel.starts[level + 1];
     const std::uint32_t firstChunk = chunk;
     for (std::size_t k = first; k < last; k += kGroup) {
-      maker.addChunk(&ofColour.values[k], std::min<std::size_t>(kGroup, last - k), chunk * kGroup);
+      maker.addChunk(&onLevel.values[k], std::min<std::size_t>(kGroup, last - k), chunk * kGroup);
       ++chunk;
-      const bool whole = (chunk - firstChunk) % kChunksPerTask == 0;
-      if (whole || k + kGroup >= last) pattern.taskChunks.push_back(chunk);
+      const bool whole = (chunk - firstChunk) % kChunksPerRange == 0;
+      if (whole || k + kGroup >= last) pattern.rangeChunks.push_back(chunk);
     }
-    pattern.colours.push_back(static_cast<std::uint32_t>(pattern.taskChunks.size() - 1));
+    const bool ends = (level + 1) % colourCount == 0;
+    if (ends) pattern.tasks.push_back(static_cast<std::uint32_t>(pattern.rangeChunks.size() - 1));
   }
+  pattern.phases = {0, division.parts, taskCount};
+  if (levelCount == 0) pattern.phases = {0, 0, 0};
   assert(pattern.starts.size() == 2 * std::size_t{chunk} + 1 &&
          pattern.sums.back() * 2 * kGroup == pattern.terms.size());
   assert(std::is_sorted(pattern.starts.begin(), pattern.starts.end()) && slot == chunk * kGroup);
+  assert(pattern.phases.back() == pattern.taskCount());
   return pattern;
 }
 

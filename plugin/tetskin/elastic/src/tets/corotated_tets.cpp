@@ -15,7 +15,7 @@ namespace {
 using kernels::kGroup;
 
 /// Handing work to another thread costs some microseconds, in which this many packs, or nodes, are processed.
-constexpr std::size_t kPacksPerTask = 64, kSlotsPerTask = 1024;
+constexpr std::size_t kPacksPerTask = 64, kSlotsPerTask = 256;
 
 std::size_t tasksFor(std::size_t items, std::size_t perTask) {
   return std::max<std::size_t>(1, (items + perTask - 1) / perTask);
@@ -89,11 +89,12 @@ void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
 }
 
 template <class S>
-double CorotatedTets<S>::cornerForces(const S* points, bool energy, ParallelFor* threads) {
+double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads) {
   assert(points);
   const auto& table = kernels::elasticInUse<S>();
   byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t task) {
     work.points = points;
+    work.sums = sums;
     findings_[task] = table.forces(work, energy);
   });
   maxTurned_ = S(0);
@@ -109,8 +110,15 @@ double CorotatedTets<S>::cornerForces(const S* points, bool energy, ParallelFor*
 
 template <class S>
 void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
+  // One thread adds the forces where they belong. Several could do so at the same time: they write corners, which are
+  // then added in the same order.
+  if (!threads) {
+    std::fill_n(out, 4 * slots_, S(0));
+    cornerForces(points, out, false, nullptr);
+    return;
+  }
   const auto& table = kernels::elasticInUse<S>();
-  cornerForces(points, false, threads);
+  cornerForces(points, nullptr, false, threads);
   runTasks(threads, tasksFor(slots_, kSlotsPerTask), [&](std::size_t task) {
     kernels::SumWork<S> work;
     work.firstSlot = task * kSlotsPerTask;
@@ -129,7 +137,7 @@ double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
   const AlignedVector<S> rotations = rotations_;
   const S maxTurned = maxTurned_;
   const double turned = turned_;
-  const double energy = cornerForces(points, true, threads);
+  const double energy = cornerForces(points, nullptr, true, threads);
   rotations_ = rotations;
   maxTurned_ = maxTurned;
   turned_ = turned;

@@ -57,7 +57,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
  private:
   template <class Kernel>
   void byPacks(ParallelFor* threads, Kernel&& kernel);
-  double cornerForces(const S* points, bool energy, ParallelFor* threads);
+  /// sums  see TetWork
+  double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
   AlignedVector<kernels::TetPack<S>> packs_;

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tetskin::elastic_detail {
 namespace {
@@ -30,6 +31,13 @@ constexpr double kStiff = 1e3;
 /// Value of dt^2 times that sum over the inertia, above which a rotation by a tenth of a radian that arises within a
 /// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
+
+/// Sums that do not wait for each other.
+struct LaneSums {
+  double lanes[kGroup] = {};
+
+  double total() const { return std::accumulate(lanes, lanes + kGroup, 0.0); }
+};
 
 }  // namespace
 
@@ -296,23 +304,31 @@ double BodyDynamics<S>::squaredSolution() const {
 template <class S>
 double BodyDynamics<S>::squaredChange() const {
   const S* solution = matrix_.solution();
-  double sum = 0.0;
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto change = static_cast<double>(solution[wide + k * kGroup] - began_[wide + k * kGroup]);
-      sum += static_cast<double>(matrix_.massAt(slot)) * change * change;
+  LaneSums sums;
+  for (std::size_t chunk = 0; chunk < matrix_.slotCount() / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      double squared = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = kernels::kWideVector * chunk + k * kGroup + lane;
+        const auto change = static_cast<double>(solution[at] - began_[at]);
+        squared += change * change;
+      }
+      sums.lanes[lane] += static_cast<double>(matrix_.massAt(kGroup * chunk + lane)) * squared;
     }
-  });
-  return sum;
+  }
+  return sums.total();
 }
 
 template <class S>
 double BodyDynamics<S>::squaredByMatrix() const {
   const S* solution = matrix_.solution();
-  double sum = 0.0;
-  for (std::size_t k = 0; k < image_.size(); ++k)
-    sum += static_cast<double>(solution[k]) * static_cast<double>(image_[k]);
-  return std::max(sum, 0.0);
+  LaneSums sums;
+  for (std::size_t k = 0; k < image_.size(); k += kGroup) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      sums.lanes[lane] += static_cast<double>(solution[k + lane]) * static_cast<double>(image_[k + lane]);
+    }
+  }
+  return std::max(sums.total(), 0.0);
 }
 
 template <class S>

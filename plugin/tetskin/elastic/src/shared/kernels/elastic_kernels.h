@@ -39,6 +39,7 @@ struct TetWork {
   const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
   const S* points = nullptr;     ///< by slot
   S* corners = nullptr;          ///< by tet
+  S* sums = nullptr;             ///< by slot: forces are added here; null: they are written to `corners`
   S alpha = 0;
 };
 
@@ -49,7 +50,7 @@ struct TetFindings {
   double energy = 0.0;
 };
 
-/// Rows of the matrix, sorted into colours: no two rows of one colour are neighbours.
+/// Rows of the matrix, of which no two are neighbours.
 template <class S>
 struct RowWork {
   std::size_t firstChunk = 0, lastChunk = 0;
@@ -95,10 +96,10 @@ struct SumWork {
 ///   forward   y = (D + L)^-1 (rest + extra);  rest <- t + y, which is (D + L)^-1 A t;  returns p . (t + y)
 ///   advance   solution += factor t;  r -= factor rest;  returns r . D r
 ///   lower     residual <- (D + L)^-1 residual;  returns r . D r
-/// `backward` goes through the colours from the last to the first, `forward` and `lower` from the first to the last.
+/// `backward` must be called for the last rows first, `forward` and `lower` for the first ones.
 template <class S>
 struct ElasticTable {
-  /// Elastic forces on corners at the points' positions; updates `rotations`.
+  /// Elastic forces at the points' positions, by corner or, with the same bits, summed; updates `rotations`.
   TetFindings<S> (*forces)(const TetWork<S>&, bool energy);
   /// R g sqrt(alpha mu V) of all four corners; the fourth scalar of each is lambda / mu.
   void (*rotatedGradients)(const TetWork<S>&);
