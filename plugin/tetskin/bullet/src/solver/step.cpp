@@ -131,8 +131,9 @@ template <class Task>
 void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& task) {
   std::vector<std::size_t> sizes;
   for (const SolvedBody& body : bodies) sizes.push_back(body.dynamics->matrix().slotCount());
-  runBySize(threads, sizes, elastic_detail::kDivisibleSlots,
-            [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
+  runBySize(
+      threads, sizes, [&](std::size_t k) { return elastic_detail::isDivisible(sizes[k]); },
+      [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
 }
 
 std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) {
@@ -319,8 +320,10 @@ void DeformableSolver::Impl::solve() {
     own.push_back(&system);
     sizes.push_back(nodeCountOf(system, bodies));
   }
-  constexpr std::size_t kDivisibleNodes = 1000;
-  runBySize(threads, sizes, kDivisibleNodes, [&](std::size_t k, ParallelFor* inner) { solveSystem(*own[k], inner); });
+  const auto isDivided = [&](std::size_t k) {
+    return own[k]->bodies.size() > 1 || elastic_detail::isDivisible(sizes[k]);
+  };
+  runBySize(threads, sizes, isDivided, [&](std::size_t k, ParallelFor* inner) { solveSystem(*own[k], inner); });
   iterations = passes = unconverged = 0;
   for (const SolvedBody& body : bodies.bodies()) iterations += body.iterations;
   for (const SolvedSystem& system : bodies.systems()) {

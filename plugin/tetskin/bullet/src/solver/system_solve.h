@@ -66,8 +66,9 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   /// Calls call(body, inner) for each body.
   template <class Call>
   void forEachBody(Call&& call) {
-    runBySize(threads_, sizes_, elastic_detail::kDivisibleSlots,
-              [&](std::size_t k, ParallelFor* inner) { call(bodies_[k], inner); });
+    runBySize(
+        threads_, sizes_, [&](std::size_t k) { return elastic_detail::isDivisible(sizes_[k]); },
+        [&](std::size_t k, ParallelFor* inner) { call(bodies_[k], inner); });
   }
   /// Calls call(r) for each row.
   template <class Call>

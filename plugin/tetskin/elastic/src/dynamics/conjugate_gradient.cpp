@@ -16,8 +16,9 @@ namespace tetskin::elastic_detail {
 template <class S>
 template <class Call>
 void ConjugateGradient<S>::forEachMatrix(ParallelFor* threads, Call&& call) {
-  runBySize(threads, sizes_, kDivisibleSlots,
-            [&](std::size_t k, ParallelFor* inner) { partial_[k] = call(k, *matrices_[k], inner); });
+  runBySize(
+      threads, sizes_, [&](std::size_t k) { return isDivisible(sizes_[k]); },
+      [&](std::size_t k, ParallelFor* inner) { partial_[k] = call(k, *matrices_[k], inner); });
 }
 
 /// Sums in an order that does not depend on the number of threads.

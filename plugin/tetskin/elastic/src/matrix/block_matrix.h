@@ -18,8 +18,10 @@
 
 namespace tetskin::elastic_detail {
 
-/// Number of slots from which on a matrix is divided among threads: see kChunksPerTask in block_pattern.cpp.
-constexpr std::size_t kDivisibleSlots = 4096;
+/// True if a matrix of this many slots is worth dividing among threads: see kChunksPerTask in block_pattern.cpp.
+constexpr bool isDivisible(std::size_t slots) {
+  return slots >= 4096;
+}
 
 /// Which slot each node has, and which rows have common blocks. Slots are numbered by row; some belong to no node.
 struct BlockPattern {

@@ -16,10 +16,10 @@ constexpr double kMaxShareOfTask = 0.25;
 
 /// Calls call(k, inner) for every k: where a task is large and can be divided, by itself, with `threads` as `inner`;
 /// the others side by side, with null.
-/// sizes      by task: its work, in any unit
-/// divisible  size from which on a task has enough parts for several threads
-template <class Call>
-void runBySize(ParallelFor* threads, const std::vector<std::size_t>& sizes, std::size_t divisible, Call&& call) {
+/// sizes        by task: its work, in any unit
+/// isDivisible  bool(std::size_t k): whether a task has enough parts for several threads
+template <class IsDivisible, class Call>
+void runBySize(ParallelFor* threads, const std::vector<std::size_t>& sizes, IsDivisible&& isDivisible, Call&& call) {
   if (!threads) {
     for (std::size_t k = 0; k < sizes.size(); ++k) call(k, threads);
     return;
@@ -28,7 +28,7 @@ void runBySize(ParallelFor* threads, const std::vector<std::size_t>& sizes, std:
   for (const std::size_t size : sizes) total += static_cast<double>(size);
   std::vector<std::size_t> small;
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const bool large = sizes[k] >= divisible && static_cast<double>(sizes[k]) > kMaxShareOfTask * total;
+    const bool large = static_cast<double>(sizes[k]) > kMaxShareOfTask * total && isDivisible(k);
     if (large || sizes.size() == 1) {
       call(k, threads);
     } else {
