@@ -37,7 +37,7 @@ TEST(ConjugateGradient, SolvesAsADenseSolverDoes) {
     for (const VectorXd& from : {VectorXd(VectorXd::Zero(b.size())), rightSide(body, 42)}) {
       begin(body, a, b, from);
       Solver solver;
-      solver.start({&body.matrix}, closely(), {}, nullptr);
+      solver.start({&body.matrix}, closely(), nullptr, nullptr);
       EXPECT_FALSE(solver.converged());
       EXPECT_TRUE(solver.iterate(500, nullptr));
       EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), kClose);
@@ -56,7 +56,7 @@ TEST(ConjugateGradient, SolvesInFloatAsFarAsThatReaches) {
     ConjugateGradient<float> solver;
     SolveLimits limits = closely();
     limits.tolerance = 1e-5;
-    solver.start({&body.matrix}, limits, {}, nullptr);
+    solver.start({&body.matrix}, limits, nullptr, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
     EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), 2e-5);
   });
@@ -69,7 +69,7 @@ TEST(ConjugateGradient, ComesNearerWithEveryIteration) {
     const VectorXd b = rightSide(body), right = a.ldlt().solve(b);
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
-    solver.start({&body.matrix}, closely(), {}, nullptr);
+    solver.start({&body.matrix}, closely(), nullptr, nullptr);
     // The method minimizes the error in the norm of the matrix.
     double before = right.dot(a * right);
     for (int k = 1; k <= 20; ++k) {
@@ -91,7 +91,7 @@ TEST(ConjugateGradient, GoesOnWhereItStopped) {
   const auto solved = [&](std::vector<int> components) {
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
-    solver.start({&body.matrix}, closely(), {}, nullptr);
+    solver.start({&body.matrix}, closely(), nullptr, nullptr);
     for (const int component : components) solver.iterate(component, nullptr);
     EXPECT_EQ(solver.iterations(), 9);
     return solutionOf(body);
@@ -127,7 +127,7 @@ TEST(ConjugateGradient, StopsAtWhatIsEnough) {
   const auto iterationsWith = [&](const SolveLimits& limits) {
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
-    solver.start({&body.matrix}, limits, {}, nullptr);
+    solver.start({&body.matrix}, limits, nullptr, nullptr);
     const bool converged = solver.iterate(1000, nullptr);
     EXPECT_EQ(converged, solver.converged());
     return std::make_pair(solver.iterations(), solver.converged());
@@ -151,7 +151,7 @@ TEST(ConjugateGradient, StopsAtWhatIsEnough) {
   // Here the limit is the square of a residual, as the solver reports it.
   begin(body, a, b, VectorXd::Zero(b.size()));
   Solver solver;
-  solver.start({&body.matrix}, closely(), {}, nullptr);
+  solver.start({&body.matrix}, closely(), nullptr, nullptr);
   limits = closely();
   limits.tolerance = 0.0;
   limits.enough = solver.enough();
@@ -166,7 +166,7 @@ TEST(ConjugateGradient, ThereIsNothingToDoWithoutResidual) {
   SolveLimits limits;
   limits.tolerance = 0.0;
   Solver solver;
-  solver.start({&body.matrix}, limits, {}, nullptr);
+  solver.start({&body.matrix}, limits, nullptr, nullptr);
   EXPECT_TRUE(solver.iterate(100, nullptr));
   EXPECT_EQ(solver.iterations(), 0);
   EXPECT_EQ(solutionOf(body), x);

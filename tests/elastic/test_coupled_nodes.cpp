@@ -177,7 +177,7 @@ TEST(CoupledNodes, AreSolvedForByTheConjugateGradient) {
       const VectorXd b = test::rightSide(body);
       test::begin(body, a, b, test::rightSide(body, 42));
       test::Solver solver;
-      solver.start({&body.matrix}, test::closely(), {}, nullptr);
+      solver.start({&body.matrix}, test::closely(), nullptr, nullptr);
       EXPECT_TRUE(solver.iterate(500, nullptr));
       EXPECT_LT(test::apart(test::solutionOf(body), a.ldlt().solve(b)), test::kClose * std::sqrt(stiffer));
       // The sweeps include these blocks: stiff rows within a tet cost hardly any iterations.

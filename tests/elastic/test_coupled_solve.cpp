@@ -30,33 +30,32 @@ using test::solutionOf;
 using test::Solver;
 
 /// A matrix of springs that is added to those of several bodies, whose unknowns are concatenated.
-class Springs {
+class Springs : public Solver::Addition {
  public:
   Springs(std::vector<AssembledBody<double>*> bodies, MatrixXd springs)
       : bodies_(std::move(bodies)), springs_(std::move(springs)) {
-    for (const AssembledBody<double>* body : bodies_) added_.emplace_back(body->matrix.wideSize(), 0.0);
+    for (const AssembledBody<double>* body : bodies_) {
+      starts_.push_back(steps_.size());
+      steps_.conservativeResize(steps_.size() + 3 * static_cast<Eigen::Index>(body->nodes.size()));
+      added_.emplace_back(body->matrix.wideSize(), 0.0);
+    }
   }
 
-  Solver::Extra extra() {
-    return [this](std::vector<const double*>& out) {
-      ++calls;
-      VectorXd step(springs_.cols());
-      Eigen::Index at = 0;
-      for (const AssembledBody<double>* body : bodies_) {
-        for (std::size_t n = 0; n < body->nodes.size(); ++n, at += 3) {
-          const double* p = body->matrix.stepPoints() + 4 * body->matrix.slotOf(n);
-          step.segment<3>(at) = Vector3d(p[0], p[1], p[2]);
-        }
-      }
-      const VectorXd image = springs_ * step;
-      at = 0;
-      for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const auto size = static_cast<Eigen::Index>(3 * bodies_[k]->nodes.size());
-        bodies_[k]->toWide(image.segment(at, size), added_[k].data());
-        out[k] = added_[k].data();
-        at += size;
-      }
-    };
+  void read(std::size_t k) override {
+    Eigen::Index at = starts_[k];
+    for (std::size_t n = 0; n < bodies_[k]->nodes.size(); ++n, at += 3) {
+      const double* p = bodies_[k]->matrix.stepPoints() + 4 * bodies_[k]->matrix.slotOf(n);
+      steps_.segment<3>(at) = Vector3d(p[0], p[1], p[2]);
+    }
+  }
+  void combine() override {
+    ++calls;
+    image_ = springs_ * steps_;
+  }
+  const double* added(std::size_t k) override {
+    const auto size = static_cast<Eigen::Index>(3 * bodies_[k]->nodes.size());
+    bodies_[k]->toWide(image_.segment(starts_[k], size), added_[k].data());
+    return added_[k].data();
   }
 
   int calls = 0;
@@ -64,7 +63,36 @@ class Springs {
  private:
   std::vector<AssembledBody<double>*> bodies_;
   MatrixXd springs_;
+  std::vector<Eigen::Index> starts_;  // by body
+  VectorXd steps_, image_;
   std::vector<std::vector<double>> added_;
+};
+
+/// From the fifth call on, it adds a multiple of the step; nothing before.
+class Multiple : public Solver::Addition {
+ public:
+  Multiple(const AssembledBody<double>& body, double factor)
+      : body_(body), factor_(factor), added_(body.matrix.wideSize()) {}
+
+  void read(std::size_t) override {}
+  void combine() override { ++calls; }
+  const double* added(std::size_t) override {
+    if (calls <= 4) return nullptr;
+    for (std::size_t n = 0; n < body_.nodes.size(); ++n) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        added_[body_.matrix.wideOf(n) + k * kGroup] =
+            factor_ * body_.matrix.stepPoints()[4 * body_.matrix.slotOf(n) + k];
+      }
+    }
+    return added_.data();
+  }
+
+  int calls = 0;
+
+ private:
+  const AssembledBody<double>& body_;
+  double factor_;
+  std::vector<double> added_;
 };
 
 TEST(ConjugateGradient, SolvesWithAnotherOperatorAdded) {
@@ -76,7 +104,7 @@ TEST(ConjugateGradient, SolvesWithAnotherOperatorAdded) {
     Springs springs({&body}, stiffness.asDiagonal());
     begin(body, a, b, from);
     Solver solver;
-    solver.start({&body.matrix}, closely(), springs.extra(), nullptr);
+    solver.start({&body.matrix}, closely(), &springs, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
     EXPECT_EQ(springs.calls, solver.iterations());
     EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), kClose);
@@ -107,7 +135,7 @@ TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
     }
     Springs between({&first, &second}, springs);
     Solver solver;
-    solver.start({&first.matrix, &second.matrix}, closely(), between.extra(), nullptr);
+    solver.start({&first.matrix, &second.matrix}, closely(), &between, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
     VectorXd x(total);
     x << solutionOf(first), solutionOf(second);
@@ -123,23 +151,13 @@ TEST(ConjugateGradient, AnAdditionThatIsNotPositiveLeavesWhatHasBeenReached) {
       const MatrixXd a = body.dense();
       const VectorXd b = rightSide(body);
       begin(body, a, b, VectorXd::Zero(b.size()));
-      std::vector<double> added(body.matrix.wideSize());
-      int calls = 0;
-      const auto extra = [&](std::vector<const double*>& out) {
-        if (++calls <= 4) return;
-        for (std::size_t n = 0; n < body.nodes.size(); ++n) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            added[body.matrix.wideOf(n) + k * kGroup] = value * body.matrix.stepPoints()[4 * body.matrix.slotOf(n) + k];
-          }
-        }
-        out[0] = added.data();
-      };
+      Multiple multiple(body, value);
       Solver solver;
-      solver.start({&body.matrix}, closely(), extra, nullptr);
+      solver.start({&body.matrix}, closely(), &multiple, nullptr);
       solver.iterate(4, nullptr);
       const VectorXd reached = solutionOf(body);
       solver.iterate(100, nullptr);
-      EXPECT_EQ(calls, 5) << value;
+      EXPECT_EQ(multiple.calls, 5) << value;
       EXPECT_EQ(solutionOf(body), reached) << value;
       EXPECT_TRUE(reached.allFinite());
     }

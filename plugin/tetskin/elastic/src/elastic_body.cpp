@@ -170,7 +170,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   elastic_detail::SolveLimits limits = p.limits;
   limits.floor = p.dynamics.roundingSpeed(seconds);
   limits.enough = limits.tolerance * limits.tolerance * p.dynamics.squaredDeviation();
-  p.solve.start({&p.dynamics.matrix()}, limits, {}, threads);
+  p.solve.start({&p.dynamics.matrix()}, limits, nullptr, threads);
   p.solve.iterate(p.limits.iterations, threads);
   p.dynamics.removeMomentum();
   p.write(seconds);

@@ -12,8 +12,48 @@ namespace {
 /// Stiffness factor from which on the matrix's product with rigid motions is only rounding.
 constexpr double kRounded = 1e5;
 
+using Fields = AlignedVector<btScalar>[Dynamics::kRigidMotions];
+
 Eigen::Index indexOf(std::size_t k) {
   return static_cast<Eigen::Index>(k);
+}
+
+/// The products of six wide vectors with another one. There is a sum for each lane, as compilers do not change the
+/// order of sums.
+Vector6 productsOf(const Fields& fields, const btScalar* wide) {
+  constexpr auto kLanes = static_cast<std::size_t>(kernels::kGroup);
+  Vector6 products;
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    const btScalar* field = fields[k].data();
+    const std::size_t size = fields[k].size();
+    assert(size % kLanes == 0);
+    double sums[kLanes] = {};
+    for (std::size_t i = 0; i < size; i += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        sums[lane] += static_cast<double>(field[i + lane]) * static_cast<double>(wide[i + lane]);
+      }
+    }
+    products[indexOf(k)] = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
+  }
+  return products;
+}
+
+/// Adds the sum of the fields, each times its factor.
+void addFields(const Fields& fields, const Vector6& factors, btScalar* wide) {
+  constexpr auto kLanes = static_cast<std::size_t>(kernels::kGroup);
+  btScalar q[Dynamics::kRigidMotions];
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) q[k] = static_cast<btScalar>(factors[indexOf(k)]);
+  const btScalar *a = fields[0].data(), *b = fields[1].data(), *c = fields[2].data(), *d = fields[3].data(),
+                 *e = fields[4].data(), *f = fields[5].data();
+  assert(fields[0].size() % kLanes == 0);
+  for (std::size_t i = 0; i < fields[0].size(); i += kLanes) {
+    btScalar sums[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t at = i + lane;
+      sums[lane] = wide[at] + q[0] * a[at] + q[1] * b[at] + q[2] * c[at] + q[3] * d[at] + q[4] * e[at] + q[5] * f[at];
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) wide[i + lane] = sums[lane];
+  }
 }
 
 }  // namespace
@@ -22,20 +62,20 @@ std::optional<ComponentUnknown> ComponentUnknown::make(const Dynamics& dynamics,
                                                        ParallelFor* threads) {
   assert(component < dynamics.componentCount());
   ComponentUnknown unknown;
-  if (!dynamics.rigidMotions(component, unknown.motions)) return std::nullopt;
+  Points points;
+  if (!dynamics.rigidMotions(component, points)) return std::nullopt;
   const bool rounded = dynamics.stiffnessNumber() > kRounded;
-  unknown.findImages(dynamics, rounded, threads);
+  unknown.findImages(dynamics, points, rounded, threads);
   const auto& matrix = dynamics.matrix();
+  AlignedVector<btScalar> right(matrix.wideSize(), btScalar(0));
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
     btVector3 began = matrix.mass(n) * fromWide(dynamics.deviation() + matrix.wideOf(n));
     if (!rounded) dynamics.rightSide(n, began.m_floats);
-    for (std::size_t i = 0; i < Dynamics::kRigidMotions; ++i) {
-      const Eigen::Vector3d motion = toEigen(fromPoint(&unknown.motions[i][4 * matrix.slotOf(n)]));
-      unknown.began[indexOf(i)] += motion.dot(toEigen(began));
-      for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-        unknown.mass(indexOf(i), indexOf(k)) += motion.dot(toEigen(fromWide(&unknown.images[k][matrix.wideOf(n)])));
-      }
-    }
+    toWide(began, &right[matrix.wideOf(n)]);
+  }
+  unknown.began = unknown.motionProducts(right.data());
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    unknown.mass.col(indexOf(k)) = unknown.motionProducts(unknown.images[k].data());
   }
   unknown.mass = (0.5 * (unknown.mass + unknown.mass.transpose())).eval();
   return unknown;
@@ -43,59 +83,35 @@ std::optional<ComponentUnknown> ComponentUnknown::make(const Dynamics& dynamics,
 
 /// Elasticity resists rigid motions as far as the matrix belongs to other rotations than the body's, or to a deformed
 /// body. For the stiffest bodies, rounding in this product would exceed their mass, so that it is left out.
-void ComponentUnknown::findImages(const Dynamics& dynamics, bool rounded, ParallelFor* threads) {
+/// points  the motions, 4 scalars per slot
+void ComponentUnknown::findImages(const Dynamics& dynamics, const Points& points, bool rounded, ParallelFor* threads) {
   const auto& matrix = dynamics.matrix();
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    motions[k].assign(matrix.wideSize(), btScalar(0));
     images[k].assign(matrix.wideSize(), btScalar(0));
-    if (!rounded) {
-      matrix.multiply(motions[k].data(), images[k].data(), threads);
-      continue;
-    }
+    if (!rounded) matrix.multiply(points[k].data(), images[k].data(), threads);
     for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-      toWide(matrix.mass(n) * fromPoint(&motions[k][4 * matrix.slotOf(n)]), &images[k][matrix.wideOf(n)]);
+      const btVector3 motion = fromPoint(&points[k][4 * matrix.slotOf(n)]);
+      toWide(motion, &motions[k][matrix.wideOf(n)]);
+      if (rounded) toWide(matrix.mass(n) * motion, &images[k][matrix.wideOf(n)]);
     }
   }
 }
 
 Vector6 ComponentUnknown::imageProducts(const btScalar* wide) const {
-  Vector6 sums = Vector6::Zero();
-  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    for (std::size_t i = 0; i < images[k].size(); ++i) {
-      sums[indexOf(k)] += static_cast<double>(images[k][i]) * static_cast<double>(wide[i]);
-    }
-  }
-  return sums;
+  return productsOf(images, wide);
 }
 
-Vector6 ComponentUnknown::motionProducts(const Dynamics& dynamics, const btScalar* wide) const {
-  Vector6 sums = Vector6::Zero();
-  const auto& matrix = dynamics.matrix();
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    const Eigen::Vector3d vector = toEigen(fromWide(wide + matrix.wideOf(n)));
-    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      sums[indexOf(k)] += toEigen(fromPoint(&motions[k][4 * matrix.slotOf(n)])).dot(vector);
-    }
-  }
-  return sums;
+Vector6 ComponentUnknown::motionProducts(const btScalar* wide) const {
+  return productsOf(motions, wide);
 }
 
 void ComponentUnknown::addImages(const Vector6& q, btScalar* wide) const {
-  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    const auto factor = static_cast<btScalar>(q[indexOf(k)]);
-    for (std::size_t i = 0; i < images[k].size(); ++i) wide[i] += factor * images[k][i];
-  }
+  addFields(images, q, wide);
 }
 
 void ComponentUnknown::addMotions(const Vector6& q, Dynamics& dynamics) const {
-  auto& matrix = dynamics.matrix();
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    btScalar* to = matrix.solution() + matrix.wideOf(n);
-    btVector3 moved = fromWide(to);
-    for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-      moved += static_cast<btScalar>(q[indexOf(k)]) * fromPoint(&motions[k][4 * matrix.slotOf(n)]);
-    }
-    toWide(moved, to);
-  }
+  addFields(motions, q, dynamics.matrix().solution());
 }
 
 RowMotions ComponentUnknown::motionsAt(const Dynamics& dynamics, const RowEnd& end) const {
@@ -104,8 +120,8 @@ RowMotions ComponentUnknown::motionsAt(const Dynamics& dynamics, const RowEnd& e
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     btVector3 sum(0, 0, 0);
     for (std::uint32_t n = 0; n < end.nodeCount; ++n) {
-      const std::size_t slot = dynamics.matrix().slotOf(static_cast<std::size_t>(end.nodes[n]));
-      sum += end.weights[n] * fromPoint(&motions[k][4 * slot]);
+      const std::size_t wide = dynamics.matrix().wideOf(static_cast<std::size_t>(end.nodes[n]));
+      sum += end.weights[n] * fromWide(&motions[k][wide]);
     }
     at.col(indexOf(k)) = toEigen(sum);
   }

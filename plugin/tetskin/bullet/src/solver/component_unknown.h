@@ -23,7 +23,7 @@ using RowMotions = Eigen::Matrix<double, 3, 6>;
 struct ComponentUnknown {
   std::size_t body = 0;                                      ///< in SolverBodies::bodies
   Eigen::Index first = 0;                                    ///< index of its six among the system's few unknowns
-  AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z: 4 scalars per slot
+  AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout
   AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, in the wide layout
   Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
   Vector6 began = Vector6::Zero();                                         ///< Z^T b
@@ -35,7 +35,7 @@ struct ComponentUnknown {
   /// Z^T A times a vector in the wide layout.
   Vector6 imageProducts(const btScalar* wide) const;
   /// Z^T times a vector in the wide layout.
-  Vector6 motionProducts(const Dynamics& dynamics, const btScalar* wide) const;
+  Vector6 motionProducts(const btScalar* wide) const;
   /// Adds A Z q to a vector in the wide layout.
   void addImages(const Vector6& q, btScalar* wide) const;
   /// Adds Z q to the solution.
@@ -44,7 +44,8 @@ struct ComponentUnknown {
   RowMotions motionsAt(const Dynamics& dynamics, const RowEnd& end) const;
 
  private:
-  void findImages(const Dynamics& dynamics, bool rounded, ParallelFor* threads);
+  using Points = AlignedVector<btScalar>[Dynamics::kRigidMotions];
+  void findImages(const Dynamics& dynamics, const Points& points, bool rounded, ParallelFor* threads);
 };
 
 }  // namespace tetskin

@@ -401,7 +401,8 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
     for (const RowEnd& end : row.ends) {
       if (end.isSoft()) *bodies.bodies()[end.body].touches = true;
     }
-    if (!row.joined) bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
+    if (!row.joined && row.ends[0].isSoft())
+      bodies.bodies()[row.ends[0].body].sticking->push_back(stickingOf(row, seconds));
   }
   for (SolvedBody& body : bodies.bodies()) {
     std::stable_sort(body.sticking->begin(), body.sticking->end(),

@@ -85,6 +85,11 @@ class RigidRowCollector {
     return point;
   }
 
+  /// Bullet's contacts are between straight paths; only the path of a kinematic body is known from its transforms.
+  btVector3 velocityAt(const RigidPoint& point, const btCollisionObject& object) {
+    return rigids_.velocityAt(point, object, object.isKinematicObject() ? seconds_ : 0);
+  }
+
   /// The contact point belongs to body A.
   void addContact(const btCollisionObject& a, const btCollisionObject& b, const btManifoldPoint& from) {
     ContactRow row;
@@ -97,7 +102,7 @@ class RigidRowCollector {
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
     row.tangentStiffness = row.stiffness;
-    row.relative = rigids_.velocityAt(row.ends[0].rigid, a, 0) - rigids_.velocityAt(row.ends[1].rigid, b, 0);
+    row.relative = velocityAt(row.ends[0].rigid, a) - velocityAt(row.ends[1].rigid, b);
     const btVector3 along = from.m_appliedImpulseLateral1 * from.m_lateralFrictionDir1 +
                             from.m_appliedImpulseLateral2 * from.m_lateralFrictionDir2;
     const btScalar pushed = from.m_appliedImpulse;

@@ -42,6 +42,7 @@ struct SolvedBody {
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
   int iterations = 0;            ///< of this step; coupled bodies store them in the first one
   int rowCount = 0;              ///< rows of contacts and anchors
+  std::size_t place = 0;         ///< in `SolvedSystem::bodies`, while its system is solved
   bool* touches = nullptr;       ///< written for the next step: the body has rows
   bool wasTouched = false;       ///< value of `touches` in the step before
   bool waits = false;            ///< its solve begins only when contacts are known

@@ -19,6 +19,7 @@
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
+#include <tetskin/core/src/shared/base/run_by_size.h>
 
 #include <algorithm>
 #include <cassert>
@@ -124,12 +125,21 @@ btVector3 movingComponent(const btSoftBody::Node& node, btScalar dt) {
   return v;
 }
 
-/// Runs a task for each body: several bodies in parallel, or a single one that is itself divided among threads.
+/// Runs a task for each body: small bodies in parallel; a large one is itself divided among threads.
 /// task  (SolvedBody&, ParallelFor* inner)
 template <class Task>
 void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& task) {
-  ParallelFor* inner = bodies.size() == 1 ? threads : nullptr;
-  runTasks(inner ? nullptr : threads, bodies.size(), [&](std::size_t k) { task(bodies[k], inner); });
+  std::vector<std::size_t> sizes;
+  for (const SolvedBody& body : bodies) sizes.push_back(body.dynamics->matrix().slotCount());
+  runBySize(
+      threads, sizes, [&](std::size_t k) { return elastic_detail::isDivisible(sizes[k]); },
+      [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
+}
+
+std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) {
+  std::size_t count = 0;
+  for (const std::size_t b : system.bodies) count += bodies.bodies()[b].dynamics->nodeCount();
+  return count;
 }
 
 }  // namespace
@@ -183,7 +193,8 @@ void DeformableSolver::Impl::assign() {
 void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
-  for (SolvedBody& body : bodies.bodies()) readNodes(*body.body, false, *body.dynamics);
+  forEachBody(bodies.bodies(), threads,
+              [](SolvedBody& body, ParallelFor*) { readNodes(*body.body, false, *body.dynamics); });
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
     // With other forces, the velocities at the beginning of the step determine the tolerances.
@@ -222,7 +233,7 @@ void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelF
   limits.iterations = body.settings->iterations;
   limits.floor = std::max(kUnseen * seconds, body.dynamics->roundingSpeed(seconds));
   limits.enough = limits.tolerance * limits.tolerance * body.dynamics->squaredDeviation();
-  body.solve->start({&body.dynamics->matrix()}, limits, {}, inner);
+  body.solve->start({&body.dynamics->matrix()}, limits, nullptr, inner);
   body.solve->iterate(maximum, inner);
   body.iterations = body.solve->iterations();
 }
@@ -262,8 +273,10 @@ void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
 // ---- assemble
 
 void DeformableSolver::Impl::assemble() {
-  for (SolvedBody& body : bodies.bodies()) body.dynamics->matrix().free();
-  for (SolvedBody& body : bodies.bodies()) readContacts(body);
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+    body.dynamics->matrix().free();
+    readContacts(body);
+  });
   addOthers();
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
@@ -291,18 +304,26 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
 
 // ---- solve
 
-/// Systems on which Bullet's forces act are solved here one after the other, each by all threads; the others in
-/// parallel.
+/// Systems on which Bullet's forces act are solved here one after the other, each by all threads; of the others, small
+/// ones in parallel.
 void DeformableSolver::Impl::solve() {
   step.resize(solver.m_numNodes, btVector3(0, 0, 0));
   image.resize(solver.m_numNodes, btVector3(0, 0, 0));
   extras.resize(bodies.bodies().size());
   std::vector<SolvedSystem*> own;
+  std::vector<std::size_t> sizes;
   for (SolvedSystem& system : bodies.systems()) {
-    system.forces.empty() ? own.push_back(&system) : solveSystem(system, threads);
+    if (!system.forces.empty()) {
+      solveSystem(system, threads);
+      continue;
+    }
+    own.push_back(&system);
+    sizes.push_back(nodeCountOf(system, bodies));
   }
-  ParallelFor* inner = own.size() == 1 ? threads : nullptr;
-  runTasks(inner ? nullptr : threads, own.size(), [&](std::size_t k) { solveSystem(*own[k], inner); });
+  const auto isDivided = [&](std::size_t k) {
+    return own[k]->bodies.size() > 1 || elastic_detail::isDivisible(sizes[k]);
+  };
+  runBySize(threads, sizes, isDivided, [&](std::size_t k, ParallelFor* inner) { solveSystem(*own[k], inner); });
   iterations = passes = unconverged = 0;
   for (const SolvedBody& body : bodies.bodies()) iterations += body.iterations;
   for (const SolvedSystem& system : bodies.systems()) {
@@ -351,10 +372,10 @@ void DeformableSolver::Impl::finishContacts() {
 // ---- write back
 
 void DeformableSolver::Impl::writeBack() {
-  for (SolvedBody& body : bodies.bodies()) {
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     if (body.solvedAgain) body.dynamics->bendTurns(static_cast<double>(dt()));
     writeVelocities(body);
-  }
+  });
   hidden.hide(bodies.bodies(), dt());
 }
 

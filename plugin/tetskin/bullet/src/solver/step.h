@@ -76,10 +76,12 @@ struct DeformableSolver::Impl {
 
   // Steps of the stage `solve`.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);
-  /// Adds to the bodies' residuals the effect of other forces at the current solutions.
-  void addOtherResiduals(const SolvedSystem& system);
+  /// Computes, into `extras`, what other forces add to the matrices' products with the current solutions.
+  void multiplySolutions(const SolvedSystem& system);
+  /// Adds to a body's residual the effect of other forces; where any act on the system, after `multiplySolutions`.
+  void addOtherResiduals(const SolvedSystem& system, std::size_t body);
   /// Computes, into `extras`, what other forces add to the matrices' products with their steps.
-  void beginProducts(const SolvedSystem& system);
+  void multiplySteps(const SolvedSystem& system);
   /// Computes, into `image`, the products of the other forces' derivatives with `step`.
   void multiplyOthers(const SolvedSystem& system);
 

@@ -39,46 +39,41 @@ void DeformableSolver::Impl::addOthers() {
   }
 }
 
-void DeformableSolver::Impl::addOtherResiduals(const SolvedSystem& system) {
-  const bool withForces = !system.forces.empty();
-  if (withForces) {
-    for (const std::size_t b : system.bodies) {
-      const SolvedBody& body = bodies.bodies()[b];
-      const auto& matrix = body.dynamics->matrix();
-      for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-        const int number = body.first + static_cast<int>(n);
-        step[number] = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
-                       solver.m_backupVelocity[number];
-      }
-    }
-    multiplyOthers(system);
-  }
-  for (const std::size_t b : system.bodies) {
-    const SolvedBody& body = bodies.bodies()[b];
-    auto& matrix = body.dynamics->matrix();
-    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-      const std::size_t wide = matrix.wideOf(n);
-      btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[body.first + static_cast<int>(n)];
-      if (withForces) residual -= fromWide(&extras[b][wide]);
-      toWide(residual, matrix.residual() + wide);
-    }
-  }
-}
-
-void DeformableSolver::Impl::beginProducts(const SolvedSystem& system) {
-  assert(extras.size() == bodies.bodies().size());
+void DeformableSolver::Impl::multiplySolutions(const SolvedSystem& system) {
+  assert(!system.forces.empty());
   for (const std::size_t b : system.bodies) {
     const SolvedBody& body = bodies.bodies()[b];
     const auto& matrix = body.dynamics->matrix();
-    if (system.forces.empty()) {
-      extras[b].assign(matrix.wideSize(), btScalar(0));
-      continue;
+    for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+      const int number = body.first + static_cast<int>(n);
+      step[number] = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
+                     solver.m_backupVelocity[number];
     }
+  }
+  multiplyOthers(system);
+}
+
+void DeformableSolver::Impl::addOtherResiduals(const SolvedSystem& system, std::size_t b) {
+  const SolvedBody& body = bodies.bodies()[b];
+  auto& matrix = body.dynamics->matrix();
+  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
+    const std::size_t wide = matrix.wideOf(n);
+    btVector3 residual = fromWide(matrix.residual() + wide) + solver.m_residual[body.first + static_cast<int>(n)];
+    if (!system.forces.empty()) residual -= fromWide(&extras[b][wide]);
+    toWide(residual, matrix.residual() + wide);
+  }
+}
+
+void DeformableSolver::Impl::multiplySteps(const SolvedSystem& system) {
+  assert(!system.forces.empty() && extras.size() == bodies.bodies().size());
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& body = bodies.bodies()[b];
+    const auto& matrix = body.dynamics->matrix();
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
       step[body.first + static_cast<int>(n)] = fromPoint(matrix.stepPoints() + 4 * matrix.slotOf(n));
     }
   }
-  if (!system.forces.empty()) multiplyOthers(system);
+  multiplyOthers(system);
 }
 
 void DeformableSolver::Impl::multiplyOthers(const SolvedSystem& system) {

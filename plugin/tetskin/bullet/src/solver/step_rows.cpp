@@ -54,9 +54,10 @@ void DeformableSolver::Impl::collectRows() {
   rows.collect(bodies, rigids, rowSources(), dt());
   collectRigidRowsOfWorlds();
   joinByRows();
-  for (SolvedBody& body : bodies.bodies()) {
+  runTasks(threads, bodies.bodies().size(), [&](std::size_t k) {
+    SolvedBody& body = bodies.bodies()[k];
     if (body.wasTouched && body.rowCount > 0) goOn(body);
-  }
+  });
 }
 
 /// A resting body stays at rest: the solution begins with the velocities of the step before.

@@ -7,7 +7,6 @@
 #include <tetskin/bullet/src/solver/system_solve.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 
@@ -47,85 +46,90 @@ void SystemSolve::numberRigids() {
     const RigidUnknown& unknown = step_.rigids.list()[r];
     inverseMass_.block(unknown.first, unknown.first, unknown.size, unknown.size) = unknown.inverseMass;
   }
+  fewMatrix_.setInverseMass(inverseMass_);
   rigidSize_ = fewSize_ = size;
   rigidMomentum_ = rigidPush_ = Vector::Zero(size);
 }
 
 void SystemSolve::collectComponents() {
   endParts_.assign(system_.rows.size(), {});
-  for (const std::size_t b : system_.bodies) {
-    const SolvedBody& body = step_.bodies.bodies()[b];
-    // The separate unknowns do not include other forces on the nodes.
-    if (!body.elastic || body.rowCount == 0 || !system_.forces.empty() || !body.fixed.empty()) continue;
-    if (body.dynamics->stiffnessNumber() < kStiffPart && !isJoined(b)) continue;
-    for (std::size_t component = 0; component < std::min(body.dynamics->componentCount(), kMaxParts); ++component)
-      addComponent(b, component);
+  std::vector<std::vector<ComponentUnknown>> found(bodies_.size());
+  forEachBody([&](Body& body, ParallelFor* inner) {
+    if (!needsComponents(body)) return;
+    for (std::size_t component = 0; component < std::min(body.dynamics().componentCount(), kMaxParts); ++component) {
+      std::optional<ComponentUnknown> unknown = ComponentUnknown::make(body.dynamics(), component, inner);
+      if (unknown) found[body.solved.place].push_back(std::move(*unknown));
+    }
+  });
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    bodies_[k].firstComponent = components_.size();
+    for (ComponentUnknown& unknown : found[k]) {
+      unknown.body = bodies_[k].index;
+      unknown.first = fewSize_;
+      fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
+      components_.push_back(std::move(unknown));
+    }
+    bodies_[k].lastComponent = components_.size();
   }
-  few_ = fewStep_ = fewResidual_ = Vector::Zero(fewSize_);
+  forEachBody([&](Body& body, ParallelFor*) { findEndParts(body); });
+  few_ = fewStep_ = fewResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(fewSize_);
 }
 
-bool SystemSolve::isJoined(std::size_t body) const {
-  return std::any_of(system_.rows.begin(), system_.rows.end(), [&](const ContactRow* row) {
-    return row->joined && !row->constant && row->ends[0].isSoft() && row->ends[0].body == body;
+/// The separate unknowns do not include other forces on the nodes.
+bool SystemSolve::needsComponents(const Body& body) const {
+  const SolvedBody& solved = body.solved;
+  if (!solved.elastic || solved.rowCount == 0 || !system_.forces.empty() || !solved.fixed.empty()) return false;
+  return !(solved.dynamics->stiffnessNumber() < kStiffPart) || isJoined(body);
+}
+
+bool SystemSolve::isJoined(const Body& body) const {
+  return std::any_of(body.ends.list().begin(), body.ends.list().end(), [&](const BodyEnd& end) {
+    return end.index == 0 && system_.rows[end.row]->joined && !system_.rows[end.row]->constant;
   });
 }
 
-void SystemSolve::addComponent(std::size_t body, std::size_t component) {
+void SystemSolve::findEndParts(const Body& body) {
   assert(endParts_.size() == system_.rows.size());
-  const Dynamics& dynamics = *step_.bodies.bodies()[body].dynamics;
-  std::optional<ComponentUnknown> unknown = ComponentUnknown::make(dynamics, component, threads_);
-  if (!unknown) return;
-  unknown->body = body;
-  unknown->first = fewSize_;
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    for (std::size_t e = 0; e < 2; ++e) {
-      const RowEnd& end = system_.rows[r]->ends[e];
-      if (!end.isSoft() || end.body != body) continue;
-      const RowMotions motions = unknown->motionsAt(dynamics, end);
-      if (!motions.isZero(0.0)) endParts_[r][e] = {static_cast<int>(components_.size()), motions};
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    for (const BodyEnd& end : body.ends.list()) {
+      const RowMotions motions = components_[c].motionsAt(body.dynamics(), system_.rows[end.row]->ends[end.index]);
+      if (!motions.isZero(0.0)) endParts_[end.row][end.index] = {static_cast<int>(c), motions};
     }
   }
-  components_.push_back(std::move(*unknown));
-  fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
 }
 
-Dynamics& SystemSolve::dynamicsOf(const ComponentUnknown& component) const {
-  return *step_.bodies.bodies()[component.body].dynamics;
-}
-
-/// Moves the rigid motions of the components out of the solutions into the separate unknowns.
-void SystemSolve::moveIntoComponents() {
-  for (const ComponentUnknown& component : components_) {
-    few_.segment<6>(component.first) =
-        ldltSolve(component.mass, component.imageProducts(dynamicsOf(component).matrix().solution()));
-    component.addMotions(-few_.segment<6>(component.first), dynamicsOf(component));
+/// Moves the rigid motions of the components out of the solution into the separate unknowns.
+void SystemSolve::moveIntoComponents(const Body& body) {
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    const ComponentUnknown& component = components_[c];
+    few_.segment<6>(component.first) = ldltSolve(component.mass, component.imageProducts(body.matrix().solution()));
+    component.addMotions(-few_.segment<6>(component.first), body.dynamics());
   }
 }
 
-void SystemSolve::moveOutOfComponents() {
-  for (const ComponentUnknown& component : components_)
-    component.addMotions(few_.segment<6>(component.first), dynamicsOf(component));
+void SystemSolve::moveOutOfComponents(const Body& body) {
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c)
+    components_[c].addMotions(few_.segment<6>(components_[c].first), body.dynamics());
 }
 
 /// Z^T A (y + Z q)
 Vector6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
-  return component.imageProducts(dynamicsOf(component).matrix().solution()) +
-         component.mass * few_.segment<6>(component.first);
+  return images_.segment<6>(component.first) + component.mass * few_.segment<6>(component.first);
 }
 
 /// The nodes' equations also contain each component's rigid motion, and must agree with its own equation about it:
 /// together they are singular, and where they contradict each other the conjugate gradient does not converge. Forces of
 /// stiff bodies, whose sum is 0, differ by rounding of that size.
-void SystemSolve::matchComponents() {
-  for (const ComponentUnknown& component : components_) {
-    btScalar* residual = dynamicsOf(component).matrix().residual();
-    const Vector6 excess =
-        component.motionProducts(dynamicsOf(component), residual) - fewResidual_.segment<6>(component.first);
+void SystemSolve::matchComponents(const Body& body) {
+  btScalar* residual = body.matrix().residual();
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    const ComponentUnknown& component = components_[c];
+    const Vector6 excess = component.motionProducts(residual) - fewResidual_.segment<6>(component.first);
     component.addImages(-ldltSolve(component.mass, excess), residual);
   }
 }
 
-bool SystemSolve::collidesWithFew(std::size_t r) const {
+bool SystemSolve::meetsFew(std::size_t r) const {
   assert(r < endParts_.size());
   const ContactRow& row = *system_.rows[r];
   for (std::size_t e = 0; e < 2; ++e) {
@@ -162,23 +166,27 @@ void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) c
   }
 }
 
-/// The momentum of rigid bodies and components that is left without rows.
+/// The momentum of rigid bodies and components that is left.
 void SystemSolve::findFewResiduals() {
   assert(fewResidual_.size() == fewSize_ && rigidMomentum_.size() == rigidSize_);
+  fewResidual_.setZero();
   fewResidual_.head(rigidSize_) -= rigidMomentum_;
-  partsBefore_ = Vector::Zero(fewSize_);
+  imagesBefore_ = images_;
   for (const ComponentUnknown& component : components_) {
     partsBefore_.segment<6>(component.first) = momentumOf(component);
     fewResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
+  }
+  for (std::size_t r = 0; r < system_.rows.size() && fewSize_ > 0; ++r) {
+    addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, fewResidual_);
   }
 }
 
 /// The matrix of the few unknowns without the masses of rigid bodies: what rows, and the masses of components, couple
 /// them by.
-SystemSolve::Matrix SystemSolve::fewMatrix() const {
+SystemSolve::Matrix SystemSolve::fewStiffness() const {
   Matrix few = Matrix::Zero(fewSize_, fewSize_);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    if (system_.rows[r]->state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
+    if (system_.rows[r]->state == ContactRow::State::Apart || !meetsFew(r)) continue;
     const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
     for (std::size_t a = 0; a < 2; ++a) {
       for (std::size_t b = 0; b < 2; ++b) addFewStiffness(r, a, b, h, few);
@@ -209,92 +217,55 @@ void SystemSolve::addFewStiffness(std::size_t r, std::size_t a, std::size_t b, c
   }
 }
 
-/// The equations of rigid bodies are multiplied by M^-1, in which axes may be locked.
 void SystemSolve::eliminate() {
   if (fewSize_ == 0) return;
-  matchComponents();
-  Matrix scale = Matrix::Identity(fewSize_, fewSize_);
-  scale.topLeftCorner(rigidSize_, rigidSize_) = inverseMass_;
-  Matrix system = scale * fewMatrix();
-  system.topLeftCorner(rigidSize_, rigidSize_) += Matrix::Identity(rigidSize_, rigidSize_);
-  compliance_ = system.partialPivLu().solve(scale);
-  addFew(compliance_ * fewResidual_, true);
+  fewMatrix_.factor(fewStiffness());
+  const Vector few = fewMatrix_.solve(fewResidual_);
+  forEachBody([&](Body& body, ParallelFor*) { addFew(body, few, -1, false, body.matrix().residual()); });
 }
 
-/// Adds the effect of the few unknowns on the nodes, to their residuals or to the products.
-void SystemSolve::addFew(const Vector& few, bool toResiduals) {
-  const auto target = [&](std::size_t body) {
-    return toResiduals ? step_.bodies.bodies()[body].dynamics->matrix().residual() : step_.extras[body].data();
-  };
-  const btScalar sign = toResiduals ? btScalar(-1) : btScalar(1);
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
-    const btVector3 push = sign * (row.tangent * fewVelocity(r, few));
-    for (std::size_t e = 0; e < 2; ++e) {
-      const RowEnd& end = row.ends[e];
-      if (end.isSoft()) addToNodes(end, btScalar(signOf(e)) * push, target(end.body));
-    }
+/// Adds the effect of changes of the few unknowns on the body's nodes.
+/// withOthers  adds that of the steps of the rows' other ends, too
+/// to          in the wide layout: residuals or products
+void SystemSolve::addFew(const Body& body, const Vector& few, btScalar sign, bool withOthers, btScalar* to) const {
+  for (const BodyEnd& end : body.ends.list()) {
+    const ContactRow& row = *system_.rows[end.row];
+    const bool byOther = withOthers && row.ends[1 - end.index].isSoft();
+    const bool byFew = fewSize_ > 0 && meetsFew(end.row);
+    if (row.state == ContactRow::State::Apart || !(byOther || byFew)) continue;
+    const btScalar own = btScalar(signOf(end.index));
+    btVector3 velocity(0, 0, 0);
+    if (byFew) velocity = fewVelocity(end.row, few);
+    if (byOther) velocity -= own * endSteps_[end.row][1 - end.index];
+    body.ends.addImpulse(end, (sign * own) * (row.tangent * velocity), to);
   }
-  for (const ComponentUnknown& component : components_) {
-    component.addImages(static_cast<double>(sign) * few.segment<6>(component.first), target(component.body));
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    components_[c].addImages(static_cast<double>(sign) * few.segment<6>(components_[c].first), to);
   }
-}
-
-/// The effect of the nodes' steps of the conjugate gradient on the few unknowns.
-SystemSolve::Vector SystemSolve::fewOf() const {
-  Vector few = Vector::Zero(fewSize_);
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state == ContactRow::State::Apart || !collidesWithFew(r)) continue;
-    addRowPush(r, -(row.tangent * nodesOf(row, true)), few);
-  }
-  for (const ComponentUnknown& component : components_) {
-    few.segment<6>(component.first) -= component.imageProducts(dynamicsOf(component).matrix().step());
-  }
-  return few;
-}
-
-/// Adds the blocks that couple the nodes of two ends; the matrices contain the blocks of each end with itself.
-void SystemSolve::addCrossProducts() {
-  for (const ContactRow* row : system_.rows) {
-    if (!row->ends[0].isSoft() || !row->ends[1].isSoft() || row->state == ContactRow::State::Apart) continue;
-    for (std::size_t e = 0; e < 2; ++e) {
-      const RowEnd &end = row->ends[e], &other = row->ends[1 - e];
-      addToNodes(end, -(row->tangent * nodesOf(other, true)), step_.extras[end.body].data());
-    }
-  }
-}
-
-void SystemSolve::addProducts(std::vector<const btScalar*>& added) {
-  assert(added.size() == system_.bodies.size() && compliance_.rows() == fewSize_);
-  step_.beginProducts(system_);
-  addCrossProducts();
-  if (fewSize_ > 0) addFew(compliance_ * fewOf(), false);
-  for (std::size_t k = 0; k < system_.bodies.size(); ++k) added[k] = step_.extras[system_.bodies[k]].data();
 }
 
 /// Computes the few unknowns from the nodes' change in the pass.
 void SystemSolve::moveFew() {
   assert(before_.size() == system_.rows.size());
-  Vector push = fewResidual_;
-  for (std::size_t r = 0; r < system_.rows.size() && fewSize_ > 0; ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * (velocityOf(r) - before_[r])), push);
-  }
-  for (const ComponentUnknown& component : components_) {
-    push.segment<6>(component.first) -= component.imageProducts(dynamicsOf(component).matrix().solution()) -
-                                        component.imageProducts(states_[indexOf(component.body)].solution.data());
-  }
-  if (fewSize_ > 0) fewStep_ = compliance_ * push;
-  few_ += fewStep_;
-  stepped_.resize(system_.rows.size());
+  forEachBody([&](Body& body, ParallelFor*) { readSolution(body); });
   // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
-  Vector left = fewResidual_;
+  Vector push = fewResidual_, left = fewResidual_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
     stepped_[r] = velocityOf(r) - before_[r];
-    if (rigidSize_ > 0 && row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), left);
+    if (fewSize_ > 0 && row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
+  }
+  if (fewSize_ == 0) return;
+  for (const ComponentUnknown& component : components_) {
+    push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
+  }
+  fewStep_ = fewMatrix_.solve(push);
+  few_ += fewStep_;
+  forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
+  if (rigidSize_ == 0) return;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), left);
   }
   rigidPush_ = left.head(rigidSize_);
   rigidMomentum_ += rigidPush_;
@@ -304,18 +275,12 @@ void SystemSolve::moveFew() {
 /// unknowns take them up, so that momentum agrees with the rows' impulses while velocities hardly change.
 void SystemSolve::settleFew() {
   if (fewSize_ == 0) return;
-  const Vector change = compliance_ * fewResidual_;
+  const Vector change = fewMatrix_.solve(fewResidual_);
   few_ += change;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * fewVelocity(r, change);
   }
-}
-
-std::size_t SystemSolve::indexOf(std::size_t body) const {
-  assert(std::find(system_.bodies.begin(), system_.bodies.end(), body) != system_.bodies.end());
-  return static_cast<std::size_t>(std::find(system_.bodies.begin(), system_.bodies.end(), body) -
-                                  system_.bodies.begin());
 }
 
 }  // namespace tetskin

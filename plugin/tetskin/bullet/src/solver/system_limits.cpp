@@ -25,7 +25,7 @@ constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
 
 double SystemSolve::massOfAll() const {
   double sum = 0.0;
-  for (std::size_t k = 0; k < states_.size(); ++k) sum += bodyAt(k).dynamics->matrix().totalMass();
+  for (const Body& body : bodies_) sum += body.matrix().totalMass();
   return sum;
 }
 
@@ -41,8 +41,8 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   limits.iterations = 0;
   bool changed = false, anyElastic = false, stiff = false;
   double squaredStart = 0.0;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const SolvedBody& body = bodyAt(k);
+  for (const Body& one : bodies_) {
+    const SolvedBody& body = one.solved;
     limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.settings->iterations);
     if (body.elastic && !body.waits) limits.enough += body.solve->enough();
@@ -73,12 +73,11 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   limits.iterations = 0;
   limits.floor = 0.0;
   double byMatrix = 0.0, byMasses = 0.0, tolerance = 1.0;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const SolvedBody& body = bodyAt(k);
-    tolerance = std::min(tolerance, body.settings->tolerance);
-    limits.iterations = std::max(limits.iterations, body.settings->iterations);
-    byMatrix += body.dynamics->squaredByMatrix();
-    byMasses += body.dynamics->squaredChange();
+  for (const Body& body : bodies_) {
+    tolerance = std::min(tolerance, body.solved.settings->tolerance);
+    limits.iterations = std::max(limits.iterations, body.solved.settings->iterations);
+    byMatrix += body.byMatrix;
+    byMasses += body.byMasses;
   }
   for (const ComponentUnknown& component : components_) {
     byMasses += few_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));

@@ -34,14 +34,20 @@ btScalar SystemSolve::searchLine() {
   findResiduals();
   const Vector rigidStep = fewStep_.head(rigidSize_);
   double linear = rigidStep.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep.dot(rigidPush_);
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    auto& matrix = bodyAt(k).dynamics->matrix();
+  forEachBody([](Body& body, ParallelFor*) {
+    const auto& matrix = body.matrix();
+    const btScalar *solution = matrix.solution(), *residual = body.matrix().residual();
+    body.linear = body.quadratic = 0.0;
     for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
-      const auto step = static_cast<double>(matrix.solution()[i] - states_[k].solution[i]);
-      const auto before = static_cast<double>(states_[k].residual[i]);
-      linear -= step * before;
-      quadratic += step * (before - static_cast<double>(matrix.residual()[i]));
+      const auto step = static_cast<double>(solution[i] - body.solution[i]);
+      const auto before = static_cast<double>(body.residual[i]);
+      body.linear -= step * before;
+      body.quadratic += step * (before - static_cast<double>(residual[i]));
     }
+  });
+  for (const Body& body : bodies_) {
+    linear += body.linear;
+    quadratic += body.quadratic;
   }
   for (const ComponentUnknown& component : components_) {
     const Vector6 step = fewStep_.segment<6>(component.first);
@@ -66,13 +72,13 @@ btScalar SystemSolve::searchLine() {
 
 void SystemSolve::moveBack(btScalar fraction) {
   assert(fraction >= 0 && fraction <= 1);
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    auto& matrix = bodyAt(k).dynamics->matrix();
-    btScalar* solution = matrix.solution();
-    for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
-      solution[i] = states_[k].solution[i] + fraction * (solution[i] - states_[k].solution[i]);
+  forEachBody([&](Body& body, ParallelFor*) {
+    btScalar* solution = body.matrix().solution();
+    for (std::size_t i = 0; i < body.matrix().wideSize(); ++i) {
+      solution[i] = body.solution[i] + fraction * (solution[i] - body.solution[i]);
     }
-  }
+    readSolution(body);
+  });
   const auto rest = static_cast<double>(1 - fraction);
   few_ -= rest * fewStep_;
   rigidMomentum_ -= rest * rigidPush_;

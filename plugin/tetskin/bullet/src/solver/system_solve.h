@@ -10,8 +10,11 @@
 // for the rest. Passes go on until it has converged.
 #pragma once
 
+#include <tetskin/bullet/src/solver/body_ends.h>
 #include <tetskin/bullet/src/solver/component_unknown.h>
+#include <tetskin/bullet/src/solver/few_matrix.h>
 #include <tetskin/bullet/src/solver/step.h>
+#include <tetskin/core/src/shared/base/run_by_size.h>
 
 #include <Eigen/Core>
 #include <vector>
@@ -25,7 +28,9 @@ struct SolveReport {
   bool converged = true;
 };
 
-class SystemSolve {
+/// What concerns one body is done side by side with the other bodies, and what concerns one row, side by side with the
+/// other rows; sums over bodies and rows are in their order.
+class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Addition {
  public:
   SystemSolve(DeformableSolver::Impl& step, const SolvedSystem& system, ParallelFor* threads);
 
@@ -41,57 +46,81 @@ class SystemSolve {
     int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
     RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
   };
-  struct BodyState {
-    std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
-  };
+  /// A body of the system.
+  struct Body {
+    Body(std::size_t number, SolvedBody& of) : index(number), solved(of), ends(of.dynamics->matrix()) {}
+    Dynamics& dynamics() const { return *solved.dynamics; }
+    elastic_detail::BlockMatrix<btScalar>& matrix() const { return solved.dynamics->matrix(); }
 
-  SolvedBody& bodyAt(std::size_t k) const;
-  elastic_detail::BlockMatrix<btScalar>& matrixOf(const RowEnd& end) const;
+    std::size_t index;  ///< in SolverBodies::bodies
+    SolvedBody& solved;
+    BodyEnds ends;
+    std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
+    std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
+    double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
+    double linear = 0.0, quadratic = 0.0;               ///< its share in SystemSolve::searchLine
+    Vector push;  ///< the effect of its step of the conjugate gradient on the few unknowns
+  };
+  using EndVelocities = std::array<btVector3, 2>;
+
+  /// Calls call(body, inner) for each body.
+  template <class Call>
+  void forEachBody(Call&& call) {
+    runBySize(
+        threads_, sizes_, [&](std::size_t k) { return elastic_detail::isDivisible(sizes_[k]); },
+        [&](std::size_t k, ParallelFor* inner) { call(bodies_[k], inner); });
+  }
+  /// Calls call(r) for each row.
+  template <class Call>
+  void forEachRow(Call&& call) {
+    constexpr std::size_t kRowsPerTask = 128;
+    const std::size_t count = system_.rows.size();
+    runTasks(threads_, (count + kRowsPerTask - 1) / kRowsPerTask, [&](std::size_t task) {
+      for (std::size_t r = task * kRowsPerTask; r < std::min(count, (task + 1) * kRowsPerTask); ++r) call(r);
+    });
+  }
 
   // The steps of a pass; implemented in system_solve.cpp.
+  void collectBodies();
+  void collectEnds();
   void beginBounds();
+  void readSolution(Body& body);
   void findResiduals();
   void evaluateRows(btScalar kept, bool first);
   bool start(int pass);
-  void keepState();
-  void addImpulses();
-  void addTangents();
-  void addBlocks(std::size_t end, std::size_t first, std::size_t last);
-  void addApart(std::size_t end, std::size_t first, std::size_t last, std::uint32_t i, std::uint32_t j,
-                btScalar (&blocks)[kMaxPointNodes][kMaxPointNodes][6]) const;
-  void addToNodes(const RowEnd& end, const btVector3& impulse, btScalar* to) const;
+  void addRows(Body& body);
   btVector3 velocityOf(std::size_t row) const;
-  btVector3 nodesOf(const ContactRow& row, bool steps) const;
-  btVector3 nodesOf(const RowEnd& end, bool steps) const;
   void refreshBounds();
-  bool isHung(std::size_t body) const;
+  bool isHung(const Body& body) const;
   void giveMomentum();
+  void removeMomentumError(Body& body) const;
 
   // The few unknowns; implemented in system_elimination.cpp.
   void numberRigids();
   void collectComponents();
-  bool isJoined(std::size_t body) const;
-  void addComponent(std::size_t body, std::size_t component);
-  Dynamics& dynamicsOf(const ComponentUnknown& component) const;
-  void moveIntoComponents();
-  void moveOutOfComponents();
+  bool needsComponents(const Body& body) const;
+  bool isJoined(const Body& body) const;
+  void findEndParts(const Body& body);
+  void moveIntoComponents(const Body& body);
+  void moveOutOfComponents(const Body& body);
   Vector6 momentumOf(const ComponentUnknown& component) const;
-  void matchComponents();
+  void matchComponents(const Body& body);
   void findFewResiduals();
-  Matrix fewMatrix() const;
+  Matrix fewStiffness() const;
   void addFewStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h, Matrix& few) const;
   Eigen::Index firstOf(const EndPart& end) const;
   void eliminate();
-  void addFew(const Vector& few, bool toResiduals);
-  Vector fewOf() const;
-  bool collidesWithFew(std::size_t row) const;
-  void addCrossProducts();
-  void addProducts(std::vector<const btScalar*>& added);
+  bool meetsFew(std::size_t row) const;
   void moveFew();
   void settleFew();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
   btVector3 fewVelocity(std::size_t row, const Vector& few) const;
-  std::size_t indexOf(std::size_t body) const;
+  void addFew(const Body& body, const Vector& few, btScalar sign, bool withOthers, btScalar* to) const;
+
+  // What is added to the matrices' products; implemented in system_products.cpp.
+  void read(std::size_t k) override;
+  void combine() override;
+  const btScalar* added(std::size_t k) override;
 
   // Tolerances and line search; implemented in system_limits.cpp and system_line_search.cpp.
   elastic_detail::SolveLimits limitsWithoutRows() const;
@@ -105,17 +134,22 @@ class SystemSolve {
   DeformableSolver::Impl& step_;
   const SolvedSystem& system_;
   ParallelFor* threads_;
-  bool joinsSoft_ = false;         ///< true if a row connects two points of soft bodies
-  std::vector<BodyState> states_;  ///< by body of the system
+  bool joinsSoft_ = false;  ///< true if a row connects two points of soft bodies
+  std::vector<Body> bodies_;
+  std::vector<std::size_t> sizes_;  ///< by body: slots
   std::vector<ComponentUnknown> components_;
   std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
   // The few unknowns: V of rigid bodies, followed by q of components.
   Eigen::Index rigidSize_ = 0, fewSize_ = 0;
   Vector few_, fewStep_, fewResidual_;  ///< their values; in the pass, their change and the residual of their equations
+  Vector images_, imagesBefore_;        ///< of components: Z^T A y, now and when the pass began
   Vector partsBefore_;                  ///< momenta of the components when the pass began
   Vector rigidMomentum_, rigidPush_;    ///< M V, and its change in the pass
-  Matrix inverseMass_, compliance_;     ///< M^-1; the inverse of the few unknowns' matrix
-  std::vector<btVector3> before_, stepped_;  ///< by row: u when the pass began, and by how much it changed
+  Matrix inverseMass_;                  ///< M^-1
+  FewMatrix fewMatrix_;
+  Vector fewOfStep_;  ///< what the step of the conjugate gradient changes the few unknowns by
+  std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
+  std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
 };
 
 }  // namespace tetskin

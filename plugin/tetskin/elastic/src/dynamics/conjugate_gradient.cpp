@@ -1,28 +1,48 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/shared/base/run_by_size.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tetskin::elastic_detail {
 
+/// Small matrices are processed side by side, large ones one after the other, each by all threads.
 template <class S>
-void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads) {
+template <class Call>
+void ConjugateGradient<S>::forEachMatrix(ParallelFor* threads, Call&& call) {
+  runBySize(
+      threads, sizes_, [&](std::size_t k) { return isDivisible(sizes_[k]); },
+      [&](std::size_t k, ParallelFor* inner) { partial_[k] = call(k, *matrices_[k], inner); });
+}
+
+/// Sums in an order that does not depend on the number of threads.
+template <class S>
+double ConjugateGradient<S>::summed() const {
+  return std::accumulate(partial_.begin(), partial_.end(), 0.0);
+}
+
+template <class S>
+void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, Addition* addition,
+                                 ParallelFor* threads) {
   assert(!matrices.empty() && std::find(matrices.begin(), matrices.end(), nullptr) == matrices.end());
   assert(limits.tolerance >= 0.0 && limits.iterations >= 0);
   matrices_ = std::move(matrices);
-  extra_ = std::move(extra);
-  added_.assign(matrices_.size(), nullptr);
-  rho_ = 0.0;
+  addition_ = addition;
+  partial_.assign(matrices_.size(), 0.0);
+  sizes_.clear();
   double mass = 0.0;
-  for (BlockMatrix<S>* matrix : matrices_) {
-    rho_ += matrix->lower(threads);
+  for (const BlockMatrix<S>* matrix : matrices_) {
+    sizes_.push_back(matrix->slotCount());
     mass += matrix->totalMass();
   }
+  forEachMatrix(threads, [](std::size_t, BlockMatrix<S>& matrix, ParallelFor* inner) { return matrix.lower(inner); });
+  rho_ = summed();
   target_ = std::max(limits.tolerance * limits.tolerance * rho_, limits.floor * limits.floor * mass);
   target_ = std::max(target_, limits.enough);
   // Below this, products of residuals lose their digits, and the next step lengths would be arbitrary.
@@ -37,16 +57,27 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, E
 
 template <class S>
 bool ConjugateGradient<S>::step(ParallelFor* threads) {
-  assert(!stopped_ && added_.size() == matrices_.size());
-  for (BlockMatrix<S>* matrix : matrices_) matrix->backward(factor_, threads);
-  if (extra_) extra_(added_);
-  double bend = 0.0;
-  for (std::size_t k = 0; k < matrices_.size(); ++k) bend += matrices_[k]->forward(added_[k], threads);
+  assert(!stopped_ && partial_.size() == matrices_.size());
+  const auto forward = [&](std::size_t k, BlockMatrix<S>& matrix, ParallelFor* inner) {
+    return matrix.forward(addition_ ? addition_->added(k) : nullptr, inner);
+  };
+  forEachMatrix(threads, [&](std::size_t k, BlockMatrix<S>& matrix, ParallelFor* inner) {
+    matrix.backward(factor_, inner);
+    if (!addition_) return forward(k, matrix, inner);
+    addition_->read(k);
+    return 0.0;
+  });
+  if (addition_) {
+    addition_->combine();
+    forEachMatrix(threads, forward);
+  }
+  const double bend = summed();
   // If the addition is not positive, the iteration stops with the current solution.
   if (!(bend > 0.0 && std::isfinite(bend))) return false;
   const auto length = static_cast<S>(rho_ / bend);
-  double rho = 0.0;
-  for (BlockMatrix<S>* matrix : matrices_) rho += matrix->advance(length, threads);
+  forEachMatrix(threads,
+                [&](std::size_t, BlockMatrix<S>& matrix, ParallelFor* inner) { return matrix.advance(length, inner); });
+  const double rho = summed();
   factor_ = static_cast<S>(rho / rho_);
   rho_ = rho;
   return true;

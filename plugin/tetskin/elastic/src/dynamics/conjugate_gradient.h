@@ -7,7 +7,6 @@
 
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
-#include <functional>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -23,14 +22,22 @@ template <class S>
 class TETSKIN_ELASTIC_API ConjugateGradient {
  public:
   using Matrices = std::vector<BlockMatrix<S>*>;
-  /// Called when all matrices have their `stepPoints`. For each matrix, it returns what is to be added to A t, in the
-  /// wide layout, or null.
-  using Extra = std::function<void(std::vector<const S*>&)>;
+  /// A symmetric positive addition to the matrices, which may couple them.
+  class Addition {
+   public:
+    virtual ~Addition() = default;
+    /// Called when the k-th matrix has its `stepPoints`; of several matrices side by side, on any threads.
+    virtual void read(std::size_t k) = 0;
+    /// Called when all of them have been read.
+    virtual void combine() = 0;
+    /// What is to be added to A t of the k-th matrix, in the wide layout, or null. Called once per matrix, side by
+    /// side, on any threads.
+    virtual const S* added(std::size_t k) = 0;
+  };
 
   /// Begins with the matrices' residuals r = b - A x. They are transformed in place, so that `start` is called once.
-  /// extra  a symmetric positive addition to the matrices; none: the matrices alone. It must stay valid while this is
-  ///        used.
-  void start(Matrices matrices, const SolveLimits& limits, Extra extra, ParallelFor* threads);
+  /// addition  null: the matrices alone. Not owned, must stay valid while this is used.
+  void start(Matrices matrices, const SolveLimits& limits, Addition* addition, ParallelFor* threads);
   /// Does up to `most` iterations; returns true if it has converged. Where an addition is not positive, it stops with
   /// the current solution.
   bool iterate(int maximum, ParallelFor* threads);
@@ -46,9 +53,14 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   bool step(ParallelFor* threads);
   void stop();
 
+  template <class Call>
+  void forEachMatrix(ParallelFor* threads, Call&& call);
+  double summed() const;
+
   Matrices matrices_;
-  Extra extra_;
-  std::vector<const S*> added_;
+  std::vector<std::size_t> sizes_;  ///< by matrix
+  Addition* addition_ = nullptr;
+  std::vector<double> partial_;  ///< by matrix
   double rho_ = 0.0, target_ = 0.0;
   S factor_ = 0;
   int iterations_ = 0, max_ = 0;

@@ -170,16 +170,27 @@ void BlockMatrix<S>::addTo(S* block, const S addition[6]) {
 }
 
 template <class S>
-bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block[6]) {
+std::optional<typename BlockMatrix<S>::Coupling> BlockMatrix<S>::couplingOf(std::size_t first, std::size_t second) {
   const std::size_t slots[2] = {slotOf(first), slotOf(second)};
-  if (slots[0] == slots[1]) return false;
-  S* const one = blockOf(slots[0], slots[1]);
-  S* const other = blockOf(slots[1], slots[0]);
-  if (!one || !other) return false;
-  if (mass(first) == S(0) || mass(second) == S(0)) return true;
-  addTo(one, block);
-  addTo(other, block);
-  return true;
+  if (slots[0] == slots[1]) return std::nullopt;
+  const Coupling coupling{blockOf(slots[0], slots[1]), blockOf(slots[1], slots[0])};
+  if (!coupling.block || !coupling.mirrored) return std::nullopt;
+  return mass(first) == S(0) || mass(second) == S(0) ? Coupling{} : coupling;
+}
+
+template <class S>
+void BlockMatrix<S>::couple(const Coupling& coupling, const S block[6]) {
+  assert((coupling.block == nullptr) == (coupling.mirrored == nullptr));
+  if (!coupling.block) return;
+  addTo(coupling.block, block);
+  addTo(coupling.mirrored, block);
+}
+
+template <class S>
+bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block[6]) {
+  const std::optional<Coupling> coupling = couplingOf(first, second);
+  if (coupling) couple(*coupling, block);
+  return coupling.has_value();
 }
 
 template <class S>

@@ -14,9 +14,15 @@
 
 #include <cassert>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tetskin::elastic_detail {
+
+/// True if a matrix of this many slots is worth dividing among threads: see kChunksPerTask in block_pattern.cpp.
+constexpr bool isDivisible(std::size_t slots) {
+  return slots >= 4096;
+}
 
 /// Which slot each node has, and which rows have common blocks. Slots are numbered by row; some belong to no node.
 struct BlockPattern {
@@ -81,6 +87,13 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// does nothing, where the two are the same node or have no tet in common: the matrix has no such block. Nothing is
   /// added if one of them is pinned. Cost O(neighbours of a node)
   bool couple(std::size_t first, std::size_t second, const S block[6]);
+  /// The blocks of two nodes, for `couple`: empty where there are none, with null where a node is pinned. Valid as long
+  /// as the matrix. Cost as above
+  struct Coupling {
+    S *block = nullptr, *mirrored = nullptr;
+  };
+  std::optional<Coupling> couplingOf(std::size_t first, std::size_t second);
+  void couple(const Coupling& coupling, const S block[6]);
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
   void free();
 

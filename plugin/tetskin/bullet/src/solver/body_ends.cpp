@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/solver/body_ends.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+/// Adds the upper triangle of the matrix.
+void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
+  const btScalar entries[6] = {m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]};
+  for (int k = 0; k < 6; ++k) to[k] += factor * entries[k];
+}
+
+}  // namespace
+
+void BodyEnds::add(std::size_t row, std::size_t index, const RowEnd& end) {
+  assert(end.isSoft() && index < 2 && (ends_.empty() || ends_.back().index <= index));
+  const auto number = static_cast<std::uint32_t>(ends_.size());
+  if (!isOfLastGroup(index, end)) addGroup(end);
+  groups_.back().last = number + 1;
+  BodyEnd& added = ends_.emplace_back();
+  added.row = static_cast<std::uint32_t>(row);
+  added.index = static_cast<std::uint32_t>(index);
+  added.first = static_cast<std::uint32_t>(nodes_.size());
+  for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
+    const auto node = static_cast<std::size_t>(end.nodes[k]);
+    nodes_.push_back({static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(matrix_->slotOf(node)),
+                      static_cast<std::uint32_t>(matrix_->wideOf(node)), end.weights[k]});
+  }
+  added.last = static_cast<std::uint32_t>(nodes_.size());
+}
+
+bool BodyEnds::isOfLastGroup(std::size_t index, const RowEnd& end) const {
+  if (ends_.empty() || ends_.back().index != index) return false;
+  const BodyEnd& before = ends_.back();
+  return std::equal(nodes_.begin() + before.first, nodes_.begin() + before.last, end.nodes.begin(),
+                    end.nodes.begin() + end.nodeCount,
+                    [](const Node& a, int b) { return a.node == static_cast<std::uint32_t>(b); });
+}
+
+void BodyEnds::addGroup(const RowEnd& end) {
+  Group& group = groups_.emplace_back();
+  group.first = static_cast<std::uint32_t>(ends_.size());
+  group.couplings = static_cast<std::uint32_t>(couplings_.size());
+  for (std::uint32_t i = 0; i < end.nodeCount; ++i) {
+    for (std::uint32_t j = 0; j < i; ++j) {
+      couplings_.push_back(
+          matrix_->couplingOf(static_cast<std::size_t>(end.nodes[i]), static_cast<std::size_t>(end.nodes[j])));
+    }
+  }
+}
+
+btVector3 BodyEnds::velocity(const BodyEnd& end) const {
+  assert(end.first <= end.last && end.last <= nodes_.size());
+  btVector3 sum(0, 0, 0);
+  for (std::uint32_t k = end.first; k < end.last; ++k) {
+    sum += nodes_[k].weight * fromWide(matrix_->solution() + nodes_[k].wide);
+  }
+  return sum;
+}
+
+btVector3 BodyEnds::stepVelocity(const BodyEnd& end) const {
+  assert(end.first <= end.last && end.last <= nodes_.size());
+  btVector3 sum(0, 0, 0);
+  for (std::uint32_t k = end.first; k < end.last; ++k) {
+    sum += nodes_[k].weight * fromPoint(matrix_->stepPoints() + std::size_t{4} * nodes_[k].slot);
+  }
+  return sum;
+}
+
+void BodyEnds::addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar* wide) const {
+  assert(end.first <= end.last && end.last <= nodes_.size());
+  for (std::uint32_t k = end.first; k < end.last; ++k) {
+    btScalar* at = wide + nodes_[k].wide;
+    toWide(fromWide(at) + nodes_[k].weight * impulse, at);
+  }
+}
+
+void BodyEnds::addTangents(const std::vector<ContactRow*>& rows) const {
+  for (const Group& group : groups_) {
+    const bool apart = std::all_of(ends_.begin() + group.first, ends_.begin() + group.last, [&](const BodyEnd& end) {
+      return rows[end.row]->state == ContactRow::State::Apart;
+    });
+    if (!apart) addBlocks(group, rows);
+  }
+}
+
+/// Nodes that no tet connects have no block in the matrix: each gets by itself the stiffness that they have together.
+void BodyEnds::addBlocks(const Group& group, const std::vector<ContactRow*>& rows) const {
+  assert(group.first < group.last && group.last <= ends_.size());
+  const Node* nodes = &nodes_[ends_[group.first].first];
+  const std::uint32_t count = ends_[group.first].last - ends_[group.first].first;
+  Blocks blocks = {};
+  for (std::uint32_t e = group.first; e < group.last; ++e) {
+    const ContactRow& row = *rows[ends_[e].row];
+    if (row.state == ContactRow::State::Apart) continue;
+    const btMatrix3x3& h = row.tangent;
+    const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
+    const Node* weighted = &nodes_[ends_[e].first];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t j = 0; j <= i; ++j) {
+        const btScalar weight = weighted[i].weight * weighted[j].weight;
+        for (int k = 0; k < 6; ++k) blocks[i][j][k] += weight * tangent[k];
+      }
+    }
+  }
+  const Coupling* coupling = couplings_.data() + group.couplings;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t j = 0; j < i; ++j, ++coupling) {
+      if (*coupling) {
+        matrix_->couple(**coupling, blocks[i][j]);
+      } else {
+        addApart(group, rows, i, j, blocks);
+      }
+    }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) matrix_->resist(nodes[i].node, blocks[i][i]);
+}
+
+void BodyEnds::addApart(const Group& group, const std::vector<ContactRow*>& rows, std::uint32_t i, std::uint32_t j,
+                        Blocks& blocks) const {
+  for (std::uint32_t e = group.first; e < group.last; ++e) {
+    const ContactRow& row = *rows[ends_[e].row];
+    if (row.state == ContactRow::State::Apart) continue;
+    const Node* nodes = &nodes_[ends_[e].first];
+    const btScalar weight = std::abs(nodes[i].weight * nodes[j].weight);
+    addSymmetric(row.tangent, weight, blocks[i][i]);
+    addSymmetric(row.tangent, weight, blocks[j][j]);
+  }
+}
+
+}  // namespace tetskin
