@@ -16,7 +16,7 @@
 namespace tetskin {
 namespace {
 
-constexpr btScalar kStep = btScalar(1) / 240;
+constexpr btScalar kSubstep = btScalar(1) / 240;
 
 class ChangedBody : public testing::Test {
  protected:
@@ -159,7 +159,7 @@ TEST(BodyTakenOutOfItsWorld, IsFollowedWhereverItIs) {
   TriangleMesh mesh;
   mesh.positions = {{0.5, 1.5, 0.5}};
   ASSERT_TRUE(skin.bind(world.body(), cage, mesh).ok());
-  world.world->stepSimulation(kStep, 1, kStep);
+  world.world->stepSimulation(kSubstep, 1, kSubstep);
   ASSERT_EQ(skin.update(), StatusCode::Ok);
   const btScalar height = skin.positions()[0][1];
   auto& deformable = static_cast<btDeformableMultiBodyDynamicsWorld&>(*world.world);
