@@ -211,7 +211,7 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
   const Tet& tet = second.data().tets[static_cast<std::size_t>(touch.tet)];
   std::copy(tet.begin(), tet.end(), contact.objectNodes.begin());
   std::copy(touch.weights, touch.weights + 4, contact.objectWeights.begin());
-  contact.position = first.sampleAt(touch.sample);
+  contact.position = touch.point;
   contact.normal = touch.normal;
   contact.distance = touch.distance;
   contact.friction = options_.friction ? static_cast<btScalar>(*options_.friction)
