@@ -59,17 +59,12 @@ void PairCandidates::findForRun(const Pair& pair, int run) {
   for (const std::size_t group : groups_) {
     Link link;
     link.group = static_cast<int>(group);
-    for (int k = 0; k < kLanes; ++k) link.outside[k] = link.distance[k] = 0;
     while (next != near.end() && next->group < link.group) ++next;
     if (next != near.end() && next->group == link.group) {
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        if (next->near[k]) link.outside[k] = link.distance[k] = kForever;
-      }
+      for (std::size_t k = 0; k < kLanes; ++k) link.neighbour[k] = next->near[k] ? kForever : -kForever;
     }
-    bool open[kLanes];
-    openLanes(link, pair.second->groupBoxes[group], around, 0, 0, open);
-    const btScalar least = *std::min_element(link.outside, link.outside + kLanes);
-    if (least <= pair.slack) links_.push_back(link);
+    link.until = {gapsOf(link, pair.second->groupBoxes[group], around).least, kForever};
+    if (link.until.outside <= pair.slack) links_.push_back(link);
   }
   found.last = links_.size();
   if (found.first == found.last) return;
@@ -78,16 +73,23 @@ void PairCandidates::findForRun(const Pair& pair, int run) {
 }
 
 Clearance PairCandidates::leastOf(const Run& run) const {
-  Link least;
-  for (int k = 0; k < kLanes; ++k) least.outside[k] = least.distance[k] = kForever;
+  Clearance least;
+  for (std::size_t c = run.first; c < run.last; ++c) least.cut(links_[c].until);
+  return least;
+}
+
+/// Sets the clearance of those links whose boxes are apart from a box. Returns true if it is so for all.
+bool PairCandidates::closeByBoxes(const Run& run, const ContactBody& second, const ContactBox& box, btScalar reach) {
+  const auto path = static_cast<btScalar>(path_);
+  bool all = true;
   for (std::size_t c = run.first; c < run.last; ++c) {
-    for (int k = 0; k < kLanes; ++k) {
-      least.outside[k] = std::min(least.outside[k], links_[c].outside[k]);
-      least.distance[k] = std::min(least.distance[k], links_[c].distance[k]);
-    }
+    Link& link = links_[c];
+    if (isClear(link.until, path, reach)) continue;
+    const btScalar gap = gapsOf(link, second.groupBoxes[static_cast<std::size_t>(link.group)], box).least;
+    if (gap > 0) link.until = {path + gap, kForever};
+    all = all && gap > 0;
   }
-  return {*std::min_element(least.outside, least.outside + kLanes),
-          *std::min_element(least.distance, least.distance + kLanes)};
+  return all;
 }
 
 }  // namespace tetskin::contact_detail

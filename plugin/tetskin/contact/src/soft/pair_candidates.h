@@ -53,16 +53,22 @@ class PairCandidates {
   bool empty() const { return runs_.empty(); }
 
  private:
-  /// A group of tets that may contain samples of a run, and by lane, the values of the path at which its clearance
-  /// ends.
+  /// A group of tets that may contain samples of a run, and the values of the path at which clearances end.
   struct Link {
     int group = 0;
-    btScalar outside[kLanes], distance[kLanes];
+    Clearance until{0, 0};                                      ///< of the whole group
+    Clearance ends[kLanes] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};  ///< by lane; may end later than that of the group
+    /// Infinite for tets that are no candidates, below all gaps for others.
+    btScalar neighbour[kLanes] = {-kForever, -kForever, -kForever, -kForever};
   };
   struct Run {
     int run = 0;
     std::size_t first = 0, last = 0;  ///< in `links_`
     Clearance until{0, 0};            ///< the least of its links' values
+  };
+  /// The distances between a box and those of a group, and the least of them; 0 or below if they overlap.
+  struct Gaps {
+    btScalar gap[kLanes], least;
   };
   struct Pair {
     const ContactBody* first;
@@ -73,10 +79,13 @@ class PairCandidates {
   void findInLeaf(const Pair& pair, std::size_t leaf);
   void findForRun(const Pair& pair, int run);
   Clearance leastOf(const Run& run) const;
+  static Gaps gapsOf(const Link& link, const GroupBoxes& boxes, const ContactBox& box);
+  bool closeByBoxes(const Run& run, const ContactBody& second, const ContactBox& box, btScalar reach);
   template <class Test>
-  void testOpen(Link& link, const TetGroup& tets, const bool (&open)[kLanes], Test& test) const;
-  static bool openLanes(Link& link, const GroupBoxes& boxes, const ContactBox& box, btScalar path, btScalar reach,
-                        bool (&open)[kLanes]);
+  void testLink(Link& link, const ContactBody& second, const ContactBox& box, btScalar reach, Test& test) const;
+  static bool isClear(const Clearance& until, btScalar path, btScalar reach) {
+    return path < until.outside && path + reach < until.distance;
+  }
 
   /// Difference of the bodies' centroids when last read, and the paths of their nodes until then.
   btVector3 apart_{0, 0, 0};
@@ -85,40 +94,43 @@ class PairCandidates {
   double moved_ = 0;  ///< path of the last step
   double slack_ = -1;
   std::vector<Run> runs_;
-  std::vector<Link> links_;         ///< by run
-  std::vector<std::size_t> groups_; ///< found for a leaf of runs
+  std::vector<Link> links_;          ///< by run
+  std::vector<std::size_t> groups_;  ///< found for a leaf of runs
 };
 
-/// Sets the clearance of those lanes whose boxes are apart from a box. Returns true if some are left to be tested.
-inline bool PairCandidates::openLanes(Link& link, const GroupBoxes& boxes, const ContactBox& box, btScalar path,
-                                      btScalar reach, bool (&open)[kLanes]) {
-  btScalar gap[kLanes];
+/// Written so that compilers compute the lanes side by side.
+inline PairCandidates::Gaps PairCandidates::gapsOf(const Link& link, const GroupBoxes& boxes, const ContactBox& box) {
+  const auto larger = [](btScalar a, btScalar b) { return a > b ? a : b; };
+  Gaps gaps;
   for (int k = 0; k < kLanes; ++k) {
-    const btScalar x = std::max(box.low[0] - boxes.high[0][k], boxes.low[0][k] - box.high[0]);
-    const btScalar y = std::max(box.low[1] - boxes.high[1][k], boxes.low[1][k] - box.high[1]);
-    const btScalar z = std::max(box.low[2] - boxes.high[2][k], boxes.low[2][k] - box.high[2]);
-    gap[k] = std::max(std::max(x, y), z);
+    const btScalar x = larger(box.low[0] - boxes.high[0][k], boxes.low[0][k] - box.high[0]);
+    const btScalar y = larger(box.low[1] - boxes.high[1][k], boxes.low[1][k] - box.high[1]);
+    const btScalar z = larger(box.low[2] - boxes.high[2][k], boxes.low[2][k] - box.high[2]);
+    gaps.gap[k] = larger(larger(x, y), larger(z, link.neighbour[k]));
   }
-  bool any = false;
-  for (int k = 0; k < kLanes; ++k) {
-    const bool clear = (path < link.outside[k]) & (path + reach < link.distance[k]);
-    const bool apart = !clear & (gap[k] > 0);
-    link.outside[k] = apart ? path + gap[k] : link.outside[k];
-    link.distance[k] = apart ? kForever : link.distance[k];
-    open[k] = !clear & !apart;
-    any |= open[k];
-  }
-  return any;
+  static_assert(kLanes == 4, "one comparison for each lane");
+  gaps.least = std::min(std::min(gaps.gap[0], gaps.gap[1]), std::min(gaps.gap[2], gaps.gap[3]));
+  return gaps;
 }
 
 template <class Test>
-void PairCandidates::testOpen(Link& link, const TetGroup& tets, const bool (&open)[kLanes], Test& test) const {
+void PairCandidates::testLink(Link& link, const ContactBody& second, const ContactBox& box, btScalar reach,
+                              Test& test) const {
   const auto path = static_cast<btScalar>(path_);
+  const auto g = static_cast<std::size_t>(link.group);
+  const Gaps gaps = gapsOf(link, second.groupBoxes[g], box);
+  link.until = {path + gaps.least, kForever};
+  if (gaps.least > 0) return;
+  link.until = {};
   for (std::size_t k = 0; k < kLanes; ++k) {
-    if (!open[k]) continue;
-    const Clearance found = test(tets[k]);
-    link.outside[k] = path + found.outside;
-    link.distance[k] = path + found.distance;
+    Clearance& ends = link.ends[k];
+    if (gaps.gap[k] > 0) {
+      ends = {path + gaps.gap[k], kForever};
+    } else if (!isClear(ends, path, reach)) {
+      const Clearance found = test(second.data().groups[g][k]);
+      ends = {path + found.outside, path + found.distance};
+    }
+    link.until.cut(ends);
   }
 }
 
@@ -127,20 +139,12 @@ void PairCandidates::visit(const ContactBody& first, const ContactBody& second, 
                            Test&& test, End&& end) {
   assert(hold());
   const auto path = static_cast<btScalar>(path_);
-  const std::vector<TetGroup>& groups = second.data().groups;
   for (Run& run : runs_) {
-    if (path < run.until.outside && path + reach < run.until.distance) continue;
-    bool open[kLanes], any = false;
-    const ContactBox loose = first.runBox(run.run);
-    for (std::size_t c = run.first; c < run.last; ++c) {
-      any |= openLanes(links_[c], second.groupBoxes[static_cast<std::size_t>(links_[c].group)], loose, path, reach,
-                       open);
-    }
-    if (any) {
+    if (isClear(run.until, path, reach)) continue;
+    if (!closeByBoxes(run, second, first.runBox(run.run), reach)) {
       const ContactBox box = begin(run.run);
       for (std::size_t c = run.first; c < run.last; ++c) {
-        const auto g = static_cast<std::size_t>(links_[c].group);
-        if (openLanes(links_[c], second.groupBoxes[g], box, path, reach, open)) testOpen(links_[c], groups[g], open, test);
+        if (!isClear(links_[c].until, path, reach)) testLink(links_[c], second, box, reach, test);
       }
       end(run.run);
     }

@@ -299,7 +299,8 @@ void PairSearch::touch(int k, int run, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const int sample = run_.first + k;
   const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
-  const btVector3 motion = asksForMotion(in.grid, position.nearest, before) ? restMotion(sample, position) : btVector3(0, 0, 0);
+  const btVector3 motion =
+      asksForMotion(in.grid, position.nearest, before) ? restMotion(sample, position) : btVector3(0, 0, 0);
   SideDistance found;
   if (!findSide(in.grid, position.rest, position.nearest, motion, before, found)) return;
   const btVector3 normal = carriedGradient(in, position.tet, deformed(position.tet), found.side.normal);

@@ -94,13 +94,14 @@ class PairSearch {
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
-  std::uint64_t pair_ = 0;          ///< number of the pair that is searched
-  std::vector<KnownTet> known_;     ///< by tet
-  SampleRun run_;                   ///< the run that is being tested
-  DeformedTet own_;                 ///< its tet, if one of its samples touches
-  ContactBox around_;               ///< box of its samples
-  std::vector<btScalar> carried_[3];  ///< by sample of the run: its coordinates; lanes that are left over repeat the last
-  std::vector<btScalar> inside_;      ///< by sample of the run: its least weight in the tet
+  std::uint64_t pair_ = 0;       ///< number of the pair that is searched
+  std::vector<KnownTet> known_;  ///< by tet
+  SampleRun run_;                ///< the run that is being tested
+  DeformedTet own_;              ///< its tet, if one of its samples touches
+  ContactBox around_;            ///< box of its samples
+  std::vector<btScalar>
+      carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
+  std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in the tet
   std::vector<int> touched_, pierced_;  ///< samples of the step before
   std::vector<SamplePosition> positions_;
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`

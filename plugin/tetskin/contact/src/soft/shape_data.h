@@ -87,16 +87,16 @@ struct ShapeData {
   std::vector<btVector3> sampleRest;
   /// Outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none.
   std::vector<btVector3> sampleNormals;
-  std::vector<int> sampleNodes;                   ///< the node with the largest clamped weight
-  std::vector<btScalar> weights[4];               ///< the weights again, by node of the tet
-  std::vector<CarriedCells> carried;              ///< by tet; empty unless the cage is split
-  std::vector<FilledComponent> filled;            ///< by tet
-  std::vector<FilledComponent> runParts;          ///< by run: the part of the tet that holds its samples
-  std::vector<std::vector<int>> otherComponents;  ///< by run: see tetsOfOtherComponents
-  SearchTree runTree;                             ///< over all runs
-  SearchTree tetTree;                             ///< over the tets that hold, or are near, something inside
-  std::vector<TetGroup> groups;                   ///< by leaf of `tetTree`
-  std::vector<std::vector<NearGroup>> nearGroups; ///< by run, ascending
+  std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
+  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet
+  std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
+  std::vector<FilledComponent> filled;             ///< by tet
+  std::vector<FilledComponent> runParts;           ///< by run: the part of the tet that holds its samples
+  std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
+  SearchTree runTree;                              ///< over all runs
+  SearchTree tetTree;                              ///< over the tets that hold, or are near, something inside
+  std::vector<TetGroup> groups;                    ///< by leaf of `tetTree`
+  std::vector<std::vector<NearGroup>> nearGroups;  ///< by run, ascending
 };
 
 }  // namespace tetskin::contact_detail
