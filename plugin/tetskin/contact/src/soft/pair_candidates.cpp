@@ -57,14 +57,17 @@ void PairCandidates::findForRun(const Pair& pair, int run) {
   found.run = run;
   found.first = links_.size();
   for (const std::size_t group : groups_) {
-    Link link;
+    const GroupBoxes& boxes = pair.second->groupBoxes[group];
+    const Link far;
+    if (gapsOf(far, boxes, around).least > pair.slack) continue;
+    Link& link = links_.emplace_back();
     link.group = static_cast<int>(group);
     while (next != near.end() && next->group < link.group) ++next;
     if (next != near.end() && next->group == link.group) {
       for (std::size_t k = 0; k < kLanes; ++k) link.neighbour[k] = next->near[k] ? kForever : -kForever;
     }
-    link.until = {gapsOf(link, pair.second->groupBoxes[group], around).least, kForever};
-    if (link.until.outside <= pair.slack) links_.push_back(link);
+    link.until = {gapsOf(link, boxes, around).least, kForever};
+    if (link.until.outside > pair.slack) links_.pop_back();
   }
   found.last = links_.size();
   if (found.first == found.last) return;
