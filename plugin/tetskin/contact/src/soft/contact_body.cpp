@@ -82,10 +82,10 @@ void ContactBody::place() {
 void ContactBody::placeGroup(const TetGroup& group, GroupBoxes& boxes) const {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const auto tet = static_cast<std::size_t>(group[lane]);
-    const ContactBox box = group[lane] < 0 ? ContactBox{} : partBox(data().tets[tet], data().filled[tet]);
+    const ContactBox around = group[lane] < 0 ? ContactBox{} : partBox(data().tets[tet], data().filled[tet]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      boxes.low[axis][lane] = box.low[axis];
-      boxes.high[axis][lane] = box.high[axis];
+      boxes.low[axis][lane] = around.low[axis];
+      boxes.high[axis][lane] = around.high[axis];
     }
   }
 }
@@ -101,16 +101,16 @@ void ContactBody::fitTrees() {
   const auto aroundGroup = [&](const Bvh::Node& leaf) {
     const auto node = static_cast<std::size_t>(&leaf - tets.tree.nodes().data());
     const GroupBoxes& boxes = groupBoxes[static_cast<std::size_t>(tets.leafOf[node])];
-    ContactBox box;
+    ContactBox around;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (const btScalar low : boxes.low[axis]) box.low[axis] = std::min(box.low[axis], low);
-      for (const btScalar high : boxes.high[axis]) box.high[axis] = std::max(box.high[axis], high);
+      for (const btScalar low : boxes.low[axis]) around.low[axis] = std::min(around.low[axis], low);
+      for (const btScalar high : boxes.high[axis]) around.high[axis] = std::max(around.high[axis], high);
     }
-    return box;
+    return around;
   };
-  tets.tree.fill(tetTreeBoxes, aroundGroup, [](ContactBox box, const ContactBox& other) {
-    box.extend(other);
-    return box;
+  tets.tree.fill(tetTreeBoxes, aroundGroup, [](ContactBox around, const ContactBox& other) {
+    around.extend(other);
+    return around;
   });
 }
 
