@@ -17,7 +17,8 @@ class ContactRows {
   /// Collects the rows of all bodies that are elastic here: the points that a search has left in the body, Bullet's
   /// contacts of nodes and faces with rigid objects, and the body's anchors. Call it after velocities have been read.
   /// sources  of contacts among soft bodies, and of joints
-  void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources, btScalar seconds);
+  void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources, btScalar seconds,
+               ParallelFor* threads);
   /// Stores what the next step begins with, and reports the impulses to the contacts.
   void finish(SolverBodies& bodies, btScalar seconds) const;
 

@@ -24,11 +24,9 @@ bool ContactBody::fits() const {
 
 void ContactBody::read() {
   assert(fits());
-  fitted_ = false;
+  placed_.reset();
+  fitted_.reset();
   awake = body->isActive();
-  isDeformed_.assign(data().tets.size(), 0);
-  isBoxed_.assign(data().tets.size(), 0);
-  isCarried_.assign(data().runs.size(), 0);
   box = {};
   positions.resize(data().nodes.size());
   btVector3 sum(0, 0, 0);
@@ -64,75 +62,61 @@ void ContactBody::measureTravel(const btVector3& newCentroid) {
   read_ = positions;
 }
 
-const ContactBox& ContactBody::carry(int run) {
-  assert(run >= 0 && static_cast<std::size_t>(run) < isCarried_.size());
-  const ShapeData& shapeData = data();
-  const auto r = static_cast<std::size_t>(run);
-  runBoxes_.resize(shapeData.runs.size());
-  for (auto& coordinates : samples) coordinates.resize(shapeData.samples.size());
-  if (!isCarried_[r]) carryRun(shapeData.runs[r], runBoxes_[r]);
-  isCarried_[r] = 1;
-  return runBoxes_[r];
-}
-
-/// Computes the positions of a run's samples, and a box around them that is tighter than the tet's.
-void ContactBody::carryRun(const SampleRun& run, ContactBox& around) {
-  assert(run.first < run.last && static_cast<std::size_t>(run.last) <= samples[0].size());
-  const ShapeData& shapeData = data();
-  const Tet& n = shapeData.tets[static_cast<std::size_t>(run.tet)];
-  around = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    btScalar at[4];
-    for (std::size_t k = 0; k < 4; ++k) at[k] = positions[static_cast<std::size_t>(n[k])][axis];
-    btScalar* out = samples[axis].data();
-    btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
-    for (auto s = static_cast<std::size_t>(run.first); s < static_cast<std::size_t>(run.last); ++s) {
-      out[s] = shapeData.weights[0][s] * at[0] + shapeData.weights[1][s] * at[1] + shapeData.weights[2][s] * at[2] +
-               shapeData.weights[3][s] * at[3];
-      low = std::min(low, out[s]);
-      high = std::max(high, out[s]);
-    }
-    around.low[axis] = low;
-    around.high[axis] = high;
-  }
-}
-
-ContactBox ContactBody::filledBox(int tet) const {
-  assert(data().filled.size() == data().tets.size() && positions.size() == data().nodes.size());
-  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
-  const FilledComponent& component = data().filled[static_cast<std::size_t>(tet)];
+ContactBox ContactBody::partBox(const Tet& n, const FilledComponent& part) const {
   btVector3 base(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) base += component.minimum[k] * positions[static_cast<std::size_t>(n[k])];
+  for (std::size_t k = 0; k < 4; ++k) base += part.minimum[k] * positions[static_cast<std::size_t>(n[k])];
   ContactBox around;
-  for (const int node : n) around.extend(base + component.left * positions[static_cast<std::size_t>(node)]);
+  for (const int node : n) around.extend(base + part.left * positions[static_cast<std::size_t>(node)]);
   return around;
 }
 
+void ContactBody::place() {
+  assert(data().filled.size() == data().tets.size() && positions.size() == data().nodes.size());
+  placed_.make([&] {
+    const std::vector<TetGroup>& groups = data().groups;
+    groupBoxes.resize(groups.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) placeGroup(groups[g], groupBoxes[g]);
+  });
+}
+
+void ContactBody::placeGroup(const TetGroup& group, GroupBoxes& boxes) const {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const auto tet = static_cast<std::size_t>(group[lane]);
+    const ContactBox around = group[lane] < 0 ? ContactBox{} : partBox(data().tets[tet], data().filled[tet]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      boxes.low[axis][lane] = around.low[axis];
+      boxes.high[axis][lane] = around.high[axis];
+    }
+  }
+}
+
 void ContactBody::fit() {
-  if (fitted_) return;
-  fitted_ = true;
-  const ShapeData& shapeData = data();
-  for (std::size_t t = 0; t < shapeData.tets.size(); ++t) around(static_cast<int>(t));
-  for (std::size_t r = 0; r < shapeData.runs.size(); ++r) carry(static_cast<int>(r));
-  shapeData.runTree.fit(runTreeBoxes, [&](int index) { return runBox(shapeData.runTree.item(index)); });
-  shapeData.tetTree.fit(tetTreeBoxes, [&](int index) { return tetBox(shapeData.tetTree.item(index)); });
+  place();
+  fitted_.make([&] { fitTrees(); });
 }
 
-const ContactBox& ContactBody::around(int tet) {
-  assert(tet >= 0 && static_cast<std::size_t>(tet) < isBoxed_.size());
-  const auto t = static_cast<std::size_t>(tet);
-  boxes_.resize(data().tets.size());
-  if (!isBoxed_[t]) boxes_[t] = filledBox(tet);
-  isBoxed_[t] = 1;
-  return boxes_[t];
+void ContactBody::fitTrees() {
+  const SearchTree &runs = data().runTree, &tets = data().tetTree;
+  runs.tree.fit(runTreeBoxes, [&](int index) { return runBox(runs.tree.item(index)); });
+  const auto aroundGroup = [&](const Bvh::Node& leaf) {
+    const auto node = static_cast<std::size_t>(&leaf - tets.tree.nodes().data());
+    const GroupBoxes& boxes = groupBoxes[static_cast<std::size_t>(tets.leafOf[node])];
+    ContactBox around;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const btScalar low : boxes.low[axis]) around.low[axis] = std::min(around.low[axis], low);
+      for (const btScalar high : boxes.high[axis]) around.high[axis] = std::max(around.high[axis], high);
+    }
+    return around;
+  };
+  tets.tree.fill(tetTreeBoxes, aroundGroup, [](ContactBox around, const ContactBox& other) {
+    around.extend(other);
+    return around;
+  });
 }
 
-const DeformedTet& ContactBody::deformed(int tet) {
-  assert(tet >= 0 && static_cast<std::size_t>(tet) < isDeformed_.size());
-  deformed_.resize(data().tets.size());
-  DeformedTet& deformed = deformed_[static_cast<std::size_t>(tet)];
-  if (isDeformed_[static_cast<std::size_t>(tet)]) return deformed;
-  isDeformed_[static_cast<std::size_t>(tet)] = 1;
+DeformedTet ContactBody::deformed(int tet) const {
+  assert(tet >= 0 && static_cast<std::size_t>(tet) < data().tets.size());
+  DeformedTet deformed;
   const Tet& n = data().tets[static_cast<std::size_t>(tet)];
   deformed.origin = positions[static_cast<std::size_t>(n[3])];
   btVector3 edge[3];

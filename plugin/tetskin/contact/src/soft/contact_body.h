@@ -6,8 +6,10 @@
 
 #include <tetskin/contact/src/soft/shape_data.h>
 
+#include <atomic>
 #include <cassert>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace tetskin::contact_detail {
@@ -30,6 +32,30 @@ constexpr btScalar kMinWeight = btScalar(-0.02);
 /// overlap. The tet is not flat.
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet);
 
+/// The boxes of several tets side by side: coordinates by axis, then by lane. What is left over is empty.
+struct GroupBoxes {
+  btScalar low[3][kLanes], high[3][kLanes];
+};
+
+/// Something that is computed at most once a step, by the first thread that needs it.
+class OncePerStep {
+ public:
+  void reset() { done_.store(false, std::memory_order_relaxed); }
+  template <class Compute>
+  void make(Compute&& compute) {
+    if (done_.load(std::memory_order_acquire)) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (done_.load(std::memory_order_relaxed)) return;
+    compute();
+    done_.store(true, std::memory_order_release);
+  }
+
+ private:
+  std::atomic<bool> done_{false};
+  std::mutex mutex_;
+};
+
+/// Several threads may search in a body at once, after one has read it.
 class ContactBody {
  public:
   ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
@@ -41,28 +67,18 @@ class ContactBody {
 
   /// Reads the positions of the nodes, and computes their box. Cost O(nodes)
   void read();
-  /// Fits the trees to the current positions; at most once after `read`. Cost O(tets + samples)
+  /// Computes the boxes of the tets, unless this has been done since `read`. Cost O(tets)
+  void place();
+  /// Fits the trees to the current positions, unless this has been done since `read`. Cost O(tets + runs)
   void fit();
-  /// Computed at the first call in a step, as are the samples of a run.
-  const DeformedTet& deformed(int tet);
-  /// The box around the tet's filled part, computed at the first call in a step.
-  const ContactBox& around(int tet);
-  const ContactBox& carry(int run);
-  /// The boxes that `carryRun` and `around` have computed; valid after `fit`.
-  const ContactBox& runBox(int run) const {
-    assert(run >= 0 && static_cast<std::size_t>(run) < runBoxes_.size());
-    return runBoxes_[static_cast<std::size_t>(run)];
-  }
-  const ContactBox& tetBox(int tet) const {
-    assert(tet >= 0 && static_cast<std::size_t>(tet) < boxes_.size());
-    return boxes_[static_cast<std::size_t>(tet)];
-  }
 
-  /// The position of a sample whose run has been carried.
-  btVector3 sampleAt(int sample) const {
-    const auto s = static_cast<std::size_t>(sample);
-    return {samples[0][s], samples[1][s], samples[2][s]};
+  /// A box around the samples of a run, by the nodes of its tet.
+  ContactBox runBox(int run) const {
+    assert(run >= 0 && static_cast<std::size_t>(run) < data().runs.size());
+    const auto r = static_cast<std::size_t>(run);
+    return partBox(data().tets[static_cast<std::size_t>(data().runs[r].tet)], data().runParts[r]);
   }
+  DeformedTet deformed(int tet) const;
   /// The velocity of a point of a tet.
   btVector3 velocityAt(int tet, const btScalar weights[4]) const;
 
@@ -79,21 +95,19 @@ class ContactBody {
   btScalar fastest = 0;
   double travelled = 0;  ///< over all steps so far, relative to the centroid: an upper bound of the path of any node
   std::vector<btVector3> positions;                    ///< by node
+  std::vector<GroupBoxes> groupBoxes;                  ///< by group: around the tets' filled parts; valid after `place`
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, valid after `fit`
-  std::vector<btScalar> samples[3];                    ///< x, y and z coordinates in separate arrays
 
  private:
   void measureTravel(const btVector3& newCentroid);
   void measureSpeed();
   void measure(DeformedTet& tet, const Tet& n) const;
-  void carryRun(const SampleRun& run, ContactBox& around);
-  ContactBox filledBox(int tet) const;
+  ContactBox partBox(const Tet& n, const FilledComponent& part) const;
+  void placeGroup(const TetGroup& group, GroupBoxes& boxes) const;
+  void fitTrees();
 
-  bool fitted_ = false;
+  OncePerStep placed_, fitted_;
   std::vector<btVector3> read_;  ///< positions before any correction
-  std::vector<ContactBox> boxes_, runBoxes_;
-  std::vector<DeformedTet> deformed_;
-  std::vector<char> isDeformed_, isBoxed_, isCarried_;
 };
 
 }  // namespace tetskin::contact_detail

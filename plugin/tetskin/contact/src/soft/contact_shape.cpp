@@ -22,7 +22,9 @@ constexpr double kOverTriangle = 1e-4;
 constexpr int kCellsAlong = 4;
 static_assert(kCellsAlong * kCellsAlong * kCellsAlong <= 64, "CarriedCells has 64 bits");
 /// Elements per leaf of the trees: few enough that a leaf's box is tight, many enough that fitting is cheap.
-constexpr int kLeafSize = 4;
+constexpr int kLeafSize = kLanes;
+/// Added around the weights of a run's samples: more than rounding changes them.
+constexpr btScalar kWeightMargin = btScalar(1e-3);
 
 Status checkOptions(const ContactShapeOptions& options) {
   if (options.sampleCount < 1 || options.sampleCount > 10'000'000) {
@@ -184,8 +186,55 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
   }
   for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
   std::iota(runs.begin(), runs.end(), 0);
-  data.runTree = Bvh(runBoxes, runs, kLeafSize);
-  data.tetTree = Bvh(tetBoxes, filled, kLeafSize);
+  data.runTree = SearchTree(Bvh(runBoxes, runs, kLeafSize));
+  data.tetTree = SearchTree(Bvh(tetBoxes, filled, kLeafSize));
+  for (const Bvh::Node& node : data.tetTree.tree.nodes()) {
+    if (!node.isLeaf()) continue;
+    assert(node.last - node.first <= kLanes);
+    TetGroup& group = data.groups.emplace_back();
+    group.fill(-1);
+    for (int k = node.first; k < node.last; ++k) {
+      group[static_cast<std::size_t>(k - node.first)] = data.tetTree.tree.item(k);
+    }
+  }
+}
+
+/// By run: the least weights of its samples.
+void boundRuns(ShapeData& data) {
+  for (const SampleRun& run : data.runs) {
+    FilledComponent part;
+    part.left = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto first = data.weights[k].begin();
+      part.minimum[k] = *std::min_element(first + run.first, first + run.last) - kWeightMargin;
+      part.left -= part.minimum[k];
+    }
+    data.runParts.push_back(part);
+  }
+}
+
+/// True if a run and a tet are near at rest, both in space and along the body.
+bool nearAtRest(const ShapeData& data, std::size_t run, int tet) {
+  const btVector3& a = data.centroids[static_cast<std::size_t>(data.runs[run].tet)];
+  const btScalar apart = kEdgesApart * data.edge;
+  if (!((a - data.centroids[static_cast<std::size_t>(tet)]).length2() < apart * apart)) return false;
+  const std::vector<int>& others = data.otherComponents[run];
+  return !std::binary_search(others.begin(), others.end(), tet);
+}
+
+void findNearGroups(ShapeData& data) {
+  assert(data.otherComponents.size() == data.runs.size());
+  data.nearGroups.resize(data.runs.size());
+  for (std::size_t r = 0; r < data.runs.size(); ++r) {
+    for (std::size_t g = 0; g < data.groups.size(); ++g) {
+      NearGroup found;
+      found.group = static_cast<int>(g);
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        found.near[k] = data.groups[g][k] >= 0 && nearAtRest(data, r, data.groups[g][k]);
+      }
+      if (found.near != NearGroup{}.near) data.nearGroups[r].push_back(found);
+    }
+  }
 }
 
 /// The numbers of tets that have duplicates.
@@ -239,6 +288,16 @@ void findCopies(const Cage& cage, const TriangleMesh& mesh, const TriangleBvh& s
 
 }  // namespace
 
+SearchTree::SearchTree(Bvh from) : tree(std::move(from)) {
+  const std::vector<Bvh::Node>& nodes = tree.nodes();
+  past.resize(nodes.size());
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    past[n] = nodes[n].isLeaf() ? static_cast<int>(n) + 1 : past[static_cast<std::size_t>(nodes[n].right)];
+  }
+  int leaves = 0;
+  for (const Bvh::Node& node : nodes) leafOf.push_back(node.isLeaf() ? leaves++ : -1);
+}
+
 int CarriedCells::cellOf(const btScalar weights[4]) {
   int cell = 0;
   for (int k = 2; k >= 0; --k) {
@@ -291,7 +350,9 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   makeRuns(cage.mesh, samples, tets, *data);
   makeTrees(cage.mesh, *data);
   findCopies(cage, mesh, surface, *data);
+  boundRuns(*data);
   data->otherComponents = tetsOfOtherComponents(*data);
+  findNearGroups(*data);
   assert(data->otherComponents.size() == data->runs.size() && data->sampleNodes.size() == data->samples.size());
   return Access<ContactShape>::create(std::move(data));
 }

@@ -86,6 +86,10 @@ void ContactSides::clear() {
   next_ = 0;
 }
 
+bool asksForMotion(const DistanceGrid& grid, const GridDistance& nearest, const ContactSide* before) {
+  return !before && !(nearest.distance > -kDeepCubes * grid.spacing());
+}
+
 bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistance& nearest, const btVector3& motion,
               const ContactSide* before, SideDistance& result) {
   assert(grid.spacing() > 0);
@@ -96,7 +100,7 @@ bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistanc
   result.side.normal = normal;
   if (!before) {
     const bool leaving = known && motion.dot(normal) > 0;
-    if (nearest.distance > -kDeepCubes * grid.spacing() || (known && !leaving)) return known;
+    if (!asksForMotion(grid, nearest, before) || (known && !leaving)) return known;
     if (!entered(grid, rest, motion, result.side)) return known;
     result.distance = (rest - result.side.point).dot(result.side.normal);
     return true;

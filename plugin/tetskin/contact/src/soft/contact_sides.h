@@ -46,10 +46,13 @@ struct SideDistance {
   ContactSide side;
 };
 
+/// True if the side depends on the sample's motion: it is deep when it is first seen.
+bool asksForMotion(const DistanceGrid& grid, const GridDistance& nearest, const ContactSide* before);
+
 /// Finds the side of a sample. Returns false if the surface cannot be determined there.
 /// grid    of the body that the sample is in
 /// rest    position of the sample in that body's rest space; `nearest` is the grid's result there
-/// motion  the sample's motion in a step, in that rest space
+/// motion  the sample's motion in a step, in that rest space; used if `asksForMotion`
 /// before  the sample's side in the step before, or null
 bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistance& nearest, const btVector3& motion,
               const ContactSide* before, SideDistance& result);

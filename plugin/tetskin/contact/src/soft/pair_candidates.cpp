@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/soft/other_components.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
 
 #include <algorithm>
 #include <cassert>
 
 namespace tetskin::contact_detail {
-namespace {
-
-/// True if a run and a tet are near at rest, both in space and along the body.
-bool nearAtRest(const ShapeData& data, int run, int tet) {
-  assert(data.otherComponents.size() == data.runs.size() && data.centroids.size() == data.tets.size());
-  const btVector3& a = data.centroids[static_cast<std::size_t>(data.runs[static_cast<std::size_t>(run)].tet)];
-  const btScalar apart = kEdgesApart * data.edge;
-  if (!((a - data.centroids[static_cast<std::size_t>(tet)]).length2() < apart * apart)) return false;
-  const std::vector<int>& others = data.otherComponents[static_cast<std::size_t>(run)];
-  return !std::binary_search(others.begin(), others.end(), tet);
-}
-
-}  // namespace
 
 void PairCandidates::advance(const ContactBody& first, const ContactBody& second) {
   const btVector3 apart = second.centroid - first.centroid;
@@ -31,7 +17,6 @@ void PairCandidates::advance(const ContactBody& first, const ContactBody& second
 }
 
 void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slack) {
-  assert(first.readable && second.readable && slack >= 0);
   first.fit();
   second.fit();
   apart_ = second.centroid - first.centroid;
@@ -40,44 +25,74 @@ void PairCandidates::find(ContactBody& first, ContactBody& second, btScalar slac
   slack_ = static_cast<double>(slack);
   runs_.clear();
   links_.clear();
-  const Bvh &runs = first.data().runTree, &tets = second.data().tetTree;
-  if (runs.empty() || tets.empty()) return;
-  const std::vector<ContactBox>&runBoxes = first.runTreeBoxes, &tetBoxes = second.tetTreeBoxes;
-  const ContactBox overlap = runBoxes[0].grownBy(slack).intersection(tetBoxes[0]);
-  const auto meet = [&](int run, int tet) {
-    const ContactBox a = runBoxes[static_cast<std::size_t>(run)].grownBy(slack);
-    const ContactBox& b = tetBoxes[static_cast<std::size_t>(tet)];
-    return a.collides(b) && a.collides(overlap) && b.collides(overlap);
-  };
-  const Pair pair{&first, &second, overlap, slack};
-  visitPairs(runs, tets, meet, [&](const Bvh::Node& a, const Bvh::Node& b) { overlapLeaves(pair, a, b); });
-  gatherRuns();
+  const SearchTree &runs = first.data().runTree, &tets = second.data().tetTree;
+  if (runs.tree.empty() || tets.tree.empty()) return;
+  const Pair pair{&first, &second, first.runTreeBoxes[0].grownBy(slack).intersection(second.tetTreeBoxes[0]), slack};
+  const ContactBox near = pair.overlap.grownBy(slack);
+  runs.visitLeaves([&](std::size_t node) { return first.runTreeBoxes[node].collides(near); },
+                   [&](std::size_t node) { findInLeaf(pair, node); });
+  std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.run < b.run; });
 }
 
-void PairCandidates::overlapLeaves(const Pair& pair, const Bvh::Node& runs, const Bvh::Node& tets) {
-  const ShapeData &first = pair.first->data(), &second = pair.second->data();
+/// Finds the groups near to all runs of a leaf, and then those near to each.
+void PairCandidates::findInLeaf(const Pair& pair, std::size_t leaf) {
+  const SearchTree &runs = pair.first->data().runTree, &tets = pair.second->data().tetTree;
+  const ContactBox around = pair.first->runTreeBoxes[leaf].grownBy(pair.slack).intersection(pair.overlap);
+  groups_.clear();
+  tets.visitLeaves([&](std::size_t node) { return pair.second->tetTreeBoxes[node].collides(around); },
+                   [&](std::size_t node) { groups_.push_back(static_cast<std::size_t>(tets.leafOf[node])); });
+  if (groups_.empty()) return;
+  const Bvh::Node& node = runs.tree.nodes()[leaf];
+  for (int k = node.first; k < node.last; ++k) findForRun(pair, runs.tree.item(k));
+}
+
+void PairCandidates::findForRun(const Pair& pair, int run) {
+  const ContactBox around = pair.first->runBox(run);
+  if (!around.grownBy(pair.slack).collides(pair.overlap)) return;
+  static const std::vector<NearGroup> kNone;
   const bool same = pair.first == pair.second;
-  for (int i = runs.first; i < runs.last; ++i) {
-    const int run = first.runTree.item(i);
-    const ContactBox around = pair.first->runBox(run).grownBy(pair.slack);
-    if (!around.collides(pair.overlap)) continue;
-    for (int j = tets.first; j < tets.last; ++j) {
-      const int tet = second.tetTree.item(j);
-      if (!around.collides(pair.second->tetBox(tet))) continue;
-      // The box's slack covers all motion of nodes until candidates are found again.
-      const DeformedTet& deformed = pair.second->deformed(tet);
-      if (!deformed.flat && gapTo(around, deformed) > 0) continue;
-      if (!same || !nearAtRest(first, run, tet)) links_.push_back({run, tet});
+  const std::vector<NearGroup>& near = same ? pair.first->data().nearGroups[static_cast<std::size_t>(run)] : kNone;
+  auto next = near.begin();
+  Run found;
+  found.run = run;
+  found.first = links_.size();
+  for (const std::size_t group : groups_) {
+    const GroupBoxes& boxes = pair.second->groupBoxes[group];
+    const Link far;
+    if (gapsOf(far, boxes, around).least > pair.slack) continue;
+    Link& link = links_.emplace_back();
+    link.group = static_cast<int>(group);
+    while (next != near.end() && next->group < link.group) ++next;
+    if (next != near.end() && next->group == link.group) {
+      for (std::size_t k = 0; k < kLanes; ++k) link.neighbour[k] = next->near[k] ? kForever : -kForever;
     }
+    link.until = {gapsOf(link, boxes, around).least, kForever};
+    if (link.until.outside > pair.slack) links_.pop_back();
   }
+  found.last = links_.size();
+  if (found.first == found.last) return;
+  found.until = leastOf(found);
+  runs_.push_back(found);
 }
 
-void PairCandidates::gatherRuns() {
-  std::stable_sort(links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.run < b.run; });
-  for (std::size_t c = 0; c < links_.size(); ++c) {
-    if (c == 0 || links_[c].run != links_[c - 1].run) runs_.push_back({links_[c].run, c, c});
-    runs_.back().last = c + 1;
+Clearance PairCandidates::leastOf(const Run& run) const {
+  Clearance least;
+  for (std::size_t c = run.first; c < run.last; ++c) least.cut(links_[c].until);
+  return least;
+}
+
+/// Sets the clearance of those links whose boxes are apart from a box. Returns true if it is so for all.
+bool PairCandidates::closeByBoxes(const Run& run, const ContactBody& second, const ContactBox& box, btScalar reach) {
+  const auto path = static_cast<btScalar>(path_);
+  bool all = true;
+  for (std::size_t c = run.first; c < run.last; ++c) {
+    Link& link = links_[c];
+    if (isClear(link.until, path, reach)) continue;
+    const btScalar gap = gapsOf(link, second.groupBoxes[static_cast<std::size_t>(link.group)], box).least;
+    if (gap > 0) link.until = {path + gap, kForever};
+    all = all && gap > 0;
   }
+  return all;
 }
 
 }  // namespace tetskin::contact_detail

@@ -51,27 +51,18 @@ btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
   return p;
 }
 
-/// The distance between two boxes; 0 or below if they overlap.
-btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
-  btScalar gap = -BT_LARGE_FLOAT;
-  for (int axis = 0; axis < 3; ++axis) {
-    gap = std::max({gap, a.low[axis] - b.high[axis], b.low[axis] - a.high[axis]});
-  }
-  return gap;
-}
-
 bool contains(const std::vector<int>& ascending, int sample) {
   return std::binary_search(ascending.begin(), ascending.end(), sample);
 }
 
 Clearance outside(btScalar gap) {
   Clearance clear;
-  clear.outside = static_cast<double>(gap);
+  clear.outside = gap;
   return clear;
 }
 Clearance away(btScalar distance) {
   Clearance clear;
-  clear.distance = static_cast<double>(distance);
+  clear.distance = distance;
   return clear;
 }
 Clearance atSurface() {
@@ -84,6 +75,9 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
                          btScalar deep, PairMemory& memory, std::vector<Touch>& touches) {
   assert(reach > 0 && dt > 0 && deep >= 0);
   now_ = {&first, &second, reach, dt, apart, deep, &memory.sides};
+  ++pair_;
+  second.place();
+  if (known_.size() < second.data().tets.size()) known_.resize(second.data().tets.size());
   overlap_ = {};
   touches_ = &touches;
   touchOfNode_.assign(first.data().nodes.size(), -1);
@@ -96,7 +90,8 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
       std::min(std::max(kSlackCubes * cube, kSlackSteps * memory.candidates.moved()), kMaxSlackCubes * cube);
   if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
   memory.candidates.visit(
-      reach, [&](int run) { beginRun(run); }, [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
+      first, second, reach, [&](int run) { return beginRun(run); }, [&](int tet) { return testTet(tet); },
+      [&](int run) { touchRun(run); });
   remember(memory);
   return overlap_;
 }
@@ -117,44 +112,96 @@ void PairSearch::remember(PairMemory& memory) const {
   for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
 }
 
-void PairSearch::beginRun(int run) {
+const ContactBox& PairSearch::beginRun(int run) {
   run_ = now_.first->data().runs[static_cast<std::size_t>(run)];
   assert(run_.first < run_.last);
-  around_ = now_.first->carry(run);
-  const auto count = static_cast<std::size_t>(run_.last - run_.first);
-  inside_.resize(count);
-  heads_.assign(count, -1);
+  carryRun();
+  heads_.assign(static_cast<std::size_t>(run_.last - run_.first), -1);
   positions_.clear();
+  return around_;
+}
+
+/// Computes the positions of the run's samples, and a box around them that is tighter than the tet's.
+void PairSearch::carryRun() {
+  const ShapeData& shapeData = now_.first->data();
+  const Tet& n = shapeData.tets[static_cast<std::size_t>(run_.tet)];
+  const auto first = static_cast<std::size_t>(run_.first), count = static_cast<std::size_t>(run_.last) - first;
+  const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+  inside_.resize(padded);
+  for (int axis = 0; axis < 3; ++axis) {
+    btScalar at[4];
+    for (std::size_t k = 0; k < 4; ++k) at[k] = now_.first->positions[static_cast<std::size_t>(n[k])][axis];
+    carried_[axis].resize(padded);
+    btScalar* out = carried_[axis].data();
+    const btScalar *w0 = &shapeData.weights[0][first], *w1 = &shapeData.weights[1][first],
+                   *w2 = &shapeData.weights[2][first], *w3 = &shapeData.weights[3][first];
+    for (std::size_t s = 0; s < count; ++s) out[s] = w0[s] * at[0] + w1[s] * at[1] + w2[s] * at[2] + w3[s] * at[3];
+    for (std::size_t s = count; s < padded; ++s) out[s] = out[count - 1];
+    btScalar low[kLanes], high[kLanes];
+    std::copy(out, out + kLanes, low);
+    std::copy(out, out + kLanes, high);
+    for (std::size_t s = kLanes; s < padded; s += kLanes) {
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        low[k] = std::min(low[k], out[s + k]);
+        high[k] = std::max(high[k], out[s + k]);
+      }
+    }
+    around_.low[axis] = *std::min_element(low, low + kLanes);
+    around_.high[axis] = *std::max_element(high, high + kLanes);
+  }
+}
+
+btVector3 PairSearch::sampleAt(int k) const {
+  const auto s = static_cast<std::size_t>(k);
+  return {carried_[0][s], carried_[1][s], carried_[2][s]};
+}
+
+const DeformedTet& PairSearch::deformed(int tet) {
+  KnownTet& known = known_[static_cast<std::size_t>(tet)];
+  if (known.pair != pair_) known.tet = now_.second->deformed(tet);
+  known.pair = pair_;
+  return known.tet;
 }
 
 void PairSearch::touchRun(int run) {
+  if (!positions_.empty()) own_ = now_.first->deformed(run_.tet);
   for (std::size_t k = 0; k < heads_.size(); ++k) {
     for (int p = heads_[k]; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
-      touch(run_.first + static_cast<int>(k), run, positions_[static_cast<std::size_t>(p)]);
+      touch(static_cast<int>(k), run, positions_[static_cast<std::size_t>(p)]);
     }
   }
 }
 
+/// Computes the least weight of each sample of the run; returns the largest of these.
+btScalar PairSearch::leastWeights(const DeformedTet& deformed) {
+  const btVector3 &o = deformed.origin, &a = deformed.rows[0], &b = deformed.rows[1], &c = deformed.rows[2];
+  const btScalar *xs = carried_[0].data(), *ys = carried_[1].data(), *zs = carried_[2].data();
+  btScalar* inside = inside_.data();
+  btScalar largest[kLanes];
+  std::fill(largest, largest + kLanes, -BT_LARGE_FLOAT);
+  for (std::size_t s = 0; s < inside_.size(); s += kLanes) {
+    for (std::size_t k = s; k < s + kLanes; ++k) {
+      const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
+      const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
+      const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
+      const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
+      inside[k] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
+      largest[k - s] = std::max(largest[k - s], inside[k]);
+    }
+  }
+  return *std::max_element(largest, largest + kLanes);
+}
+
 /// Tests the samples of the run.
 Clearance PairSearch::testTet(int tet) {
-  if (const btScalar gap = gapBetween(around_, now_.second->around(tet)); gap > 0) return outside(gap);
-  const DeformedTet& deformed = now_.second->deformed(tet);
-  if (deformed.flat) return outside(0);
-  if (const btScalar gap = gapTo(around_, deformed); gap > 0) return outside(gap);
-  const btVector3 &o = deformed.origin, &a = deformed.rows[0], &b = deformed.rows[1], &c = deformed.rows[2];
-  const btScalar *xs = &now_.first->samples[0][static_cast<std::size_t>(run_.first)],
-                 *ys = &now_.first->samples[1][static_cast<std::size_t>(run_.first)],
-                 *zs = &now_.first->samples[2][static_cast<std::size_t>(run_.first)];
-  const int count = run_.last - run_.first;
-  for (int k = 0; k < count; ++k) {
-    const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
-    const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
-    const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
-    const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
-    inside_[static_cast<std::size_t>(k)] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
-  }
+  const DeformedTet& in = deformed(tet);
+  if (in.flat) return outside(0);
+  if (const btScalar gap = gapTo(around_, in); gap > 0) return outside(gap);
+  const btScalar largest = leastWeights(in);
+  if (largest < kMinWeight) return outside((kMinWeight - largest) / in.steepest);
   Clearance clear;
   btScalar maximum = -BT_LARGE_FLOAT;
+  const int count = run_.last - run_.first;
   for (int k = 0; k < count; ++k) {
     const btScalar weight = inside_[static_cast<std::size_t>(k)];
     if (weight >= kMinWeight) {
@@ -163,7 +210,7 @@ Clearance PairSearch::testTet(int tet) {
       maximum = std::max(maximum, weight);
     }
   }
-  clear.cut(outside((kMinWeight - maximum) / deformed.steepest));
+  clear.cut(outside((kMinWeight - maximum) / in.steepest));
   return clear;
 }
 
@@ -171,15 +218,15 @@ Clearance PairSearch::testTet(int tet) {
 Clearance PairSearch::offer(int tet, int sample, int k) {
   assert(k >= 0 && static_cast<std::size_t>(k) < heads_.size());
   const ShapeData& data = now_.second->data();
-  const DeformedTet& deformed = now_.second->deformed(tet);
+  const DeformedTet& in = deformed(tet);
   SamplePosition position;
-  deformed.weightsAt(now_.first->sampleAt(sample), position.weights);
+  in.weightsAt(sampleAt(k), position.weights);
   if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(position.weights)) return atSurface();
   position.rest = restPoint(data, tet, position.weights);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
     const btScalar moved = (position.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
-    if (moved < own) return outside((own - moved) / deformed.restPerWorld);
+    if (moved < own) return outside((own - moved) / in.restPerWorld);
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
@@ -187,7 +234,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
     if ((positions_[static_cast<std::size_t>(p)].rest - position.rest).length2() < apart * apart) return atSurface();
   }
   if (!data.grid.at(position.rest, position.nearest)) return atSurface();
-  const btScalar distance = position.nearest.distance / deformed.restPerWorld;
+  const btScalar distance = position.nearest.distance / in.restPerWorld;
   if (distance > now_.reach) return away(distance);
   position.tet = tet;
   position.next = head;
@@ -197,29 +244,27 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
 }
 
 /// The motion of the sample in the body's rest space.
-btVector3 PairSearch::restMotion(int sample, const SamplePosition& position) const {
+btVector3 PairSearch::restMotion(int sample, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
   const btVector3 velocity =
       point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(position.tet, position.weights);
-  const DeformedTet& deformed = now_.second->deformed(position.tet);
+  const DeformedTet& around = deformed(position.tet);
   const Tet& n = in.tets[static_cast<std::size_t>(position.tet)];
   btVector3 motion(0, 0, 0);
   for (std::size_t k = 0; k < 3; ++k) {
     const btVector3 edge = in.nodes[static_cast<std::size_t>(n[k])] - in.nodes[static_cast<std::size_t>(n[3])];
-    motion += now_.dt * deformed.rows[k].dot(velocity) * edge;
+    motion += now_.dt * around.rows[k].dot(velocity) * edge;
   }
   return motion;
 }
 
 /// The normal of the sample's own surface, world space; 0 if it is not known.
-btVector3 PairSearch::ownNormal(int sample, int run) const {
+btVector3 PairSearch::ownNormal(int sample) const {
+  if (own_.flat) return {0, 0, 0};
   const ShapeData& shapeData = now_.first->data();
-  const int tet = shapeData.runs[static_cast<std::size_t>(run)].tet;
-  const DeformedTet& deformed = now_.first->deformed(tet);
-  if (deformed.flat) return {0, 0, 0};
   const btVector3 own =
-      carriedGradient(shapeData, tet, deformed, shapeData.sampleNormals[static_cast<std::size_t>(sample)]);
+      carriedGradient(shapeData, run_.tet, own_, shapeData.sampleNormals[static_cast<std::size_t>(sample)]);
   const btScalar length = own.length();
   return length > SIMD_EPSILON ? own / length : btVector3(0, 0, 0);
 }
@@ -250,13 +295,15 @@ void PairSearch::count(const btVector3& own, const Touch& touch) {
   ++overlap_.inside;
 }
 
-void PairSearch::touch(int sample, int run, const SamplePosition& position) {
+void PairSearch::touch(int k, int run, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
+  const int sample = run_.first + k;
   const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
-  const btVector3 motion = before ? btVector3(0, 0, 0) : restMotion(sample, position);
+  const btVector3 motion =
+      asksForMotion(in.grid, position.nearest, before) ? restMotion(sample, position) : btVector3(0, 0, 0);
   SideDistance found;
   if (!findSide(in.grid, position.rest, position.nearest, motion, before, found)) return;
-  const btVector3 normal = carriedGradient(in, position.tet, now_.second->deformed(position.tet), found.side.normal);
+  const btVector3 normal = carriedGradient(in, position.tet, deformed(position.tet), found.side.normal);
   const btScalar length = normal.length();
   if (!(length > SIMD_EPSILON)) return;
   Touch made;
@@ -267,9 +314,10 @@ void PairSearch::touch(int sample, int run, const SamplePosition& position) {
   made.sample = sample;
   made.run = run;
   made.tet = position.tet;
+  made.point = sampleAt(k);
   std::copy(position.weights, position.weights + 4, made.weights);
   made.normal = normal / length;
-  const btVector3 own = ownNormal(sample, run);
+  const btVector3 own = ownNormal(sample);
   count(own, made);
   const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
   if (!direct(own, onFace, made)) return;

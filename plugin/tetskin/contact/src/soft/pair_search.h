@@ -7,6 +7,7 @@
 #include <tetskin/contact/src/soft/contact_sides.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace tetskin::contact_detail {
@@ -16,6 +17,7 @@ struct Touch {
   int sample = 0, run = 0;
   int tet = -1;              ///< of the other body
   btScalar weights[4] = {};  ///< in that tet
+  btVector3 point{0, 0, 0};  ///< of the sample, world space
   btVector3 normal{0, 1, 0};
   btScalar distance = 0;  ///< world space; below 0: the depth
   bool pierces = false;   ///< deeper than a sample of a sliding surface can be, in this step or before
@@ -68,24 +70,39 @@ class PairSearch {
     ContactSides* sides;
   };
 
+  /// A tet of the second body, as last computed for the pair with this number.
+  struct KnownTet {
+    std::uint64_t pair = 0;
+    DeformedTet tet;
+  };
+
   void remember(PairMemory& memory) const;
-  void beginRun(int run);
+  const ContactBox& beginRun(int run);
+  void carryRun();
+  const DeformedTet& deformed(int tet);
+  btVector3 sampleAt(int k) const;
   Clearance testTet(int tet);
+  btScalar leastWeights(const DeformedTet& deformed);
   Clearance offer(int tet, int sample, int k);
   void touchRun(int run);
-  void touch(int sample, int run, const SamplePosition& position);
+  void touch(int k, int run, const SamplePosition& position);
   void count(const btVector3& own, const Touch& touch);
-  btVector3 restMotion(int sample, const SamplePosition& position) const;
-  btVector3 ownNormal(int sample, int run) const;
+  btVector3 restMotion(int sample, const SamplePosition& position);
+  btVector3 ownNormal(int sample) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};
-  SampleRun run_;                       ///< the run that is being tested
-  ContactBox around_;                   ///< box of its samples
+  std::uint64_t pair_ = 0;       ///< number of the pair that is searched
+  std::vector<KnownTet> known_;  ///< by tet
+  SampleRun run_;                ///< the run that is being tested
+  DeformedTet own_;              ///< its tet, if one of its samples touches
+  ContactBox around_;            ///< box of its samples
+  std::vector<btScalar>
+      carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
+  std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in the tet
   std::vector<int> touched_, pierced_;  ///< samples of the step before
-  std::vector<btScalar> inside_;        ///< by sample of the run: its least weight in the tet
   std::vector<SamplePosition> positions_;
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`
   std::vector<Touch>* touches_ = nullptr;

@@ -41,6 +41,40 @@ struct FilledComponent {
   btScalar left = 1;  ///< 1 minus their sum
 };
 
+/// Number of tets that are tested at once: those of a leaf of their tree.
+constexpr int kLanes = 4;
+
+/// The tets of a leaf; -1 in lanes that are left over.
+using TetGroup = std::array<int, kLanes>;
+
+/// A group with tets that are neighbours of a run: these do not collide with it.
+struct NearGroup {
+  int group = 0;
+  std::array<bool, kLanes> near{};
+};
+
+/// A tree of items that is walked without a stack.
+struct SearchTree {
+  Bvh tree;
+  std::vector<int> past;    ///< by node: the first one after it that is not below it
+  std::vector<int> leafOf;  ///< by node: the number of the leaf, in the order of the items; -1: none
+
+  SearchTree() = default;
+  explicit SearchTree(Bvh from);
+  /// Calls visit(node) for the leaves for which meets(node) is true, and for all nodes that contain them.
+  template <class Meets, class Visit>
+  void visitLeaves(const Meets& meets, Visit&& visit) const {
+    for (std::size_t n = 0; n < past.size();) {
+      if (!meets(n)) {
+        n = static_cast<std::size_t>(past[n]);
+        continue;
+      }
+      if (leafOf[n] >= 0) visit(n);
+      ++n;
+    }
+  }
+};
+
 struct ShapeData {
   std::vector<btVector3> nodes;
   std::vector<Tet> tets;
@@ -53,13 +87,16 @@ struct ShapeData {
   std::vector<btVector3> sampleRest;
   /// Outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none.
   std::vector<btVector3> sampleNormals;
-  std::vector<int> sampleNodes;                   ///< the node with the largest clamped weight
-  std::vector<btScalar> weights[4];               ///< the weights again, by node of the tet
-  std::vector<CarriedCells> carried;              ///< by tet; empty unless the cage is split
-  std::vector<FilledComponent> filled;            ///< by tet
-  std::vector<std::vector<int>> otherComponents;  ///< by run: see tetsOfOtherComponents
-  Bvh runTree;                                    ///< over all runs
-  Bvh tetTree;                                    ///< over the tets that hold, or are near, something inside
+  std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
+  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet
+  std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
+  std::vector<FilledComponent> filled;             ///< by tet
+  std::vector<FilledComponent> runParts;           ///< by run: the part of the tet that holds its samples
+  std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
+  SearchTree runTree;                              ///< over all runs
+  SearchTree tetTree;                              ///< over the tets that hold, or are near, something inside
+  std::vector<TetGroup> groups;                    ///< by leaf of `tetTree`
+  std::vector<std::vector<NearGroup>> nearGroups;  ///< by run, ascending
 };
 
 }  // namespace tetskin::contact_detail

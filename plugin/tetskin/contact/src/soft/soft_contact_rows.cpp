@@ -24,6 +24,8 @@ constexpr btScalar kMinGradient = btScalar(0.05);
 /// Fraction of a body's samples that are at or below another's surface with agreeing normals, from which on the two
 /// bodies coincide.
 constexpr double kInOnePlace = 0.3;
+/// Most tasks among which pairs are divided: several for each of many threads, as pairs differ.
+constexpr std::size_t kMaxTasks = 64;
 /// Numbers of points begin here, so that they differ from those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
 
@@ -114,15 +116,22 @@ void SoftContactRows::removeSoftBody(btSoftBody* body) {
   gone_.push_back(body);
 }
 
-std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds) {
+std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
   assert(seconds > 0);
   contacts_.clear();
-  for (const auto& body : bodies_) {
-    body->readable = false;
-    if (body->fits()) body->read();
-  }
+  runTasks(threads, bodies_.size(), [&](std::size_t k) {
+    bodies_[k]->readable = false;
+    if (bodies_[k]->fits()) bodies_[k]->read();
+  });
+  std::vector<SearchedPair> pairs;
   for (const auto& [first, second] : overlappingPairs()) {
-    if (first->awake || second->awake) findInPair(*first, *second, seconds);
+    if (first->awake || second->awake) pairs.push_back({first, second, &pairStates_[{first->id, second->id}]});
+  }
+  findInPairs(pairs, seconds, threads);
+  // In the order of the pairs: contacts wake bodies, on which those that follow depend.
+  for (const auto& [first, second, state] : pairs) {
+    for (const Touch& touch : state->touches[0]) addContact(*first, *second, touch, seconds);
+    for (const Touch& touch : state->touches[1]) addContact(*second, *first, touch, seconds);
   }
   return &contacts_;
 }
@@ -157,31 +166,39 @@ void SoftContactRows::forgetAllBut(const BodyPairs& near) {
   }
 }
 
-void SoftContactRows::findInPair(ContactBody& first, ContactBody& second, btScalar seconds) {
-  assert(first.readable && second.readable);
-  PairState& pairState = pairStates_[{first.id, second.id}];
-  const btVector3 before = pairState.apart;
-  pairState.apart = search(first, second, seconds, pairState);
-  if (before.isZero() && !pairState.apart.isZero()) search(first, second, seconds, pairState);
-  for (const Touch& touch : touches_[0]) addContact(first, second, touch, seconds);
-  for (const Touch& touch : touches_[1]) addContact(second, first, touch, seconds);
+/// Each task searches in each n-th pair, for n tasks, with memory of its own.
+void SoftContactRows::findInPairs(const std::vector<SearchedPair>& pairs, btScalar seconds, ParallelFor* threads) {
+  const std::size_t tasks = threads ? std::min(kMaxTasks, pairs.size()) : 1;
+  if (searches_.size() < tasks) searches_.resize(tasks);
+  runTasks(threads, tasks, [&](std::size_t task) {
+    for (std::size_t k = task; k < pairs.size(); k += tasks) findInPair(pairs[k], seconds, searches_[task]);
+  });
+}
+
+void SoftContactRows::findInPair(const SearchedPair& pair, btScalar seconds, PairSearch& finder) {
+  assert(pair.first->readable && pair.second->readable);
+  const btVector3 before = pair.state->apart;
+  pair.state->apart = search(pair, seconds, finder);
+  if (before.isZero() && !pair.state->apart.isZero()) search(pair, seconds, finder);
 }
 
 /// Returns the direction in which the first body is to leave the second, if they overlap: down the gradient of their
 /// common volume, which is the integral of either body's normal over the part of its surface within the other.
-btVector3 SoftContactRows::search(ContactBody& first, ContactBody& second, btScalar seconds, PairState& pairState) {
+btVector3 SoftContactRows::search(const SearchedPair& pair, btScalar seconds, PairSearch& finder) {
+  ContactBody &first = *pair.first, &second = *pair.second;
+  PairState& pairState = *pair.state;
   const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
   // The distance that the two can approach each other within the step.
   const btScalar approach = seconds * (first.fastest + second.fastest + (first.drift - second.drift).length());
   const auto in = [&](ContactBody& a, ContactBody& b, int k) {
     const btScalar cube = b.data().grid.spacing();
     const btScalar reach = std::min(kReachCubes * cube, kNearCubes * cube + approach);
-    touches_[k].clear();
-    return search_.find(a, b, reach, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
-                        touches_[k]);
+    pairState.touches[k].clear();
+    return finder.find(a, b, reach, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
+                       pairState.touches[k]);
   };
   const Overlap own = in(first, second, 0);
-  touches_[1].clear();
+  pairState.touches[1].clear();
   if (&first == &second) return {0, 0, 0};
   const Overlap other = in(second, first, 1);
   const bool firstWithin = liesWithin(first, own), secondWithin = liesWithin(second, other);
@@ -211,7 +228,7 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
   const Tet& tet = second.data().tets[static_cast<std::size_t>(touch.tet)];
   std::copy(tet.begin(), tet.end(), contact.objectNodes.begin());
   std::copy(touch.weights, touch.weights + 4, contact.objectWeights.begin());
-  contact.position = first.sampleAt(touch.sample);
+  contact.position = touch.point;
   contact.normal = touch.normal;
   contact.distance = touch.distance;
   contact.friction = options_.friction ? static_cast<btScalar>(*options_.friction)

@@ -27,30 +27,37 @@ class SoftContactRows : public RowSource {
   /// The contacts of the last step.
   const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
 
-  std::vector<SoftPointContact>* contacts(btScalar seconds) override;
+  std::vector<SoftPointContact>* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
 
  private:
   /// What two bodies, or one body with itself, store from step to step.
   struct PairState {
-    PairMemory memories[2];    ///< of the first body in the second, and of the second in the first
-    btVector3 apart{0, 0, 0};  ///< direction in which the first body is to leave the second; 0 unless they overlap
+    std::vector<Touch> touches[2];  ///< of the first body in the second, and of the second in the first
+    PairMemory memories[2];         ///< of the first body in the second, and of the second in the first
+    btVector3 apart{0, 0, 0};       ///< direction in which the first body is to leave the second; 0 unless they overlap
     const ContactBody* within = nullptr;  ///< the one that lies wholly within the other, or null
+  };
+  /// Two bodies that may touch, or one with itself.
+  struct SearchedPair {
+    ContactBody* first;
+    ContactBody* second;
+    PairState* state;
   };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
   BodyPairs overlappingPairs();
   void forgetAllBut(const BodyPairs& near);
-  void findInPair(ContactBody& first, ContactBody& second, btScalar seconds);
-  btVector3 search(ContactBody& first, ContactBody& second, btScalar seconds, PairState& pairState);
+  void findInPairs(const std::vector<SearchedPair>& pairs, btScalar seconds, ParallelFor* threads);
+  static void findInPair(const SearchedPair& pair, btScalar seconds, PairSearch& finder);
+  static btVector3 search(const SearchedPair& pair, btScalar seconds, PairSearch& finder);
   void addContact(const ContactBody& first, const ContactBody& second, const Touch& touch, btScalar seconds);
 
   SoftContactOptions options_;
   std::vector<std::unique_ptr<ContactBody>> bodies_;
   std::vector<const btSoftBody*> gone_;
   int nextId_ = 0;
-  PairSearch search_;
+  std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids
-  std::vector<Touch> touches_[2];  ///< of the first body in the second, and of the second in the first
   std::vector<SoftPointContact> contacts_;
 };
 

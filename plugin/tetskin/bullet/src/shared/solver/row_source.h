@@ -8,6 +8,7 @@
 #include <LinearMath/btMatrix3x3.h>
 #include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/core/parallel_for.h>
 
 class btSoftBody;
 
@@ -45,7 +46,8 @@ class TETSKIN_BULLET_API RowSource : public InactiveForce {
  public:
   /// Positions are those at the beginning of the step, velocities those that the bodies would have at its end without
   /// constraints. The result stays valid until the next call; the solver writes the impulses.
-  virtual std::vector<SoftPointContact>* contacts(btScalar /*seconds*/) { return nullptr; }
+  /// threads  of the solver, or null
+  virtual std::vector<SoftPointContact>* contacts(btScalar /*seconds*/, ParallelFor* /*threads*/) { return nullptr; }
   virtual std::vector<PointJoint>* joints(btScalar /*seconds*/) { return nullptr; }
   /// Called when the impulses have been written.
   virtual void finish(btScalar /*seconds*/) {}
