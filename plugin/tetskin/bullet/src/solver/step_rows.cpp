@@ -50,7 +50,7 @@ std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
 
 void DeformableSolver::Impl::collectRows() {
   rigids.clear();
-  rows.collect(bodies, rigids, rowSources(), dt());
+  rows.collect(bodies, rigids, rowSources(), dt(), clock);
   collectRigidRowsOfWorlds();
   joinByRows();
   for (SolvedBody& body : bodies.bodies()) {
