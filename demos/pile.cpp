@@ -5,6 +5,7 @@
 // their penetration depth once per second.
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
+#include <tetskin/threads/thread_pool.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,10 +33,12 @@ using namespace tetskin::scenes;
 using Eigen::Vector3d;
 
 constexpr int kFramesPerSecond = 60;
+constexpr int kMaxThreads = 256;
 
 struct PileOptions {
   int bodies = 10;
   int depthEvery = kFramesPerSecond;  ///< frames between two measurements of the deepest vertex
+  int threads = 1;                    ///< threads of the solver, including the calling one
   ModelOptions model;                 ///< if it has no mesh: the options common to all of kModels
   Contact contact = Contact::Surface;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
@@ -101,6 +104,7 @@ class Pile {
       if (model.mesh.empty()) models_.emplace_back(model);
     }
     addBowl(world_);
+    if (options.threads > 1) world_.setThreads(&threads_.emplace(static_cast<std::size_t>(options.threads)));
     for (int k = 0; k < options.bodies; ++k) add(models_[static_cast<std::size_t>(k) % models_.size()], k, options);
   }
 
@@ -127,6 +131,7 @@ class Pile {
  private:
   void add(const PileModel& model, int k, const PileOptions& options);
 
+  std::optional<ThreadPool> threads_;
   World world_;
   std::deque<PileModel> models_;
   std::vector<btSoftBody*> bodies_;
@@ -372,6 +377,7 @@ int main(int argc, char** argv) {
   line.addCount("--triangles", options.model.triangles, "each", 500000);
   line.addCount("--tets", options.model.tets, "each", 20000);
   line.addCount("--bodies", options.bodies, "", 100);
+  line.addCount("--threads", options.threads, "Threads of the solver; they change no result", kMaxThreads);
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
   line.addCount("--depth-every", options.depthEvery,
