@@ -23,6 +23,7 @@
 #include "scenes/placement.h"
 #include "scenes/playback.h"
 #include "scenes/printed_table.h"
+#include "scenes/stage_times.h"
 #include "scenes/summary.h"
 #include "scenes/timer.h"
 #include "scenes/view_page.h"
@@ -152,6 +153,8 @@ class Pile {
   std::size_t pairCount() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
   double nodeSpeed() const;
+  /// Of all steps so far.
+  StageTimes stageTimes() const;
 
   /// A page for the run that follows. Bodies of one model share it there.
   ViewPage page(const PileOptions& options) const;
@@ -166,6 +169,8 @@ class Pile {
   std::vector<btSoftBody*> bodies_;
   std::size_t bodyTets_ = 0;
   std::deque<SoftBodySkin> skins_;
+  std::vector<StatusCode> statuses_;  ///< of the last updates
+  double skinSeconds_ = 0.0;          ///< of all updates so far
   TriangleMesh mesh_;
 };
 
@@ -183,11 +188,21 @@ void Pile::add(const PileModel& model, int k, const PileOptions& options) {
 bool Pile::step() {
   constexpr int kSubsteps = 4;
   for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
-  return std::all_of(skins_.begin(), skins_.end(), [](SoftBodySkin& skin) {
-    const StatusCode status = skin.update();
-    const bool followed = status == StatusCode::Ok || status == StatusCode::Asleep;
-    return followed && maxCoordinate(skin.bounds()) < kMax;
+  statuses_.clear();
+  const WallTimer timer;
+  for (SoftBodySkin& skin : skins_) statuses_.push_back(skin.update());
+  skinSeconds_ += timer.seconds();
+  const bool followed = std::all_of(statuses_.begin(), statuses_.end(), [](StatusCode status) {
+    return status == StatusCode::Ok || status == StatusCode::Asleep;
   });
+  return followed && std::all_of(skins_.begin(), skins_.end(),
+                                 [](const SoftBodySkin& skin) { return maxCoordinate(skin.bounds()) < kMax; });
+}
+
+StageTimes Pile::stageTimes() const {
+  StageTimes times = world_.stageTimes();
+  times.skin = skinSeconds_;
+  return times;
 }
 
 std::vector<Vector3d> Pile::surface() const {
@@ -260,7 +275,7 @@ ViewMoment Pile::moment() const {
   return moment;
 }
 
-/// A frame, or the mean of several.
+/// Of a frame, or the mean of several.
 struct FrameTime {
   double wall = 0.0;       ///< milliseconds
   double processor = 0.0;  ///< milliseconds of all threads together
@@ -275,6 +290,11 @@ FrameTime meanOf(const std::vector<FrameTime>& frames, std::size_t first, std::s
   return mean;
 }
 
+struct SlowestSecond {
+  FrameTime mean;
+  StageTimes stages;
+};
+
 /// What is measured during the run, and the table of it.
 class Measurements {
  public:
@@ -282,6 +302,7 @@ class Measurements {
 
   /// time  that the frame has taken; frame 0 took none
   void measure(int frame, const FrameTime& time) {
+    stages_.push_back(pile_.stageTimes());
     if (frame > 0) {
       times_.push_back(time);
       pairs_.push_back(pile_.pairCount());
@@ -300,7 +321,7 @@ class Measurements {
   std::string table() const { return table_.text(); }
   FrameTime meanTime() const { return meanOf(times_, 0, times_.size()); }
   /// The slowest second in all of which kManyPairs bodies touch; nothing if there is none.
-  std::optional<FrameTime> slowestSecond() const;
+  std::optional<SlowestSecond> slowestSecond() const;
 
   double deepestContact = 0.0;  ///< over all frames, in units of the body's size; 0 or negative
   DeepestVertex deepest, latest;
@@ -340,17 +361,19 @@ class Measurements {
   SolveTotals before_;
   std::vector<FrameTime> times_;    ///< of frames from 1 on
   std::vector<std::size_t> pairs_;  ///< of bodies that touch, in the same frames
+  std::vector<StageTimes> stages_;  ///< until the end of each frame, 0 included
   std::size_t told_ = 0;            ///< number of times that are in the table
 };
 
-std::optional<FrameTime> Measurements::slowestSecond() const {
-  std::optional<FrameTime> slowest;
+std::optional<SlowestSecond> Measurements::slowestSecond() const {
+  std::optional<SlowestSecond> slowest;
   std::size_t touching = 0;  // the last frames in a row in which many pairs touch
   for (std::size_t k = 0; k < times_.size(); ++k) {
     touching = pairs_[k] < kManyPairs ? 0 : touching + 1;
     if (touching < kFramesPerSecond) continue;
     const FrameTime mean = meanOf(times_, k + 1 - kFramesPerSecond, kFramesPerSecond);
-    if (!slowest || mean.wall > slowest->wall) slowest = mean;
+    if (slowest && mean.wall <= slowest->mean.wall) continue;
+    slowest = SlowestSecond{mean, stages_[k + 1] - stages_[k + 1 - kFramesPerSecond]};
   }
   return slowest;
 }
@@ -367,9 +390,12 @@ nlohmann::ordered_json summarise(const PileOptions& options, const Pile& pile, c
   json["threads"] = options.threads;
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["processor_ms_per_frame"] = measured.meanTime().processor;
-  const std::optional<FrameTime> slowest = measured.slowestSecond();
-  json["slowest_second_ms_per_frame"] = slowest ? nlohmann::ordered_json(slowest->wall) : nullptr;
-  json["slowest_second_processor_ms_per_frame"] = slowest ? nlohmann::ordered_json(slowest->processor) : nullptr;
+  const std::optional<SlowestSecond> slowest = measured.slowestSecond();
+  json["slowest_second_ms_per_frame"] = slowest ? nlohmann::ordered_json(slowest->mean.wall) : nullptr;
+  json["slowest_second_processor_ms_per_frame"] = slowest ? nlohmann::ordered_json(slowest->mean.processor) : nullptr;
+  json["stages_ms_per_frame"] = toJson(pile.stageTimes(), run.steps());
+  json["slowest_second_stages_ms_per_frame"] =
+      slowest ? toJson(slowest->stages, kFramesPerSecond) : nlohmann::ordered_json();
   tellSolve(pile.world().solveTotals(), json);
   json["deepest_vertex"] = -measured.deepest.depth;
   json["deepest_vertex_frame"] = measured.deepestFrame;
@@ -412,6 +438,7 @@ void printSummary(const nlohmann::ordered_json& json, const PileOptions& options
                                                "slowest_second_processor_ms_per_frame") +
                                      std::to_string(kManyPairs) + " pairs of bodies touch");
   }
+  printStages(json.at("stages_ms_per_frame"), json.at("slowest_second_stages_ms_per_frame"));
   printSolve(json);
   printValue("deepest vertex", percent("deepest_vertex") + formatted(", in frame %.0f", json, "deepest_vertex_frame") +
                                    bodiesOf(json.at("deepest_vertex_bodies")) + " (measured " + measured + "); " +
