@@ -47,7 +47,7 @@ struct PileOptions {
   std::string scene = "column";  ///< one body above the other, over poles; or "heap": layers of four
   int bodies = 10;
   int depthEvery = kFramesPerSecond;  ///< frames between two measurements of the deepest vertex
-  int threads = 1;                    ///< threads of the solver, including the calling one
+  int threads = 1;                    ///< threads of the solver and of the skins, including the calling one
   ModelOptions model;                 ///< if it has no mesh: the options common to all of kModels
   Contact contact = Contact::Surface;
   SelfContactWish selfContact = SelfContactWish::WherePossible;
@@ -169,6 +169,7 @@ class Pile {
   std::vector<btSoftBody*> bodies_;
   std::size_t bodyTets_ = 0;
   std::deque<SoftBodySkin> skins_;
+  std::vector<SoftBodySkin*> skinPointers_;
   std::vector<StatusCode> statuses_;  ///< of the last updates
   double skinSeconds_ = 0.0;          ///< of all updates so far
   TriangleMesh mesh_;
@@ -181,6 +182,7 @@ void Pile::add(const PileModel& model, int k, const PileOptions& options) {
   world_.touchEachOther(body, model.shape, options.touchThemselves());
   bodies_.push_back(&body);
   require(skins_.emplace_back().bind(body, model.binding));
+  skinPointers_.push_back(&skins_.back());
   bodyTets_ += model.model.cage.mesh.tetCount();
   (void)append(model.model.mesh, mesh_, model.model.name);
 }
@@ -188,9 +190,10 @@ void Pile::add(const PileModel& model, int k, const PileOptions& options) {
 bool Pile::step() {
   constexpr int kSubsteps = 4;
   for (int s = 0; s < kSubsteps; ++s) world_.step(kFrame / kSubsteps);
-  statuses_.clear();
+  statuses_.resize(skins_.size());
   const WallTimer timer;
-  for (SoftBodySkin& skin : skins_) statuses_.push_back(skin.update());
+  (void)SoftBodySkin::updateAll(skinPointers_.data(), skins_.size(), statuses_.data(), 1,
+                                threads_ ? &*threads_ : nullptr);
   skinSeconds_ += timer.seconds();
   const bool followed = std::all_of(statuses_.begin(), statuses_.end(), [](StatusCode status) {
     return status == StatusCode::Ok || status == StatusCode::Asleep;
@@ -512,7 +515,8 @@ int main(int argc, char** argv) {
   line.addCount("--tets", options.model.tets, "each", 20000);
   line.addFlag("--calibrate", options.model.calibrate);
   line.addCount("--bodies", options.bodies, "", 100);
-  line.addCount("--threads", options.threads, "Threads of the solver; they change no result", kMaxThreads);
+  line.addCount("--threads", options.threads, "Threads of the solver and of the surfaces; they change no result",
+                kMaxThreads);
   line.addContactOption(options.contact);
   line.addSelfContactOption(options.selfContact);
   line.addCount("--depth-every", options.depthEvery,
