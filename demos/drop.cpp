@@ -167,6 +167,9 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   player_.selfContact().tell(json);
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   tellSolve(player_.scene().world().solveTotals(), json);
+  StageTimes stages = player_.scene().world().stageTimes();
+  stages.skin = 1e-6 * surface_.microseconds;
+  json["stages_ms_per_frame"] = toJson(stages, run.steps());
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
   json["glb_ms"] = recording_->glbMilliseconds();
@@ -206,8 +209,8 @@ void printSummary(const nlohmann::ordered_json& json, const OutputOptions& outpu
   printValue("contact", json.at("contact").get<std::string>());
   printValue("self-contact", json.at("self_contact").get<std::string>());
   printValue("simulation", number("simulation_ms_per_frame", "%.2f ms per frame"));
+  printStages(json.at("stages_ms_per_frame"), nullptr);
   printSolve(json);
-  printValue("skin", number("skin_us_per_frame", "%.1f us per frame"));
   printValue("writing", number("write_ms_per_frame", "%.2f ms per frame"));
   printValue("speed at the end", number("rest_speed", "%.3f body lengths per second"));
   printValue("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor at y = " + number("floor_y", "%.4g") +

@@ -28,5 +28,7 @@ using WallTimer = Timer<CLOCK_MONOTONIC>;
 /// Processor time of the calling thread. On an idle machine it equals the elapsed time; on a busy one it excludes the
 /// time that other programs took.
 using CpuTimer = Timer<CLOCK_THREAD_CPUTIME_ID>;
+/// Processor time of all threads together.
+using ProcessTimer = Timer<CLOCK_PROCESS_CPUTIME_ID>;
 
 }  // namespace tetskin::scenes

@@ -23,6 +23,7 @@
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/obstacle_mesh.h"
+#include "scenes/timer.h"
 
 namespace tetskin::scenes {
 namespace {
@@ -174,7 +175,9 @@ int World::iterations() const {
 }
 
 int World::step(double seconds) {
+  const WallTimer timer;
   const int steps = world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  stageTimes_.simulation += timer.seconds();
   if (force_ == Force::Elastic && steps > 0) countSolve(static_cast<const DeformableSolver&>(*bodySolver_));
   return steps;
 }
@@ -184,6 +187,7 @@ void World::countSolve(const DeformableSolver& solver) {
   solveTotals_.iterations += solver.iterations();
   solveTotals_.passes += solver.linearSolves();
   if (solver.unconvergedSystems() > 0) ++solveTotals_.unconverged;
+  stageTimes_.solver = solver.stepTimes();
 }
 
 std::uint64_t World::hashOfNodes(std::uint64_t seed) const {

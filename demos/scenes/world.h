@@ -12,6 +12,8 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/stage_times.h"
+
 class btBroadphaseInterface;
 class btCollisionConfiguration;
 class btCollisionShape;
@@ -121,6 +123,8 @@ class World {
   /// Iterations of the library's solver in the last step; 0 with other solvers.
   int iterations() const;
   const SolveTotals& solveTotals() const { return solveTotals_; }
+  /// Times of all steps so far; skins are the caller's.
+  const StageTimes& stageTimes() const { return stageTimes_; }
   /// Lends threads to the library's solver, if that is in use.
   void setThreads(ParallelFor* threads);
 
@@ -161,6 +165,7 @@ class World {
   std::vector<std::unique_ptr<SurfaceContact>> contacts_;
   std::unique_ptr<SoftContacts> softContacts_;
   SolveTotals solveTotals_;
+  StageTimes stageTimes_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's forces, under earth's gravity.

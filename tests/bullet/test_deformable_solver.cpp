@@ -4,6 +4,7 @@
 // Bodies solved by the library's own solver that land, rest and slide, and that carry what lands on them.
 #include "deformable_test.h"
 
+#include <chrono>
 #include <cmath>
 
 namespace tetskin {
@@ -150,6 +151,26 @@ TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
     EXPECT_LT(rmsSpeed(body->body()), 0.05);
     EXPECT_NEAR(lowest(body->body()), 0.02, 0.02);
   }
+}
+
+TEST(DeformableSolver, TellsHowLongTheStagesOfItsStepsTake) {
+  DeformableWorld world;
+  const DeformableSolver& solver = world.deformableSolver();
+  EXPECT_EQ(solver.stepTimes().total(), 0.0);
+  const auto body = DeformableBody::add(world, cageAbove(0.5)).value();
+  const auto start = std::chrono::steady_clock::now();
+  world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  const StepTimes first = solver.stepTimes();
+  world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const StepTimes both = solver.stepTimes();
+  for (double StepTimes::*stage :
+       {&StepTimes::prediction, &StepTimes::rigidSearch, &StepTimes::rows, &StepTimes::system}) {
+    EXPECT_GT(first.*stage, 0.0);
+    EXPECT_GT(both.*stage, first.*stage);
+  }
+  EXPECT_EQ(both.softSearch, 0.0) << "nothing searches";
+  EXPECT_LE(both.total(), elapsed.count());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <map>
@@ -81,6 +82,31 @@ TEST_F(UpdateAll, DoesForEachWhatUpdateDoes) {
   EXPECT_EQ(updated, expected);
   EXPECT_EQ(seen.size(), 6u);
   for (const auto& [status, count] : seen) EXPECT_GT(count, 10u) << toString(status);
+}
+
+/// Runs the tasks from the last to the first.
+class Backwards : public ParallelFor {
+ public:
+  void run(std::size_t count, Task task) override {
+    for (std::size_t k = count; k-- > 0;) task(k);
+    tasks += count;
+  }
+  std::size_t tasks = 0;
+};
+
+TEST_F(UpdateAll, DividesTheSkinsAmongThreads) {
+  make(600);
+  changeEverything();
+  Backwards threads;
+  std::vector<StatusCode> statuses(pointers.size()), expected(pointers.size());
+  const std::size_t updated = SoftBodySkin::updateAll(pointers.data(), pointers.size(), statuses.data(), 1, &threads);
+  for (std::size_t i = 0; i < pointers.size(); ++i) {
+    expected[i] = alone[i].update();
+    EXPECT_TRUE(samePositions(together[i], alone[i])) << i;
+  }
+  EXPECT_EQ(statuses, expected);
+  EXPECT_EQ(updated, static_cast<std::size_t>(std::count(expected.begin(), expected.end(), StatusCode::Ok)));
+  EXPECT_GE(threads.tasks, updated);
 }
 
 TEST_F(UpdateAll, AllocatesNothingAndNeedsNoStatuses) {

@@ -159,6 +159,8 @@ TEST_F(Drop, ABodyOfBulletsForcesIsTouchedByItsCage) {
   EXPECT_EQ(summary.at("contact"), "cage");
   EXPECT_EQ(summary.at("self_contact"), "off");
   EXPECT_EQ(summary.at("finite"), true);
+  EXPECT_EQ(summary.at("stages_ms_per_frame").at("system"), 0.0);
+  EXPECT_GT(summary.at("stages_ms_per_frame").at("bullet"), 0.0);
   EXPECT_TRUE(summary.at("iterations_per_step").is_null()) << "nobody counts Bullet's";
   EXPECT_EQ(result.out.find("converge"), std::string::npos) << result.out;
 }

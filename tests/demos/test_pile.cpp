@@ -28,7 +28,7 @@ TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   EXPECT_LT(json["deepest_vertex_at_end"], 0.0);
   EXPECT_GT(json["deepest_vertex_at_end"], -0.05);
   EXPECT_GT(json["vertices_inside_at_end"], 0);
-  EXPECT_NE(result.out.find("  time  contacts  deepest vertex  vertices inside  deepest contact"), std::string::npos)
+  EXPECT_NE(result.out.find("  time  contacts  pairs  deepest vertex  vertices inside"), std::string::npos)
       << result.out;
   for (const char* row :
        {"\n  0.00  ", "\n  1.00  ", "\n  2.00  ", "\n  3.00  ", "\n  deepest vertex  ", "ms per frame\n"}) {
@@ -56,6 +56,33 @@ TEST(Pile, MeasuresTheDeepestVertexAsOftenAsIsAskedFor) {
   EXPECT_LT(always["deepest_vertex"], 0.0);
   EXPECT_EQ(always["deepest_vertex_at_end"], seldom["deepest_vertex_at_end"]);
   EXPECT_GT(always["deepest_vertex_frame"], 60);  // the bodies fall for a second
+}
+
+TEST(Pile, HeapsBodiesAndTellsHowLongEachStageTakes) {
+  const CommandFolder folder;
+  const CommandResult result =
+      folder.run(TETSKIN_PILE, {"--scene", "heap", "--bodies", "5", "--tets", "60", "--triangles", "3000", "--threads",
+                                "2", "--frames", "61", "--every", "60", "--self-contact", "off"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/pile/summary.json");
+  EXPECT_EQ(json["scene"], "heap");
+  EXPECT_EQ(json["bodies"], 5);
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_GT(json["contacts_at_end"], 0);
+  EXPECT_GT(json["pairs_at_end"], 0);
+  EXPECT_LE(json["pairs_at_end"], 5 * 4 / 2);
+  EXPECT_GT(json["processor_ms_per_frame"], 0.0);
+  EXPECT_TRUE(json["slowest_second_ms_per_frame"].is_null()) << "five bodies have ten pairs at most";
+  double sum = 0.0;
+  for (const auto& [stage, ms] : json["stages_ms_per_frame"].items()) {
+    EXPECT_GT(ms, 0.0) << stage;
+    sum += ms.get<double>();
+  }
+  EXPECT_EQ(json["stages_ms_per_frame"].size(), 7u);
+  EXPECT_LE(sum, json["simulation_ms_per_frame"].get<double>());
+  for (const char* line : {"\n    search, soft ", "\n    rest of Bullet's step ", "\n    skin "}) {
+    EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
+  }
 }
 
 TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
@@ -90,6 +117,7 @@ TEST(Pile, RefusesWhatMakesNoSense) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");
   test::expectRefused(folder.run(TETSKIN_PILE, {"--contact", "nothing"}), "--contact");
+  test::expectRefused(folder.run(TETSKIN_PILE, {"--scene", "nothing"}), "--scene");
 }
 
 }  // namespace

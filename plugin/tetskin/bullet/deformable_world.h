@@ -18,6 +18,20 @@ namespace tetskin {
 class ForceRecord;
 class SystemSolve;
 
+/// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
+/// What the world's own `stepSimulation` takes beyond these is Bullet's: its solve of rigid bodies, its integration, and
+/// its own contacts between soft bodies.
+struct StepTimes {
+  double prediction = 0;   ///< forces, and the elastic solve of each body without contacts
+  double rigidSearch = 0;  ///< collision detection, which finds contacts with rigid objects and between these
+  double softSearch = 0;   ///< search for contacts among soft bodies, and of a body with itself
+  double rows = 0;         ///< collecting rows of contacts, joints and anchors, and what they join
+  double system = 0;       ///< the solve with rows, and writing its velocities
+
+  /// Sum of all stages.
+  double total() const { return prediction + rigidSearch + softSearch + rows + system; }
+};
+
 /// Bullet's solver of deformable bodies, extended by tetskin's own implicit solve. An application creates it in place
 /// of a `btDeformableBodySolver`, and passes it to its world and its constraint solver in the same way.
 ///
@@ -70,6 +84,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// How many of these systems with contacts were stopped before convergence: their bodies continue with the result of
   /// the last pass.
   int unconvergedSystems() const;
+  /// Times of all steps so far; the differences of two readings are those of the steps between.
+  const StepTimes& stepTimes() const;
 
   // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;

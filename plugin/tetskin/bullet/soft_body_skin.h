@@ -70,13 +70,15 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// Returns  Ok, Asleep, Hidden; or, without any change, Unbound, TopologyChanged, NonFinite
   StatusCode update(btScalar alpha = 1);
 
-  /// Updates several skins in turn, and prefetches the data of the next ones: with many sleeping bodies, waiting for
+  /// Updates several skins, and prefetches the data of the next ones: with many sleeping bodies, waiting for
   /// memory is most of the cost. Returns how many were updated.
   /// skins     `count` skins, not null, of any bodies
   /// statuses  `count` results of `update`; or null
   /// alpha     as for `update`
+  /// threads   divide the skins among themselves; then no skin may have been bound with the same `threads`, as these
+  ///           would divide one skin from within a task. Results are the same with any number; or null
   static std::size_t updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses = nullptr,
-                               btScalar alpha = 1);
+                               btScalar alpha = 1, ParallelFor* threads = nullptr);
 
   /// Records the nodes, for updates between this step and the next: call it once after each stepSimulation that
   /// returned above 0, before any update. Any number of updates may follow, with alphas in any order.

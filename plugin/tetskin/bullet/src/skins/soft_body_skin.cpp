@@ -155,8 +155,8 @@ void SoftBodySkin::restart() {
   if (body_->m_nodes.size() == nodeCount_) (void)steps_.record(nodePositions(*body_));
 }
 
-std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses,
-                                    btScalar alpha) {
+std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha,
+                                    ParallelFor* threads) {
   // First all decisions, and then all work: the memory pages that decisions read would slow each update in between by a
   // tenth.
   std::array<StatusCode, kTogether> done;
@@ -166,10 +166,10 @@ std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t coun
     for (std::size_t k = 0; k < size; k += kInFlight) {
       decideAll(skins + first + k, std::min(kInFlight, size - k), done.data() + k, alpha);
     }
-    for (std::size_t k = 0; k < size; ++k) {
+    runTasks(threads, size, [&](std::size_t k) {
       if (done[k] == StatusCode::Ok) done[k] = skins[first + k]->compute(alpha);
-      updated += done[k] == StatusCode::Ok;
-    }
+    });
+    updated += static_cast<std::size_t>(std::count(done.data(), done.data() + size, StatusCode::Ok));
     if (statuses) std::copy_n(done.data(), size, statuses + first);
   }
   return updated;

@@ -228,7 +228,7 @@ Sticking stickingOf(const ContactRow& row, btScalar seconds) {
 }  // namespace
 
 void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources,
-                          btScalar seconds, ParallelFor* threads) {
+                          btScalar seconds, ParallelFor* threads, StepClock& clock) {
   assert(seconds > 0);
   rows_.clear();
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
@@ -240,7 +240,10 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, const std
     body.rowCount = static_cast<int>(rows_.size() - before);
   }
   for (RowSource* source : sources) {
-    if (auto* contacts = source->contacts(seconds, threads)) {
+    clock.end(&StepTimes::rows);
+    auto* contacts = source->contacts(seconds, threads);
+    clock.end(&StepTimes::softSearch);
+    if (contacts) {
       for (SoftPointContact& contact : *contacts) addSoft(bodies, contact, seconds);
     }
     if (auto* joints = source->joints(seconds)) {

@@ -7,6 +7,7 @@
 #include <tetskin/bullet/src/shared/solver/row_source.h>
 #include <tetskin/bullet/src/solver/contact_row.h>
 #include <tetskin/bullet/src/solver/solver_bodies.h>
+#include <tetskin/bullet/src/solver/step_clock.h>
 
 #include <vector>
 
@@ -17,8 +18,9 @@ class ContactRows {
   /// Collects the rows of all bodies that are elastic here: the points that a search has left in the body, Bullet's
   /// contacts of nodes and faces with rigid objects, and the body's anchors. Call it after velocities have been read.
   /// sources  of contacts among soft bodies, and of joints
+  /// clock    at its stage `rows`; the sources' search for contacts is timed apart
   void collect(SolverBodies& bodies, RigidUnknowns& rigids, const std::vector<RowSource*>& sources, btScalar seconds,
-               ParallelFor* threads);
+               ParallelFor* threads, StepClock& clock);
   /// Stores what the next step begins with, and reports the impulses to the contacts.
   void finish(SolverBodies& bodies, btScalar seconds) const;
 

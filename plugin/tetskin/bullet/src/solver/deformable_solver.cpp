@@ -49,9 +49,14 @@ int DeformableSolver::linearSolves() const {
 int DeformableSolver::unconvergedSystems() const {
   return impl_->unconverged;
 }
+const StepTimes& DeformableSolver::stepTimes() const {
+  return impl_->clock.times();
+}
 
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
+  impl_->clock.restart();
   impl_->gather(softBodies, dt);
+  impl_->clock.end(&StepTimes::prediction);
   updateSoftBodies();
 }
 
@@ -61,6 +66,7 @@ void DeformableSolver::updateSoftBodies() {
 
 void DeformableSolver::predictMotion(btScalar dt) {
   Impl& impl = *impl_;
+  impl.clock.restart();
   if (impl.solving != ownSolveActive()) {
     // The world's settings may have changed since the step before.
     impl.solving = ownSolveActive();
@@ -68,6 +74,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     impl.assign();
   }
   impl.solving ? impl.predict() : btDeformableBodySolver::predictMotion(dt);
+  impl.clock.end(&StepTimes::prediction);
 }
 
 /// Returns false if Bullet has to search for the contacts.
@@ -98,8 +105,10 @@ void DeformableSolver::setupDeformableSolve(bool implicit) {
   btDeformableBodySolver::setupDeformableSolve(implicit && !impl_->solving);
 }
 
-/// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice.
+/// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice. Collision
+/// detection has run since the prediction.
 void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
+  impl_->clock.end(&StepTimes::rigidSearch);
   btDeformableBodySolver::setConstraints(info);
   if (!impl_->solving) return;
   btDeformableContactProjection& projection = m_objective->m_projection;
@@ -120,14 +129,18 @@ void DeformableSolver::setLagrangeMultiplier() {
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   Impl& impl = *impl_;
-  if (!impl.solving) {
+  impl.clock.restart();
+  if (impl.solving) {
+    impl.assemble();
+    impl.clock.end(&StepTimes::rows);
+    impl.solve();
+    impl.finishContacts();
+    impl.writeBack();
+  } else {
     impl.iterations = impl.passes = impl.unconverged = 0;
-    return btDeformableBodySolver::solveDeformableConstraints(dt);
+    btDeformableBodySolver::solveDeformableConstraints(dt);
   }
-  impl.assemble();
-  impl.solve();
-  impl.finishContacts();
-  impl.writeBack();
+  impl.clock.end(&StepTimes::system);
 }
 
 void DeformableSolver::applyTransforms(btScalar dt) {

@@ -17,6 +17,7 @@
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 #include <tetskin/bullet/src/solver/obstacle_changes.h>
 #include <tetskin/bullet/src/solver/sleepers.h>
+#include <tetskin/bullet/src/solver/step_clock.h>
 
 #include <memory>
 #include <vector>
@@ -95,6 +96,7 @@ struct DeformableSolver::Impl {
   ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
+  StepClock clock;
   HiddenBodies hidden;
   std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
   ParallelFor* threads = nullptr;

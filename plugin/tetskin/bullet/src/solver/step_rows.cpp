@@ -51,7 +51,7 @@ std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
 
 void DeformableSolver::Impl::collectRows() {
   rigids.clear();
-  rows.collect(bodies, rigids, rowSources(), dt(), threads);
+  rows.collect(bodies, rigids, rowSources(), dt(), threads, clock);
   collectRigidRowsOfWorlds();
   joinByRows();
   runTasks(threads, bodies.bodies().size(), [&](std::size_t k) {
