@@ -19,8 +19,8 @@ class ForceRecord;
 class SystemSolve;
 
 /// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
-/// What the world's own `stepSimulation` takes beyond these is Bullet's: its solve of rigid bodies, its integration, and
-/// its own contacts between soft bodies.
+/// What the world's own `stepSimulation` takes beyond these is Bullet's: its solve of rigid bodies, its integration,
+/// and its own contacts between soft bodies.
 struct StepTimes {
   double prediction = 0;   ///< forces, and the elastic solve of each body without contacts
   double rigidSearch = 0;  ///< collision detection, which finds contacts with rigid objects and between these
