@@ -27,7 +27,7 @@ using test::bonesFor;
 using test::distances;
 using test::drawnBy;
 using test::normalBy;
-using test::Points;
+using test::PointList;
 
 /// Of positions in a cage of size 1 that is sent to four times that at most.
 constexpr double kRounding = 2e-6;
@@ -48,31 +48,31 @@ struct Drawn {
     palette = BonePalette<Scalar>::create(skin.binding(), options).value();
   }
 
-  void move(const Points& nodes) {
+  void move(const PointList& nodes) {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> rounded;
     for (const Eigen::Vector3d& p : nodes) rounded.push_back(p.cast<Scalar>());
     ASSERT_EQ(skin.update(viewOf(std::as_const(rounded))), StatusCode::Ok);
     bones = bonesFor(palette, nodes);
   }
-  Points bySkin() const {
-    Points points;
+  PointList bySkin() const {
+    PointList points;
     for (std::size_t v = 0; v < rest.size(); ++v) {
       const Scalar* p = skin.positions()[v];
       points.emplace_back(p[0], p[1], p[2]);
     }
     return points;
   }
-  Points byBones() const { return drawnBy(bones, skinned, rest); }
+  PointList byBones() const { return drawnBy(bones, skinned, rest); }
   double difference() const { return distances(byBones(), bySkin()).longest; }
 
-  Points rest;
+  PointList rest;
   MeshSkin<Scalar> skin;
   SkinnedMesh skinned;
   BonePalette<Scalar> palette;
   std::vector<Bone> bones;
 };
 
-TriangleMesh cloud(Points points) {
+TriangleMesh cloud(PointList points) {
   TriangleMesh mesh;
   mesh.positions = std::move(points);
   return mesh;
@@ -135,7 +135,7 @@ TYPED_TEST(BonePalettes, DifferFromTheSkinToSecondOrderOutside) {
   const double distances[] = {0.1, 0.05, 0.025};
   std::vector<double> differences;
   for (const double distance : distances) {
-    Points points;
+    PointList points;
     for (int k = 1; k < 20; ++k) points.emplace_back(0.05 * k, 0.31 + 0.02 * k, 1.0 + distance);
     Drawn<TypeParam> drawn(test::latticeCage(4, 4, 4, 0.25), cloud(points), optionsFor(Interpolation::Quadratic));
     drawn.move(this->maps[0](test::latticeCage(4, 4, 4, 0.25).nodes));
@@ -149,12 +149,12 @@ TYPED_TEST(BonePalettes, DifferFromTheSkinToSecondOrderOutside) {
 /// With the length of the edges' vectors limited, the skin differs from the bones by the part that was cut off.
 TYPED_TEST(BonePalettes, DifferFromTheSkinWhereItsVectorsAreLimited) {
   const std::vector<int> tets = {0, 5, 17, 100, 200, 300, 383};
-  const Points points = test::pointsIn(this->cage, tets, 43);
+  const PointList points = test::pointsIn(this->cage, tets, 43);
   Drawn<TypeParam> drawn(this->cage, cloud(points), optionsFor(Interpolation::Quadratic));
-  Points nodes = this->maps[0](this->cage.nodes);
+  PointList nodes = this->maps[0](this->cage.nodes);
   for (std::size_t n = 0; n < nodes.size(); n += 7) nodes[n] += Eigen::Vector3d(0.2, -0.3, 0.25);
   drawn.move(nodes);
-  const Points bySkin = drawn.bySkin(), byBones = drawn.byBones();
+  const PointList bySkin = drawn.bySkin(), byBones = drawn.byBones();
   std::size_t limited = 0;
   for (std::size_t v = 0; v < points.size(); ++v) {
     Eigen::Vector3d cut = Eigen::Vector3d::Zero();
@@ -180,7 +180,7 @@ TYPED_TEST(BonePalettes, FollowEachCopyOfASplitCage) {
   for (const double joinedUntil : {-1.0, 1.0}) {
     const test::TwoPlates plates = test::platesOfCopies(joinedUntil);
     Drawn<TypeParam> drawn(plates.cage, plates.mesh, optionsFor(Interpolation::Quadratic));
-    Points nodes = plates.cage.mesh.nodes;
+    PointList nodes = plates.cage.mesh.nodes;
     for (std::size_t n = plates.cage.mesh.nodeCount() / 2; n < nodes.size(); ++n) {
       nodes[n] += Eigen::Vector3d(0.0, 0.02 * nodes[n].x() * nodes[n].x(), 0.1);
     }
@@ -226,7 +226,7 @@ TYPED_TEST(BonePalettes, CarryGradientsBesideTheDisplacementsOfALinearSurface) {
   drawn.move(this->maps[1](this->cage.nodes));
   linear.move(this->maps[1](this->cage.nodes));
   for (std::size_t n = 0; n < drawn.bones.size(); ++n) EXPECT_EQ(drawn.bones[n].col(3), linear.bones[n].col(3)) << n;
-  Points points;
+  PointList points;
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     points.push_back(drawn.rest[v] + blended(drawn.skinned, v, drawn.bones).col(3));
   }
@@ -240,7 +240,7 @@ TYPED_TEST(BonePalettes, AreCloseToTheOriginFarFromTheWorlds) {
   options.origin = far.template cast<double>();
   const TriangleMesh mesh = cloud(test::pointsIn(this->cage, {1, 2, 3}, 44));
   Drawn<TypeParam> drawn(this->cage, mesh, optionsFor(Interpolation::Quadratic), options);
-  Points moved;
+  PointList moved;
   std::vector<Node> rounded;
   for (const Eigen::Vector3d& p : this->maps[1](this->cage.nodes)) {
     rounded.push_back(p.template cast<TypeParam>() + far);
@@ -282,7 +282,7 @@ TYPED_TEST(BonePalettes, ColumnsAreTheRowsTransposedAtAnyStride) {
 TYPED_TEST(BonePalettes, OfNodesWithoutVerticesAreTranslations) {
   const TetMesh plain = test::latticeCage(6, 6, 6, 0.25);
   Drawn<TypeParam> drawn(plain, cloud({{0.1, 0.1, 0.1}, {0.2, 0.15, 0.1}}), optionsFor(Interpolation::Quadratic));
-  const Points nodes = this->maps[0](plain.nodes);
+  const PointList nodes = this->maps[0](plain.nodes);
   drawn.move(nodes);
   EXPECT_LT(drawn.difference(), kRounding);
   const std::size_t last = nodes.size() - 1;
@@ -295,7 +295,7 @@ TYPED_TEST(BonePalettes, AreTheSameForAnyNumberOfThreads) {
   const TetMesh large = test::latticeCage(26, 26, 26, 0.04);
   const TriangleMesh mesh = cloud(test::randomPoints(20000, test::around(large, 1.0), 45));
   auto binding = SkinBinding<TypeParam>::create(large, mesh, optionsFor(Interpolation::Quadratic)).value();
-  const Points nodes = this->maps[0](large.nodes);
+  const PointList nodes = this->maps[0](large.nodes);
   auto alone = BonePalette<TypeParam>::create(binding).value();
   test::ShuffledThreads threads(3);
   PaletteOptions options;
@@ -390,13 +390,13 @@ TEST_F(SkinnedMeshes, MoveByLittleWithWeightsOf16BitsUnlessOutside) {
   for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
     Drawn<double> drawn(cube, pointsAround(1.5, 2000, cube), optionsFor(interpolation));
     drawn.move(test::smoothMaps(test::kCentre)[0](cube.nodes));
-    const Points exact = drawn.byBones();
+    const PointList exact = drawn.byBones();
     const auto weights = drawn.skinned.normalisedWeights();
     for (std::size_t v = 0; v < weights.size(); ++v) {
       EXPECT_EQ(std::accumulate(weights[v].begin(), weights[v].end(), 0), 65535) << v;
       for (std::size_t k = 0; k < 4; ++k) drawn.skinned.weights[v][k] = static_cast<float>(weights[v][k]) / 65535.0f;
     }
-    const Points rounded = drawn.byBones();
+    const PointList rounded = drawn.byBones();
     double inside = 0.0, outside = 0.0;
     for (std::size_t v = 0; v < weights.size(); ++v) {
       const double error = (rounded[v] - exact[v]).norm();
