@@ -27,7 +27,7 @@ using test::bonesFor;
 using test::distances;
 using test::drawnBy;
 using test::normalBy;
-using test::PointList;
+using PointList = test::Points;
 
 /// Of positions in a cage of size 1 that is sent to four times that at most.
 constexpr double kRounding = 2e-6;
