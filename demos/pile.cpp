@@ -407,6 +407,7 @@ nlohmann::ordered_json summarise(const PileOptions& options, const Pile& pile, c
   json["deepest_vertex_frame"] = measured.deepestFrame;
   json["deepest_vertex_bodies"] = {measured.deepest.body, measured.deepest.other};
   json["deepest_vertex_at_end"] = -measured.latest.depth;
+  json["deepest_vertex_at_end_bodies"] = {measured.latest.body, measured.latest.other};
   json["vertices_inside_at_end"] = measured.latest.count;
   json["deepest_contact"] = measured.deepestContact;
   json["deepest_contact_at_end"] = pile.deepest();
