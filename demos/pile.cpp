@@ -198,8 +198,9 @@ bool Pile::step() {
   const bool followed = std::all_of(statuses_.begin(), statuses_.end(), [](StatusCode status) {
     return status == StatusCode::Ok || status == StatusCode::Asleep;
   });
-  return followed && std::all_of(skins_.begin(), skins_.end(),
-                                 [](const SoftBodySkin& skin) { return maxCoordinate(skin.bounds()) < kMaxCoordinate; });
+  return followed && std::all_of(skins_.begin(), skins_.end(), [](const SoftBodySkin& skin) {
+           return maxCoordinate(skin.bounds()) < kMaxCoordinate;
+         });
 }
 
 StageTimes Pile::stageTimes() const {
