@@ -37,6 +37,11 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
     string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets)[^\n]*" ""
       names "${names}")
   endif()
+  # A class that bullet derives from: its type information is repeated there.
+  if(library STREQUAL bullet)
+    string(REGEX REPLACE "[^\n]* (vtable|typeinfo|typeinfo name) for tetskin::elastic_detail::ConjugateGradient<(float|double)>::Addition" ""
+      names "${names}")
+  endif()
   if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()

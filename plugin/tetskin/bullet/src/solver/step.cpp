@@ -130,6 +130,7 @@ btVector3 movingComponent(const btSoftBody::Node& node, btScalar dt) {
 template <class Task>
 void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& task) {
   std::vector<std::size_t> sizes;
+  sizes.reserve(bodies.size());
   for (const SolvedBody& body : bodies) sizes.push_back(body.dynamics->matrix().slotCount());
   runBySize(
       threads, sizes, [&](std::size_t k) { return elastic_detail::isDivisible(sizes[k]); },
