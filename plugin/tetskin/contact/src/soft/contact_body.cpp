@@ -28,38 +28,22 @@ void ContactBody::read() {
   fitted_.reset();
   awake = body->isActive();
   box = {};
+  ++reads;
+  before.swap(positions);
   positions.resize(data().nodes.size());
+  velocities.resize(positions.size());
   btVector3 sum(0, 0, 0);
   for (std::size_t n = 0; n < positions.size(); ++n) {
-    positions[n] = body->m_nodes[static_cast<int>(n)].m_x;
+    const btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
+    positions[n] = node.m_x;
+    velocities[n] = node.m_v;
     box.extend(positions[n]);
     sum += positions[n];
   }
   const btScalar size = box.diagonal();
   // Comparisons skip NaN values; the sum does not.
   readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(Limits::kMaxCoordinate);
-  measureTravel(sum / static_cast<btScalar>(positions.size()));
-  measureSpeed();
-}
-
-void ContactBody::measureSpeed() {
-  const btSoftBody::tNodeArray& nodes = body->m_nodes;
-  drift.setZero();
-  for (int n = 0; n < nodes.size(); ++n) drift += nodes[n].m_v / static_cast<btScalar>(nodes.size());
-  btScalar squared = 0;
-  for (int n = 0; n < nodes.size(); ++n) squared = std::max(squared, (nodes[n].m_v - drift).length2());
-  fastest = btSqrt(squared);
-}
-
-void ContactBody::measureTravel(const btVector3& newCentroid) {
-  btScalar squared = 0;
-  read_.resize(positions.size(), newCentroid);
-  for (std::size_t n = 0; n < positions.size(); ++n) {
-    squared = std::max(squared, (positions[n] - read_[n] - (newCentroid - centroid)).length2());
-  }
-  travelled += std::sqrt(static_cast<double>(squared));
-  centroid = newCentroid;
-  read_ = positions;
+  centroid = sum / static_cast<btScalar>(positions.size());
 }
 
 ContactBox ContactBody::partBox(const Tet& n, const FilledComponent& part) const {

@@ -65,7 +65,7 @@ class ContactBody {
   /// True if the body has the nodes and tets that the shape was made for.
   bool fits() const;
 
-  /// Reads the positions of the nodes, and computes their box. Cost O(nodes)
+  /// Reads the positions and velocities of the nodes, and computes their box. Cost O(nodes)
   void read();
   /// Computes the boxes of the tets, unless this has been done since `read`. Cost O(tets)
   void place();
@@ -90,24 +90,20 @@ class ContactBody {
   bool awake = true;
   bool readable = false;  ///< all positions are finite
   ContactBox box;
-  btVector3 centroid{0, 0, 0};  ///< centroid of the nodes
-  btVector3 drift{0, 0, 0};     ///< mean velocity of the nodes, and the largest speed relative to it
-  btScalar fastest = 0;
-  double travelled = 0;  ///< over all steps so far, relative to the centroid: an upper bound of the path of any node
-  std::vector<btVector3> positions;                    ///< by node
+  btVector3 centroid{0, 0, 0};                         ///< of the nodes
+  int reads = 0;                                       ///< number of times that `read` has been called
+  std::vector<btVector3> positions, velocities;        ///< by node
+  std::vector<btVector3> before;                       ///< positions by node when it was read before
   std::vector<GroupBoxes> groupBoxes;                  ///< by group: around the tets' filled parts; valid after `place`
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, valid after `fit`
 
  private:
-  void measureTravel(const btVector3& newCentroid);
-  void measureSpeed();
   void measure(DeformedTet& tet, const Tet& n) const;
   ContactBox partBox(const Tet& n, const FilledComponent& part) const;
   void placeGroup(const TetGroup& group, GroupBoxes& boxes) const;
   void fitTrees();
 
   OncePerStep placed_, fitted_;
-  std::vector<btVector3> read_;  ///< positions before any correction
 };
 
 }  // namespace tetskin::contact_detail

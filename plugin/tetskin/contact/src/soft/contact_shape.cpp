@@ -210,6 +210,7 @@ void boundRuns(ShapeData& data) {
       part.left -= part.minimum[k];
     }
     data.runParts.push_back(part);
+    data.largestSpread = std::max(data.largestSpread, part.spread());
   }
 }
 

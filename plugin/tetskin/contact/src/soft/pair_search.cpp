@@ -14,9 +14,6 @@ constexpr btScalar kOnePlace = btScalar(0.3);
 /// For contacts of a body with itself, in cubes of the grid: a sample whose rest position, as a tet maps it, differs
 /// from its own by less than this is where it belongs, and does not touch there.
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
-/// Relative motion of the bodies up to which candidates stay complete: that of this many steps, in cubes of the grid
-/// bounded as given.
-constexpr btScalar kSlackSteps = 8, kSlackCubes = 1, kMaxSlackCubes = 4;
 /// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
 constexpr btScalar kKeptCubes = btScalar(0.1);
 /// Cosine between normals from which on two contacts of a node count as one.
@@ -71,10 +68,10 @@ Clearance atSurface() {
 
 }  // namespace
 
-Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
-                         btScalar deep, PairMemory& memory, std::vector<Touch>& touches) {
-  assert(reach > 0 && dt > 0 && deep >= 0);
-  now_ = {&first, &second, reach, dt, apart, deep, &memory.sides};
+Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
+                         PairMemory& memory, std::vector<Touch>& touches) {
+  assert(dt > 0 && deep >= 0);
+  now_ = {&first, &second, dt, apart, deep, &memory.sides};
   ++pair_;
   second.place();
   if (known_.size() < second.data().tets.size()) known_.resize(second.data().tets.size());
@@ -84,14 +81,10 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar reach
   memory.sides.beginStep();
   touched_.swap(memory.touched);
   pierced_.swap(memory.pierced);
-  const btScalar cube = second.data().grid.spacing();
-  memory.candidates.advance(first, second);
-  const btScalar slack =
-      std::min(std::max(kSlackCubes * cube, kSlackSteps * memory.candidates.moved()), kMaxSlackCubes * cube);
-  if (!memory.candidates.hold()) memory.candidates.find(first, second, slack);
+  memory.candidates.update(first, second, dt);
   memory.candidates.visit(
-      first, second, reach, [&](int run) { return beginRun(run); }, [&](int tet) { return testTet(tet); },
-      [&](int run) { touchRun(run); });
+      first, second, [&](int run, btScalar reach) { return beginRun(run, reach); },
+      [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
   remember(memory);
   return overlap_;
 }
@@ -112,7 +105,9 @@ void PairSearch::remember(PairMemory& memory) const {
   for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
 }
 
-const ContactBox& PairSearch::beginRun(int run) {
+const ContactBox& PairSearch::beginRun(int run, btScalar reach) {
+  assert(reach > 0);
+  reach_ = reach;
   run_ = now_.first->data().runs[static_cast<std::size_t>(run)];
   assert(run_.first < run_.last);
   carryRun();
@@ -235,7 +230,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
   }
   if (!data.grid.at(position.rest, position.nearest)) return atSurface();
   const btScalar distance = position.nearest.distance / in.restPerWorld;
-  if (distance > now_.reach) return away(distance);
+  if (distance > reach_) return away(distance);
   position.tet = tet;
   position.next = head;
   head = static_cast<int>(positions_.size());
@@ -308,7 +303,7 @@ void PairSearch::touch(int k, int run, const SamplePosition& position) {
   if (!(length > SIMD_EPSILON)) return;
   Touch made;
   made.distance = found.distance / length;
-  if (made.distance > now_.reach) return;
+  if (made.distance > reach_) return;
   found.side.sample = sample;
   now_.sides->keep(found.side);
   made.sample = sample;

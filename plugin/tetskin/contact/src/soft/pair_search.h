@@ -44,14 +44,14 @@ struct Overlap {
 class PairSearch {
  public:
   /// Finds the touches of a pair. Both bodies have been read; they may be the same one.
-  /// reach    of contacts, world space: samples farther away are left out
-  /// dt       seconds of the step that has led here
+  /// dt       seconds of the step that has led here, and of the one to come: samples that cannot reach the surface
+  ///          within it are left out
   /// apart    direction in which the first body is to leave the second, where it is deep in it, and the depth from
   ///          which on it applies; or 0
   /// touches  appended to: for each node of the first body, the deepest of the samples of which it has the largest
   ///          weight, and the deepest of those that are pushed in another direction
-  Overlap find(ContactBody& first, ContactBody& second, btScalar reach, btScalar dt, const btVector3& apart,
-               btScalar deep, PairMemory& memory, std::vector<Touch>& touches);
+  Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
+               PairMemory& memory, std::vector<Touch>& touches);
 
  private:
   /// A position of a sample in the second body: where that body folds, there are several.
@@ -64,7 +64,7 @@ class PairSearch {
   struct Search {
     ContactBody* first;
     ContactBody* second;
-    btScalar reach, dt;
+    btScalar dt;
     btVector3 apart;
     btScalar deep;
     ContactSides* sides;
@@ -77,7 +77,7 @@ class PairSearch {
   };
 
   void remember(PairMemory& memory) const;
-  const ContactBox& beginRun(int run);
+  const ContactBox& beginRun(int run, btScalar reach);
   void carryRun();
   const DeformedTet& deformed(int tet);
   btVector3 sampleAt(int k) const;
@@ -97,6 +97,7 @@ class PairSearch {
   std::uint64_t pair_ = 0;       ///< number of the pair that is searched
   std::vector<KnownTet> known_;  ///< by tet
   SampleRun run_;                ///< the run that is being tested
+  btScalar reach_ = 0;           ///< of its contacts, world space: samples farther away are left out
   DeformedTet own_;              ///< its tet, if one of its samples touches
   ContactBox around_;            ///< box of its samples
   std::vector<btScalar>

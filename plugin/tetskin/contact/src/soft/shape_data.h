@@ -10,6 +10,7 @@
 #include <tetskin/core/src/shared/bvh/bvh.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -33,12 +34,21 @@ struct CarriedCells {
 
 /// Distance from the surface up to which a sample counts, in cubes of the grid.
 constexpr btScalar kReachCubes = btScalar(1.5);
+/// Contacts whose gap the step will not close are left out, if the gap is larger than this many cubes.
+constexpr btScalar kNearCubes = btScalar(0.1);
 
 /// The part of a tet that may hold something inside, or near it: where each weight is at least this. It has the shape
 /// of the tet, so that it deforms with it.
 struct FilledComponent {
   btScalar minimum[4] = {};
   btScalar left = 1;  ///< 1 minus their sum
+
+  /// How much farther than its nodes a point of the part can move: above 1 if weights are below 0.
+  btScalar spread() const {
+    btScalar sum = left;
+    for (const btScalar weight : minimum) sum += std::abs(weight);
+    return sum;
+  }
 };
 
 /// Number of tets that are tested at once: those of a leaf of their tree.
@@ -92,6 +102,7 @@ struct ShapeData {
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
   std::vector<FilledComponent> filled;             ///< by tet
   std::vector<FilledComponent> runParts;           ///< by run: the part of the tet that holds its samples
+  btScalar largestSpread = 1;                      ///< of the runs' parts
   std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
   SearchTree runTree;                              ///< over all runs
   SearchTree tetTree;                              ///< over the tets that hold, or are near, something inside

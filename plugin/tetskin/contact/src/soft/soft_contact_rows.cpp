@@ -11,8 +11,6 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Contacts whose gap the step will not close are left out, if the gap is larger than this many cubes.
-constexpr btScalar kNearCubes = btScalar(0.1);
 /// A body that moves faster than this, in body lengths per second, wakes what sleeps where it touches. It is Bullet's
 /// own threshold of sleep.
 constexpr btScalar kWakingSpeed = btScalar(0.04);
@@ -188,13 +186,9 @@ btVector3 SoftContactRows::search(const SearchedPair& pair, btScalar seconds, Pa
   ContactBody &first = *pair.first, &second = *pair.second;
   PairState& pairState = *pair.state;
   const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
-  // The distance that the two can approach each other within the step.
-  const btScalar approach = seconds * (first.fastest + second.fastest + (first.drift - second.drift).length());
   const auto in = [&](ContactBody& a, ContactBody& b, int k) {
-    const btScalar cube = b.data().grid.spacing();
-    const btScalar reach = std::min(kReachCubes * cube, kNearCubes * cube + approach);
     pairState.touches[k].clear();
-    return finder.find(a, b, reach, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
+    return finder.find(a, b, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
                        pairState.touches[k]);
   };
   const Overlap own = in(first, second, 0);
