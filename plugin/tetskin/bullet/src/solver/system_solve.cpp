@@ -141,7 +141,8 @@ void SystemSolve::evaluateRows(btScalar kept, bool first) {
 
 btVector3 SystemSolve::velocityOf(std::size_t r) const {
   const EndVelocities& ends = endVelocities_[r];
-  return system_.rows[r]->relative + (ends[0] - ends[1]) + fewVelocity(r, few_);
+  const btVector3 own = system_.rows[r]->relative + (ends[0] - ends[1]);
+  return fewSize_ > 0 ? own + fewVelocity(r, few_) : own;
 }
 
 /// Makes the pass's linear system, and begins its solve. Returns whether there is nothing left to solve.
@@ -176,16 +177,28 @@ void SystemSolve::addRows(Body& body) {
   matchComponents(body);
   body.ends.addTangents(system_.rows);
   fixNodes(body.solved);
+  listCoupled(body);
+}
+
+/// The matrices contain the blocks of each end with itself.
+void SystemSolve::listCoupled(Body& body) const {
+  body.coupled.clear();
+  for (const BodyEnd& end : body.ends.list()) {
+    const ContactRow& row = *system_.rows[end.row];
+    if (row.state == ContactRow::State::Apart) continue;
+    const bool byOther = row.ends[1 - end.index].isSoft(), byFew = fewSize_ > 0 && meetsFew(end.row);
+    if (byOther || byFew) body.coupled.push_back({end, byOther, byFew, row.tangent});
+  }
 }
 
 /// Bounds friction by the normal impulses of the current pass.
 void SystemSolve::refreshBounds() {
   assert(stepped_.size() == system_.rows.size());
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+  forEachRow([&](std::size_t r) {
     ContactRow& row = *system_.rows[r];
     const btVector3 impulse = row.impulse - row.tangent * stepped_[r];
     row.normalBound = std::max(row.normal.dot(impulse), btScalar(0));
-  }
+  });
 }
 
 // ---- finish

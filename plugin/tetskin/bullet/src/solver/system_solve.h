@@ -46,6 +46,12 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
     RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
   };
+  /// An end of a row that couples its body to another one, or to the few unknowns, in the current pass.
+  struct CoupledEnd {
+    BodyEnd end;
+    bool byOther = false, byFew = false;
+    btMatrix3x3 tangent;
+  };
   /// A body of the system.
   struct Body {
     Body(std::size_t number, SolvedBody& of) : index(number), solved(of), ends(of.dynamics->matrix()) {}
@@ -55,6 +61,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     std::size_t index;  ///< in SolverBodies::bodies
     SolvedBody& solved;
     BodyEnds ends;
+    std::vector<CoupledEnd> coupled;
     std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
     double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
@@ -89,6 +96,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   void evaluateRows(btScalar kept, bool first);
   bool start(int pass);
   void addRows(Body& body);
+  void listCoupled(Body& body) const;
   btVector3 velocityOf(std::size_t row) const;
   void refreshBounds();
   bool isHung(const Body& body) const;
