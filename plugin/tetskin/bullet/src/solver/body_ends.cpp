@@ -19,10 +19,6 @@ void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
 
 }  // namespace
 
-BodyEnds::BodyEnds(Matrix& matrix) : matrix_(&matrix) {
-  matrix.forgetCouplings();
-}
-
 void BodyEnds::add(std::size_t row, std::size_t index, const RowEnd& end) {
   assert(end.isSoft() && index < 2 && (ends_.empty() || ends_.back().index <= index));
   const auto number = static_cast<std::uint32_t>(ends_.size());
@@ -103,10 +99,10 @@ void BodyEnds::addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar
   }
 }
 
-void BodyEnds::addTangents(const std::vector<ContactRow*>& rows) {
+void BodyEnds::addTangents(const std::vector<LinearRow>& rows) {
   for (Group& group : groups_) {
     const bool apart = std::all_of(ends_.begin() + group.first, ends_.begin() + group.last, [&](const BodyEnd& end) {
-      return rows[end.row]->state == ContactRow::State::Apart;
+      return rows[end.row].state == ContactRow::State::Apart;
     });
     if (!apart) addBlocks(group, rows);
   }
@@ -120,14 +116,14 @@ void BodyEnds::addTangents(const std::vector<ContactRow*>& rows) {
 }
 
 /// Nodes that no tet connects have no block in the matrix: each gets by itself the stiffness that they have together.
-void BodyEnds::addBlocks(Group& group, const std::vector<ContactRow*>& rows) {
+void BodyEnds::addBlocks(Group& group, const std::vector<LinearRow>& rows) {
   assert(group.first < group.last && group.last <= ends_.size());
   if (!group.coupled) findCouplings(group);
   const Node* nodes = &nodes_[ends_[group.first].first];
   const std::uint32_t count = ends_[group.first].last - ends_[group.first].first;
   Blocks blocks = {};
   for (std::uint32_t e = group.first; e < group.last; ++e) {
-    const ContactRow& row = *rows[ends_[e].row];
+    const LinearRow& row = rows[ends_[e].row];
     if (row.state == ContactRow::State::Apart) continue;
     const btMatrix3x3& h = row.tangent;
     const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
@@ -156,10 +152,10 @@ void BodyEnds::addBlocks(Group& group, const std::vector<ContactRow*>& rows) {
   }
 }
 
-void BodyEnds::addApart(const Group& group, const std::vector<ContactRow*>& rows, std::uint32_t i, std::uint32_t j,
+void BodyEnds::addApart(const Group& group, const std::vector<LinearRow>& rows, std::uint32_t i, std::uint32_t j,
                         Blocks& blocks) const {
   for (std::uint32_t e = group.first; e < group.last; ++e) {
-    const ContactRow& row = *rows[ends_[e].row];
+    const LinearRow& row = rows[ends_[e].row];
     if (row.state == ContactRow::State::Apart) continue;
     const Node* nodes = &nodes_[ends_[e].first];
     const btScalar weight = std::abs(nodes[i].weight * nodes[j].weight);

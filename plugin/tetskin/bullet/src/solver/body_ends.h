@@ -25,8 +25,8 @@ class BodyEnds {
  public:
   using Matrix = elastic_detail::BlockMatrix<btScalar>;
 
-  /// matrix  the body's, which exists as long as this; its couplings are forgotten
-  explicit BodyEnds(Matrix& matrix);
+  /// matrix  the body's, which exists as long as this
+  explicit BodyEnds(Matrix& matrix) : matrix_(&matrix) {}
 
   /// Call it for all first ends on the body, in the order of their rows, and then for all second ends.
   void add(std::size_t row, std::size_t index, const RowEnd& end);
@@ -39,7 +39,7 @@ class BodyEnds {
   void addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar* wide) const;
   /// Adds the rows' tangents to the matrix, to each of its blocks once.
   /// rows  the system's
-  void addTangents(const std::vector<ContactRow*>& rows);
+  void addTangents(const std::vector<LinearRow>& rows);
 
  private:
   using Coupling = std::optional<std::uint32_t>;
@@ -65,8 +65,8 @@ class BodyEnds {
   bool isOfLastGroup(std::size_t index, const RowEnd& end) const;
   void addGroup(std::uint32_t pairs);
   void findCouplings(Group& group);
-  void addBlocks(Group& group, const std::vector<ContactRow*>& rows);
-  void addApart(const Group& group, const std::vector<ContactRow*>& rows, std::uint32_t i, std::uint32_t j,
+  void addBlocks(Group& group, const std::vector<LinearRow>& rows);
+  void addApart(const Group& group, const std::vector<LinearRow>& rows, std::uint32_t i, std::uint32_t j,
                 Blocks& blocks) const;
 
   Matrix* matrix_;

@@ -246,7 +246,9 @@ void SystemSolve::addFew(const Body& body, const Vector& few, btScalar sign, boo
 /// Computes the few unknowns from the nodes' change in the pass.
 void SystemSolve::moveFew() {
   assert(before_.size() == system_.rows.size());
-  forEachBody([&](Body& body, ParallelFor*) { readSolution(body); });
+  forEachBody([&](Body& body, ParallelFor*) {
+    if (body.moves) readSolution(body);
+  });
   forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
   if (fewSize_ == 0) return;
   // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.

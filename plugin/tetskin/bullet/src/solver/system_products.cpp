@@ -11,8 +11,8 @@ namespace tetskin {
 
 /// Computes the velocities that the body's step gives the rows' ends, and its effect on the few unknowns.
 void SystemSolve::read(std::size_t k) {
-  assert(k < bodies_.size());
-  Body& body = bodies_[k];
+  assert(k < moving_.size());
+  Body& body = bodies_[moving_[k]];
   body.push.setZero(fewSize_);
   for (const CoupledEnd& coupled : body.coupled) {
     const BodyEnd& end = coupled.end;
@@ -34,8 +34,8 @@ void SystemSolve::combine() {
 }
 
 const btScalar* SystemSolve::added(std::size_t k) {
-  assert(k < bodies_.size());
-  const Body& body = bodies_[k];
+  assert(k < moving_.size());
+  const Body& body = bodies_[moving_[k]];
   std::vector<btScalar>& sum = step_.extras[body.index];
   if (system_.forces.empty()) sum.assign(body.matrix().wideSize(), btScalar(0));
   addFew(body, fewOfStep_, 1, true, sum.data());

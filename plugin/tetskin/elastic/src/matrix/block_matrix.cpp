@@ -137,31 +137,45 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
     part.inverse = freeInverse_.data();
     table.assemble(part);
   });
-  // Couplings belong to the blocks before.
-  for (Coupling& coupling : couplings_) coupling.used = false;
-  forgetCouplings();
+  // What was added to the blocks before is not in these.
+  for (Coupling& coupling : couplings_) coupling.known = coupling.used = false;
+  used_.clear();
+  free();
 }
 
 template <class S>
 void BlockMatrix<S>::free() {
   diagonal_ = freeDiagonal_;
   inverse_ = freeInverse_;
-  for (Coupling& coupling : couplings_) {
-    if (!coupling.used) continue;
-    coupling.used = false;
-    std::fill(std::begin(coupling.addition), std::end(coupling.addition), S(0));
-    if (!coupling.pinned) write(coupling);
+  for (const std::uint32_t k : used_) {
+    std::fill(std::begin(couplings_[k].addition), std::end(couplings_[k].addition), S(0));
+    couplings_[k].used = false;
+    write(couplings_[k]);
   }
+  used_.clear();
 }
 
+/// Entries of neighbours after the slot follow those of neighbours before it.
 template <class S>
 std::optional<std::size_t> BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) const {
   assert(slot < slotCount() && neighbour < slotCount());
   const std::size_t chunk = slot / kGroup, lane = slot % kGroup;
-  for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
-    if (pattern_.neighbours[kGroup * e + lane] == neighbour) return kernels::kWideBlock * e + lane;
+  const std::size_t half = neighbour > slot ? 1 : 0;
+  for (const std::size_t k : {2 * chunk + half, 2 * chunk + 1 - half}) {
+    for (std::size_t e = pattern_.starts[k]; e < pattern_.starts[k + 1]; ++e) {
+      if (pattern_.neighbours[kGroup * e + lane] == neighbour) return kernels::kWideBlock * e + lane;
+    }
   }
   return std::nullopt;
+}
+
+template <class S>
+void BlockMatrix<S>::read(Coupling& coupling) const {
+  coupling.known = true;
+  for (std::size_t k = 0; k < 9; ++k) {
+    coupling.own[k] = blocks_[coupling.block + k * kGroup];
+    coupling.ownMirrored[k] = blocks_[coupling.mirrored + k * kGroup];
+  }
 }
 
 /// Writes the blocks of a pair: their own values and the addition.
@@ -185,39 +199,30 @@ std::optional<std::uint32_t> BlockMatrix<S>::couplingOf(std::size_t first, std::
   const std::optional<std::size_t> mirrored = blockOf(high, low);
   if (!mirrored) return std::nullopt;
   Coupling& coupling = couplings_.emplace_back();
+  coupling.first = low;
+  coupling.second = high;
   coupling.block = *block;
   coupling.mirrored = *mirrored;
-  coupling.pinned = mass(first) == S(0) || mass(second) == S(0);
-  for (std::size_t k = 0; k < 9; ++k) {
-    coupling.own[k] = blocks_[*block + k * kGroup];
-    coupling.ownMirrored[k] = blocks_[*mirrored + k * kGroup];
-  }
   number = static_cast<std::uint32_t>(couplings_.size());
   return number - 1;
 }
 
 template <class S>
-void BlockMatrix<S>::couple(std::uint32_t coupling, const S block[6]) {
-  assert(coupling < couplings_.size());
-  Coupling& to = couplings_[coupling];
-  to.used = true;
-  for (std::size_t k = 0; k < 6; ++k) to.addition[k] += block[k];
+void BlockMatrix<S>::couple(std::uint32_t number, const S block[6]) {
+  assert(number < couplings_.size());
+  Coupling& coupling = couplings_[number];
+  if (!coupling.used) {
+    if (massAt(coupling.first) == S(0) || massAt(coupling.second) == S(0)) return;
+    if (!coupling.known) read(coupling);
+    coupling.used = true;
+    used_.push_back(number);
+  }
+  for (std::size_t k = 0; k < 6; ++k) coupling.addition[k] += block[k];
 }
 
 template <class S>
 void BlockMatrix<S>::applyCouplings() {
-  for (const Coupling& coupling : couplings_) {
-    if (coupling.used && !coupling.pinned) write(coupling);
-  }
-}
-
-template <class S>
-void BlockMatrix<S>::forgetCouplings() {
-  free();
-  for (const Coupling& coupling : couplings_) {
-    couplingAt_[coupling.block / kernels::kWideBlock * kGroup + coupling.block % kGroup] = 0;
-  }
-  couplings_.clear();
+  for (const std::uint32_t k : used_) write(couplings_[k]);
 }
 
 template <class S>
@@ -225,7 +230,7 @@ bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block
   const std::optional<std::uint32_t> coupling = couplingOf(first, second);
   if (!coupling) return false;
   couple(*coupling, block);
-  if (!couplings_[*coupling].pinned) write(couplings_[*coupling]);
+  if (couplings_[*coupling].used) write(couplings_[*coupling]);
   return true;
 }
 

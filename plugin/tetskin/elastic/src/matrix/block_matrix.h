@@ -87,13 +87,12 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// does nothing, where the two are the same node or have no tet in common: the matrix has no such block. Nothing is
   /// added if one of them is pinned. Cost O(neighbours of a node)
   bool couple(std::size_t first, std::size_t second, const S block[6]);
-  /// The same for pairs that are coupled again and again: the number of the pair, which is valid until the next
-  /// assembly or `forgetCouplings`; empty where there is no such block. Cost as above
+  /// The same for pairs that are coupled again and again: the number of the pair, valid as long as the matrix; empty
+  /// where there is no such block. Cost as above
   std::optional<std::uint32_t> couplingOf(std::size_t first, std::size_t second);
-  /// Adds to what `applyCouplings` will add to the blocks of a pair.
+  /// Adds to what `applyCouplings` adds to the blocks of a pair.
   void couple(std::uint32_t coupling, const S block[6]);
   void applyCouplings();
-  void forgetCouplings();
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
   void free();
 
@@ -138,11 +137,13 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 
   /// What is added to the two blocks of a pair of nodes, and their values without it.
   struct Coupling {
-    std::size_t block = 0, mirrored = 0;
+    std::size_t first = 0, second = 0;    ///< slots
+    std::size_t block = 0, mirrored = 0;  ///< of the first scalars
     S addition[6] = {}, own[9] = {}, ownMirrored[9] = {};
-    bool pinned = false;  ///< nothing is added
-    bool used = false;    ///< since the last `free`
+    bool known = false;  ///< own values, since the last assembly
+    bool used = false;   ///< since the last `free`
   };
+  void read(Coupling& coupling) const;
   void write(const Coupling& coupling);
 
   BlockPattern pattern_;
@@ -151,6 +152,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   AlignedVector<S> stepPoints_, lowerPoints_;
   mutable std::vector<S> partial_;  // by range
   std::vector<Coupling> couplings_;
+  std::vector<std::uint32_t> used_;        ///< numbers of couplings, since the last `free`
   std::vector<std::uint32_t> couplingAt_;  ///< by entry and lane: number of the coupling + 1; 0: none
 };
 
