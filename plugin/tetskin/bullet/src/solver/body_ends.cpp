@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 namespace tetskin {
 namespace {
@@ -21,7 +22,7 @@ void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
 void BodyEnds::add(std::size_t row, std::size_t index, const RowEnd& end) {
   assert(end.isSoft() && index < 2 && (ends_.empty() || ends_.back().index <= index));
   const auto number = static_cast<std::uint32_t>(ends_.size());
-  if (!isOfLastGroup(index, end)) addGroup(end);
+  if (!isOfLastGroup(index, end)) addGroup(end.nodeCount * (end.nodeCount - 1) / 2);
   groups_.back().last = number + 1;
   BodyEnd& added = ends_.emplace_back();
   added.row = static_cast<std::uint32_t>(row);
@@ -29,30 +30,47 @@ void BodyEnds::add(std::size_t row, std::size_t index, const RowEnd& end) {
   added.first = static_cast<std::uint32_t>(nodes_.size());
   for (std::uint32_t k = 0; k < end.nodeCount; ++k) {
     const auto node = static_cast<std::size_t>(end.nodes[k]);
-    nodes_.push_back({static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(matrix_->slotOf(node)),
+    nodes_.push_back({metNode(node), static_cast<std::uint32_t>(matrix_->slotOf(node)),
                       static_cast<std::uint32_t>(matrix_->wideOf(node)), end.weights[k]});
   }
   added.last = static_cast<std::uint32_t>(nodes_.size());
 }
 
+std::uint32_t BodyEnds::metNode(std::size_t node) {
+  metAt_.resize(matrix_->slotCount(), 0);
+  std::uint32_t& number = metAt_[matrix_->slotOf(node)];
+  if (number == 0) {
+    met_.emplace_back().node = node;
+    number = static_cast<std::uint32_t>(met_.size());
+  }
+  return number - 1;
+}
+
 bool BodyEnds::isOfLastGroup(std::size_t index, const RowEnd& end) const {
   if (ends_.empty() || ends_.back().index != index) return false;
   const BodyEnd& before = ends_.back();
-  return std::equal(nodes_.begin() + before.first, nodes_.begin() + before.last, end.nodes.begin(),
-                    end.nodes.begin() + end.nodeCount,
-                    [](const Node& a, int b) { return a.node == static_cast<std::uint32_t>(b); });
+  return std::equal(
+      nodes_.begin() + before.first, nodes_.begin() + before.last, end.nodes.begin(), end.nodes.begin() + end.nodeCount,
+      [this](const Node& a, int b) { return a.slot == matrix_->slotOf(static_cast<std::size_t>(b)); });
 }
 
-void BodyEnds::addGroup(const RowEnd& end) {
+void BodyEnds::addGroup(std::uint32_t pairs) {
   Group& group = groups_.emplace_back();
   group.first = static_cast<std::uint32_t>(ends_.size());
   group.couplings = static_cast<std::uint32_t>(couplings_.size());
-  for (std::uint32_t i = 0; i < end.nodeCount; ++i) {
-    for (std::uint32_t j = 0; j < i; ++j) {
-      couplings_.push_back(
-          matrix_->couplingOf(static_cast<std::size_t>(end.nodes[i]), static_cast<std::size_t>(end.nodes[j])));
+  couplings_.resize(couplings_.size() + pairs);
+}
+
+void BodyEnds::findCouplings(Group& group) {
+  assert(!group.coupled && group.first < group.last);
+  const BodyEnd& end = ends_[group.first];
+  Coupling* coupling = couplings_.data() + group.couplings;
+  for (std::uint32_t i = end.first; i < end.last; ++i) {
+    for (std::uint32_t j = end.first; j < i; ++j, ++coupling) {
+      *coupling = matrix_->couplingOf(met_[nodes_[i].met].node, met_[nodes_[j].met].node);
     }
   }
+  group.coupled = true;
 }
 
 btVector3 BodyEnds::velocity(const BodyEnd& end) const {
@@ -81,23 +99,31 @@ void BodyEnds::addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar
   }
 }
 
-void BodyEnds::addTangents(const std::vector<ContactRow*>& rows) const {
-  for (const Group& group : groups_) {
+void BodyEnds::addTangents(const std::vector<LinearRow>& rows) {
+  for (Group& group : groups_) {
     const bool apart = std::all_of(ends_.begin() + group.first, ends_.begin() + group.last, [&](const BodyEnd& end) {
-      return rows[end.row]->state == ContactRow::State::Apart;
+      return rows[end.row].state == ContactRow::State::Apart;
     });
     if (!apart) addBlocks(group, rows);
+  }
+  matrix_->applyCouplings();
+  for (MetNode& met : met_) {
+    if (!met.used) continue;
+    matrix_->resist(met.node, met.block);
+    std::fill(std::begin(met.block), std::end(met.block), btScalar(0));
+    met.used = false;
   }
 }
 
 /// Nodes that no tet connects have no block in the matrix: each gets by itself the stiffness that they have together.
-void BodyEnds::addBlocks(const Group& group, const std::vector<ContactRow*>& rows) const {
+void BodyEnds::addBlocks(Group& group, const std::vector<LinearRow>& rows) {
   assert(group.first < group.last && group.last <= ends_.size());
+  if (!group.coupled) findCouplings(group);
   const Node* nodes = &nodes_[ends_[group.first].first];
   const std::uint32_t count = ends_[group.first].last - ends_[group.first].first;
   Blocks blocks = {};
   for (std::uint32_t e = group.first; e < group.last; ++e) {
-    const ContactRow& row = *rows[ends_[e].row];
+    const LinearRow& row = rows[ends_[e].row];
     if (row.state == ContactRow::State::Apart) continue;
     const btMatrix3x3& h = row.tangent;
     const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
@@ -119,13 +145,17 @@ void BodyEnds::addBlocks(const Group& group, const std::vector<ContactRow*>& row
       }
     }
   }
-  for (std::uint32_t i = 0; i < count; ++i) matrix_->resist(nodes[i].node, blocks[i][i]);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    MetNode& met = met_[nodes[i].met];
+    for (int k = 0; k < 6; ++k) met.block[k] += blocks[i][i][k];
+    met.used = true;
+  }
 }
 
-void BodyEnds::addApart(const Group& group, const std::vector<ContactRow*>& rows, std::uint32_t i, std::uint32_t j,
+void BodyEnds::addApart(const Group& group, const std::vector<LinearRow>& rows, std::uint32_t i, std::uint32_t j,
                         Blocks& blocks) const {
   for (std::uint32_t e = group.first; e < group.last; ++e) {
-    const ContactRow& row = *rows[ends_[e].row];
+    const LinearRow& row = rows[ends_[e].row];
     if (row.state == ContactRow::State::Apart) continue;
     const Node* nodes = &nodes_[ends_[e].first];
     const btScalar weight = std::abs(nodes[i].weight * nodes[j].weight);

@@ -37,30 +37,41 @@ class BodyEnds {
   btVector3 stepVelocity(const BodyEnd& end) const;
   /// wide  vector of the body, in the wide layout
   void addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar* wide) const;
-  /// Adds the rows' tangents to the matrix; those of ends at the same nodes are added together.
+  /// Adds the rows' tangents to the matrix, to each of its blocks once.
   /// rows  the system's
-  void addTangents(const std::vector<ContactRow*>& rows) const;
+  void addTangents(const std::vector<LinearRow>& rows);
 
  private:
-  using Coupling = std::optional<Matrix::Coupling>;
+  using Coupling = std::optional<std::uint32_t>;
   using Blocks = btScalar[kMaxPointNodes][kMaxPointNodes][6];  // the lower triangle
   struct Node {
-    std::uint32_t node = 0, slot = 0, wide = 0;
+    std::uint32_t met = 0, slot = 0, wide = 0;  ///< the first one: in `met_`
     btScalar weight = 0;
+  };
+  /// A node on which ends act.
+  struct MetNode {
+    std::size_t node = 0;
+    btScalar block[6] = {};  ///< what is added to its block on the diagonal
+    bool used = false;
   };
   /// Ends at the same nodes.
   struct Group {
     std::uint32_t first = 0, last = 0;  ///< in `ends_`
     std::uint32_t couplings = 0;        ///< in `couplings_`: the first of those of its pairs of nodes
+    bool coupled = false;               ///< these are known; they are looked up when they are needed
   };
 
+  std::uint32_t metNode(std::size_t node);
   bool isOfLastGroup(std::size_t index, const RowEnd& end) const;
-  void addGroup(const RowEnd& end);
-  void addBlocks(const Group& group, const std::vector<ContactRow*>& rows) const;
-  void addApart(const Group& group, const std::vector<ContactRow*>& rows, std::uint32_t i, std::uint32_t j,
+  void addGroup(std::uint32_t pairs);
+  void findCouplings(Group& group);
+  void addBlocks(Group& group, const std::vector<LinearRow>& rows);
+  void addApart(const Group& group, const std::vector<LinearRow>& rows, std::uint32_t i, std::uint32_t j,
                 Blocks& blocks) const;
 
   Matrix* matrix_;
+  std::vector<MetNode> met_;
+  std::vector<std::uint32_t> metAt_;  ///< by slot: its number in `met_` + 1; 0: none
   std::vector<Node> nodes_;
   std::vector<BodyEnd> ends_;
   std::vector<Group> groups_;

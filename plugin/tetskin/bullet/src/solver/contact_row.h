@@ -71,6 +71,13 @@ struct ContactRow {
   State state = State::Apart;
 };
 
+/// A row's law in a pass: as a function that is linear in the velocity.
+struct LinearRow {
+  ContactRow::State state = ContactRow::State::Apart;
+  btVector3 impulse{0, 0, 0};
+  btMatrix3x3 tangent;
+};
+
 /// Sign of an end's impulse and velocity relative to the row's.
 constexpr int signOf(std::size_t end) {
   return end == 0 ? 1 : -1;

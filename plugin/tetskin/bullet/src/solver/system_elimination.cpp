@@ -228,16 +228,15 @@ void SystemSolve::eliminate() {
 /// withOthers  adds that of the steps of the rows' other ends, too
 /// to          in the wide layout: residuals or products
 void SystemSolve::addFew(const Body& body, const Vector& few, btScalar sign, bool withOthers, btScalar* to) const {
-  for (const BodyEnd& end : body.ends.list()) {
-    const ContactRow& row = *system_.rows[end.row];
-    const bool byOther = withOthers && row.ends[1 - end.index].isSoft();
-    const bool byFew = fewSize_ > 0 && meetsFew(end.row);
-    if (row.state == ContactRow::State::Apart || !(byOther || byFew)) continue;
+  for (const CoupledEnd& coupled : body.coupled) {
+    const bool byOther = withOthers && coupled.byOther;
+    if (!byOther && !coupled.byFew) continue;
+    const BodyEnd& end = coupled.end;
     const btScalar own = btScalar(signOf(end.index));
     btVector3 velocity(0, 0, 0);
-    if (byFew) velocity = fewVelocity(end.row, few);
+    if (coupled.byFew) velocity = fewVelocity(end.row, few);
     if (byOther) velocity -= own * endSteps_[end.row][1 - end.index];
-    body.ends.addImpulse(end, (sign * own) * (row.tangent * velocity), to);
+    body.ends.addImpulse(end, (sign * own) * (coupled.tangent * velocity), to);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     components_[c].addImages(static_cast<double>(sign) * few.segment<6>(components_[c].first), to);
@@ -247,15 +246,17 @@ void SystemSolve::addFew(const Body& body, const Vector& few, btScalar sign, boo
 /// Computes the few unknowns from the nodes' change in the pass.
 void SystemSolve::moveFew() {
   assert(before_.size() == system_.rows.size());
-  forEachBody([&](Body& body, ParallelFor*) { readSolution(body); });
+  forEachBody([&](Body& body, ParallelFor*) {
+    if (body.moves) readSolution(body);
+  });
+  forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
+  if (fewSize_ == 0) return;
   // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
   Vector push = fewResidual_, left = fewResidual_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
-    stepped_[r] = velocityOf(r) - before_[r];
-    if (fewSize_ > 0 && row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
   }
-  if (fewSize_ == 0) return;
   for (const ComponentUnknown& component : components_) {
     push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
   }

@@ -19,7 +19,7 @@ constexpr double kCloserWithRows = 0.1, kWhereJoined = 1e-4;
 /// A residual smaller than this cannot be reached in this precision.
 constexpr double kClosest = 8.0 * SIMD_EPSILON;
 /// By how much the first pass reduces the residual, at most, and the passes after it: the rows change after each pass.
-constexpr double kFirstPass = 0.02, kLaterPass = 0.1;
+constexpr double kFirstPass = 0.1, kLaterPass = 0.1;
 
 }  // namespace
 

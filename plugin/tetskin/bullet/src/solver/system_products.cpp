@@ -11,16 +11,14 @@ namespace tetskin {
 
 /// Computes the velocities that the body's step gives the rows' ends, and its effect on the few unknowns.
 void SystemSolve::read(std::size_t k) {
-  assert(k < bodies_.size());
-  Body& body = bodies_[k];
+  assert(k < moving_.size());
+  Body& body = bodies_[moving_[k]];
   body.push.setZero(fewSize_);
-  for (const BodyEnd& end : body.ends.list()) {
-    const ContactRow& row = *system_.rows[end.row];
-    if (row.state == ContactRow::State::Apart) continue;
+  for (const CoupledEnd& coupled : body.coupled) {
+    const BodyEnd& end = coupled.end;
     const btVector3 velocity = body.ends.stepVelocity(end);
     endSteps_[end.row][end.index] = velocity;
-    if (fewSize_ > 0 && meetsFew(end.row))
-      addRowPush(end.row, btScalar(-signOf(end.index)) * (row.tangent * velocity), body.push);
+    if (coupled.byFew) addRowPush(end.row, btScalar(-signOf(end.index)) * (coupled.tangent * velocity), body.push);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     body.push.segment<6>(components_[c].first) -= components_[c].imageProducts(body.matrix().step());
@@ -36,8 +34,8 @@ void SystemSolve::combine() {
 }
 
 const btScalar* SystemSolve::added(std::size_t k) {
-  assert(k < bodies_.size());
-  const Body& body = bodies_[k];
+  assert(k < moving_.size());
+  const Body& body = bodies_[moving_[k]];
   std::vector<btScalar>& sum = step_.extras[body.index];
   if (system_.forces.empty()) sum.assign(body.matrix().wideSize(), btScalar(0));
   addFew(body, fewOfStep_, 1, true, sum.data());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace tetskin {
 namespace {
@@ -17,6 +18,8 @@ constexpr int kPassesBeforeDerivative = 2;
 constexpr btScalar kKept = btScalar(0.1), kLongStep = btScalar(0.9);
 /// A solve has converged if the residual is at most this multiple of the tolerance.
 constexpr double kAccepted = 3.0;
+/// Share of the squared residual that a pass may leave to the next one, in bodies that it does not move.
+constexpr double kLeftShare = 1e-3;
 
 }  // namespace
 
@@ -58,6 +61,7 @@ void SystemSolve::collectEnds() {
   });
   endVelocities_.assign(count, {btVector3(0, 0, 0), btVector3(0, 0, 0)});
   endSteps_ = endVelocities_;
+  linear_.resize(count);
   before_.assign(count, btVector3(0, 0, 0));
   stepped_ = before_;
 }
@@ -121,6 +125,10 @@ void SystemSolve::findResiduals() {
   if (!system_.forces.empty()) step_.multiplySolutions(system_);
   forEachBody([&](Body& body, ParallelFor* inner) {
     body.matrix().free();
+    if (!body.moves) {
+      std::copy(body.residual.begin(), body.residual.end(), body.matrix().residual());
+      return;
+    }
     body.dynamics().restart(inner);
     step_.addOtherResiduals(system_, body.index);
     for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
@@ -136,12 +144,14 @@ void SystemSolve::evaluateRows(btScalar kept, bool first) {
     row.slip = before_[r] - row.normal.dot(before_[r]) * row.normal;
     row.impulse = impulseAt(row, before_[r], first && row.stuck, row.state);
     row.tangent = tangentAt(row, before_[r], row.state, kept);
+    linear_[r] = {row.state, row.impulse, row.tangent};
   });
 }
 
 btVector3 SystemSolve::velocityOf(std::size_t r) const {
   const EndVelocities& ends = endVelocities_[r];
-  return system_.rows[r]->relative + (ends[0] - ends[1]) + fewVelocity(r, few_);
+  const btVector3 own = system_.rows[r]->relative + (ends[0] - ends[1]);
+  return fewSize_ > 0 ? own + fewVelocity(r, few_) : own;
 }
 
 /// Makes the pass's linear system, and begins its solve. Returns whether there is nothing left to solve.
@@ -158,7 +168,33 @@ bool SystemSolve::start(int pass) {
   const double accepted = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(fewMatrix_.solve(fewResidual_));
-  return squared <= accepted;
+  if (squared <= accepted) return true;
+  chooseMoving();
+  return false;
+}
+
+/// Bodies with a small share of the residual keep their velocities in this pass.
+void SystemSolve::chooseMoving() {
+  moving_.clear();
+  auto& solve = *bodies_.front().solved.solve;
+  const bool all = fewSize_ > 0 || !system_.forces.empty() || system_.rows.empty();
+  std::vector<std::size_t> order(bodies_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return solve.squaredResidualOf(a) < solve.squaredResidualOf(b); });
+  double left = 0.0;
+  const double most = kLeftShare * solve.squaredResidual();
+  for (Body& body : bodies_) body.moves = true;
+  for (const std::size_t k : order) {
+    left += solve.squaredResidualOf(k);
+    if (all || !(left <= most)) break;
+    bodies_[k].moves = false;
+  }
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (bodies_[k].moves) { moving_.push_back(k); continue; }
+    for (const CoupledEnd& coupled : bodies_[k].coupled) endSteps_[coupled.end.row][coupled.end.index].setZero();
+  }
+  if (moving_.size() < bodies_.size()) solve.keepOnly(moving_);
 }
 
 /// Keeps the body's state, and adds the rows to its residual and matrix.
@@ -171,21 +207,35 @@ void SystemSolve::addRows(Body& body) {
     body.byMasses = body.dynamics().squaredChange();
   }
   for (const BodyEnd& end : body.ends.list()) {
-    body.ends.addImpulse(end, btScalar(signOf(end.index)) * system_.rows[end.row]->impulse, matrix.residual());
+    const btVector3& impulse = linear_[end.row].impulse;
+    if (!impulse.isZero()) body.ends.addImpulse(end, btScalar(signOf(end.index)) * impulse, matrix.residual());
   }
   matchComponents(body);
-  body.ends.addTangents(system_.rows);
+  body.ends.addTangents(linear_);
   fixNodes(body.solved);
+  listCoupled(body);
+}
+
+/// The matrices contain the blocks of each end with itself.
+void SystemSolve::listCoupled(Body& body) const {
+  body.coupled.clear();
+  for (const BodyEnd& end : body.ends.list()) {
+    const LinearRow& row = linear_[end.row];
+    if (row.state == ContactRow::State::Apart) continue;
+    const bool byOther = system_.rows[end.row]->ends[1 - end.index].isSoft();
+    const bool byFew = fewSize_ > 0 && meetsFew(end.row);
+    if (byOther || byFew) body.coupled.push_back({end, byOther, byFew, row.tangent});
+  }
 }
 
 /// Bounds friction by the normal impulses of the current pass.
 void SystemSolve::refreshBounds() {
   assert(stepped_.size() == system_.rows.size());
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+  forEachRow([&](std::size_t r) {
     ContactRow& row = *system_.rows[r];
     const btVector3 impulse = row.impulse - row.tangent * stepped_[r];
     row.normalBound = std::max(row.normal.dot(impulse), btScalar(0));
-  }
+  });
 }
 
 // ---- finish

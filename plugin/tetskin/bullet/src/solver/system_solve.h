@@ -46,6 +46,12 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
     RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
   };
+  /// An end of a row that couples its body to another one, or to the few unknowns, in the current pass.
+  struct CoupledEnd {
+    BodyEnd end;
+    bool byOther = false, byFew = false;
+    btMatrix3x3 tangent;
+  };
   /// A body of the system.
   struct Body {
     Body(std::size_t number, SolvedBody& of) : index(number), solved(of), ends(of.dynamics->matrix()) {}
@@ -55,6 +61,8 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     std::size_t index;  ///< in SolverBodies::bodies
     SolvedBody& solved;
     BodyEnds ends;
+    std::vector<CoupledEnd> coupled;
+    bool moves = true;  ///< in the current pass; others keep their solutions
     std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
     double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
@@ -88,7 +96,9 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   void findResiduals();
   void evaluateRows(btScalar kept, bool first);
   bool start(int pass);
+  void chooseMoving();
   void addRows(Body& body);
+  void listCoupled(Body& body) const;
   btVector3 velocityOf(std::size_t row) const;
   void refreshBounds();
   bool isHung(const Body& body) const;
@@ -137,6 +147,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   bool joinsSoft_ = false;  ///< true if a row connects two points of soft bodies
   std::vector<Body> bodies_;
   std::vector<std::size_t> sizes_;  ///< by body: slots
+  std::vector<std::size_t> moving_;  ///< those that move in the current pass, ascending
   std::vector<ComponentUnknown> components_;
   std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
   // The few unknowns: V of rigid bodies, followed by q of components.
@@ -148,6 +159,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   Matrix inverseMass_;                  ///< M^-1
   FewMatrix fewMatrix_;
   Vector fewOfStep_;  ///< what the step of the conjugate gradient changes the few unknowns by
+  std::vector<LinearRow> linear_;  ///< by row, in the current pass: close together, as each body reads them
   std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
 };

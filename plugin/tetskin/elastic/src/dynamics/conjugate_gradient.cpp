@@ -56,6 +56,20 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, A
 }
 
 template <class S>
+void ConjugateGradient<S>::keepOnly(const std::vector<std::size_t>& kept) {
+  assert(!kept.empty() && kept.back() < matrices_.size() && iterations_ == 0);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    matrices_[k] = matrices_[kept[k]];
+    sizes_[k] = sizes_[kept[k]];
+    partial_[k] = partial_[kept[k]];
+  }
+  matrices_.resize(kept.size());
+  sizes_.resize(kept.size());
+  partial_.resize(kept.size());
+  rho_ = summed();
+}
+
+template <class S>
 bool ConjugateGradient<S>::step(ParallelFor* threads) {
   assert(!stopped_ && partial_.size() == matrices_.size());
   const auto forward = [&](std::size_t k, BlockMatrix<S>& matrix, ParallelFor* inner) {

@@ -38,6 +38,12 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   /// Begins with the matrices' residuals r = b - A x. They are transformed in place, so that `start` is called once.
   /// addition  null: the matrices alone. Not owned, must stay valid while this is used.
   void start(Matrices matrices, const SolveLimits& limits, Addition* addition, ParallelFor* threads);
+  /// After `start`: the share of the k-th matrix in `squaredResidual`.
+  double squaredResidualOf(std::size_t k) const { return partial_[k]; }
+  /// After `start`: leaves the other matrices' solutions as they are. The addition is called with the numbers that the
+  /// matrices have then.
+  /// kept  ascending numbers of matrices, at least one
+  void keepOnly(const std::vector<std::size_t>& kept);
   /// Does up to `most` iterations; returns true if it has converged. Where an addition is not positive, it stops with
   /// the current solution.
   bool iterate(int maximum, ParallelFor* threads);

@@ -3,7 +3,9 @@
 #include <tetskin/core/src/shared/base/instantiate.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
+#include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -37,6 +39,7 @@ BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std
     : pattern_(blockPattern(nodes, tets, noTet)) {
   const std::size_t chunks = pattern_.chunkCount(), slots = pattern_.slotCount();
   masses_.assign(slots, S(0));
+  couplingAt_.assign(pattern_.neighbours.size(), 0);
   blocks_.assign((pattern_.sums.size() - 1) * kernels::kWideBlock, S(0));
   for (AlignedVector<S>* v : {&diagonal_, &inverse_, &freeDiagonal_, &freeInverse_})
     v->assign(chunks * kWideSymmetric, S(0));
@@ -134,7 +137,9 @@ void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
     part.inverse = freeInverse_.data();
     table.assemble(part);
   });
-  saved_.clear();
+  // What was added to the blocks before is not in these.
+  for (Coupling& coupling : couplings_) coupling.known = coupling.used = false;
+  used_.clear();
   free();
 }
 
@@ -142,55 +147,91 @@ template <class S>
 void BlockMatrix<S>::free() {
   diagonal_ = freeDiagonal_;
   inverse_ = freeInverse_;
-  // Backwards, since a block may have been changed twice.
-  for (auto saved = saved_.rbegin(); saved != saved_.rend(); ++saved) {
-    for (std::size_t k = 0; k < 9; ++k) saved->block[k * kGroup] = saved->values[k];
+  for (const std::uint32_t k : used_) {
+    std::fill(std::begin(couplings_[k].addition), std::end(couplings_[k].addition), S(0));
+    couplings_[k].used = false;
+    write(couplings_[k]);
   }
-  saved_.clear();
+  used_.clear();
 }
 
+/// Entries of neighbours after the slot follow those of neighbours before it.
 template <class S>
-S* BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) {
+std::optional<std::size_t> BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) const {
   assert(slot < slotCount() && neighbour < slotCount());
   const std::size_t chunk = slot / kGroup, lane = slot % kGroup;
-  for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
-    if (pattern_.neighbours[kGroup * e + lane] == neighbour) return &blocks_[kernels::kWideBlock * e + lane];
+  const std::size_t half = neighbour > slot ? 1 : 0;
+  for (const std::size_t k : {2 * chunk + half, 2 * chunk + 1 - half}) {
+    for (std::size_t e = pattern_.starts[k]; e < pattern_.starts[k + 1]; ++e) {
+      if (pattern_.neighbours[kGroup * e + lane] == neighbour) return kernels::kWideBlock * e + lane;
+    }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 template <class S>
-void BlockMatrix<S>::addTo(S* block, const S addition[6]) {
-  SavedBlock saved;
-  saved.block = block;
-  for (std::size_t k = 0; k < 9; ++k) saved.values[k] = block[k * kGroup];
-  saved_.push_back(saved);
+void BlockMatrix<S>::read(Coupling& coupling) const {
+  coupling.known = true;
+  for (std::size_t k = 0; k < 9; ++k) {
+    coupling.own[k] = blocks_[coupling.block + k * kGroup];
+    coupling.ownMirrored[k] = blocks_[coupling.mirrored + k * kGroup];
+  }
+}
+
+/// Writes the blocks of a pair: their own values and the addition.
+template <class S>
+void BlockMatrix<S>::write(const Coupling& coupling) {
   constexpr std::size_t kPlaces[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-  for (std::size_t k = 0; k < 9; ++k) block[k * kGroup] += addition[kPlaces[k]];
+  for (std::size_t k = 0; k < 9; ++k) {
+    blocks_[coupling.block + k * kGroup] = coupling.own[k] + coupling.addition[kPlaces[k]];
+    blocks_[coupling.mirrored + k * kGroup] = coupling.ownMirrored[k] + coupling.addition[kPlaces[k]];
+  }
 }
 
 template <class S>
-std::optional<typename BlockMatrix<S>::Coupling> BlockMatrix<S>::couplingOf(std::size_t first, std::size_t second) {
-  const std::size_t slots[2] = {slotOf(first), slotOf(second)};
-  if (slots[0] == slots[1]) return std::nullopt;
-  const Coupling coupling{blockOf(slots[0], slots[1]), blockOf(slots[1], slots[0])};
-  if (!coupling.block || !coupling.mirrored) return std::nullopt;
-  return mass(first) == S(0) || mass(second) == S(0) ? Coupling{} : coupling;
+std::optional<std::uint32_t> BlockMatrix<S>::couplingOf(std::size_t first, std::size_t second) {
+  const std::size_t low = std::min(slotOf(first), slotOf(second)), high = std::max(slotOf(first), slotOf(second));
+  if (low == high) return std::nullopt;
+  const std::optional<std::size_t> block = blockOf(low, high);
+  if (!block) return std::nullopt;
+  std::uint32_t& number = couplingAt_[*block / kernels::kWideBlock * kGroup + *block % kGroup];
+  if (number > 0) return number - 1;
+  const std::optional<std::size_t> mirrored = blockOf(high, low);
+  if (!mirrored) return std::nullopt;
+  Coupling& coupling = couplings_.emplace_back();
+  coupling.first = low;
+  coupling.second = high;
+  coupling.block = *block;
+  coupling.mirrored = *mirrored;
+  number = static_cast<std::uint32_t>(couplings_.size());
+  return number - 1;
 }
 
 template <class S>
-void BlockMatrix<S>::couple(const Coupling& coupling, const S block[6]) {
-  assert((coupling.block == nullptr) == (coupling.mirrored == nullptr));
-  if (!coupling.block) return;
-  addTo(coupling.block, block);
-  addTo(coupling.mirrored, block);
+void BlockMatrix<S>::couple(std::uint32_t number, const S block[6]) {
+  assert(number < couplings_.size());
+  Coupling& coupling = couplings_[number];
+  if (!coupling.used) {
+    if (massAt(coupling.first) == S(0) || massAt(coupling.second) == S(0)) return;
+    if (!coupling.known) read(coupling);
+    coupling.used = true;
+    used_.push_back(number);
+  }
+  for (std::size_t k = 0; k < 6; ++k) coupling.addition[k] += block[k];
+}
+
+template <class S>
+void BlockMatrix<S>::applyCouplings() {
+  for (const std::uint32_t k : used_) write(couplings_[k]);
 }
 
 template <class S>
 bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block[6]) {
-  const std::optional<Coupling> coupling = couplingOf(first, second);
-  if (coupling) couple(*coupling, block);
-  return coupling.has_value();
+  const std::optional<std::uint32_t> coupling = couplingOf(first, second);
+  if (!coupling) return false;
+  couple(*coupling, block);
+  if (couplings_[*coupling].used) write(couplings_[*coupling]);
+  return true;
 }
 
 template <class S>

@@ -87,13 +87,12 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// does nothing, where the two are the same node or have no tet in common: the matrix has no such block. Nothing is
   /// added if one of them is pinned. Cost O(neighbours of a node)
   bool couple(std::size_t first, std::size_t second, const S block[6]);
-  /// The blocks of two nodes, for `couple`: empty where there are none, with null where a node is pinned. Valid as long
-  /// as the matrix. Cost as above
-  struct Coupling {
-    S *block = nullptr, *mirrored = nullptr;
-  };
-  std::optional<Coupling> couplingOf(std::size_t first, std::size_t second);
-  void couple(const Coupling& coupling, const S block[6]);
+  /// The same for pairs that are coupled again and again: the number of the pair, valid as long as the matrix; empty
+  /// where there is no such block. Cost as above
+  std::optional<std::uint32_t> couplingOf(std::size_t first, std::size_t second);
+  /// Adds to what `applyCouplings` adds to the blocks of a pair.
+  void couple(std::uint32_t coupling, const S block[6]);
+  void applyCouplings();
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
   void free();
 
@@ -133,22 +132,28 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void backwards(ParallelFor* threads, Kernel&& kernel) const;
   double summed() const;
   void setInverse(std::size_t slot, const S inverse[6]);
-  /// The first scalar of the block of two slots, which is one of nine per lane of a group; null if there is none.
-  S* blockOf(std::size_t slot, std::size_t neighbour);
-  void addTo(S* block, const S addition[6]);
+  /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.
+  std::optional<std::size_t> blockOf(std::size_t slot, std::size_t neighbour) const;
 
-  /// The value of a block before something was added.
-  struct SavedBlock {
-    S* block = nullptr;
-    S values[9] = {};
+  /// What is added to the two blocks of a pair of nodes, and their values without it.
+  struct Coupling {
+    std::size_t first = 0, second = 0;    ///< slots
+    std::size_t block = 0, mirrored = 0;  ///< of the first scalars
+    S addition[6] = {}, own[9] = {}, ownMirrored[9] = {};
+    bool known = false;  ///< own values, since the last assembly
+    bool used = false;   ///< since the last `free`
   };
+  void read(Coupling& coupling) const;
+  void write(const Coupling& coupling);
 
   BlockPattern pattern_;
   AlignedVector<S> masses_, blocks_, diagonal_, inverse_, freeDiagonal_, freeInverse_;
   AlignedVector<S> residual_, direction_, rest_, step_, solution_;  // in the wide layout
   AlignedVector<S> stepPoints_, lowerPoints_;
   mutable std::vector<S> partial_;  // by range
-  std::vector<SavedBlock> saved_;
+  std::vector<Coupling> couplings_;
+  std::vector<std::uint32_t> used_;        ///< numbers of couplings, since the last `free`
+  std::vector<std::uint32_t> couplingAt_;  ///< by entry and lane: number of the coupling + 1; 0: none
 };
 
 }  // namespace tetskin::elastic_detail
