@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
 
 namespace tetskin::contact_detail {
 namespace {
 
 /// Relative motion of the bodies up to which candidates stay complete: that of this many steps, in cubes of the grid
 /// bounded as given.
-static const btScalar kSlackSteps = getenv("SS") ? atof(getenv("SS")) : 8, kSlackCubes = getenv("SC") ? atof(getenv("SC")) : 1, kMaxSlackCubes = getenv("SM") ? atof(getenv("SM")) : 4;
+constexpr btScalar kSlackSteps = 6, kSlackCubes = btScalar(0.7), kMaxSlackCubes = 3;
 
 /// The largest length of a vector after `shift` has been subtracted.
 btScalar largestMotion(const std::vector<btVector3>& to, const std::vector<btVector3>& from, const btVector3& shift) {
