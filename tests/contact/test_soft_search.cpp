@@ -58,8 +58,7 @@ TEST_F(SoftSearch, FindsTheSamplesThatTestingAllPairsFinds) {
     PairMemory memory;
     PairSearch search;
     std::vector<Touch> touches;
-    search.find(*first, *second, dataOf(*ball().shape).grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
-                touches);
+    search.find(*first, *second, btScalar(0.004), btVector3(0, 0, 0), 0, memory, touches);
     const std::set<int> wanted = insideByBruteForce(*first, *second, 1e-4);
     ASSERT_GT(wanted.size(), 10u);
     std::size_t found = 0;
@@ -74,8 +73,7 @@ TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
   PairMemory memory;
   PairSearch search;
   std::vector<Touch> touches;
-  search.find(*first, *second, dataOf(*ball().shape).grid.spacing(), btScalar(0.004), btVector3(0, 0, 0), 0, memory,
-              touches);
+  search.find(*first, *second, btScalar(0.004), btVector3(0, 0, 0), 0, memory, touches);
   ASSERT_FALSE(touches.empty());
   const auto deep = std::min_element(touches.begin(), touches.end(),
                                      [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
@@ -85,23 +83,25 @@ TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
 
 TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.5, 0.1));
+  const btScalar dt = btScalar(0.004);
   PairCandidates candidates;
-  candidates.find(*first, *second, btScalar(0.1));
-  EXPECT_TRUE(candidates.hold());
+  candidates.update(*first, *second, dt);
+  EXPECT_EQ(candidates.age(), 0);
   for (const auto& body : bodies_) body->translate(btVector3(5, 0, 0));
   for (ContactBody* body : {first.get(), second.get()}) body->read();
-  candidates.advance(*first, *second);
-  EXPECT_TRUE(candidates.hold()) << "both have moved by as much";
+  candidates.update(*first, *second, dt);
+  EXPECT_EQ(candidates.age(), 1) << "both have moved by as much";
+  candidates.update(*first, *second, dt);
+  EXPECT_EQ(candidates.age(), 1) << "nothing has been read since";
   bodies_[1]->m_nodes[7].m_x += btVector3(0, btScalar(0.2), 0);
   second->read();
-  candidates.advance(*first, *second);
-  EXPECT_FALSE(candidates.hold()) << "a node has gone farther than the slack";
+  candidates.update(*first, *second, dt);
+  EXPECT_EQ(candidates.age(), 0) << "a node has gone farther than the slack";
 }
 
 /// A ball that sinks into another, turns and is squeezed slightly in each step, so that most candidates are skipped.
 TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.8, 0.2, 0.1));
-  const btScalar cube = dataOf(*ball().shape).grid.spacing();
   PairMemory memory;
   PairSearch search;
   std::size_t found = 0;
@@ -116,9 +116,9 @@ TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
     PairMemory fromNothing = memory;
     fromNothing.candidates = {};
     std::vector<Touch> touches, wanted;
-    const btScalar reach = cube * btScalar(step % 7 == 0 ? 1.0 : 0.1);
-    search.find(*first, *second, reach, btScalar(0.004), btVector3(0, 0, 0), 0, fromNothing, wanted);
-    search.find(*first, *second, reach, btScalar(0.004), btVector3(0, 0, 0), 0, memory, touches);
+    const btScalar dt = step % 7 == 0 ? btScalar(0.04) : btScalar(0.004);
+    search.find(*first, *second, dt, btVector3(0, 0, 0), 0, fromNothing, wanted);
+    search.find(*first, *second, dt, btVector3(0, 0, 0), 0, memory, touches);
     ASSERT_EQ(touches.size(), wanted.size()) << step;
     for (std::size_t k = 0; k < touches.size(); ++k) {
       EXPECT_EQ(touches[k].sample, wanted[k].sample) << step;
@@ -132,7 +132,7 @@ TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
 TEST_F(SoftSearch, BodiesApartHaveNoCandidates) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(3, 0, 0));
   PairCandidates candidates;
-  candidates.find(*first, *second, btScalar(0.1));
+  candidates.update(*first, *second, btScalar(0.004));
   EXPECT_TRUE(candidates.empty());
 }
 

@@ -53,16 +53,16 @@ bool PairCandidates::follow(const ContactBody& first, const ContactBody& second)
   return true;
 }
 
-/// Measured from the positions when candidates were found, so that what swings to and fro stays near them. A translation
-/// that both share does not count.
+/// Measured from the positions when candidates were found, so that what swings to and fro stays near them. A
+/// translation that both share does not count.
 btScalar PairCandidates::driftOf(const ContactBody& first, const ContactBody& second) const {
   const btVector3 shift = (first.centroid - centroids_[0] + second.centroid - centroids_[1]) / 2;
   return first.data().largestSpread * largestMotion(first.positions, found_[0], shift) +
          largestMotion(second.positions, found_[1], shift);
 }
 
-/// Calls use(run, bound) for each run, with a bound of the differences between a vector that belongs to a node and moves
-/// with it (its motion, its velocity) at the run's samples and at the tets near them.
+/// Calls use(run, bound) for each run, with a bound of the differences between a vector that belongs to a node and
+/// moves with it (its motion, its velocity) at the run's samples and at the tets near them.
 template <class OfFirst, class OfSecond, class Use>
 void PairCandidates::measure(const ContactBody& first, const OfFirst& ofFirst, const OfSecond& ofSecond, Use&& use) {
   if (runs_.empty()) return;

@@ -42,18 +42,19 @@ class PairCandidates {
 
   /// Visits the runs that may have samples in tets, in ascending order: calls begin(run, reach), which returns the box
   /// around its samples, then test(tet) for the tets whose boxes overlap it, in the order of the tree, and end(run).
-  /// `test` returns a Clearance: the tet is not tested again until the bodies have moved enough to exceed it. `reach` is
-  /// the distance from the surface, world space, from which on no sample of the run can touch it within the step.
+  /// `test` returns a Clearance: the tet is not tested again until the bodies have moved enough to exceed it. `reach`
+  /// is the distance from the surface, world space, from which on no sample of the run can touch it within the step.
   template <class Begin, class Test, class End>
   void visit(const ContactBody& first, const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
+  int age() const { return age_; }  ///< number of steps since the candidates were found
 
  private:
   /// A group of tets that may contain samples of a run.
   struct Link {
     Clearance until{0, 0};  ///< of the whole group: values of the run's path at which clearances end
     int group = 0;
-    int lanes = -1;         ///< index in `lanes_`; -1: none has been tested
+    int lanes = -1;           ///< index in `lanes_`; -1: none has been tested
     unsigned neighbours = 0;  ///< by lane a bit: the tet is no candidate
   };
   /// By lane of a group, the values of the run's path at which clearances end; may be later than that of the group.
@@ -94,10 +95,10 @@ class PairCandidates {
     return run.path < until.outside && run.path + run.reach < until.distance;
   }
 
-  int reads_[2] = {-1, -1};  ///< by body: `reads` when last updated
-  btScalar slack_ = 0;       ///< relative motion up to which the candidates stay complete, world space
-  btScalar drift_ = 0;       ///< bound of the relative motion of any two nodes since candidates were found
-  int age_ = 0;              ///< number of steps since then
+  int reads_[2] = {-1, -1};          ///< by body: `reads` when last updated
+  btScalar slack_ = 0;               ///< relative motion up to which the candidates stay complete, world space
+  btScalar drift_ = 0;               ///< bound of the relative motion of any two nodes since candidates were found
+  int age_ = 0;                      ///< number of steps since then
   std::vector<btVector3> found_[2];  ///< by body: positions of its nodes then
   btVector3 centroids_[2] = {{0, 0, 0}, {0, 0, 0}};
   std::vector<int> nodes_[2];  ///< of the runs' tets, and of the tets of all links
@@ -155,8 +156,7 @@ void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& sec
 }
 
 template <class Begin, class Test, class End>
-void PairCandidates::visit(const ContactBody& first, const ContactBody& second, Begin&& begin, Test&& test,
-                           End&& end) {
+void PairCandidates::visit(const ContactBody& first, const ContactBody& second, Begin&& begin, Test&& test, End&& end) {
   assert(first.reads == reads_[0] && second.reads == reads_[1]);
   for (Run& run : runs_) {
     if (isClear(run.until, run)) continue;
