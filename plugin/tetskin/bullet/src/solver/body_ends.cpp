@@ -49,9 +49,9 @@ std::uint32_t BodyEnds::metNode(std::size_t node) {
 bool BodyEnds::isOfLastGroup(std::size_t index, const RowEnd& end) const {
   if (ends_.empty() || ends_.back().index != index) return false;
   const BodyEnd& before = ends_.back();
-  return std::equal(
-      nodes_.begin() + before.first, nodes_.begin() + before.last, end.nodes.begin(), end.nodes.begin() + end.nodeCount,
-      [this](const Node& a, int b) { return a.slot == matrix_->slotOf(static_cast<std::size_t>(b)); });
+  return std::equal(nodes_.begin() + before.first, nodes_.begin() + before.last, end.nodes.begin(),
+                    end.nodes.begin() + end.nodeCount,
+                    [this](const Node& a, int b) { return a.slot == matrix_->slotOf(static_cast<std::size_t>(b)); });
 }
 
 void BodyEnds::addGroup(std::uint32_t pairs) {
@@ -101,9 +101,8 @@ void BodyEnds::addImpulse(const BodyEnd& end, const btVector3& impulse, btScalar
 
 void BodyEnds::addTangents(const std::vector<LinearRow>& rows) {
   for (Group& group : groups_) {
-    const bool apart = std::all_of(ends_.begin() + group.first, ends_.begin() + group.last, [&](const BodyEnd& end) {
-      return rows[end.row].state == ContactRow::State::Apart;
-    });
+    const bool apart = std::all_of(ends_.begin() + group.first, ends_.begin() + group.last,
+                                   [&](const BodyEnd& end) { return rows[end.row].state == ContactRow::State::Apart; });
     if (!apart) addBlocks(group, rows);
   }
   matrix_->applyCouplings();

@@ -168,31 +168,34 @@ bool SystemSolve::start(int pass) {
   const double accepted = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
   double squared = solve.squaredResidual();
   if (fewSize_ > 0) squared += fewResidual_.dot(fewMatrix_.solve(fewResidual_));
-  if (squared <= accepted) return true;
   chooseMoving();
-  return false;
+  return squared <= accepted;
 }
 
-/// Bodies with a small share of the residual keep their velocities in this pass.
+/// Bodies with a small share of the residual keep their velocities in this pass; at least one moves.
 void SystemSolve::chooseMoving() {
   moving_.clear();
   auto& solve = *bodies_.front().solved.solve;
   const bool all = fewSize_ > 0 || !system_.forces.empty() || system_.rows.empty();
   std::vector<std::size_t> order(bodies_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return solve.squaredResidualOf(a) < solve.squaredResidualOf(b); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return solve.squaredResidualOf(a) < solve.squaredResidualOf(b);
+  });
   double left = 0.0;
   const double most = kLeftShare * solve.squaredResidual();
   for (Body& body : bodies_) body.moves = true;
-  for (const std::size_t k : order) {
-    left += solve.squaredResidualOf(k);
-    if (all || !(left <= most)) break;
-    bodies_[k].moves = false;
+  for (std::size_t place = 0; place + 1 < order.size() && !all; ++place) {
+    left += solve.squaredResidualOf(order[place]);
+    if (!(left <= most)) break;
+    bodies_[order[place]].moves = false;
   }
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (bodies_[k].moves) { moving_.push_back(k); continue; }
-    for (const CoupledEnd& coupled : bodies_[k].coupled) endSteps_[coupled.end.row][coupled.end.index].setZero();
+    if (bodies_[k].moves) {
+      moving_.push_back(k);
+    } else {
+      for (const CoupledEnd& coupled : bodies_[k].coupled) endSteps_[coupled.end.row][coupled.end.index].setZero();
+    }
   }
   if (moving_.size() < bodies_.size()) solve.keepOnly(moving_);
 }

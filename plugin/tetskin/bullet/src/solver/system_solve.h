@@ -62,7 +62,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     SolvedBody& solved;
     BodyEnds ends;
     std::vector<CoupledEnd> coupled;
-    bool moves = true;  ///< in the current pass; others keep their solutions
+    bool moves = true;                         ///< in the current pass; others keep their solutions
     std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
     double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
@@ -146,7 +146,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   ParallelFor* threads_;
   bool joinsSoft_ = false;  ///< true if a row connects two points of soft bodies
   std::vector<Body> bodies_;
-  std::vector<std::size_t> sizes_;  ///< by body: slots
+  std::vector<std::size_t> sizes_;   ///< by body: slots
   std::vector<std::size_t> moving_;  ///< those that move in the current pass, ascending
   std::vector<ComponentUnknown> components_;
   std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
@@ -158,7 +158,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   Vector rigidMomentum_, rigidPush_;    ///< M V, and its change in the pass
   Matrix inverseMass_;                  ///< M^-1
   FewMatrix fewMatrix_;
-  Vector fewOfStep_;  ///< what the step of the conjugate gradient changes the few unknowns by
+  Vector fewOfStep_;               ///< what the step of the conjugate gradient changes the few unknowns by
   std::vector<LinearRow> linear_;  ///< by row, in the current pass: close together, as each body reads them
   std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
