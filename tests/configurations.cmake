@@ -134,6 +134,14 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.installed_headers
     consumer.flags_avx2 consumer.flags_native consumer.flags_sanitized
     PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
+  # Forms in which Bullet comes, made of Debian's. The programs link the installed libraries.
+  if(UNIX AND NOT TETSKIN_DOUBLE_PRECISION)
+    foreach(name vcpkg_like conan_like homebrew_like existing_targets)
+      add_test(NAME platform.${name} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/platforms/${name})
+      set_tests_properties(platform.${name} PROPERTIES FIXTURES_REQUIRED installed_package LABELS config
+        ENVIRONMENT TETSKIN_PREFIX=${prefix} SKIP_RETURN_CODE 77)
+    endforeach()
+  endif()
   file(WRITE ${PROJECT_BINARY_DIR}/has_avx2.cpp
     "int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }\n")
   try_run(has_avx2 has_avx2_compiled ${PROJECT_BINARY_DIR}/has_avx2 ${PROJECT_BINARY_DIR}/has_avx2.cpp)
@@ -172,7 +180,7 @@ function(tetskin_fake_bullet name definitions suffix)
     "set(BULLET_LIBRARIES LinearMath${suffix} BulletCollision${suffix} BulletDynamics${suffix} BulletSoftBody${suffix})\n"
     "set(BULLET_LIBRARY_DIRS \"${bullet_folder}\")\nset(BULLET_ROOT_DIR /)\n")
 endfunction()
-if(TARGET tetskin::bullet_physics)
+if(TARGET tetskin::bullet_physics AND NOT TARGET BulletSoftBody AND NOT TARGET Bullet::Bullet)
   get_target_property(bullet_includes tetskin::bullet_physics INTERFACE_INCLUDE_DIRECTORIES)
   get_target_property(bullet_libraries tetskin::bullet_physics INTERFACE_LINK_LIBRARIES)
   list(GET bullet_libraries 0 bullet_library)

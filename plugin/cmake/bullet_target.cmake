@@ -1,20 +1,35 @@
-# Bullet's CMake package sets only variables: a relative include path, libraries in the wrong order for static linking,
-# and the precision as a compiler flag. tetskin_find_bullet() makes one proper target of them, tetskin::bullet_physics,
-# for the precision that TETSKIN_DOUBLE_PRECISION requests.
+# tetskin::bullet_physics is all that tetskin knows of Bullet: its headers, its libraries, and what it was compiled with.
+# A project that defines this target before it adds or finds tetskin says by it which Bullet is used. Otherwise
+# tetskin_find_bullet() makes it
+#   1. of targets in the same build: BulletSoftBody and those that it needs (Bullet as a subproject), or Bullet::Bullet;
+#   2. of the targets of an installed package, by the same names (vcpkg, Conan);
+#   3. of the variables that Bullet's own package sets: a relative include path, libraries in the wrong order for static
+#      linking, and the precision as a compiler flag.
+# TETSKIN_DOUBLE_PRECISION says which precision is wanted; another one stops the configuration.
+set(_tetskin_bullet_parts BulletSoftBody BulletDynamics BulletCollision LinearMath)  # dependent before dependency
 
-function(_tetskin_check_bullet_precision)
-  get_directory_property(definitions COMPILE_DEFINITIONS)
-  if("BT_USE_DOUBLE_PRECISION" IN_LIST definitions AND NOT TETSKIN_DOUBLE_PRECISION)
-    message(FATAL_ERROR "tetskin is set to Bullet in float, but this project compiles with BT_USE_DOUBLE_PRECISION. "
-      "Set TETSKIN_DOUBLE_PRECISION=ON, or remove that definition.")
+function(_tetskin_refuse_precision is_double what)
+  if(is_double AND NOT TETSKIN_DOUBLE_PRECISION)
+    message(FATAL_ERROR "The Bullet found in ${what} is built in double precision, but TETSKIN_DOUBLE_PRECISION "
+      "is OFF. Set it to ON, or point Bullet_DIR at a Bullet built in float.")
+  elseif(TETSKIN_DOUBLE_PRECISION AND NOT is_double)
+    message(FATAL_ERROR "TETSKIN_DOUBLE_PRECISION is ON, but the Bullet found in ${what} is built in float. "
+      "Set it to OFF, or point Bullet_DIR at a Bullet built with BT_USE_DOUBLE_PRECISION.")
   endif()
+endfunction()
 
-  # The mangled name of btSoftBody::setTotalMass contains the type of btScalar, so a library with the other precision
-  # does not link. Otherwise the error would only be noticed when memory is corrupted.
+# The mangled name of btSoftBody::setTotalMass contains the type of btScalar, so a library with the other precision does
+# not link. Otherwise the error would only be noticed when memory is corrupted.
+function(_tetskin_check_bullet_links what)
   set(probe "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/tetskin_bullet_probe.cpp")
   file(WRITE "${probe}" "#include <BulletSoftBody/btSoftBody.h>\n"
     "void (btSoftBody::*volatile probe)(btScalar, bool) = &btSoftBody::setTotalMass;\n"
     "int main() { return probe == nullptr; }\n")
+  # What a package states may depend on the configuration (Conan).
+  set(configurations ${CMAKE_BUILD_TYPE} ${CMAKE_CONFIGURATION_TYPES})
+  if(NOT CMAKE_TRY_COMPILE_CONFIGURATION AND configurations)
+    list(GET configurations 0 CMAKE_TRY_COMPILE_CONFIGURATION)
+  endif()
   try_compile(tetskin_bullet_matches "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/tetskin_bullet_probe" SOURCES "${probe}"
     LINK_LIBRARIES tetskin::bullet_physics OUTPUT_VARIABLE log)
   if(NOT tetskin_bullet_matches)
@@ -25,69 +40,192 @@ function(_tetskin_check_bullet_precision)
       set(cure "TETSKIN_DOUBLE_PRECISION is OFF: point Bullet_DIR at a Bullet built in float, or set the option to ON.")
     endif()
     list(JOIN cure "" cure)
-    message(FATAL_ERROR "The Bullet found in ${Bullet_DIR} does not link in the precision asked for. ${cure}\n${log}")
+    message(FATAL_ERROR "The Bullet found in ${what} does not link in the precision asked for. ${cure}\n${log}")
   endif()
+endfunction()
+
+# The definitions by which Bullet's headers declare other things, as stated by its package, its targets and, for those
+# of the same build, their folders.
+function(_tetskin_bullet_definitions result)
+  set(stated ${BULLET_DEFINITIONS})
+  foreach(target ${ARGN})
+    get_target_property(imported ${target} IMPORTED)
+    set(properties INTERFACE_COMPILE_DEFINITIONS INTERFACE_COMPILE_OPTIONS)
+    if(NOT imported)
+      list(APPEND properties COMPILE_DEFINITIONS COMPILE_OPTIONS)
+      get_target_property(folder ${target} SOURCE_DIR)
+      get_directory_property(of_folder DIRECTORY "${folder}" COMPILE_DEFINITIONS)
+      list(APPEND stated ${of_folder})
+    endif()
+    foreach(property ${properties})
+      get_target_property(of_target ${target} ${property})
+      if(of_target)
+        list(APPEND stated ${of_target})
+      endif()
+    endforeach()
+  endforeach()
+  set(definitions)
+  if("${stated}" MATCHES "BT_USE_DOUBLE_PRECISION")  # perhaps within a generator expression
+    list(APPEND definitions BT_USE_DOUBLE_PRECISION)
+  endif()
+  if("${stated}" MATCHES "BT_THREADSAFE(=1)?([^=A-Z_]|$)")
+    list(APPEND definitions BT_THREADSAFE=1)
+  endif()
+  set(${result} ${definitions} PARENT_SCOPE)
+endfunction()
+
+# Of an imported target, and therefore system headers.
+function(_tetskin_make_bullet_target includes libraries definitions)
+  add_library(tetskin::bullet_physics INTERFACE IMPORTED GLOBAL)
+  set_target_properties(tetskin::bullet_physics PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${includes}"
+    INTERFACE_LINK_LIBRARIES "${libraries}" INTERFACE_COMPILE_DEFINITIONS "${definitions}")
+endfunction()
+
+# The names of Bullet's targets, if there are any.
+function(_tetskin_bullet_targets result)
+  set(targets)
+  if(TARGET BulletSoftBody)
+    set(targets ${_tetskin_bullet_parts})
+  elseif(TARGET Bullet::Bullet)
+    set(targets Bullet::Bullet)
+  endif()
+  foreach(target ${targets})
+    if(NOT TARGET ${target})
+      message(FATAL_ERROR "There is a target BulletSoftBody, but none of the name ${target}: tetskin::bullet needs "
+        "${_tetskin_bullet_parts}. Add Bullet's folder before tetskin's, or define tetskin::bullet_physics.")
+    endif()
+  endforeach()
+  set(${result} ${targets} PARENT_SCOPE)
+endfunction()
+
+function(_tetskin_bullet_of_targets)
+  set(includes)
+  set(built_here OFF)
+  foreach(target ${ARGN})
+    get_target_property(imported ${target} IMPORTED)
+    if(NOT imported)
+      set(built_here ON)
+      get_target_property(folder ${target} SOURCE_DIR)
+      cmake_path(GET folder PARENT_PATH folder)
+      list(APPEND includes "${folder}")
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES includes)
+  list(JOIN ARGN ", " what)
+  set(what "the targets ${what}")
+  _tetskin_bullet_definitions(definitions ${ARGN})
+  set(is_double OFF)
+  if("BT_USE_DOUBLE_PRECISION" IN_LIST definitions)
+    set(is_double ON)
+  endif()
+  # What is built here states its precision, and has not been linked yet. An installed package may leave it unsaid, but
+  # links.
+  if(built_here OR is_double)
+    _tetskin_refuse_precision(${is_double} "${what}")
+  endif()
+  if(TETSKIN_DOUBLE_PRECISION)
+    list(APPEND definitions BT_USE_DOUBLE_PRECISION)
+    list(REMOVE_DUPLICATES definitions)
+  endif()
+  _tetskin_make_bullet_target("${includes}" "${ARGN}" "${definitions}")
+  if(NOT built_here)  # otherwise there is nothing to link yet
+    _tetskin_check_bullet_links("${what}")
+  endif()
+endfunction()
+
+# Absolute paths of folders that Bullet's package states relative to its root.
+function(_tetskin_absolute result)
+  set(absolute)
+  foreach(folder ${ARGN})
+    cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY "${BULLET_ROOT_DIR}")
+    list(APPEND absolute "${folder}")
+  endforeach()
+  set(${result} ${absolute} PARENT_SCOPE)
+endfunction()
+
+# The path of one of Bullet's libraries. On Windows, each configuration's has a name of its own.
+function(_tetskin_bullet_library result part)
+  set(names ${BULLET_LIBRARIES})
+  list(FILTER names INCLUDE REGEX "^${part}(-.*)?$")
+  list(TRANSFORM names APPEND _Debug OUTPUT_VARIABLE debug_names)
+  list(TRANSFORM names APPEND _RelWithDebugInfo OUTPUT_VARIABLE information_names)
+  list(TRANSFORM names APPEND _MinsizeRel OUTPUT_VARIABLE small_names)
+  # The folders are absolute: those of a cross compiler's root are no place to look in.
+  set(places PATHS ${ARGN} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH NO_CACHE)
+  find_library(release NAMES ${names} ${information_names} ${small_names} ${places})
+  find_library(debug NAMES ${debug_names} ${places})
+  if(release AND debug)
+    set(${result} "$<IF:$<CONFIG:Debug>,${debug},${release}>" PARENT_SCOPE)
+  elseif(release)
+    set(${result} "${release}" PARENT_SCOPE)
+  elseif(debug)
+    set(${result} "${debug}" PARENT_SCOPE)
+  else()
+    message(FATAL_ERROR "Bullet's configuration in ${config_folder} promises the library ${part} (${names}) in "
+      "${ARGN}, but it is not there. Reinstall Bullet; from its sources, with -DINSTALL_LIBS=ON, which is off by "
+      "default where a build has several configurations.")
+  endif()
+endfunction()
+
+function(_tetskin_bullet_of_variables config_folder)
+  set(what "${config_folder}")
+  _tetskin_bullet_definitions(definitions)
+  set(is_double OFF)
+  if("BT_USE_DOUBLE_PRECISION" IN_LIST definitions)
+    set(is_double ON)
+  endif()
+  _tetskin_refuse_precision(${is_double} "${what}")
+  # A package is where its configuration is, wherever it was built for.
+  cmake_path(SET beside NORMALIZE "${config_folder}/../..")
+  _tetskin_absolute(folders ${BULLET_LIBRARY_DIRS})
+  _tetskin_absolute(includes ${BULLET_INCLUDE_DIRS})
+  set(libraries)
+  foreach(part ${_tetskin_bullet_parts})
+    _tetskin_bullet_library(library ${part} "${beside}" ${folders})
+    list(APPEND libraries "${library}")
+  endforeach()
+  _tetskin_make_bullet_target("${includes}" "${libraries}" "${definitions}")
+  _tetskin_check_bullet_links("${what}")
 endfunction()
 
 function(tetskin_find_bullet)
   if(TARGET tetskin::bullet_physics)
     return()
   endif()
+  get_directory_property(of_project COMPILE_DEFINITIONS)
+  if("BT_USE_DOUBLE_PRECISION" IN_LIST of_project AND NOT TETSKIN_DOUBLE_PRECISION)
+    message(FATAL_ERROR "tetskin is set to Bullet in float, but this project compiles with BT_USE_DOUBLE_PRECISION. "
+      "Set TETSKIN_DOUBLE_PRECISION=ON, or remove that definition.")
+  endif()
+  _tetskin_bullet_targets(targets)
+  if(targets)
+    _tetskin_bullet_of_targets(${targets})
+    return()
+  endif()
+
   # Debian has both precisions side by side; a Bullet built from source has one configuration, which states its
   # precision.
   set(configs BulletConfig.cmake)
   if(TETSKIN_DOUBLE_PRECISION)
     list(PREPEND configs BulletConfig-float64.cmake)
   endif()
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # tetskin::bullet_physics is known everywhere
   find_package(Bullet CONFIG QUIET CONFIGS ${configs})
   if(NOT Bullet_FOUND)
     message(FATAL_ERROR "Bullet was not found. Install it (Debian, Ubuntu: libbullet-dev), set Bullet_DIR to the folder "
       "of its BulletConfig.cmake, or build without it: TETSKIN_BULLET=OFF.")
   endif()
-
-  set(is_double OFF)
-  if("${BULLET_DEFINITIONS}" MATCHES "BT_USE_DOUBLE_PRECISION")
-    set(is_double ON)
+  _tetskin_bullet_targets(targets)
+  if(targets)
+    _tetskin_bullet_of_targets(${targets})
+    return()
   endif()
-  if(is_double AND NOT TETSKIN_DOUBLE_PRECISION)
-    message(FATAL_ERROR "The Bullet found in ${Bullet_DIR} is built in double precision, but TETSKIN_DOUBLE_PRECISION "
-      "is OFF. Set it to ON, or point Bullet_DIR at a Bullet built in float.")
-  elseif(TETSKIN_DOUBLE_PRECISION AND NOT is_double)
-    message(FATAL_ERROR "TETSKIN_DOUBLE_PRECISION is ON, but the Bullet found in ${Bullet_DIR} is built in float. "
-      "Set it to OFF, or point Bullet_DIR at a Bullet built with BT_USE_DOUBLE_PRECISION.")
+  # Homebrew has Bullet in double in a folder below the libraries in float.
+  set(folder "${Bullet_DIR}")
+  set(double "${Bullet_DIR}/../../bullet/double/cmake/bullet")
+  if(TETSKIN_DOUBLE_PRECISION AND NOT "${BULLET_DEFINITIONS}" MATCHES "DOUBLE" AND EXISTS "${double}/BulletConfig.cmake")
+    cmake_path(SET folder NORMALIZE "${double}")
+    include("${folder}/BulletConfig.cmake")
   endif()
-
-  set(root "${BULLET_ROOT_DIR}")
-  set(includes)
-  foreach(folder ${BULLET_INCLUDE_DIRS})
-    cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY "${root}")
-    list(APPEND includes "${folder}")
-  endforeach()
-  set(folders)
-  foreach(folder ${BULLET_LIBRARY_DIRS})
-    cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY "${root}")
-    list(APPEND folders "${folder}")
-  endforeach()
-
-  set(libraries)
-  foreach(part BulletSoftBody BulletDynamics BulletCollision LinearMath)  # dependent before dependency
-    set(names ${BULLET_LIBRARIES})
-    list(FILTER names INCLUDE REGEX "^${part}(-.*)?$")
-    unset(library)
-    find_library(library NAMES ${names} PATHS ${folders} NO_DEFAULT_PATH NO_CACHE)
-    if(NOT library)
-      message(FATAL_ERROR "Bullet's configuration in ${Bullet_DIR} promises the library ${part} (${names}) in "
-        "${folders}, but it is not there. Reinstall Bullet.")
-    endif()
-    list(APPEND libraries "${library}")
-  endforeach()
-
-  add_library(tetskin::bullet_physics INTERFACE IMPORTED GLOBAL)
-  set_target_properties(tetskin::bullet_physics PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${includes}"  # of an imported target, and therefore system headers
-    INTERFACE_LINK_LIBRARIES "${libraries}")
-  if(TETSKIN_DOUBLE_PRECISION)
-    set_target_properties(tetskin::bullet_physics PROPERTIES INTERFACE_COMPILE_DEFINITIONS BT_USE_DOUBLE_PRECISION)
-  endif()
-  _tetskin_check_bullet_precision()
+  _tetskin_bullet_of_variables("${folder}")
 endfunction()

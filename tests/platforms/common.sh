@@ -29,3 +29,69 @@ same_hello() {
   tr -d '\r' <"$folder/hello_output.txt" | grep ^frame | diff "$repository/tests/platforms/hello.txt" - ||
     fail "$* prints other heights than hello.txt"
 }
+
+# debian_bullet PRECISION FOLDER: copies Debian's libraries of Bullet, float or double, to a folder, under the names that
+# Bullet's own build gives them.
+debian_bullet() {
+  local suffix= from part
+  [ "$1" = float ] || suffix=-float64
+  from=$(find /usr/lib -name "libBulletSoftBody$suffix.so" -printf '%h' -quit)
+  [ -n "$from" ] || not_run "no Bullet of Debian (apt-get install libbullet-dev)"
+  mkdir -p "$2"
+  for part in BulletSoftBody BulletDynamics BulletCollision LinearMath; do
+    cp -L "$from/lib$part$suffix.so" "$2/lib$part.so"
+  done
+}
+
+# form OPTIONS...: configures the application in tests/platforms/form: demos/hello.cpp and the sources of this
+# repository.
+form() {
+  rm -rf "$folder/form"
+  cmake -S "$repository/tests/platforms/form" -B "$folder/form" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DREPOSITORY="$repository" -DTETSKIN_SOURCE="$repository" "$@"
+}
+
+# linked: the libraries of Bullet that the application links, as it names them, in their order.
+linked() {
+  ninja -C "$folder/form" -t commands hello | tail -n 1 | tr ' ' '\n' | grep -E 'Bullet|LinearMath' | grep -v rpath
+}
+
+# links_only FOLDER: the application links four libraries of Bullet, all in this folder.
+links_only() {
+  linked
+  [ "$(linked | grep -c "^$1/lib[A-Za-z]*\.\(so\|a\)$")" -eq 4 ] && [ "$(linked | wc -l)" -eq 4 ] ||
+    fail "hello does not link the four libraries in $1, and no others"
+}
+
+# run_form OPTIONS...: builds the application and runs it: with the libraries installed in TETSKIN_PREFIX, if this is
+# set, otherwise with this repository's sources.
+run_form() {
+  local package=()
+  if [ -n "${TETSKIN_PREFIX:-}" ]; then package=(-DTETSKIN_SOURCE= -DCMAKE_PREFIX_PATH="$TETSKIN_PREFIX"); fi
+  form "${package[@]}" "$@"
+  cmake --build "$folder/form" --target hello
+  same_hello "$folder/form/hello"
+}
+
+# bullet_source: sets `bullet` to a folder with the sources of Bullet: BULLET_SOURCE, if this is set, otherwise those of
+# version 3.25, fetched once.
+bullet_source() {
+  bullet=${BULLET_SOURCE:-$repository/build/platforms/bullet3-3.25}
+  [ -z "${BULLET_SOURCE:-}" ] || [ -f "$bullet/src/btBulletCollisionCommon.h" ] || fail "no Bullet in $bullet"
+  if [ ! -f "$bullet/VERSION" ]; then
+    local file=$repository/build/platforms/bullet3-3.25.tar.gz
+    needs curl curl
+    curl -fsSL --retry 2 --max-time 300 -o "$file" \
+      https://github.com/bulletphysics/bullet3/archive/refs/tags/3.25.tar.gz ||
+      not_run "no network, and BULLET_SOURCE is not set to a folder of Bullet's sources"
+    echo "c45afb6399e3f68036ddb641c6bf6f552bf332d5ab6be62f7e6c54eda05ceb77  $file" | sha256sum -c --quiet ||
+      fail "what was fetched is not Bullet 3.25"
+    tar -xzf "$file" -C "$repository/build/platforms"
+  fi
+  echo "Bullet $(cat "$bullet/VERSION") in $bullet"
+}
+# Bullet's own build asks for a version of CMake that recent ones do not know.
+bullet_options=(-DCMAKE_POLICY_VERSION_MINIMUM=3.5)
+if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
