@@ -95,3 +95,15 @@ bullet_options=(-DCMAKE_POLICY_VERSION_MINIMUM=3.5)
 if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
+
+# tetskin_prefix: sets `prefix` to an installation of this repository: TETSKIN_PREFIX, or one that is built.
+tetskin_prefix() {
+  prefix=${TETSKIN_PREFIX:-}
+  [ -z "$prefix" ] || return 0
+  local built=$repository/build/platforms/tetskin
+  prefix=$built/prefix
+  cmake -S "$repository" -B "$built" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF \
+    -DTETSKIN_IO=OFF -DCMAKE_INSTALL_PREFIX="$prefix"
+  cmake --build "$built" --target tetskin_libraries --parallel "$(nproc)"
+  cmake --install "$built" >/dev/null
+}

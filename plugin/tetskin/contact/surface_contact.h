@@ -66,13 +66,13 @@ class TETSKIN_CONTACT_API SurfaceContact {
   /// Switches contact on, from the next substep on. Sets the margin of the body's shape for the lifetime of this
   /// object.
   ///
-  /// world    created with a `DeformableSolver`, and containing the body
+  /// world    created with a `DeformableSolver` and a btCollisionDispatcher, and containing the body
   /// body     from `createSoftBody` or of a `DeformableBody`, without another SurfaceContact
   /// binding  of the mesh in the body's cage, such as a skin's; not kept
   /// mesh     the mesh of the binding; not kept
-  /// Errors   InvalidOption: options out of range, a world with another solver, or a dispatcher that is no
-  ///          btCollisionDispatcher, a body that is not in the world, has a contact already, or was not created as
-  ///          required above; Empty: no vertices; SizeMismatch: binding, mesh and body do not belong together
+  /// Errors   InvalidOption: options out of range, a world with another solver, a body that is not in the world, has a
+  ///          contact already, or was not created as required above; Empty: no vertices; SizeMismatch: binding, mesh
+  ///          and body do not belong together
   static Result<std::unique_ptr<SurfaceContact>> add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                      const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                                      const SurfaceContactOptions& options = {});

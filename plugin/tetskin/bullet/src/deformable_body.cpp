@@ -96,7 +96,7 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
     return refusal("a full body", {kUseDeformableSolver});
   }
   std::vector<std::string> changes;
-  if (!dynamic_cast<DeformableSolver*>(&solver)) {
+  if (!deformableSolver(&solver)) {
     changes.push_back(std::string(kUseDeformableSolver) + ", or choose one of Bullet's force models");
   }
   if (options.implicit.value_or(false)) {

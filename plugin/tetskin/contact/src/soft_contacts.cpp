@@ -28,7 +28,7 @@ Status checkSoftOptions(const SoftContactOptions& options) {
 bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const SoftContactRows& own,
                 const btSoftBody& body) {
   for (int i = 0; i < list.size(); ++i) {
-    const auto* contacts = dynamic_cast<const SoftContactRows*>(list[i]);
+    const auto* contacts = dynamic_cast<const SoftContactRows*>(inactiveForce(list[i]));
     if (contacts && contacts != &own && contacts->find(body)) return true;
   }
   return false;

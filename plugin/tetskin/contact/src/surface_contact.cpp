@@ -69,11 +69,7 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
   if (world.getSoftBodyArray().findLinearSearch(&body) == world.getSoftBodyArray().size()) {
     return refused(StatusCode::InvalidOption, "the body is not in this world; add it first");
   }
-  std::vector<std::string> changes;
-  if (!deformableSolverOf(body)) changes.emplace_back(kUseDeformableSolver);
-  if (!dynamic_cast<const btCollisionDispatcher*>(world.getDispatcher()))
-    changes.emplace_back("create the world with a btCollisionDispatcher");
-  if (Status status = refusal("surface contact", changes); !status.ok()) return status;
+  if (!deformableSolverOf(body)) return refusal("surface contact", {kUseDeformableSolver});
   if (contactsOf(body)) {
     return refused(StatusCode::InvalidOption, "the body already has surface contact; destroy that first");
   }

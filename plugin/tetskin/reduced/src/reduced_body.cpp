@@ -27,7 +27,7 @@ Status invalid(std::string message) {
 Status checkOthers(btDeformableMultiBodyDynamicsWorld& world) {
   const btSoftBodyArray& bodies = world.getSoftBodyArray();
   for (int k = 0; k < bodies.size(); ++k) {
-    if (dynamic_cast<btReducedDeformableBody*>(bodies[k])) continue;
+    if (bodies[k]->m_reducedModel) continue;
     return invalid("soft body " + std::to_string(k) +
                    " of the world is not a reduced body, but Bullet's reduced solver treats all as such; remove it "
                    "from the world");
@@ -161,7 +161,7 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
   body->placeAt(options.placement);
   // Only bodies in a world have access to its solver.
   world.addSoftBody(body.get());
-  if (!dynamic_cast<btReducedDeformableBodySolver*>(body->getSoftBodySolver())) {
+  if (body->getSoftBodySolver()->getSolverType() != btSoftBodySolver::REDUCED_DEFORMABLE_SOLVER) {
     world.removeSoftBody(body.get());
     return invalid("a reduced body needs a world created with a btReducedDeformableBodySolver");
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <typeinfo>
 
 namespace tetskin {
 namespace {
@@ -15,7 +14,9 @@ const SolverSettings kBulletsBodies;
 
 /// Gravity has no derivative by positions, so that it couples nothing.
 bool isGravity(const btDeformableLagrangianForce& force) {
-  return typeid(force) == typeid(btDeformableGravityForce) || dynamic_cast<const BodyGravity*>(&force);
+  static const btDeformableGravityForce bullets(btVector3(0, 0, 0));
+  return OwnObject::is(OwnObject::Kind::BodyGravity, &force) ||
+         isOfSameClass<btDeformableLagrangianForce>(force, bullets);
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ std::size_t SolverBodies::indexOf(const btSoftBody* body) const {
 
 void SolverBodies::takeElastic(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
-    auto* elastic = dynamic_cast<ElasticForce*>(forces[i]);
+    auto* elastic = dynamic_cast<ElasticForce*>(inactiveForce(forces[i]));
     if (!elastic || elastic->m_softBodies.size() == 0) continue;
     const std::size_t k = indexOf(elastic->body().body);
     if (k == bodies_.size()) continue;

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/shared/bodies/own_objects.h>
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 #include <tetskin/bullet/src/solver/obstacle_changes.h>
@@ -90,6 +91,7 @@ struct DeformableSolver::Impl {
   void writeVelocities(SolvedBody& body) const;
 
   DeformableSolver& solver;
+  OwnObject registered{OwnObject::Kind::DeformableSolver, static_cast<const btSoftBodySolver*>(&solver)};
   SolverBodies bodies;
   DrivenNodes driven;
   Sleepers sleepers;

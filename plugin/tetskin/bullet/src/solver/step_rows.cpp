@@ -44,7 +44,7 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
 std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
   std::vector<RowSource*> sources;
   for (int i = 0; i < forces().size(); ++i) {
-    if (auto* source = dynamic_cast<RowSource*>(forces()[i])) sources.push_back(source);
+    if (auto* source = dynamic_cast<RowSource*>(inactiveForce(forces()[i]))) sources.push_back(source);
   }
   return sources;
 }

@@ -152,9 +152,10 @@ void ModalBody::stay() {
 /// May be called any number of times in a substep before contacts are solved: its result depends only on the state
 /// before the substep. Between steps, it only sets velocities of nodes, which the next step sets anew.
 void ModalBody::correctPrediction() {
-  const auto* solver = dynamic_cast<const btReducedDeformableBodySolver*>(getSoftBodySolver());
   // While the world is being told of the body, its solver may not know the length of a step yet.
-  if (!solver || !getBroadphaseHandle()) return;
+  if (!m_softBodySolver || !getBroadphaseHandle()) return;
+  if (m_softBodySolver->getSolverType() != btSoftBodySolver::REDUCED_DEFORMABLE_SOLVER) return;
+  const auto* solver = static_cast<const btReducedDeformableBodySolver*>(m_softBodySolver);
   for (int n = 0; n < m_nodes.size(); ++n) m_nodes[n].index = n;
   if (!isActive()) return stay();
   slept_ = false;

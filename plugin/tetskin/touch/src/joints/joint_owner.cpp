@@ -11,13 +11,12 @@ Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoin
   if (const StatusCode status = point.status(); status != StatusCode::Ok) {
     return {StatusCode::InvalidOption, std::string("invalid surface point: ") + toString(status)};
   }
-  const auto* deformable = dynamic_cast<const btDeformableMultiBodyDynamicsWorld*>(&world);
-  if (!deformable) {
+  if (world.getWorldType() != BT_DEFORMABLE_MULTIBODY_DYNAMICS_WORLD) {
     return {StatusCode::InvalidOption,
             "springs and welds need a deformable world created with a DeformableSolver; in other worlds, use impulses "
             "or Bullet's own anchors"};
   }
-  const auto& inWorld = deformable->getSoftBodyArray();
+  const auto& inWorld = static_cast<const btDeformableMultiBodyDynamicsWorld&>(world).getSoftBodyArray();
   if (inWorld.findLinearSearch(point.body()) == inWorld.size()) {
     return {StatusCode::InvalidOption, "the body of the point is not in this world; add it first"};
   }

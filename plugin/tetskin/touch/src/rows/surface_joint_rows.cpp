@@ -22,7 +22,7 @@ SurfaceJointRows::~SurfaceJointRows() {
 std::shared_ptr<SurfaceJointRows> SurfaceJointRows::instanceOf(DeformableSolver& solver) {
   const auto& list = *solver.getLagrangianForceArray();
   for (int i = 0; i < list.size(); ++i) {
-    if (auto* found = dynamic_cast<SurfaceJointRows*>(list[i])) return found->shared_from_this();
+    if (auto* found = dynamic_cast<SurfaceJointRows*>(inactiveForce(list[i]))) return found->shared_from_this();
   }
   return std::make_shared<SurfaceJointRows>(solver);
 }

@@ -132,7 +132,7 @@ void updateConstants(btSoftBody& body) {
   if (!body.m_bUpdateRtCst) return;
   body.updateConstants();
   if (!isTreeOf(body.m_ndbvt, body.m_nodes)) buildNodeTree(body);
-  auto* own = dynamic_cast<BodyWithTrees*>(&body);
+  BodyWithTrees* own = bodyWithTrees(body);
   const bool leftOut = own && own->hasNoFaceTree();
   if (leftOut) {
     own->renewFaceTree();
@@ -175,11 +175,11 @@ BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<b
 }
 
 BodyWithTrees* bodyWithTrees(btSoftBody& body) {
-  return dynamic_cast<BodyWithTrees*>(&body);
+  return asOwn<BodyWithTrees>(OwnObject::Kind::BodyWithTrees, &body);
 }
 
 const BodyWithTrees* bodyWithTrees(const btSoftBody& body) {
-  return dynamic_cast<const BodyWithTrees*>(&body);
+  return asOwn<const BodyWithTrees>(OwnObject::Kind::BodyWithTrees, &body);
 }
 
 void BodyWithTrees::makeTrees(bool faces) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/shared/bodies/own_objects.h>
 #include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/export.h>
 
@@ -82,6 +83,7 @@ class BodyWithTrees : public btSoftBody {
   class Shape;
   void keepFaceTree();
 
+  OwnObject registered_{OwnObject::Kind::BodyWithTrees, static_cast<const btSoftBody*>(this)};
   Kind kind_ = Kind::None;
   btScalar reach_ = -1, speculation_ = 0;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();

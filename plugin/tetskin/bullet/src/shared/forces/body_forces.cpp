@@ -17,7 +17,7 @@ btDeformableLagrangianForce* noForce() {
 
 bool needsDeformation(btDeformableLagrangianForce& force) {
   if (isSilent(force)) return false;
-  if (dynamic_cast<btDeformableGravityForce*>(&force)) return false;
+  if (OwnObject::is(OwnObject::Kind::BodyGravity, &force)) return false;
   const btDeformableLagrangianForceType type = force.getForceType();
   return type != BT_GRAVITY_FORCE && type != BT_MASSSPRING_FORCE && type != BT_MOUSE_PICKING_FORCE;
 }

@@ -10,6 +10,7 @@
 
 #include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/src/shared/bodies/own_objects.h>
 #include <tetskin/export.h>
 
 #include <optional>
@@ -36,10 +37,17 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
   void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
+
+ private:
+  OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};
 };
 
+/// The force as one of these; null if it is none.
+inline InactiveForce* inactiveForce(btDeformableLagrangianForce* force) {
+  return asOwn<InactiveForce>(OwnObject::Kind::InactiveForce, force);
+}
 inline bool isSilent(const btDeformableLagrangianForce& force) {
-  return dynamic_cast<const InactiveForce*>(&force) != nullptr;
+  return OwnObject::is(OwnObject::Kind::InactiveForce, &force);
 }
 
 /// True if a force needs the deformation gradients that Bullet updates for each tet in every step.
@@ -94,6 +102,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   /// velocities.
   void stopSleepers();
 
+  OwnObject registered_{OwnObject::Kind::BodyGravity, static_cast<const btDeformableLagrangianForce*>(this)};
   btDeformableMultiBodyDynamicsWorld& world_;
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`

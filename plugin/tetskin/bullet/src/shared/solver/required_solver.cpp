@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/shared/bodies/own_objects.h>
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 
 namespace tetskin {
 
+DeformableSolver* deformableSolver(btSoftBodySolver* solver) {
+  return asOwn<DeformableSolver>(OwnObject::Kind::DeformableSolver, solver);
+}
+
 DeformableSolver* deformableSolverOf(const btSoftBody& body) {
   // A body that has left its world may refer to a solver that has been destroyed.
   if (!body.getBroadphaseHandle()) return nullptr;
-  return dynamic_cast<DeformableSolver*>(const_cast<btSoftBody&>(body).getSoftBodySolver());
+  return deformableSolver(const_cast<btSoftBody&>(body).getSoftBodySolver());
 }
 
 btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world) {
@@ -23,7 +28,7 @@ btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world) {
 }
 
 DeformableSolver* deformableSolverOf(btDeformableMultiBodyDynamicsWorld& world) {
-  return dynamic_cast<DeformableSolver*>(&solverOf(world));
+  return deformableSolver(&solverOf(world));
 }
 
 Status refusal(const std::string& subject, const std::vector<std::string>& changes) {

@@ -16,6 +16,8 @@ namespace tetskin {
 constexpr const char* kUseDeformableSolver =
     "create the world and its constraint solver with a DeformableSolver in place of Bullet's";
 
+/// The solver as one of these; null if it is another one.
+TETSKIN_BULLET_API DeformableSolver* deformableSolver(btSoftBodySolver* solver);
 /// The solver of the body's world; null if the body is in none, or its world has another solver.
 TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(const btSoftBody& body);
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin: which of the objects that an application hands over are the library's own.
+//
+// An application may be compiled without type information (-fno-rtti, /GR-). A dynamic_cast or typeid of an object of
+// its own classes then crashes. Therefore objects of the library's own classes are known by their addresses. Whatever
+// derives from one of these classes has type information, and may be cast from there on.
+#pragma once
+
+#include <tetskin/export.h>
+
+#include <cstring>
+#include <typeinfo>
+
+namespace tetskin {
+
+/// A member of an object, which is known as long as it has this. From any thread; cost of a look-up: that of a hash.
+class TETSKIN_BULLET_API OwnObject {
+ public:
+  enum class Kind { InactiveForce, BodyGravity, DeformableSolver, BodyWithTrees };
+  /// object  as its class in Bullet
+  OwnObject(Kind kind, const void* object);
+  ~OwnObject();
+  OwnObject(const OwnObject&) = delete;
+  OwnObject& operator=(const OwnObject&) = delete;
+
+  static bool is(Kind kind, const void* object);
+
+ private:
+  Kind kind_;
+  const void* object_;
+};
+
+/// The object as one of the library's own classes; null if it is none.
+template <class Own, class Bullets>
+Own* asOwn(OwnObject::Kind kind, Bullets* object) {
+  return OwnObject::is(kind, object) ? static_cast<Own*>(object) : nullptr;
+}
+
+/// True if an object is of the same class as another one, rather than of one derived from it: both have one table of
+/// virtual functions. Two libraries may each have such a table; then type information decides, if there is any. Only
+/// the C++ ABI of GCC and clang tells whether there is: with another one, the result may be false for the same class.
+template <class Base>
+bool isOfSameClass(const Base& object, const Base& other) {
+  const void* const* table = nullptr;
+  std::memcpy(&table, static_cast<const void*>(&object), sizeof table);
+  if (std::memcmp(static_cast<const void*>(&object), static_cast<const void*>(&other), sizeof table) == 0) return true;
+#if defined(__GNUC__)
+  return table[-1] != nullptr && typeid(object) == typeid(other);
+#else
+  return false;
+#endif
+}
+
+}  // namespace tetskin
