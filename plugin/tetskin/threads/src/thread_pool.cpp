@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/base/compiler.h>
 #include <tetskin/threads/thread_pool.h>
 
 #include <algorithm>
@@ -22,12 +23,6 @@ namespace {
 /// thread takes, and short, as a thread that another program has displaced ends its task only when it gets a core.
 constexpr std::chrono::microseconds kSpin{20};
 
-void pause() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#endif
-}
-
 /// Looks for kSpin whether a condition holds. Returns whether it does.
 template <class Condition>
 bool spinUntil(Condition&& holds) {
@@ -36,7 +31,7 @@ bool spinUntil(Condition&& holds) {
   do {
     for (int k = 0; k < kLooksPerClock; ++k) {
       if (holds()) return true;
-      pause();
+      pauseThread();
     }
   } while (std::chrono::steady_clock::now() - begin < kSpin);
   return holds();

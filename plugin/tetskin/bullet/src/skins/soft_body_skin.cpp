@@ -3,6 +3,7 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
+#include <tetskin/core/src/shared/base/compiler.h>
 #include <tetskin/core/src/shared/skin_binding.h>
 
 #include <algorithm>
@@ -17,15 +18,6 @@ Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {
   return {StatusCode::SizeMismatch, "the body has " + std::to_string(body.m_nodes.size()) +
                                         " nodes, but the cage has " + std::to_string(nodeCount) +
                                         "; bind with the cage from which the body was created"};
-}
-
-/// Prefetches memory.
-void prefetch(const void* where) {
-#if defined(__GNUC__)
-  __builtin_prefetch(where);
-#else
-  (void)where;
-#endif
 }
 
 /// Gives the address of the state by which Bullet marks sleeping bodies.

@@ -27,7 +27,7 @@ TETSKIN_INLINE std::uint32_t* appendNotNegative(const Lanes<float, W>& v, std::u
     const __m512i numbers = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const __m512i entries = _mm512_add_epi32(numbers, _mm512_set1_epi32(static_cast<int>(first)));
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(keep, entries));
-    return out + __builtin_popcount(keep);
+    return out + _mm_popcnt_u32(keep);
   }
 #endif
   const unsigned negative = negativeLanes<W>(v);

@@ -171,7 +171,7 @@ TETSKIN_INLINE Points<float, P> toFloats(const Points<S, P>& v) {
     return v;
   } else {
 #if defined(TETSKIN_VECTOR_TYPES)
-    return __builtin_convertvector(v, Points<float, P>);
+    return converted<Points<float, P>>(v);
 #else
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0.0f};
 #endif

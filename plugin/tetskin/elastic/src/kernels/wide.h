@@ -104,10 +104,17 @@ TETSKIN_INLINE bool anyAbove(const Lanes<S, W>& v, S limit) {
 #if defined(TETSKIN_VECTOR_TYPES) && defined(__SSE2__)
     if constexpr (sizeof above == 16) return _mm_movemask_ps(reinterpret_cast<__m128>(above)) != 0;
 #endif
+#ifdef TETSKIN_VECTOR_TYPES
+    std::uint64_t words[sizeof above / sizeof(std::uint64_t)], any = 0;
+    ::memcpy(words, &above, sizeof above);
+    for (const std::uint64_t word : words) any |= word;
+    return any != 0;
+#else
     for (int i = 0; i < W; ++i) {
       if (above[i]) return true;
     }
     return false;
+#endif
   }
 }
 
@@ -150,6 +157,14 @@ TETSKIN_INLINE WidePoints<S, W> pointsAt(const S* points, const std::uint32_t* i
     const __m128 ab0 = _mm_unpacklo_ps(a, b), ab1 = _mm_unpackhi_ps(a, b);
     const __m128 cd0 = _mm_unpacklo_ps(c, d), cd1 = _mm_unpackhi_ps(c, d);
     return {_mm_movelh_ps(ab0, cd0), _mm_movehl_ps(cd0, ab0), _mm_movelh_ps(ab1, cd1), _mm_movehl_ps(cd1, ab1)};
+  }
+#elif defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE)
+  if constexpr (W == 4) {
+    const Lanes<S, W> a = wide<S, W>(at(0)), b = wide<S, W>(at(1)), c = wide<S, W>(at(2)), d = wide<S, W>(at(3));
+    const Lanes<S, W> ab0 = TETSKIN_SHUFFLE(a, b, 0, 4, 1, 5), ab1 = TETSKIN_SHUFFLE(a, b, 2, 6, 3, 7);
+    const Lanes<S, W> cd0 = TETSKIN_SHUFFLE(c, d, 0, 4, 1, 5), cd1 = TETSKIN_SHUFFLE(c, d, 2, 6, 3, 7);
+    return {TETSKIN_SHUFFLE(ab0, cd0, 0, 1, 4, 5), TETSKIN_SHUFFLE(ab0, cd0, 2, 3, 6, 7),
+            TETSKIN_SHUFFLE(ab1, cd1, 0, 1, 4, 5), TETSKIN_SHUFFLE(ab1, cd1, 2, 3, 6, 7)};
   }
 #endif
   if constexpr (W == 1) {
@@ -204,6 +219,16 @@ TETSKIN_INLINE void putPoints(const WidePoints<S, W>& v, S* to, std::size_t apar
     _mm_storeu_ps(to + apart, _mm_movehl_ps(c, a));
     _mm_storeu_ps(to + 2 * apart, _mm_movelh_ps(b, d));
     _mm_storeu_ps(to + 3 * apart, _mm_movehl_ps(d, b));
+    return;
+  }
+#elif defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE)
+  if constexpr (W == 4) {
+    const Lanes<S, W> a = TETSKIN_SHUFFLE(v.x, v.y, 0, 4, 1, 5), b = TETSKIN_SHUFFLE(v.x, v.y, 2, 6, 3, 7);
+    const Lanes<S, W> c = TETSKIN_SHUFFLE(v.z, v.w, 0, 4, 1, 5), d = TETSKIN_SHUFFLE(v.z, v.w, 2, 6, 3, 7);
+    put<S, W>(TETSKIN_SHUFFLE(a, c, 0, 1, 4, 5), to);
+    put<S, W>(TETSKIN_SHUFFLE(a, c, 2, 3, 6, 7), to + apart);
+    put<S, W>(TETSKIN_SHUFFLE(b, d, 0, 1, 4, 5), to + 2 * apart);
+    put<S, W>(TETSKIN_SHUFFLE(b, d, 2, 3, 6, 7), to + 3 * apart);
     return;
   }
 #endif

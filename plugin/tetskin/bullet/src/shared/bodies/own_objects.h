@@ -8,6 +8,7 @@
 // derives from one of these classes has type information, and may be cast from there on.
 #pragma once
 
+#include <tetskin/core/src/shared/base/compiler.h>
 #include <tetskin/export.h>
 
 #include <cstring>
@@ -46,7 +47,7 @@ bool isOfSameClass(const Base& object, const Base& other) {
   const void* const* table = nullptr;
   std::memcpy(&table, static_cast<const void*>(&object), sizeof table);
   if (std::memcmp(static_cast<const void*>(&object), static_cast<const void*>(&other), sizeof table) == 0) return true;
-#if defined(__GNUC__)
+#ifdef TETSKIN_GNU
   return table[-1] != nullptr && typeid(object) == typeid(other);
 #else
   return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/base/compiler.h>
 #include <tetskin/core/src/shared/kernels/instruction_set.h>
 
 #include <algorithm>
@@ -18,10 +19,9 @@ bool available(InstructionSet set) {
       return true;
 #ifdef TETSKIN_X86_KERNELS
     case InstructionSet::Avx2:
-      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+      return processorHasAvx2();
     case InstructionSet::Avx512:
-      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+      return processorHasAvx512();
 #endif
     default:
       return false;

@@ -15,26 +15,13 @@
 #endif
 #include <math.h>
 #include <string.h>
+#include <tetskin/core/src/shared/base/compiler.h>
 
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__GNUC__) && !defined(TETSKIN_PLAIN_LANES)
+#if defined(TETSKIN_GNU) && !defined(TETSKIN_PLAIN_LANES)
 #define TETSKIN_VECTOR_TYPES 1
-#endif
-
-// GCC 12 would read a number that is used several times from memory again for each use; unaligned, that is slow.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
-#define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
-#else
-#define TETSKIN_ONE_LOAD(v)
-#endif
-#if defined(__GNUC__)
-#define TETSKIN_NOINLINE __attribute__((noinline))
-#define TETSKIN_INLINE __attribute__((always_inline)) inline
-#else
-#define TETSKIN_NOINLINE
-#define TETSKIN_INLINE inline
 #endif
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
@@ -133,6 +120,11 @@ unsigned negativeLanes(const Lanes<float, W>& v) {
 }
 
 #ifdef TETSKIN_VECTOR_TYPES
+/// Numbers of another type.
+template <class To, class From>
+TETSKIN_INLINE To converted(const From& v) {
+  return __builtin_convertvector(v, To);
+}
 inline float squareRoot(float x) {
   return __builtin_sqrtf(x);
 }

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal: what GCC and clang offer beyond the standard, and what is done without it. With TETSKIN_PORTABLE, which is
+// there for tests, every compiler counts as one that has nothing of it. Nothing but macros and functions of the
+// compiler, since kernels include this.
+#pragma once
+
+#if defined(__GNUC__) && !defined(TETSKIN_PORTABLE)
+#define TETSKIN_GNU 1
+#endif
+
+#ifdef TETSKIN_GNU
+#define TETSKIN_NOINLINE __attribute__((noinline))
+#define TETSKIN_INLINE __attribute__((always_inline)) inline
+#else
+#define TETSKIN_NOINLINE
+#define TETSKIN_INLINE inline
+#endif
+
+// GCC 12 would read a number that is used several times from memory again for each use; unaligned, that is slow.
+#if defined(TETSKIN_GNU) && !defined(__clang__) && defined(__x86_64__)
+#define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
+#else
+#define TETSKIN_ONE_LOAD(v)
+#endif
+
+// Vectors of a compiler without this operator are put together number by number.
+#if defined(TETSKIN_GNU) && (defined(__clang__) || __GNUC__ >= 12)
+#define TETSKIN_SHUFFLE(...) __builtin_shufflevector(__VA_ARGS__)
+#endif
+
+namespace tetskin {
+
+/// Reads memory into the caches that will be used soon.
+inline void prefetch(const void* where) {
+#ifdef TETSKIN_GNU
+  __builtin_prefetch(where);
+#else
+  (void)where;
+#endif
+}
+
+/// Called while waiting in a loop: saves power, and leaves more to a thread on the same core.
+inline void pauseThread() {
+#if defined(TETSKIN_GNU) && (defined(__x86_64__) || defined(__i386__))
+  __builtin_ia32_pause();
+#endif
+}
+
+#ifdef TETSKIN_X86_KERNELS
+inline bool processorHasAvx2() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
+inline bool processorHasAvx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+}
+#endif
+
+}  // namespace tetskin
