@@ -136,7 +136,7 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
     PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
   # Forms in which Bullet comes, made of Debian's. The programs link the installed libraries.
   if(UNIX AND NOT TETSKIN_DOUBLE_PRECISION)
-    foreach(name vcpkg_like conan_like homebrew_like existing_targets application_flags)
+    foreach(name vcpkg_like conan_like homebrew_like existing_targets application_flags no_avx)
       add_test(NAME platform.${name} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/platforms/${name})
       set_tests_properties(platform.${name} PROPERTIES FIXTURES_REQUIRED installed_package LABELS config
         ENVIRONMENT TETSKIN_PREFIX=${prefix} SKIP_RETURN_CODE 77)

@@ -107,3 +107,24 @@ tetskin_prefix() {
   cmake --build "$built" --target tetskin_libraries --parallel "$(nproc)"
   cmake --install "$built" >/dev/null
 }
+
+# drop_hashes COMMAND...: runs drop_hash, and prints a hash of the nodes' positions for each instruction set. Those that
+# are in hashes.txt must be the same.
+drop_hashes() {
+  "$@" >"$folder/hashes.txt" || fail "$* ended with status $?"
+  tr -d '\r' <"$folder/hashes.txt" >"$folder/found.txt"
+  cat "$folder/found.txt"
+  local set hash
+  while read -r set hash; do
+    [ "$(sed -n "s/^$set //p" "$folder/found.txt")" = "$hash" ] || ! grep -q "^$set " "$folder/found.txt" ||
+      fail "the hash of $set is not that in hashes.txt, $hash"
+  done <"$repository/tests/platforms/hashes.txt"
+}
+
+# cross OPTIONS...: configures the application with Bullet from its sources for another system, and builds it.
+cross() {
+  bullet_source
+  form -DBULLET_FOLDER="$bullet" -DCMAKE_DISABLE_FIND_PACKAGE_Bullet=ON "${bullet_options[@]}" \
+    -DEigen3_DIR=/usr/share/eigen3/cmake "$@"
+  cmake --build "$folder/form" --target hello drop_hash --parallel "$(nproc)" | tail -n 3
+}

@@ -8,11 +8,13 @@
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/shared/kernels/instruction_set.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <utility>
 
 /// A cube of which each side has `n` x `n` squares, pushed out onto a sphere, with furrows.
 tetskin::TriangleMesh makeBall(int n) {
@@ -96,7 +98,8 @@ int main(int argc, char** argv) {
         world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
         if (print && frame % 20 == 19) std::printf("  y %.5f\n", double(body.value()->body().m_nodes[0].m_x.y()));
       }
-      std::printf("%s %016llx\n", tetskin::toString(set), static_cast<unsigned long long>(hashOf(body.value()->body())));
+      std::printf("%s %016llx\n", tetskin::toString(set),
+                  static_cast<unsigned long long>(hashOf(body.value()->body())));
     }
     world.removeRigidBody(&sphere);
     world.removeRigidBody(&plane);
