@@ -20,6 +20,7 @@
 #include "scenes/progress.h"
 #include "scenes/statistics.h"
 #include "scenes/summary.h"
+#include "scenes/system.h"
 #include "scenes/table.h"
 #include "scenes/timer.h"
 

@@ -6,7 +6,7 @@
 #include <tetskin/bullet/soft_body.h>
 
 #include "scenes/input_error.h"
-#include "scenes/memory.h"
+#include "scenes/system.h"
 #include "scenes/timer.h"
 
 namespace tetskin::report {

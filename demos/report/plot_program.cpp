@@ -2,48 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/plot_program.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 
 #include "scenes/files.h"
+#include "scenes/system.h"
 
 namespace tetskin::report {
 namespace {
 
 constexpr const char* kProgram = TETSKIN_PLOTS "/error_vs_time.py";
 
-/// Runs a command found in the path, and waits for it; returns true if it succeeded.
-bool run(const std::vector<std::string>& command, bool silent = false) {
-  std::vector<char*> arguments(command.size() + 1);  // the last one null
-  std::transform(command.begin(), command.end(), arguments.begin(),
-                 [](const std::string& word) { return const_cast<char*>(word.c_str()); });
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  for (const int stream : {1, 2}) {
-    if (silent) posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
-  }
-  pid_t process = 0;
-  const int error = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  if (error != 0) return false;
-  while (waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) return false;
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 /// The first Python with matplotlib: the one in the path may differ from the system's, which has the package.
 std::string pythonWithMatplotlib() {
   for (const char* python : {"python3", "/usr/bin/python3"}) {
-    if (run({python, "-c", "import matplotlib"}, true)) return python;
+    if (scenes::runCommand({python, "-c", "import matplotlib"}, true)) return python;
   }
   return {};
 }
@@ -69,7 +42,7 @@ void makeTablesAndPlots(const ReportOptions& options) {
     return;
   }
   std::fflush(stdout);
-  if (!run(command))
+  if (!scenes::runCommand(command))
     std::fprintf(stderr, "tetskin_error_vs_time: warning: %s failed; tables or plots are missing\n", kProgram);
 }
 

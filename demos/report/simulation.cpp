@@ -10,9 +10,9 @@
 
 #include "report/bullet_surface.h"
 #include "scenes/input_error.h"
-#include "scenes/memory.h"
 #include "scenes/placement.h"
 #include "scenes/statistics.h"
+#include "scenes/system.h"
 #include "scenes/timer.h"
 
 namespace tetskin::report {

@@ -8,9 +8,6 @@
 
 namespace tetskin::scenes {
 
-/// Bytes allocated at present; 0 where the C library does not report it.
-std::size_t heapBytes();
-
 /// Evicts everything from the processor's caches, by streaming through more memory than they hold.
 class CacheEviction {
  public:

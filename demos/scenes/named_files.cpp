@@ -2,14 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/named_files.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "scenes/files.h"
 #include "scenes/input_error.h"
+#include "scenes/system.h"
 
 namespace tetskin::scenes {
 
@@ -69,8 +68,7 @@ void requireFolder(const std::string& path) {
   if (!fs::is_directory(there, error)) {
     throw InputError(path + ": cannot be created: " + there.string() + " is a file, not a folder");
   }
-  if (access(there.c_str(), W_OK | X_OK) != 0)
-    throw InputError(path + ": the folder cannot be written to; check its permissions");
+  if (!mayWriteInto(there)) throw InputError(path + ": the folder cannot be written to; check its permissions");
 }
 
 fs::path folderOf(const std::string& path) {

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/progress.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <utility>
+
+#include "scenes/system.h"
 
 namespace tetskin::scenes {
 
 Progress::Progress(std::string what, int total, bool quiet, std::FILE* stream)
-    : what_(std::move(what)), total_(total), quiet_(quiet), stream_(stream), terminal_(isatty(fileno(stream)) != 0) {}
+    : what_(std::move(what)), total_(total), quiet_(quiet), stream_(stream), terminal_(isTerminal(stream)) {}
 
 void Progress::show(int done) {
   shown_ = done;

@@ -51,7 +51,7 @@ TriangleMesh ellipsoid(const Vector3d& halves) {
   TriangleMesh mesh;
   for (int i = 0; i <= kRings; ++i) {
     for (int j = 0; j < kAround; ++j) {
-      const double a = M_PI * i / kRings, b = 2.0 * M_PI * j / kAround;
+      const double a = 3.14159265358979323846 * i / kRings, b = 2.0 * 3.14159265358979323846 * j / kAround;
       mesh.positions.push_back(
           halves.cwiseProduct(Vector3d(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b))));
     }

@@ -58,7 +58,7 @@ TEST(SolverClaims, ABodyThatIsRotatedByAnyAngleStaysAtRest) {
         if (started) test::step(world, 3);
         const btVector3 centroid(0, btScalar(20.5), 0);
         body->body().translate(-centroid);
-        body->body().rotate(btQuaternion(axis.normalized(), static_cast<btScalar>(degrees * M_PI / 180.0)));
+        body->body().rotate(btQuaternion(axis.normalized(), static_cast<btScalar>(degrees * SIMD_PI / 180.0)));
         body->body().translate(centroid);
         test::step(world, 10);
         EXPECT_LT(fastest(body->body()), 0.02) << degrees << " " << axis.x() << axis.y() << axis.z();

@@ -74,7 +74,7 @@ TEST(DeformableSolver, KeepsSpinAndGainsNoEnergy) {
     options.relativeStiffness = stiffness;
     const auto body = added(world, cageAbove(50), options);
     EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
-    const Vector rate = 2.0 * M_PI * Vector(1, 2, 3).normalized();
+    const Vector rate = 2.0 * 3.14159265358979323846 * Vector(1, 2, 3).normalized();
     spin(body->body(), rate, Vector(0.3, -0.2, 0.1));
     const Motion before = motionOf(body->body());
     const double tip = rate.norm() * before.size;

@@ -7,9 +7,9 @@
 
 #include "command.h"
 #include "scenes/crowd.h"
-#include "scenes/memory.h"
 #include "scenes/model.h"
 #include "scenes/placement.h"
+#include "scenes/system.h"
 #include "scenes/table.h"
 
 namespace tetskin {

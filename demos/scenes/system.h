@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// All that the demos ask of the operating system beyond the standard library.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tetskin::scenes {
+
+/// True if a person reads the stream as it is written.
+bool isTerminal(std::FILE* stream);
+/// True if files can be made in a folder that exists.
+bool mayWriteInto(const std::filesystem::path& folder);
+/// Bytes allocated at present; 0 where the C library does not report it.
+std::size_t heapBytes();
+/// Size of the last-level cache; 0 where the system does not report it.
+std::size_t lastLevelCacheBytes();
+/// Paths of this program and of the shared libraries of tetskin and Bullet that it has loaded; empty where the system
+/// does not tell.
+std::vector<std::string> loadedCode();
+/// Runs a command found in the path, and waits for it; returns true if it succeeded.
+/// silent  without its output
+bool runCommand(const std::vector<std::string>& command, bool silent = false);
+
+}  // namespace tetskin::scenes
