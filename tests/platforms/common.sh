@@ -121,8 +121,20 @@ drop_hashes() {
   done <"$repository/tests/platforms/hashes.txt"
 }
 
+# run_tests FILTER PROGRAM [LAUNCHER...]: builds a program with tests in the application's folder, and runs those that
+# match.
+run_tests() {
+  cmake --build "$folder/form" --target "$2" --parallel "$(nproc)" | tail -n 3
+  local program
+  program=$(find "$folder/form" -type f \( -name "$2" -o -name "$2.exe" \) -print -quit)
+  "${@:3}" "$program" --gtest_filter="$1" --gtest_brief=1 || fail "$2 $1 has failed"
+}
+
 # cross OPTIONS...: configures the application with Bullet from its sources for another system, and builds it.
 cross() {
+  local folder_of_gtest=/usr/src/googletest/googletest
+  [ -d "$folder_of_gtest" ] || not_run "no sources of GoogleTest (apt-get install libgtest-dev)"
+  set -- "$@" -DGTEST_FOLDER="$folder_of_gtest"
   bullet_source
   form -DBULLET_FOLDER="$bullet" -DCMAKE_DISABLE_FIND_PACKAGE_Bullet=ON "${bullet_options[@]}" \
     -DEigen3_DIR=/usr/share/eigen3/cmake "$@"

@@ -34,7 +34,8 @@ foreach(file ${files})
   endforeach()
 endforeach()
 file(GLOB entries RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *)
-list(REMOVE_ITEM entries CMakeLists.txt plugin demos tests third_party_notes.md README.md LICENSE build out)
+list(REMOVE_ITEM entries CMakeLists.txt plugin demos tests third_party_notes.md README.md LICENSE build out
+  CMakeUserPresets.json)  # a user's own
 foreach(entry ${entries})
   if(NOT entry MATCHES "^[.]")
     list(APPEND faults "${entry} does not belong to the top level")

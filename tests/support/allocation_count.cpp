@@ -11,6 +11,10 @@
 #include <cstdlib>
 #include <new>
 
+#ifdef _WIN32
+#include <malloc.h>
+#endif
+
 namespace {
 
 std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
@@ -22,9 +26,26 @@ std::size_t& sizeOf(void* block) {
   return *reinterpret_cast<std::size_t*>(static_cast<char*>(block) - kOrdinary);
 }
 
+/// bytes  a multiple of the alignment
+void* alignedMemory(std::size_t alignment, std::size_t bytes) noexcept {
+#ifdef _WIN32
+  return _aligned_malloc(bytes, alignment);
+#else
+  return std::aligned_alloc(alignment, bytes);
+#endif
+}
+
+void freeAligned(void* memory) noexcept {
+#ifdef _WIN32
+  _aligned_free(memory);
+#else
+  std::free(memory);
+#endif
+}
+
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
   char* memory =
-      static_cast<char*>(std::aligned_alloc(alignment, (alignment + size + alignment - 1) / alignment * alignment));
+      static_cast<char*>(alignedMemory(alignment, (alignment + size + alignment - 1) / alignment * alignment));
   if (!memory) return nullptr;
   ++allocations;
   const std::size_t now = bytes += size;
@@ -43,7 +64,7 @@ void* allocateOrThrow(std::size_t size, std::size_t alignment) {
 void release(void* block, std::size_t alignment) noexcept {
   if (!block) return;
   bytes -= sizeOf(block);
-  std::free(static_cast<char*>(block) - alignment);
+  freeAligned(static_cast<char*>(block) - alignment);
 }
 
 std::size_t from(std::align_val_t alignment) {
