@@ -35,7 +35,7 @@ Body fromVtkFile(const TetMesh& cage, btSoftBodyWorldInfo& info) {
     for (std::size_t t = 0; t < cage.tetCount(); ++t) file << "10\n";
   }
   testing::internal::CaptureStdout();  // Bullet's reader prints
-  Body body(btSoftBodyHelpers::CreateFromVtkFile(info, path.c_str()));
+  Body body(btSoftBodyHelpers::CreateFromVtkFile(info, path.string().c_str()));
   testing::internal::GetCapturedStdout();
   std::filesystem::remove(path);
   return body;
