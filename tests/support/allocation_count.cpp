@@ -26,12 +26,12 @@ std::size_t& sizeOf(void* block) {
   return *reinterpret_cast<std::size_t*>(static_cast<char*>(block) - kOrdinary);
 }
 
-/// bytes  a multiple of the alignment
-void* alignedMemory(std::size_t alignment, std::size_t bytes) noexcept {
+/// size  a multiple of the alignment
+void* alignedMemory(std::size_t alignment, std::size_t size) noexcept {
 #ifdef _WIN32
-  return _aligned_malloc(bytes, alignment);
+  return _aligned_malloc(size, alignment);
 #else
-  return std::aligned_alloc(alignment, bytes);
+  return std::aligned_alloc(alignment, size);
 #endif
 }
 
