@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal: what GCC and clang offer beyond the standard, and what is done without it. With TETSKIN_PORTABLE, which is
-// there for tests, every compiler counts as one that has nothing of it. Nothing but macros and functions of the
-// compiler, since kernels include this.
+// there for tests, every compiler counts as one that has nothing of it. Nothing but macros, and functions that
+// are always inlined: kernels include this, and are compiled for processors that not everyone has.
 #pragma once
 
 #if defined(__GNUC__) && !defined(TETSKIN_PORTABLE)
@@ -33,7 +33,7 @@
 namespace tetskin {
 
 /// Reads memory into the caches that will be used soon.
-inline void prefetch(const void* where) {
+TETSKIN_INLINE void prefetch(const void* where) {
 #ifdef TETSKIN_GNU
   __builtin_prefetch(where);
 #else
@@ -42,17 +42,17 @@ inline void prefetch(const void* where) {
 }
 
 /// Called while waiting in a loop: saves power, and leaves more to a thread on the same core.
-inline void pauseThread() {
+TETSKIN_INLINE void pauseThread() {
 #if defined(TETSKIN_GNU) && (defined(__x86_64__) || defined(__i386__))
   __builtin_ia32_pause();
 #endif
 }
 
 #ifdef TETSKIN_X86_KERNELS
-inline bool processorHasAvx2() {
+TETSKIN_INLINE bool processorHasAvx2() {
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 }
-inline bool processorHasAvx512() {
+TETSKIN_INLINE bool processorHasAvx512() {
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
          __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
 }
