@@ -230,6 +230,7 @@ TEST(ContactForces, AreNotChangedByQueriesBetweenSteps) {
 TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
   Balls balls(btVector3(0, -10, 0));
   btSoftBody &a = balls.add(Vector3d(3, 1, 0)), &b = balls.add(Vector3d(3, 1.83, 0));
+  b.setVelocity(btVector3(0, -3, 0));
   TouchingBody body(*balls.world, ballMesh(24, 0.35), btVector3(0, btScalar(0.352), 0));
   const auto forces = forcesIn(*balls.world);
   step(*balls.world, 1);

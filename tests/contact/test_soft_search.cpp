@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/pair_search.h>
+#include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include <random>
 #include <set>
@@ -129,11 +130,69 @@ TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   EXPECT_GT(found, 500u);
 }
 
+/// The sample by which a node touched goes on touching beside another that has become deeper, unless they are close.
+TEST_F(SoftSearch, ANodeKeepsTheSampleItTouchedWithBesideADeeperOne) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.78, 0, 0));
+  const auto pairsIn = [&](const std::vector<Touch>& touches, const std::vector<Touch>& before) {
+    int pairs = 0;
+    for (std::size_t a = 0; a < touches.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const std::vector<int>& nodes = first->data().sampleNodes;
+        if (nodes[touches[a].sample] != nodes[touches[b].sample]) continue;
+        if (touches[a].normal.dot(touches[b].normal) < btScalar(0.9)) continue;
+        EXPECT_GT((touches[a].point - touches[b].point).length(), 0.1 * first->data().edge);
+        EXPECT_TRUE(std::any_of(before.begin(), before.end(), [&](const Touch& touch) {
+          return touch.sample == touches[a].sample || touch.sample == touches[b].sample;
+        }));
+        ++pairs;
+      }
+    }
+    return pairs;
+  };
+  PairMemory memory;
+  PairSearch search;
+  std::vector<Touch> before, touches, fromNothing;
+  const btVector3 none(0, 0, 0);
+  search.find(*first, *second, btScalar(0.004), none, 0, memory, before);
+  EXPECT_EQ(pairsIn(before, {}), 0);
+  bodies_[1]->translate(btVector3(0, btScalar(0.15), 0));
+  for (ContactBody* body : {first.get(), second.get()}) body->read();
+  PairMemory empty;
+  search.find(*first, *second, btScalar(0.004), none, 0, memory, touches);
+  search.find(*first, *second, btScalar(0.004), none, 0, empty, fromNothing);
+  EXPECT_GT(pairsIn(touches, before), 0);
+  EXPECT_EQ(pairsIn(fromNothing, {}), 0);
+}
+
 TEST_F(SoftSearch, BodiesApartHaveNoCandidates) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(3, 0, 0));
   PairCandidates candidates;
   candidates.update(*first, *second, btScalar(0.004));
   EXPECT_TRUE(candidates.empty());
+}
+
+/// What leaves may be thrown back within the step, by the elastic forces of a light node.
+TEST(SoftContactRows, KeepWhatLeavesUnlessItIsFartherThanItGoesInAStep) {
+  auto world = worldWith(btVector3(0, 0, 0));
+  btDeformableMultiBodyDynamicsWorld& deformable = world->deformable();
+  const double gap = 0.006;  // more than a tenth of a cell of the grid
+  std::unique_ptr<btSoftBody> bodies[2] = {
+      createSoftBody(ball().at(Eigen::Vector3d(0, 0, 0)), deformable.getWorldInfo()).value(),
+      createSoftBody(ball().at(Eigen::Vector3d(2 * Ball::kRadius + gap, 0, 0)), deformable.getWorldInfo()).value()};
+  SoftContactRows rows({});
+  for (const auto& body : bodies) {
+    deformable.addSoftBody(body.get());
+    rows.include(*body, ball().shape, false);
+  }
+  const auto contactsAt = [&](btScalar speed) {
+    bodies[1]->setVelocity(btVector3(speed, 0, 0));
+    return rows.contacts(btScalar(1.0 / 240), nullptr)->size();
+  };
+  EXPECT_GT(contactsAt(-2), 0U);
+  EXPECT_GT(contactsAt(2), 0U);
+  EXPECT_EQ(contactsAt(btScalar(0.3)), 0U);
+  EXPECT_EQ(contactsAt(btScalar(-0.3)), 0U);
+  for (const auto& body : bodies) deformable.removeSoftBody(body.get());
 }
 
 TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {

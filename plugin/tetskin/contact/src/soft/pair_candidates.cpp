@@ -194,17 +194,17 @@ Clearance PairCandidates::leastOf(const Run& run) const {
   return least;
 }
 
-/// Sets the clearance of those links whose boxes are apart from a box. Returns true if it is so for all.
+/// Sets the clearance of links whose boxes are apart from a box, up to the first one whose boxes are not. Returns true
+/// if all are.
 bool PairCandidates::closeByBoxes(const Run& run, const ContactBody& second, const ContactBox& box) {
-  bool all = true;
   for (std::size_t c = run.first; c < run.last; ++c) {
     Link& link = links_[c];
     if (isClear(link.until, run)) continue;
     const btScalar gap = gapsOf(link.neighbours, second.groupBoxes[static_cast<std::size_t>(link.group)], box).least;
-    if (gap > 0) link.until = {run.path + gap, kForever};
-    all = all && gap > 0;
+    if (!(gap > 0)) return false;
+    link.until = {run.path + gap, kForever};
   }
-  return all;
+  return true;
 }
 
 }  // namespace tetskin::contact_detail

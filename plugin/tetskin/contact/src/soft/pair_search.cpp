@@ -16,6 +16,8 @@ constexpr btScalar kOnePlace = btScalar(0.3);
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 /// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
 constexpr btScalar kKeptCubes = btScalar(0.1);
+/// In mean edges: two samples of a node that are this far apart may both be contacts.
+constexpr btScalar kBesideEdges = btScalar(0.2);
 /// Cosine between normals from which on two contacts of a node count as one.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
@@ -328,15 +330,38 @@ btScalar PairSearch::rankOf(const Touch& touch) const {
 
 void PairSearch::keepDeepest(const Touch& touch, int node) {
   assert(node >= 0 && static_cast<std::size_t>(node) < touchOfNode_.size());
-  int& head = touchOfNode_[static_cast<std::size_t>(node)];
-  for (int t = head; t >= 0; t = (*touches_)[static_cast<std::size_t>(t)].next) {
-    Touch& other = (*touches_)[static_cast<std::size_t>(t)];
-    if (other.normal.dot(touch.normal) < kOneWay) continue;
-    const int next = other.next;
-    if (rankOf(touch) < rankOf(other)) other = touch;
-    other.next = next;
-    return;
+  int first = -1, second = -1;  // those of its direction
+  for (int t = touchOfNode_[static_cast<std::size_t>(node)]; t >= 0; t = at(t).next) {
+    if (at(t).normal.dot(touch.normal) < kOneWay) continue;
+    (first < 0 ? first : second) = t;
   }
+  if (first < 0) return add(touch, node);
+  if (second >= 0 && rankOf(at(second)) < rankOf(at(first))) std::swap(first, second);
+  Touch other = touch;  // the one that is not the deepest
+  if (rankOf(touch) < rankOf(at(first))) {
+    other = at(first);
+    replace(first, touch);
+  }
+  if (!staysBeside(other, at(first))) return;
+  if (second < 0) return add(other, node);
+  if (rankOf(other) < rankOf(at(second))) replace(second, other);
+}
+
+/// Of a node with samples on a long part, one may touch while another that has touched is held by that contact only:
+/// were it not a contact, too, they would take turns, and the part would swing from step to step.
+bool PairSearch::staysBeside(const Touch& touch, const Touch& deepest) const {
+  const btScalar apart = kBesideEdges * now_.first->data().edge;
+  return contains(touched_, touch.sample) && (touch.point - deepest.point).length2() > apart * apart;
+}
+
+void PairSearch::replace(int index, const Touch& by) {
+  const int next = at(index).next;
+  at(index) = by;
+  at(index).next = next;
+}
+
+void PairSearch::add(const Touch& touch, int node) {
+  int& head = touchOfNode_[static_cast<std::size_t>(node)];
   touches_->push_back(touch);
   touches_->back().next = head;
   head = static_cast<int>(touches_->size()) - 1;

@@ -49,7 +49,8 @@ class PairSearch {
   /// apart    direction in which the first body is to leave the second, where it is deep in it, and the depth from
   ///          which on it applies; or 0
   /// touches  appended to: for each node of the first body, the deepest of the samples of which it has the largest
-  ///          weight, and the deepest of those that are pushed in another direction
+  ///          weight, and the deepest of those that are pushed in another direction; beside it, another one that
+  ///          touched in the step before
   Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
                PairMemory& memory, std::vector<Touch>& touches);
 
@@ -91,6 +92,10 @@ class PairSearch {
   btVector3 ownNormal(int sample) const;
   bool direct(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
+  bool staysBeside(const Touch& touch, const Touch& deepest) const;
+  void replace(int index, const Touch& by);
+  void add(const Touch& touch, int node);
+  Touch& at(int index) { return (*touches_)[static_cast<std::size_t>(index)]; }
   btScalar rankOf(const Touch& touch) const;
 
   Search now_{};

@@ -229,7 +229,8 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
                                        : btSqrt(first.body->m_cfg.kDF * second.body->m_cfg.kDF);
   const btVector3 velocity = velocityOf(contact);
   const btScalar near = kNearCubes * second.data().grid.spacing();
-  if (touch.distance + seconds * velocity.dot(touch.normal) > near) return;
+  // Also if it leaves now: within a step, a stiff body may throw a light node back by as much as it came.
+  if (touch.distance - seconds * std::abs(velocity.dot(touch.normal)) > near) return;
   if (first.awake != second.awake && velocity.length2() > kWakingSpeed * kWakingSpeed) {
     first.body->activate();
     second.body->activate();
