@@ -80,7 +80,8 @@ void findNodeContacts(btSoftBody& body, const btCollisionObjectWrapper& object, 
   const btRigidBody* rigid = btRigidBody::upcast(object.getCollisionObject());
   const btTransform predicted = predictedTransform(object);
   const btScalar margin = body.getCollisionShape()->getMargin();
-  const std::vector<int>& near = paths.near(boxOf(object, predicted, margin));
+  const BvhBox<btScalar> box = boxOf(object, predicted, margin);
+  const std::vector<int>& near = paths.near(box);
   if (near.empty()) return;
   if (!solved) {
     btSoftColliders::CollideSDF_RD bullets;
@@ -88,7 +89,11 @@ void findNodeContacts(btSoftBody& body, const btCollisionObjectWrapper& object, 
     bullets.m_colObj1Wrap = &object;
     bullets.m_rigidBody = const_cast<btRigidBody*>(rigid);
     bullets.dynmargin = bullets.stamargin = margin;
-    for (const int n : near) bullets.DoNode(body.m_nodes[n]);
+    // Bullet's test of a node reads the node and its distance field; the boxes in its own tree have the margin, too.
+    const BvhBox<btScalar> around = box.grownBy(margin);
+    for (const int n : near) {
+      if (paths.boxOf(n).collides(around)) bullets.DoNode(body.m_nodes[n]);
+    }
     return;
   }
   const ShapeField field(body, *object.getCollisionShape());

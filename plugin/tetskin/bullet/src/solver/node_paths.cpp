@@ -20,19 +20,20 @@ std::vector<NodeTravel>& NodePaths::begin(std::size_t nodeCount) {
   return travels_;
 }
 
+BvhBox<btScalar> NodePaths::boxOf(int node) const {
+  BvhBox<btScalar> box;
+  box.extend((*this)[node].now);
+  box.extend((*this)[node].predicted);
+  return box;
+}
+
 void NodePaths::fit() {
   if (tree_.empty()) {
     Bvh::Centroids<btScalar> centroids;
     for (const NodeTravel& travel : travels_) centroids.emplace_back(travel.now.x(), travel.now.y(), travel.now.z());
     tree_ = Bvh(centroids, kNodesPerLeaf);
   }
-  tree_.fit(boxes_, [&](int index) {
-    const NodeTravel& travel = (*this)[tree_.item(index)];
-    BvhBox<btScalar> box;
-    box.extend(travel.now);
-    box.extend(travel.predicted);
-    return box;
-  });
+  tree_.fit(boxes_, [&](int index) { return boxOf(tree_.item(index)); });
   fitted_ = true;
 }
 

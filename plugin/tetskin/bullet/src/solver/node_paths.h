@@ -30,6 +30,7 @@ class NodePaths {
   const std::vector<int>& near(const BvhBox<btScalar>& box);
 
   const NodeTravel& operator[](int node) const { return travels_[static_cast<std::size_t>(node)]; }
+  BvhBox<btScalar> boxOf(int node) const;  ///< around the path of a node
 
  private:
   void fit();
