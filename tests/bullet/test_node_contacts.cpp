@@ -129,6 +129,20 @@ TEST_F(NodeContacts, OfBodiesThatAreNotSolvedHereAreBulletsToTheBit) {
   }
 }
 
+/// Nodes are listed by leaves of many, and Bullet's test of a node is slow: only those near the shape are tested.
+TEST_F(NodeContacts, OfBodiesThatAreNotSolvedHereAreSearchedForNearTheShapeOnly) {
+  btSphereShape sphere(btScalar(0.2));
+  int near = 0;
+  for (int n = 0; n < body_.m_nodes.size(); ++n) {
+    const btVector3 path = body_.m_nodes[n].m_x - object_.getWorldTransform().getOrigin();
+    near += path.length() < btScalar(0.2 * 1.8 + 0.1 * 1.8 + 0.05) + 2 * kMargin;
+  }
+  worldInfo_.m_sparsesdf.nqueries = 0;
+  const std::size_t contacts = find(sphere, false).size();
+  EXPECT_GT(contacts, 0U);
+  EXPECT_LE(worldInfo_.m_sparsesdf.nqueries, near + static_cast<int>(contacts));
+}
+
 TEST_F(NodeContacts, PassOverNodesThatAreAnchoredOrHeldAgainstWhatIsStatic) {
   btSphereShape sphere(1);
   const std::set<long> all = find(sphere, true);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace tetskin {
 namespace {
@@ -18,6 +19,8 @@ constexpr double kWithForeignForces = 1e-6;
 constexpr double kCloserWithRows = 0.1, kWhereJoined = 1e-4;
 /// A residual smaller than this cannot be reached in this precision.
 constexpr double kClosest = 8.0 * SIMD_EPSILON;
+/// Bound of the relative residual in Bullet's solve: its square is the last digit.
+const double kBullets = std::sqrt(static_cast<double>(SIMD_EPSILON));
 /// By how much the first pass reduces the residual, at most, and the passes after it: the rows change after each pass.
 constexpr double kFirstPass = 0.1, kLaterPass = 0.1;
 
@@ -29,9 +32,26 @@ double SystemSolve::massOfAll() const {
   return sum;
 }
 
-double SystemSolve::toleranceWithForces(double tolerance, bool anyElastic) const {
-  const bool anyForeign = anyElastic && !system_.forces.empty();
-  return anyForeign ? std::min(tolerance, kWithForeignForces) : tolerance;
+double SystemSolve::toleranceWithForces(double tolerance) const {
+  return system_.forces.empty() ? tolerance : std::min(tolerance, kWithForeignForces);
+}
+
+/// Where only Bullet's forces act, the solve is for their damping, and what it leaves is missing in every step: it goes
+/// as far as Bullet's does. Bullet's limit is relative to the damping impulses before contacts have changed velocities,
+/// or to 1 where these are larger.
+elastic_detail::SolveLimits SystemSolve::limitsOfBulletsForces() const {
+  double squared = 0.0;
+  for (const Body& one : bodies_) {
+    const btSoftBody& body = *one.solved.body;
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      const btVector3& impulse = step_.solver.m_residual[one.solved.first + n];
+      squared += static_cast<double>(body.m_nodes[n].m_im * impulse.length2());
+    }
+  }
+  elastic_detail::SolveLimits limits;
+  limits.tolerance = kBullets;
+  limits.enough = kBullets * kBullets * std::min(squared, 1.0);
+  return limits;
 }
 
 /// The strictest tolerance of all bodies of the system.
@@ -51,7 +71,8 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
     squaredStart += body.dynamics->squaredSolution();
     anyElastic |= body.elastic != nullptr;
   }
-  const double tolerance = toleranceWithForces(limits.tolerance, anyElastic);
+  if (!anyElastic) return limitsOfBulletsForces();
+  const double tolerance = toleranceWithForces(limits.tolerance);
   const double fraction = tolerance / std::max(limits.tolerance, 1e-300);  // a tolerance may be 0
   limits.tolerance = tolerance;
   limits.enough *= fraction * fraction;  // the limits are squares
@@ -85,7 +106,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);
   });
-  tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0), true);
+  tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0));
   tolerance = std::max(tolerance, kClosest);
   limits.enough = tolerance * tolerance * std::max(byMatrix, byMasses);
   limits.tolerance = pass == 0 ? kFirstPass : kLaterPass;

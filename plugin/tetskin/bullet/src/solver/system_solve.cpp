@@ -203,9 +203,9 @@ void SystemSolve::chooseMoving() {
 /// Keeps the body's state, and adds the rows to its residual and matrix.
 void SystemSolve::addRows(Body& body) {
   auto& matrix = body.matrix();
-  body.solution.assign(matrix.solution(), matrix.solution() + matrix.wideSize());
-  body.residual.assign(matrix.residual(), matrix.residual() + matrix.wideSize());
-  if (!system_.rows.empty()) {
+  if (!system_.rows.empty()) {  // without rows, there is one pass
+    body.solution.assign(matrix.solution(), matrix.solution() + matrix.wideSize());
+    body.residual.assign(matrix.residual(), matrix.residual() + matrix.wideSize());
     body.byMatrix = body.dynamics().squaredByMatrix();
     body.byMasses = body.dynamics().squaredChange();
   }

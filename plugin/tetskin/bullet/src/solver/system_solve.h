@@ -133,9 +133,10 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   const btScalar* added(std::size_t k) override;
 
   // Tolerances and line search; implemented in system_limits.cpp and system_line_search.cpp.
+  elastic_detail::SolveLimits limitsOfBulletsForces() const;
   elastic_detail::SolveLimits limitsWithoutRows() const;
   elastic_detail::SolveLimits limitsOfPass(int pass) const;
-  double toleranceWithForces(double tolerance, bool anyElastic) const;
+  double toleranceWithForces(double tolerance) const;
   double massOfAll() const;
   btScalar searchLine();
   double slope(btScalar fraction, double linear, double quadratic) const;
