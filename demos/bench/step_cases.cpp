@@ -2,12 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "bench/step_cases.h"
 
+#include <BulletSoftBody/btDeformableGravityForce.h>
+#include <BulletSoftBody/btDeformableMassSpringForce.h>
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
 #include "bench/xpbd.h"
@@ -108,6 +113,37 @@ void crowd(State& state, Force force) {
   std::size_t asleep = 0;
   for (std::size_t b = 0; b < kBodies; ++b) asleep += !scene->body(b).isActive();
   state.counters["asleep"] = static_cast<double>(asleep);
+}
+
+/// A cloth of Bullet's springs that hangs by two corners: what Bullet's own bodies cost in a world with either solver.
+/// Bullet projects contacts in both.
+template <class Solver>
+void cloth(State& state) {
+  constexpr int kSettled = 240;
+  constexpr btScalar kFrame = btScalar(1.0 / 60.0);
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  Solver solver;
+  btDeformableMultiBodyConstraintSolver constraintSolver;
+  constraintSolver.setDeformableSolver(&solver);
+  btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &constraintSolver, &configuration, &solver);
+  world.setUseProjection(true);
+  const btVector3 gravity(0, btScalar(-scenes::kEarth), 0);
+  btDeformableMassSpringForce springs(30, 1, true);
+  btDeformableGravityForce weight(gravity);
+  const std::unique_ptr<btSoftBody> body(btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), {-4, 0, -4}, {4, 0, -4},
+                                                                        {-4, 0, 4}, {4, 0, 4}, 9, 9, 1 + 2, true));
+  body->generateBendingConstraints(2);
+  body->setTotalMass(1);
+  body->setActivationState(DISABLE_DEACTIVATION);
+  world.addSoftBody(body.get());
+  world.addForce(body.get(), &springs);
+  world.addForce(body.get(), &weight);
+  const auto step = [&] { world.stepSimulation(kFrame, 4, kFrame / 4); };
+  for (int f = 0; f < kSettled; ++f) step();
+  for (auto _ : state) step();
+  world.removeSoftBody(body.get());
 }
 
 /// The serpent scaled to the world, and its contact shape with 4,000 samples.
@@ -215,6 +251,8 @@ void registerSoftSelves() {
 }  // namespace
 
 void registerStepCases() {
+  benchmark::RegisterBenchmark("Step/cloth/bullet", cloth<btDeformableBodySolver>)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Step/cloth/tetskin", cloth<DeformableSolver>)->Unit(benchmark::kMicrosecond);
   registerSoftPairs();
   registerSoftSelves();
   const std::pair<const char*, Force> forces[] = {{"bullet_neo_hookean", Force::NeoHookean},
