@@ -15,6 +15,15 @@ void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
   weights[3] = 1 - weights[0] - weights[1] - weights[2];
 }
 
+void DeformedTet::setPlanes(const btScalar minimum[4]) {
+  const btVector3 gradients[4] = {rows[0], rows[1], rows[2], -(rows[0] + rows[1] + rows[2])};
+  for (int k = 0; k < 4; ++k) {
+    const btScalar length = gradients[k].length();
+    normals[k] = gradients[k] / length;
+    offsets[k] = ((k == 3 ? 1 : 0) - (minimum[k] > 0 ? minimum[k] : kMinWeight)) / length;
+  }
+}
+
 bool ContactBody::fits() const {
   const auto tets = static_cast<std::size_t>(body->m_tetras.size());
   // While a step is solved, the elastic force hides the tets from Bullet.
@@ -32,6 +41,8 @@ void ContactBody::read() {
   before.swap(positions);
   positions.resize(data().nodes.size());
   velocities.resize(positions.size());
+  const bool first = before.size() != positions.size();
+  btScalar motion = 0, speed = 0;  // squares
   btVector3 sum(0, 0, 0);
   for (std::size_t n = 0; n < positions.size(); ++n) {
     const btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
@@ -39,7 +50,11 @@ void ContactBody::read() {
     velocities[n] = node.m_v;
     box.extend(positions[n]);
     sum += positions[n];
+    speed = std::max(speed, velocities[n].length2());
+    if (!first) motion = std::max(motion, (positions[n] - before[n]).length2());
   }
+  moved = btSqrt(motion);
+  fastest = btSqrt(speed);
   const btScalar size = box.diagonal();
   // Comparisons skip NaN values; the sum does not.
   readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(Limits::kMaxCoordinate);
@@ -47,10 +62,22 @@ void ContactBody::read() {
 }
 
 ContactBox ContactBody::partBox(const Tet& n, const FilledComponent& part) const {
-  btVector3 base(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) base += part.minimum[k] * positions[static_cast<std::size_t>(n[k])];
+  const auto at = [&](std::size_t k) { return fourOf(positions[static_cast<std::size_t>(n[k])]); };
+  const Four corners[4] = {at(0), at(1), at(2), at(3)};
+  Four base = corners[0] * four(part.minimum[0]);
+  for (std::size_t k = 1; k < 4; ++k) base += corners[k] * four(part.minimum[k]);
+  const Four left = four(part.left);
+  Four low = base + left * corners[0], high = low;
+  for (std::size_t k = 1; k < 4; ++k) {
+    const Four corner = base + left * corners[k];
+    low = smaller(corner, low);
+    high = larger(corner, high);
+  }
   ContactBox around;
-  for (const int node : n) around.extend(base + part.left * positions[static_cast<std::size_t>(node)]);
+  for (int axis = 0; axis < 3; ++axis) {
+    around.low[axis] = low[axis];
+    around.high[axis] = high[axis];
+  }
   return around;
 }
 
@@ -68,8 +95,8 @@ void ContactBody::placeGroup(const TetGroup& group, GroupBoxes& boxes) const {
     const auto tet = static_cast<std::size_t>(group[lane]);
     const ContactBox around = group[lane] < 0 ? ContactBox{} : partBox(data().tets[tet], data().filled[tet]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      boxes.low[axis][lane] = around.low[axis];
-      boxes.high[axis][lane] = around.high[axis];
+      boxes.low[axis][static_cast<int>(lane)] = around.low[axis];
+      boxes.high[axis][static_cast<int>(lane)] = around.high[axis];
     }
   }
 }
@@ -87,8 +114,8 @@ void ContactBody::fitTrees() {
     const GroupBoxes& boxes = groupBoxes[static_cast<std::size_t>(tets.leafOf[node])];
     ContactBox around;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (const btScalar low : boxes.low[axis]) around.low[axis] = std::min(around.low[axis], low);
-      for (const btScalar high : boxes.high[axis]) around.high[axis] = std::max(around.high[axis], high);
+      around.low[axis] = least(boxes.low[axis]);
+      around.high[axis] = largest(boxes.high[axis]);
     }
     return around;
   };
@@ -114,22 +141,25 @@ DeformedTet ContactBody::deformed(int tet) const {
   deformed.rows[0] = normal / volume;
   deformed.rows[1] = edge[2].cross(edge[0]) / volume;
   deformed.rows[2] = edge[0].cross(edge[1]) / volume;
-  measure(deformed, n);
+  measure(deformed, tet);
   return deformed;
 }
 
-void ContactBody::measure(DeformedTet& tet, const Tet& n) const {
-  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
-  tet.steepest =
-      btSqrt(std::max({tet.rows[0].length2(), tet.rows[1].length2(), tet.rows[2].length2(), fourth.length2()}));
-  // The map from world to rest space: its Frobenius norm bounds all singular values.
+void ContactBody::measure(DeformedTet& tet, int t) const {
+  const Tet& n = data().tets[static_cast<std::size_t>(t)];
+  tet.setPlanes(data().filled[static_cast<std::size_t>(t)].minimum);
+  // The map from world to rest space. The largest sum of a row of its square bounds its largest singular value's
+  // square.
   btVector3 map[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   const auto rest = [&](std::size_t k) -> const btVector3& { return data().nodes[static_cast<std::size_t>(n[k])]; };
   for (std::size_t k = 0; k < 3; ++k) {
     const btVector3 edge = rest(k) - rest(3);
     for (int axis = 0; axis < 3; ++axis) map[axis] += edge[axis] * tet.rows[k];
   }
-  tet.restPerWorld = btSqrt(map[0].length2() + map[1].length2() + map[2].length2());
+  const btScalar xy = std::abs(map[0].dot(map[1])), yz = std::abs(map[1].dot(map[2])),
+                 zx = std::abs(map[2].dot(map[0]));
+  tet.restPerWorld =
+      btSqrt(std::max({map[0].length2() + xy + zx, map[1].length2() + yz + xy, map[2].length2() + zx + yz}));
 }
 
 btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
@@ -141,14 +171,14 @@ btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
 }
 
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet) {
-  assert(!tet.flat && tet.steepest > 0);
+  assert(!tet.flat);
   const btVector3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
   const btVector3 centroid = (low + high) / 2 - tet.origin, half = (high - low) / 2;
-  const btVector3 fourth = -(tet.rows[0] + tet.rows[1] + tet.rows[2]);
-  const auto maximum = [&](const btVector3& row) { return row.dot(centroid) + row.absolute().dot(half); };
-  const btScalar minimum =
-      std::min({maximum(tet.rows[0]), maximum(tet.rows[1]), maximum(tet.rows[2]), 1 + maximum(fourth)});
-  return (kMinWeight - minimum) / tet.steepest;
+  btScalar least = BT_LARGE_FLOAT;
+  for (int k = 0; k < 4; ++k) {
+    least = std::min(least, tet.normals[k].dot(centroid) + tet.normals[k].absolute().dot(half) + tet.offsets[k]);
+  }
+  return -least;
 }
 
 }  // namespace tetskin::contact_detail

@@ -4,6 +4,7 @@
 // Internal to SoftContacts: a body, and its positions in this step.
 #pragma once
 
+#include <tetskin/contact/src/soft/four.h>
 #include <tetskin/contact/src/soft/shape_data.h>
 
 #include <atomic>
@@ -14,28 +15,52 @@
 
 namespace tetskin::contact_detail {
 
+/// Least weight with which a point counts as inside a tet: rounding must lose no point between two tets, and just
+/// outside of the cage the surface is near.
+constexpr btScalar kMinWeight = btScalar(-0.02);
+
 /// The map from a position in the world to its weights in a deformed tet: weight i is rows[i] . (p - origin), i < 3.
 struct DeformedTet {
   btVector3 origin{0, 0, 0};
   btVector3 rows[3];
-  btScalar steepest = 0;      ///< the largest change of a weight per unit of length
+  /// Of the planes that bound its filled part: unit normals, inwards, and the distances of the origin from them.
+  btVector3 normals[4];
+  btScalar offsets[4] = {};
   btScalar restPerWorld = 0;  ///< an upper bound of the ratio of rest lengths to world lengths
   bool flat = true;
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
+  /// Sets the planes, from the rows.
+  /// minimum  weights in the planes; 0 counts as kMinWeight
+  void setPlanes(const btScalar minimum[4]);
 };
 
-/// Least weight with which a point counts as inside a tet: rounding must lose no point between two tets, and just
-/// outside of the cage the surface is near.
-constexpr btScalar kMinWeight = btScalar(-0.02);
-/// A lower bound of the distance between a box and the points that count as inside the tet; below 0 if they may
-/// overlap. The tet is not flat.
+/// A lower bound of the distance between a box and the tet's filled part; below 0 if they may overlap. The tet is not
+/// flat.
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet);
 
-/// The boxes of several tets side by side: coordinates by axis, then by lane. What is left over is empty.
+static_assert(kLanes == 4, "one lane for each tet of a group");
+
+/// The boxes of the tets of a group side by side: coordinates by axis. What is left over is empty.
 struct GroupBoxes {
-  btScalar low[3][kLanes], high[3][kLanes];
+  Four low[3], high[3];
 };
+
+/// The same box in each lane.
+struct FourBoxes {
+  Four low[3], high[3];
+  explicit FourBoxes(const ContactBox& box)
+      : low{four(box.low[0]), four(box.low[1]), four(box.low[2])},
+        high{four(box.high[0]), four(box.high[1]), four(box.high[2])} {}
+};
+
+/// The distances between a box and those of a group, 0 or below where they overlap.
+TETSKIN_INLINE Four gapsBetween(const FourBoxes& box, const GroupBoxes& boxes) {
+  const Four x = larger(Four(box.low[0] - boxes.high[0]), Four(boxes.low[0] - box.high[0]));
+  const Four y = larger(Four(box.low[1] - boxes.high[1]), Four(boxes.low[1] - box.high[1]));
+  const Four z = larger(Four(box.low[2] - boxes.high[2]), Four(boxes.low[2] - box.high[2]));
+  return larger(larger(x, y), z);
+}
 
 /// Something that is computed at most once a step, by the first thread that needs it.
 class OncePerStep {
@@ -92,13 +117,14 @@ class ContactBody {
   ContactBox box;
   btVector3 centroid{0, 0, 0};                         ///< of the nodes
   int reads = 0;                                       ///< number of times that `read` has been called
+  btScalar moved = 0, fastest = 0;                     ///< most of any node since it was read before, and its speed
   std::vector<btVector3> positions, velocities;        ///< by node
   std::vector<btVector3> before;                       ///< positions by node when it was read before
   std::vector<GroupBoxes> groupBoxes;                  ///< by group: around the tets' filled parts; valid after `place`
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, valid after `fit`
 
  private:
-  void measure(DeformedTet& tet, const Tet& n) const;
+  void measure(DeformedTet& tet, int t) const;
   ContactBox partBox(const Tet& n, const FilledComponent& part) const;
   void placeGroup(const TetGroup& group, GroupBoxes& boxes) const;
   void fitTrees();

@@ -139,6 +139,8 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     appendSample(cage, tets[s], samples[s].point, data);
     data.runs.back().last = index + 1;
   }
+  // The samples of the last run, too, are read by fours.
+  for (std::vector<btScalar>& weights : data.weights) weights.resize(weights.size() + kLanes - 1);
 }
 
 ContactBox restBox(const ShapeData& data, int tet) {

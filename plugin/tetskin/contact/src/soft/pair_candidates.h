@@ -4,7 +4,7 @@
 // Internal to SoftContacts: finds which samples of one body may be in which tets of another.
 #pragma once
 
-#include <tetskin/contact/src/soft/contact_body.h>
+#include <tetskin/contact/src/soft/candidate_life.h>
 
 #include <algorithm>
 #include <cassert>
@@ -29,6 +29,21 @@ struct Clearance {
   }
 };
 
+/// The tet in which a sample was found last, away from the surface, and the value of its run's path up to which it
+/// cannot reach the surface in that tet.
+struct SampleClearance {
+  int tet = -1;
+  btScalar until = 0;
+};
+
+/// A run whose samples are to be tested in this step.
+struct VisitedRun {
+  int run;
+  btScalar path;             ///< bound of the motion of its samples relative to the tets near them, since some step
+  btScalar reach;            ///< distance from the surface from which on no sample can touch it within the step
+  SampleClearance* samples;  ///< by sample of the run: what has been found for this path
+};
+
 /// Runs of samples of the first body, each with the groups of tets of the second that may contain samples. They stay
 /// complete while no two nodes approach each other by more than a slack. Among them, what is clear of the other body is
 /// not tested again until it has moved far enough, relative to that part of the other body which is near.
@@ -40,14 +55,13 @@ class PairCandidates {
   /// Cost  O(nodes); if candidates are found, about O(number of runs and tets, and of candidates)
   void update(ContactBody& first, ContactBody& second, btScalar dt);
 
-  /// Visits the runs that may have samples in tets, in ascending order: calls begin(run, reach), which returns the box
-  /// around its samples, then test(tet) for the tets whose boxes overlap it, in the order of the tree, and end(run).
-  /// `test` returns a Clearance: the tet is not tested again until the bodies have moved enough to exceed it. `reach`
-  /// is the distance from the surface, world space, from which on no sample of the run can touch it within the step.
+  /// Visits the runs that may have samples in tets, in ascending order: calls begin(VisitedRun), which returns the box
+  /// around its samples, then test(tet) for the tets whose boxes overlap it, in the order of the tree, and end().
+  /// `test` returns a Clearance: the tet is not tested again until the bodies have moved enough to exceed it.
   template <class Begin, class Test, class End>
-  void visit(const ContactBody& first, const ContactBody& second, Begin&& begin, Test&& test, End&& end);
+  void visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
-  int age() const { return age_; }  ///< number of steps since the candidates were found
+  int age() const { return life_.age(); }  ///< number of steps since the candidates were found
 
  private:
   /// A group of tets that may contain samples of a run.
@@ -66,11 +80,8 @@ class PairCandidates {
     std::size_t first = 0, last = 0;  ///< in `links_`
     Clearance until{0, 0};            ///< the least of its links' values
     btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since they were found
-    btScalar reach = 0;  ///< as for `visit`
-  };
-  /// The distances between a box and those of a group, and the least of them; 0 or below if they overlap.
-  struct Gaps {
-    btScalar gap[kLanes], least;
+    btScalar reach = 0;  ///< as in VisitedRun
+    std::size_t samples = 0;  ///< of its first sample, in `samples_`
   };
   struct Pair {
     const ContactBody* first;
@@ -78,65 +89,47 @@ class PairCandidates {
     ContactBox overlap;
   };
   bool follow(const ContactBody& first, const ContactBody& second);
-  btScalar driftOf(const ContactBody& first, const ContactBody& second) const;
   void find(ContactBody& first, ContactBody& second);
   void findInLeaf(const Pair& pair, std::size_t leaf);
   void findForRun(const Pair& pair, int run);
   void listNodes(const ContactBody& first, const ContactBody& second);
-  template <class OfFirst, class OfSecond, class Use>
-  void measure(const ContactBody& first, const OfFirst& ofFirst, const OfSecond& ofSecond, Use&& use);
+  template <class From, class To, class FromOther, class ToOther, class Use>
+  void measure(const ContactBody& first, const From& from, const To& to, const FromOther& fromOther,
+               const ToOther& toOther, Use&& use);
   void setReach(const ContactBody& first, const ContactBody& second, btScalar dt);
-  Clearance leastOf(const Run& run) const;
-  static Gaps gapsOf(unsigned neighbours, const GroupBoxes& boxes, const ContactBox& box);
-  bool closeByBoxes(const Run& run, const ContactBody& second, const ContactBox& box);
+  static Four gapsOf(unsigned neighbours, const GroupBoxes& boxes, const FourBoxes& box);
   template <class Test>
-  void testLink(const Run& run, Link& link, const ContactBody& second, const ContactBox& box, Test& test);
+  void testLink(const Run& run, Link& link, const ContactBody& second, const FourBoxes& box, Test& test);
   static bool isClear(const Clearance& until, const Run& run) {
     return run.path < until.outside && run.path + run.reach < until.distance;
   }
 
-  int reads_[2] = {-1, -1};          ///< by body: `reads` when last updated
-  btScalar slack_ = 0;               ///< relative motion up to which the candidates stay complete, world space
-  btScalar drift_ = 0;               ///< bound of the relative motion of any two nodes since candidates were found
-  int age_ = 0;                      ///< number of steps since then
-  std::vector<btVector3> found_[2];  ///< by body: positions of its nodes then
-  btVector3 centroids_[2] = {{0, 0, 0}, {0, 0, 0}};
+  int reads_[2] = {-1, -1};  ///< by body: `reads` when last updated
+  CandidateLife life_;
   std::vector<int> nodes_[2];  ///< of the runs' tets, and of the tets of all links
   std::vector<Run> runs_;
-  std::vector<Link> links_;           ///< by run
-  std::vector<Lanes> lanes_;          ///< of those links that have been tested
-  std::vector<std::size_t> groups_;   ///< found for a leaf of runs
-  std::vector<btScalar> nodeMotion_;  ///< by node of the first body, in `measure`
+  std::vector<Link> links_;               ///< by run
+  std::vector<Lanes> lanes_;              ///< of those links that have been tested
+  std::vector<SampleClearance> samples_;  ///< by run
+  std::vector<std::size_t> groups_;       ///< found for a leaf of runs
+  std::vector<btScalar> nodeMotion_;      ///< by node of the first body, in `measure`
 };
 
-/// Written so that compilers compute the lanes side by side.
-inline PairCandidates::Gaps PairCandidates::gapsOf(unsigned neighbours, const GroupBoxes& boxes,
-                                                   const ContactBox& box) {
-  const auto larger = [](btScalar a, btScalar b) { return a > b ? a : b; };
-  Gaps gaps;
-  for (int k = 0; k < kLanes; ++k) {
-    const btScalar x = larger(box.low[0] - boxes.high[0][k], boxes.low[0][k] - box.high[0]);
-    const btScalar y = larger(box.low[1] - boxes.high[1][k], boxes.low[1][k] - box.high[1]);
-    const btScalar z = larger(box.low[2] - boxes.high[2][k], boxes.low[2][k] - box.high[2]);
-    gaps.gap[k] = larger(larger(x, y), z);
+/// `kForever` in lanes of neighbours, which are no candidates.
+inline Four PairCandidates::gapsOf(unsigned neighbours, const GroupBoxes& boxes, const FourBoxes& box) {
+  Four gaps = gapsBetween(box, boxes);
+  for (unsigned k = 0; k < kLanes && neighbours != 0; ++k) {
+    if ((neighbours >> k) & 1U) gaps[static_cast<int>(k)] = kForever;
   }
-  if (neighbours != 0) {
-    for (unsigned k = 0; k < kLanes; ++k) {
-      if ((neighbours >> k) & 1U) gaps.gap[k] = kForever;
-    }
-  }
-  static_assert(kLanes == 4, "one comparison for each lane");
-  gaps.least = std::min(std::min(gaps.gap[0], gaps.gap[1]), std::min(gaps.gap[2], gaps.gap[3]));
   return gaps;
 }
 
 template <class Test>
-void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& second, const ContactBox& box,
-                              Test& test) {
+void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& second, const FourBoxes& box, Test& test) {
   const auto g = static_cast<std::size_t>(link.group);
-  const Gaps gaps = gapsOf(link.neighbours, second.groupBoxes[g], box);
-  link.until = {run.path + gaps.least, kForever};
-  if (gaps.least > 0) return;
+  const Four gaps = gapsOf(link.neighbours, second.groupBoxes[g], box);
+  link.until = {run.path + least(gaps), kForever};
+  if (link.until.outside > run.path) return;
   link.until = {};
   if (link.lanes < 0) {
     link.lanes = static_cast<int>(lanes_.size());
@@ -145,8 +138,8 @@ void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& sec
   Lanes& lanes = lanes_[static_cast<std::size_t>(link.lanes)];
   for (std::size_t k = 0; k < kLanes; ++k) {
     Clearance& ends = lanes.ends[k];
-    if (gaps.gap[k] > 0) {
-      ends = {run.path + gaps.gap[k], kForever};
+    if (gaps[static_cast<int>(k)] > 0) {
+      ends = {run.path + gaps[static_cast<int>(k)], kForever};
     } else if (!isClear(ends, run)) {
       const Clearance found = test(second.data().groups[g][k]);
       ends = {run.path + found.outside, run.path + found.distance};
@@ -156,18 +149,17 @@ void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& sec
 }
 
 template <class Begin, class Test, class End>
-void PairCandidates::visit(const ContactBody& first, const ContactBody& second, Begin&& begin, Test&& test, End&& end) {
-  assert(first.reads == reads_[0] && second.reads == reads_[1]);
+void PairCandidates::visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end) {
+  assert(second.reads == reads_[1]);
   for (Run& run : runs_) {
     if (isClear(run.until, run)) continue;
-    if (!closeByBoxes(run, second, first.runBox(run.run))) {
-      const ContactBox box = begin(run.run, run.reach);
-      for (std::size_t c = run.first; c < run.last; ++c) {
-        if (!isClear(links_[c].until, run)) testLink(run, links_[c], second, box, test);
-      }
-      end(run.run);
+    const FourBoxes box(begin(VisitedRun{run.run, run.path, run.reach, &samples_[run.samples]}));
+    run.until = {};
+    for (std::size_t c = run.first; c < run.last; ++c) {
+      if (!isClear(links_[c].until, run)) testLink(run, links_[c], second, box, test);
+      run.until.cut(links_[c].until);
     }
-    run.until = leastOf(run);
+    end();
   }
 }
 

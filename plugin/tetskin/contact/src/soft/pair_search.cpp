@@ -85,8 +85,8 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, c
   pierced_.swap(memory.pierced);
   memory.candidates.update(first, second, dt);
   memory.candidates.visit(
-      first, second, [&](int run, btScalar reach) { return beginRun(run, reach); },
-      [&](int tet) { return testTet(tet); }, [&](int run) { touchRun(run); });
+      second, [&](const VisitedRun& run) -> const ContactBox& { return beginRun(run); },
+      [&](int tet) { return testTet(tet); }, [&] { touchRun(); });
   remember(memory);
   return overlap_;
 }
@@ -107,10 +107,10 @@ void PairSearch::remember(PairMemory& memory) const {
   for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
 }
 
-const ContactBox& PairSearch::beginRun(int run, btScalar reach) {
-  assert(reach > 0);
-  reach_ = reach;
-  run_ = now_.first->data().runs[static_cast<std::size_t>(run)];
+const ContactBox& PairSearch::beginRun(const VisitedRun& run) {
+  assert(run.reach > 0 && run.samples);
+  visited_ = run;
+  run_ = now_.first->data().runs[static_cast<std::size_t>(run.run)];
   assert(run_.first < run_.last);
   carryRun();
   heads_.assign(static_cast<std::size_t>(run_.last - run_.first), -1);
@@ -125,26 +125,26 @@ void PairSearch::carryRun() {
   const auto first = static_cast<std::size_t>(run_.first), count = static_cast<std::size_t>(run_.last) - first;
   const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
   inside_.resize(padded);
+  const btScalar *w0 = &shapeData.weights[0][first], *w1 = &shapeData.weights[1][first],
+                 *w2 = &shapeData.weights[2][first], *w3 = &shapeData.weights[3][first];
   for (int axis = 0; axis < 3; ++axis) {
-    btScalar at[4];
-    for (std::size_t k = 0; k < 4; ++k) at[k] = now_.first->positions[static_cast<std::size_t>(n[k])][axis];
+    Four at[4];
+    for (std::size_t k = 0; k < 4; ++k) at[k] = four(now_.first->positions[static_cast<std::size_t>(n[k])][axis]);
     carried_[axis].resize(padded);
     btScalar* out = carried_[axis].data();
-    const btScalar *w0 = &shapeData.weights[0][first], *w1 = &shapeData.weights[1][first],
-                   *w2 = &shapeData.weights[2][first], *w3 = &shapeData.weights[3][first];
-    for (std::size_t s = 0; s < count; ++s) out[s] = w0[s] * at[0] + w1[s] * at[1] + w2[s] * at[2] + w3[s] * at[3];
-    for (std::size_t s = count; s < padded; ++s) out[s] = out[count - 1];
-    btScalar low[kLanes], high[kLanes];
-    std::copy(out, out + kLanes, low);
-    std::copy(out, out + kLanes, high);
-    for (std::size_t s = kLanes; s < padded; s += kLanes) {
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        low[k] = std::min(low[k], out[s + k]);
-        high[k] = std::max(high[k], out[s + k]);
-      }
+    Four low = four(BT_LARGE_FLOAT), high = four(-BT_LARGE_FLOAT);
+    for (std::size_t s = 0; s < padded; s += kLanes) {
+      const Four x = fourAt(w0 + s) * at[0] + fourAt(w1 + s) * at[1] + fourAt(w2 + s) * at[2] + fourAt(w3 + s) * at[3];
+      put(x, out + s);
+      if (s + kLanes > count) break;
+      low = smaller(x, low);
+      high = larger(x, high);
     }
-    around_.low[axis] = *std::min_element(low, low + kLanes);
-    around_.high[axis] = *std::max_element(high, high + kLanes);
+    const btScalar last = out[count - 1];
+    for (std::size_t s = count; s < padded; ++s) out[s] = last;
+    const Four rest = fourAt(out + padded - kLanes);
+    around_.low[axis] = least(smaller(rest, low));
+    around_.high[axis] = largest(larger(rest, high));
   }
 }
 
@@ -160,33 +160,36 @@ const DeformedTet& PairSearch::deformed(int tet) {
   return known.tet;
 }
 
-void PairSearch::touchRun(int run) {
-  if (!positions_.empty()) own_ = now_.first->deformed(run_.tet);
+void PairSearch::touchRun() {
+  if (positions_.empty()) return;
+  own_ = now_.first->deformed(run_.tet);
   for (std::size_t k = 0; k < heads_.size(); ++k) {
     for (int p = heads_[k]; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
-      touch(static_cast<int>(k), run, positions_[static_cast<std::size_t>(p)]);
+      touch(static_cast<int>(k), positions_[static_cast<std::size_t>(p)]);
     }
   }
 }
 
-/// Computes the least weight of each sample of the run; returns the largest of these.
-btScalar PairSearch::leastWeights(const DeformedTet& deformed) {
-  const btVector3 &o = deformed.origin, &a = deformed.rows[0], &b = deformed.rows[1], &c = deformed.rows[2];
-  const btScalar *xs = carried_[0].data(), *ys = carried_[1].data(), *zs = carried_[2].data();
-  btScalar* inside = inside_.data();
-  btScalar largest[kLanes];
-  std::fill(largest, largest + kLanes, -BT_LARGE_FLOAT);
-  for (std::size_t s = 0; s < inside_.size(); s += kLanes) {
-    for (std::size_t k = s; k < s + kLanes; ++k) {
-      const btScalar x = xs[k] - o.x(), y = ys[k] - o.y(), z = zs[k] - o.z();
-      const btScalar w0 = a.x() * x + a.y() * y + a.z() * z;
-      const btScalar w1 = b.x() * x + b.y() * y + b.z() * z;
-      const btScalar w2 = c.x() * x + c.y() * y + c.z() * z;
-      inside[k] = std::min(std::min(w0, w1), std::min(w2, 1 - w0 - w1 - w2));
-      largest[k - s] = std::max(largest[k - s], inside[k]);
-    }
+/// Computes how far inside of the tet each sample of the run is, by its nearest plane; returns the largest of these.
+btScalar PairSearch::findDepths(const DeformedTet& tet) {
+  Four normals[4][3], offsets[4];
+  for (int k = 0; k < 4; ++k) {
+    for (int axis = 0; axis < 3; ++axis) normals[k][axis] = four(tet.normals[k][axis]);
+    offsets[k] = four(tet.offsets[k]);
   }
-  return *std::max_element(largest, largest + kLanes);
+  const Four origin[3] = {four(tet.origin.x()), four(tet.origin.y()), four(tet.origin.z())};
+  Four deepest = four(-BT_LARGE_FLOAT);
+  for (std::size_t s = 0; s < inside_.size(); s += kLanes) {
+    const Four x = fourAt(&carried_[0][s]) - origin[0], y = fourAt(&carried_[1][s]) - origin[1],
+               z = fourAt(&carried_[2][s]) - origin[2];
+    const auto depth = [&](int k) -> Four {
+      return normals[k][0] * x + normals[k][1] * y + normals[k][2] * z + offsets[k];
+    };
+    const Four least = smaller(smaller(depth(0), depth(1)), smaller(depth(2), depth(3)));
+    put(least, &inside_[s]);
+    deepest = larger(least, deepest);
+  }
+  return largest(deepest);
 }
 
 /// Tests the samples of the run.
@@ -194,21 +197,36 @@ Clearance PairSearch::testTet(int tet) {
   const DeformedTet& in = deformed(tet);
   if (in.flat) return outside(0);
   if (const btScalar gap = gapTo(around_, in); gap > 0) return outside(gap);
-  const btScalar largest = leastWeights(in);
-  if (largest < kMinWeight) return outside((kMinWeight - largest) / in.steepest);
+  if (const btScalar deepest = findDepths(in); deepest < 0) return outside(-deepest);
   Clearance clear;
-  btScalar maximum = -BT_LARGE_FLOAT;
+  btScalar nearest = -BT_LARGE_FLOAT;  // of those that are outside
   const int count = run_.last - run_.first;
-  for (int k = 0; k < count; ++k) {
-    const btScalar weight = inside_[static_cast<std::size_t>(k)];
-    if (weight >= kMinWeight) {
-      clear.cut(offer(tet, run_.first + k, k));
-    } else {
-      maximum = std::max(maximum, weight);
+  for (int begin = 0; begin < count; begin += kLanes) {
+    const Four depths = fourAt(&inside_[static_cast<std::size_t>(begin)]);
+    if (const btScalar deepest = largest(depths); deepest < 0) {
+      nearest = std::max(nearest, deepest);
+      continue;
+    }
+    for (int k = begin; k < std::min(begin + kLanes, count); ++k) {
+      const btScalar depth = depths[k - begin];
+      if (depth >= 0) {
+        clear.cut(testSample(tet, k));
+      } else {
+        nearest = std::max(nearest, depth);
+      }
     }
   }
-  clear.cut(outside((kMinWeight - maximum) / in.steepest));
+  clear.cut(outside(-nearest));
   return clear;
+}
+
+/// Most samples within a tet are away from its surface, and still where they were: these need not be looked up again.
+Clearance PairSearch::testSample(int tet, int k) {
+  SampleClearance& known = visited_.samples[k];
+  if (known.tet == tet && visited_.path + visited_.reach < known.until) return away(known.until - visited_.path);
+  const Clearance found = offer(tet, run_.first + k, k);
+  if (found.distance > 0 && found.outside == kForever) known = {tet, visited_.path + found.distance};
+  return found;
 }
 
 /// Skips positions that are already known from a neighbouring tet.
@@ -232,7 +250,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
   }
   if (!data.grid.at(position.rest, position.nearest)) return atSurface();
   const btScalar distance = position.nearest.distance / in.restPerWorld;
-  if (distance > reach_) return away(distance);
+  if (distance > visited_.reach) return away(distance);
   position.tet = tet;
   position.next = head;
   head = static_cast<int>(positions_.size());
@@ -292,7 +310,7 @@ void PairSearch::count(const btVector3& own, const Touch& touch) {
   ++overlap_.inside;
 }
 
-void PairSearch::touch(int k, int run, const SamplePosition& position) {
+void PairSearch::touch(int k, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const int sample = run_.first + k;
   const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
@@ -305,11 +323,11 @@ void PairSearch::touch(int k, int run, const SamplePosition& position) {
   if (!(length > SIMD_EPSILON)) return;
   Touch made;
   made.distance = found.distance / length;
-  if (made.distance > reach_) return;
+  if (made.distance > visited_.reach) return;
   found.side.sample = sample;
   now_.sides->keep(found.side);
   made.sample = sample;
-  made.run = run;
+  made.run = visited_.run;
   made.tet = position.tet;
   made.point = sampleAt(k);
   std::copy(position.weights, position.weights + 4, made.weights);

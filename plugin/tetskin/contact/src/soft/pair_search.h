@@ -78,15 +78,16 @@ class PairSearch {
   };
 
   void remember(PairMemory& memory) const;
-  const ContactBox& beginRun(int run, btScalar reach);
+  const ContactBox& beginRun(const VisitedRun& run);
   void carryRun();
   const DeformedTet& deformed(int tet);
   btVector3 sampleAt(int k) const;
   Clearance testTet(int tet);
-  btScalar leastWeights(const DeformedTet& deformed);
+  btScalar findDepths(const DeformedTet& tet);
+  Clearance testSample(int tet, int k);
   Clearance offer(int tet, int sample, int k);
-  void touchRun(int run);
-  void touch(int k, int run, const SamplePosition& position);
+  void touchRun();
+  void touch(int k, const SamplePosition& position);
   void count(const btVector3& own, const Touch& touch);
   btVector3 restMotion(int sample, const SamplePosition& position);
   btVector3 ownNormal(int sample) const;
@@ -101,13 +102,13 @@ class PairSearch {
   Search now_{};
   std::uint64_t pair_ = 0;       ///< number of the pair that is searched
   std::vector<KnownTet> known_;  ///< by tet
-  SampleRun run_;                ///< the run that is being tested
-  btScalar reach_ = 0;           ///< of its contacts, world space: samples farther away are left out
+  VisitedRun visited_{};         ///< the run that is being tested
+  SampleRun run_;                ///< the same one: its samples
   DeformedTet own_;              ///< its tet, if one of its samples touches
   ContactBox around_;            ///< box of its samples
   std::vector<btScalar>
       carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
-  std::vector<btScalar> inside_;  ///< by sample of the run: its least weight in the tet
+  std::vector<btScalar> inside_;  ///< by sample of the run: how far inside of the tet it is
   std::vector<int> touched_, pierced_;  ///< samples of the step before
   std::vector<SamplePosition> positions_;
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`

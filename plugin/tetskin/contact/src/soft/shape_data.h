@@ -98,7 +98,7 @@ struct ShapeData {
   /// Outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none.
   std::vector<btVector3> sampleNormals;
   std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
-  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet
+  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; some more at the end
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
   std::vector<FilledComponent> filled;             ///< by tet
   std::vector<FilledComponent> runParts;           ///< by run: the part of the tet that holds its samples

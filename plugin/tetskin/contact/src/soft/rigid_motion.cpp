@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <LinearMath/btQuaternion.h>
+#include <tetskin/contact/src/soft/rigid_motion.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin::contact_detail {
+
+/// moment   sum of the cross products of positions before and after, relative to the centres
+/// inertia  about the centre, before
+void RigidMotion::turn(const btVector3& moment, const btMatrix3x3& inertia) {
+  /// Angles below this are left to the deviations: they are smaller than what rounding makes of them.
+  constexpr btScalar kMinAngle = btScalar(1e-5);
+  /// Of the trace, added to the inertia: of nodes on a line, none about it is known.
+  constexpr btScalar kRegular = btScalar(1e-3);
+  const btScalar more = kRegular * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
+  if (!(more > 0)) return;
+  btMatrix3x3 regular = inertia;
+  for (int k = 0; k < 3; ++k) regular[k][k] += more;
+  const btVector3 turns = regular.inverse() * moment;  // the sine of the angle, along the axis
+  const btScalar sine = turns.length();
+  if (!(sine > kMinAngle)) return;
+  rotation_.setRotation(btQuaternion(turns / sine, std::asin(std::min(sine, btScalar(1)))));
+  turns_ = true;
+}
+
+}  // namespace tetskin::contact_detail
