@@ -4,9 +4,11 @@
 // The functions that Bullet calls. The stages that they call are in step.cpp.
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/bullet/src/shared/bodies/contact_filter.h>
 #include <tetskin/bullet/src/solver/node_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
+#include <tetskin/core/src/shared/base/run_by_size.h>
 
 #include <cassert>
 
@@ -91,6 +93,21 @@ bool DeformableSolver::Impl::findNodeContactsOf(btSoftBody& body, const btCollis
   return true;
 }
 
+/// Runs the searches that have waited for threads.
+void DeformableSolver::Impl::searchSurfaces() {
+  std::vector<BodyWithTrees*> waiting;
+  for (const SolvedBody& solved : bodies.bodies()) {
+    auto* body = bodyWithTrees(*solved.body);
+    if (!body) continue;
+    body->setSearchWaits(false);
+    if (body->waitingSearch()) waiting.push_back(body);
+  }
+  runTasks(threads, waiting.size(), [&](std::size_t k) {
+    waiting[k]->waitingSearch()();
+    waiting[k]->waitingSearch() = nullptr;
+  });
+}
+
 /// Bullet calls this for a body and a rigid object whose boxes overlap.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
   if (impl_->solving) {
@@ -108,6 +125,7 @@ void DeformableSolver::setupDeformableSolve(bool implicit) {
 /// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice. Collision
 /// detection has run since the prediction.
 void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
+  impl_->searchSurfaces();
   impl_->clock.end(&StepTimes::rigidSearch);
   btDeformableBodySolver::setConstraints(info);
   if (!impl_->solving) return;

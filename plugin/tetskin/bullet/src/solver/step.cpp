@@ -79,6 +79,11 @@ double moveNodes(btSoftBody& body, btScalar dt, std::vector<NodeTravel>& travels
   return maximum;
 }
 
+/// True if Bullet's own search for contacts is going to use the body's trees.
+bool needsBulletsTrees(btSoftBody& body) {
+  return body.m_bUpdateRtCst || collidesByFaces(body);
+}
+
 btScalar fastestNode(const btSoftBody& body) {
   btScalar squared = 0;
   for (int n = 0; n < body.m_nodes.size(); ++n) squared = std::max(squared, body.m_nodes[n].m_v.length2());
@@ -201,11 +206,15 @@ void DeformableSolver::Impl::predict() {
     // With other forces, the velocities at the beginning of the step determine the tolerances.
     first.waits = first.wasTouched && system.forces.empty();
   }
-  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) { predictVelocities(body, inner); });
-  for (SolvedBody& body : bodies.bodies()) {
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
+    predictVelocities(body, inner);
     writePrediction(body);
+    if (!needsBulletsTrees(*body.body)) predictPositions(body);
+  });
+  for (SolvedBody& body : bodies.bodies()) {
     clearContacts(*body.body);
-    predictPositions(body);
+    needsBulletsTrees(*body.body) ? predictByBullet(body) : setBroadphaseBox(*body.body);
+    if (auto* own = bodyWithTrees(*body.body)) own->setSearchWaits(threads != nullptr);
   }
 }
 
@@ -253,22 +262,21 @@ void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
   }
 }
 
-/// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees.
+/// By Bullet's own function, which also refits the trees of nodes and faces.
+void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
+  body.paddedTrees->forget();
+  body.paths = nullptr;
+  solver.predictDeformableMotion(body.body, dt());
+  if (body.elastic) speculate(body, fastestNode(*body.body));
+}
+
+/// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees and the box in the broadphase.
 void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
-  // Bullet's own function also refits the trees of nodes and faces.
-  if (body.body->m_bUpdateRtCst || collidesByFaces(*body.body)) {
-    body.paddedTrees->forget();
-    body.paths = nullptr;
-    solver.predictDeformableMotion(body.body, dt());
-    if (body.elastic) speculate(body, fastestNode(*body.body));
-    return;
-  }
   prepareStep(body, dt());
   const double squared = moveNodes(*body.body, dt(), body.paths->begin(body.dynamics->nodeCount()));
   const auto fastest = static_cast<btScalar>(std::sqrt(squared));
   body.paddedTrees->fit(*body.body, *body.dynamics, fastest * dt());
   if (body.elastic) speculate(body, fastest);
-  setBroadphaseBox(*body.body);
 }
 
 // ---- assemble

@@ -58,10 +58,12 @@ struct DeformableSolver::Impl {
   /// most  bound of the iterations
   void solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const;
   void writePrediction(SolvedBody& body) const;
+  void predictByBullet(SolvedBody& body);
   void predictPositions(SolvedBody& body);
 
   // Detection of contacts.
   bool findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object);
+  void searchSurfaces();
 
   // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
   void readContacts(SolvedBody& body);

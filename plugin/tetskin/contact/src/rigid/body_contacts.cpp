@@ -66,14 +66,31 @@ BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, 
       thickness_(thickness),
       maxRemembered_(maxRemembered(search_.patches())) {}
 
+BodyContacts::~BodyContacts() {
+  if (bodyLives()) body_.waitingSearch() = nullptr;
+}
+
+/// What sleeps is searched for at once: a contact wakes it, before Bullet finds out what moves.
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   assert(bodyLives());
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
+  const Met met{&object, rigid.getCollisionShape(), pathOf(rigid)};
+  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
+  waiting_.push_back(met);
+  body_.waitingSearch() = [this] { searchWaiting(); };
+}
+
+void BodyContacts::searchWaiting() {
+  for (const Met& met : waiting_) search(met);
+  waiting_.clear();
+}
+
+void BodyContacts::search(const Met& met) {
   nodesRead_ = false;
-  KnownObject& known = known_[&object];
+  KnownObject& known = known_[met.object];
   ++known.step;
-  collideShape(*rigid.getCollisionShape(), 0, pathOf(rigid), object);
+  collideShape(*met.shape, 0, met.path, *met.object);
   if (known.step % kForgottenAfter == 0) forgetUnused(known);
 }
 
@@ -165,6 +182,9 @@ std::vector<int> BodyContacts::childrenNear(const btCompoundShape& compound, con
 }
 
 void BodyContacts::forget(const btCollisionObject& object) {
+  waiting_.erase(
+      std::remove_if(waiting_.begin(), waiting_.end(), [&](const Met& met) { return met.object == &object; }),
+      waiting_.end());
   const auto found = known_.find(&object);
   if (found != known_.end()) {
     for (const auto& [number, shape] : found->second.shapes) remembered_ -= shape.isRemembered;

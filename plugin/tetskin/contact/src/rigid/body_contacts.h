@@ -41,12 +41,16 @@ class BodyContacts {
   /// body        created by `createSoftBody`
   /// thickness   depth up to which a point behind a mesh's surface still belongs to it
   BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, SurfaceCollider search, btScalar thickness);
+  ~BodyContacts();
+  BodyContacts(const BodyContacts&) = delete;
+  BodyContacts& operator=(const BodyContacts&) = delete;
 
   const btDispatcher* dispatcher() const { return dispatcher_; }
   /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
 
-  /// Adds the contacts with an object to the body's, shape by shape.
+  /// Adds the contacts with an object to the body's, shape by shape; at once, or when the body's waiting search is
+  /// called.
   void collide(const btCollisionObjectWrapper& rigid);
 
   /// Forgets an object that is not met any more, or not at present.
@@ -56,6 +60,14 @@ class BodyContacts {
   const SurfaceCollider& search() const { return search_; }
 
  private:
+  /// An object that is met, and its shape and path at that moment.
+  struct Met {
+    const btCollisionObject* object;
+    const btCollisionShape* shape;
+    ShapePath path;
+  };
+  void search(const Met& met);
+  void searchWaiting();
   void readNodes();
   void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                     const btCollisionObject& object);
@@ -73,7 +85,8 @@ class BodyContacts {
   SurfaceCollider search_;
   btScalar thickness_;
   std::vector<NodePath> nodes_;
-  bool nodesRead_ = false;  ///< by this call
+  bool nodesRead_ = false;    ///< since the search for an object began
+  std::vector<Met> waiting_;  ///< those that are yet to be searched for
   ExactProbe exact_;
   HullProbe hull_;
   ConvexProbe convex_;

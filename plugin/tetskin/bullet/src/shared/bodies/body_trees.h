@@ -14,6 +14,7 @@
 #include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/export.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -63,6 +64,13 @@ class BodyWithTrees : public btSoftBody {
   PointContacts& pointContacts() { return pointContacts_; }
   const PointContacts& pointContacts() const { return pointContacts_; }
 
+  /// While this is set, the search for contacts of the surface waits until the solver calls `waitingSearch`, when all
+  /// pairs of the step are known: searches of several bodies then run side by side.
+  void setSearchWaits(bool waits) { searchWaits_ = waits; }
+  bool searchWaits() const { return searchWaits_; }
+  /// Searches for the contacts of what has been met; empty if there is nothing. Whoever sets it empties it, too.
+  std::function<void()>& waitingSearch() { return waitingSearch_; }
+
   /// From now on, the box in the broadphase also contains the nodes' positions at the end of the step, enlarged by
   /// this: Bullet's own box only contains the positions at the beginning. Below 0: Bullet's own box.
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
@@ -86,6 +94,8 @@ class BodyWithTrees : public btSoftBody {
   OwnObject registered_{OwnObject::Kind::BodyWithTrees, static_cast<const btSoftBody*>(this)};
   Kind kind_ = Kind::None;
   btScalar reach_ = -1, speculation_ = 0;
+  bool searchWaits_ = false;
+  std::function<void()> waitingSearch_;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
   PointContacts pointContacts_;
