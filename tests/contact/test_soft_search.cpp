@@ -130,6 +130,49 @@ TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   EXPECT_GT(found, 500u);
 }
 
+/// A ball with thorns that are finer than the cubes of its grid and lean over its surface, so that the grid's gradient
+/// at their tips may point inwards.
+struct ThornyBall {
+  TetMesh cage = latticeCage(5, 5, 5, 0.2);
+  TriangleMesh mesh = sphere(48, 0.38, Eigen::Vector3d::Constant(0.5));
+  std::vector<int> tips;
+  std::shared_ptr<const ContactShape> shape;
+
+  ThornyBall() {
+    for (int v = 150; v + 150 < static_cast<int>(mesh.vertexCount()); v += 101) {
+      tips.push_back(v);
+      const Eigen::Vector3d out = outwards(v);
+      mesh.positions[v] += 0.02 * out + 0.12 * out.unitOrthogonal();
+    }
+    ContactShapeOptions options;
+    options.gridResolution = 48;
+    shape = ContactShape::create(cage, mesh, options).value();
+  }
+  Eigen::Vector3d outwards(int v) const { return (mesh.positions[v] - Eigen::Vector3d::Constant(0.5)).normalized(); }
+};
+
+TEST_F(SoftSearch, ATipFinerThanTheGridTouchesWhatItEnters) {
+  const ThornyBall thorny;
+  const auto body = createSoftBody(thorny.cage, info_).value();
+  ContactBody first(*body, thorny.shape, false, 0);
+  first.read();
+  const double depth = 0.01;
+  for (const int tip : thorny.tips) {
+    const btVector3 at = toBullet(thorny.mesh.positions[tip]);
+    const Eigen::Vector3d out = thorny.outwards(tip);
+    auto second = include(thorny.mesh.positions[tip] + (Ball::kRadius - depth) * out - Eigen::Vector3d::Constant(0.5));
+    PairMemory memory;
+    PairSearch search;
+    std::vector<Touch> touches;
+    search.find(first, *second, btScalar(0.004), btVector3(0, 0, 0), 0, memory, touches);
+    const auto found = std::find_if(touches.begin(), touches.end(),
+                                    [&](const Touch& t) { return (t.point - at).length() < btScalar(1e-5); });
+    ASSERT_NE(found, touches.end()) << "vertex " << tip;
+    EXPECT_NEAR(found->distance, -depth, 0.25 * second->data().grid.spacing());
+    EXPECT_LT(found->normal.dot(toBullet(out)), -0.95);
+  }
+}
+
 /// The sample by which a node touched goes on touching beside another that has become deeper, unless they are close.
 TEST_F(SoftSearch, ANodeKeepsTheSampleItTouchedWithBesideADeeperOne) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.78, 0, 0));

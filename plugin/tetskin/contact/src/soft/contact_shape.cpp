@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/other_components.h>
-#include <tetskin/contact/src/soft/surface_samples.h>
+#include <tetskin/contact/src/soft/sample_normals.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
@@ -120,15 +120,12 @@ void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, Sha
   clamped.maxCoeff(&main);
   data.sampleNodes.push_back(point.nodes[static_cast<std::size_t>(main)]);
   data.sampleRest.push_back(toBullet(rest));
-  GridDistance at;
-  const bool known = data.grid.at(data.sampleRest.back(), at) && at.gradient.length() > kNoDirection;
-  data.sampleNormals.push_back(known ? at.gradient : btVector3(0, 0, 0));
 }
 
 /// Sorts the samples by tet; those of flat tets, in which no weights can be computed, are left out.
-void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, const std::vector<int>& tets,
-              ShapeData& data) {
-  assert(tets.size() == samples.size());
+void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, const std::vector<btVector3>& normals,
+              const std::vector<int>& tets, ShapeData& data) {
+  assert(tets.size() == samples.size() && normals.size() == samples.size());
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tets[a] < tets[b]; });
@@ -137,6 +134,7 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     const int index = static_cast<int>(data.samples.size());
     if (data.runs.empty() || data.runs.back().tet != tets[s]) data.runs.push_back({tets[s], index, index});
     appendSample(cage, tets[s], samples[s].point, data);
+    data.sampleNormals.push_back(normals[s]);
     data.runs.back().last = index + 1;
   }
   // The samples of the last run, too, are read by fours.
@@ -350,7 +348,7 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   for (const Eigen::Vector3d& p : cage.mesh.nodes) data->nodes.push_back(toBullet(p));
   data->tets = cage.mesh.tets;
   data->edge = static_cast<btScalar>(meanEdge(cage.mesh));
-  makeRuns(cage.mesh, samples, tets, *data);
+  makeRuns(cage.mesh, samples, sampleNormals(mesh, visible, samples, data->grid), tets, *data);
   makeTrees(cage.mesh, *data);
   findCopies(cage, mesh, surface, *data);
   boundRuns(*data);

@@ -15,6 +15,8 @@ namespace tetskin::contact_detail {
 
 /// Length of a gradient below which it has no direction, as in the middle of a thin part.
 constexpr btScalar kNoDirection = btScalar(0.1);
+/// Length of a gradient at the surface from which on it is on no edge.
+constexpr btScalar kOnFace = btScalar(0.9);
 
 /// The result of the grid at a point.
 struct GridDistance {

@@ -26,8 +26,6 @@ constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8)
 /// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
 /// the other one, unless the normals agree by this cosine.
 constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
-/// Length of the gradient from which on the sample is on no edge.
-constexpr btScalar kOnFace = btScalar(0.9);
 /// A side that is farther away at rest than this many mean edges belongs to another part.
 constexpr btScalar kOneSide = 1;
 

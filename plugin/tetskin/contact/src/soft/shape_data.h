@@ -95,8 +95,7 @@ struct ShapeData {
   std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
   // Separate arrays of those values that are read for many samples in sequence.
   std::vector<btVector3> sampleRest;
-  /// Outwards, from the grid; shorter than 1 on edges, 0 where the grid gives none.
-  std::vector<btVector3> sampleNormals;
+  std::vector<btVector3> sampleNormals;            ///< outwards; see sampleNormals()
   std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
   std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; some more at the end
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
