@@ -150,12 +150,14 @@ void ContactBody::measure(DeformedTet& tet, int t) const {
   tet.setPlanes(data().filled[static_cast<std::size_t>(t)].minimum);
   // The map from world to rest space. The largest sum of a row of its square bounds its largest singular value's
   // square.
-  btVector3 map[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   const auto rest = [&](std::size_t k) -> const btVector3& { return data().nodes[static_cast<std::size_t>(n[k])]; };
+  btVector3* map = tet.toRest;
+  for (int axis = 0; axis < 3; ++axis) map[axis].setZero();
   for (std::size_t k = 0; k < 3; ++k) {
     const btVector3 edge = rest(k) - rest(3);
     for (int axis = 0; axis < 3; ++axis) map[axis] += edge[axis] * tet.rows[k];
   }
+  tet.restOrigin = rest(3);
   const btScalar xy = std::abs(map[0].dot(map[1])), yz = std::abs(map[1].dot(map[2])),
                  zx = std::abs(map[2].dot(map[0]));
   tet.restPerWorld =

@@ -26,10 +26,15 @@ struct DeformedTet {
   /// Of the planes that bound its filled part: unit normals, inwards, and the distances of the origin from them.
   btVector3 normals[4];
   btScalar offsets[4] = {};
-  btScalar restPerWorld = 0;  ///< an upper bound of the ratio of rest lengths to world lengths
+  btVector3 restOrigin{0, 0, 0}, toRest[3];  ///< rest position: restOrigin[i] + toRest[i] . (p - origin)
+  btScalar restPerWorld = 0;                 ///< an upper bound of the ratio of rest lengths to world lengths
   bool flat = true;
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
+  btVector3 restAt(const btVector3& p) const {
+    const btVector3 r = p - origin;
+    return restOrigin + btVector3(toRest[0].dot(r), toRest[1].dot(r), toRest[2].dot(r));
+  }
   /// Sets the planes, from the rows.
   /// minimum  weights in the planes; 0 counts as kMinWeight
   void setPlanes(const btScalar minimum[4]);

@@ -41,13 +41,6 @@ btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& def
   return carried;
 }
 
-btVector3 restPoint(const ShapeData& data, int tet, const btScalar weights[4]) {
-  const Tet& n = data.tets[static_cast<std::size_t>(tet)];
-  btVector3 p(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) p += weights[k] * data.nodes[static_cast<std::size_t>(n[k])];
-  return p;
-}
-
 bool contains(const std::vector<int>& ascending, int sample) {
   return std::binary_search(ascending.begin(), ascending.end(), sample);
 }
@@ -122,13 +115,15 @@ void PairSearch::carryRun() {
   const Tet& n = shapeData.tets[static_cast<std::size_t>(run_.tet)];
   const auto first = static_cast<std::size_t>(run_.first), count = static_cast<std::size_t>(run_.last) - first;
   const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
-  inside_.resize(padded);
+  if (inside_.size() < padded) {
+    for (std::vector<btScalar>* lanes : {&inside_, &carried_[0], &carried_[1], &carried_[2]}) lanes->resize(padded);
+  }
+  padded_ = padded;
   const btScalar *w0 = &shapeData.weights[0][first], *w1 = &shapeData.weights[1][first],
                  *w2 = &shapeData.weights[2][first], *w3 = &shapeData.weights[3][first];
   for (int axis = 0; axis < 3; ++axis) {
     Four at[4];
     for (std::size_t k = 0; k < 4; ++k) at[k] = four(now_.first->positions[static_cast<std::size_t>(n[k])][axis]);
-    carried_[axis].resize(padded);
     btScalar* out = carried_[axis].data();
     Four low = four(BT_LARGE_FLOAT), high = four(-BT_LARGE_FLOAT);
     for (std::size_t s = 0; s < padded; s += kLanes) {
@@ -177,7 +172,7 @@ btScalar PairSearch::findDepths(const DeformedTet& tet) {
   }
   const Four origin[3] = {four(tet.origin.x()), four(tet.origin.y()), four(tet.origin.z())};
   Four deepest = four(-BT_LARGE_FLOAT);
-  for (std::size_t s = 0; s < inside_.size(); s += kLanes) {
+  for (std::size_t s = 0; s < padded_; s += kLanes) {
     const Four x = fourAt(&carried_[0][s]) - origin[0], y = fourAt(&carried_[1][s]) - origin[1],
                z = fourAt(&carried_[2][s]) - origin[2];
     const auto depth = [&](int k) -> Four {
@@ -227,15 +222,26 @@ Clearance PairSearch::testSample(int tet, int k) {
   return found;
 }
 
+/// False if a point of the tet belongs to one of its duplicates.
+bool PairSearch::isCarried(int tet, const btVector3& at) {
+  const ShapeData& data = now_.second->data();
+  if (data.carried.empty()) return true;
+  const CarriedCells& cells = data.carried[static_cast<std::size_t>(tet)];
+  if (cells.holdsAll()) return true;
+  btScalar weights[4];
+  deformed(tet).weightsAt(at, weights);
+  return cells.holds(weights);
+}
+
 /// Skips positions that are already known from a neighbouring tet.
 Clearance PairSearch::offer(int tet, int sample, int k) {
   assert(k >= 0 && static_cast<std::size_t>(k) < heads_.size());
   const ShapeData& data = now_.second->data();
   const DeformedTet& in = deformed(tet);
+  const btVector3 at = sampleAt(k);
   SamplePosition position;
-  in.weightsAt(sampleAt(k), position.weights);
-  if (!data.carried.empty() && !data.carried[static_cast<std::size_t>(tet)].holds(position.weights)) return atSurface();
-  position.rest = restPoint(data, tet, position.weights);
+  if (!isCarried(tet, at)) return atSurface();
+  position.rest = in.restAt(at);
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
     const btScalar moved = (position.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
@@ -249,6 +255,7 @@ Clearance PairSearch::offer(int tet, int sample, int k) {
   if (!data.grid.at(position.rest, position.nearest)) return atSurface();
   const btScalar distance = position.nearest.distance / in.restPerWorld;
   if (distance > visited_.reach) return away(distance);
+  in.weightsAt(at, position.weights);
   position.tet = tet;
   position.next = head;
   head = static_cast<int>(positions_.size());

@@ -85,6 +85,7 @@ class PairSearch {
   Clearance testTet(int tet);
   btScalar findDepths(const DeformedTet& tet);
   Clearance testSample(int tet, int k);
+  bool isCarried(int tet, const btVector3& at);
   Clearance offer(int tet, int sample, int k);
   void touchRun();
   void touch(int k, const SamplePosition& position);
@@ -106,6 +107,7 @@ class PairSearch {
   SampleRun run_;                ///< the same one: its samples
   DeformedTet own_;              ///< its tet, if one of its samples touches
   ContactBox around_;            ///< box of its samples
+  std::size_t padded_ = 0;       ///< number of its samples, rounded up to lanes
   std::vector<btScalar>
       carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
   std::vector<btScalar> inside_;  ///< by sample of the run: how far inside of the tet it is

@@ -28,6 +28,7 @@ struct SampleRun {
 /// of them, unless the tet has duplicates.
 struct CarriedCells {
   std::uint64_t bits = ~std::uint64_t{0};
+  bool holdsAll() const { return bits == ~std::uint64_t{0}; }
   bool holds(const btScalar weights[4]) const { return (bits >> cellOf(weights)) & 1; }
   static int cellOf(const btScalar weights[4]);
 };
