@@ -130,6 +130,7 @@ class Pile {
       model.builtIn = builtIn;
       if (model.mesh.empty()) models_.emplace_back(model);
     }
+    world_.leaveOutNodeNormals();
     addBowl(world_);
     if (!options.isHeap()) addPoles(world_);
     if (options.threads > 1) world_.setThreads(&threads_.emplace(static_cast<std::size_t>(options.threads)));

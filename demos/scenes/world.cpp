@@ -166,6 +166,10 @@ void World::addCorotated(btSoftBody& body, const SoftBodyOptions& options) {
   deformable_->addForce(&body, forces_.back().get());
 }
 
+void World::leaveOutNodeNormals() {
+  if (force_ == Force::Elastic) static_cast<DeformableSolver&>(*bodySolver_).setNodeNormals(false);
+}
+
 void World::setThreads(ParallelFor* threads) {
   if (force_ == Force::Elastic) static_cast<DeformableSolver&>(*bodySolver_).setThreads(threads);
 }

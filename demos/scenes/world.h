@@ -127,6 +127,8 @@ class World {
   const StageTimes& stageTimes() const { return stageTimes_; }
   /// Lends threads to the library's solver, if that is in use.
   void setThreads(ParallelFor* threads);
+  /// Leaves out Bullet's normals of the nodes, which only drawing the cage's faces needs.
+  void leaveOutNodeNormals();
 
   btDiscreteDynamicsWorld& bullet() { return *world_; }
   /// The report on the last reduced body added; null without one.
