@@ -100,6 +100,47 @@ TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
   EXPECT_EQ(candidates.age(), 0) << "a node has gone farther than the slack";
 }
 
+TEST_F(SoftSearch, CandidatesHoldWhileBodiesTurnTogether) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.5, 0.1));
+  PairCandidates candidates;
+  const btQuaternion turn(btVector3(1, 2, 0).normalized(), btScalar(0.02));
+  for (int step = 0; step < 10; ++step) {
+    candidates.update(*first, *second, btScalar(0.004));
+    EXPECT_EQ(candidates.age(), step);
+    for (const auto& body : bodies_) body->transform(btTransform(turn));
+    for (ContactBody* body : {first.get(), second.get()}) body->read();
+  }
+}
+
+/// Both balls also tumble, as one: candidates live longer, and must still be complete.
+TEST_F(SoftSearch, FindsWhatASearchFromNothingFindsWhileBothTumble) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.85, 0.2, 0.1));
+  PairMemory memory;
+  PairSearch search;
+  std::size_t found = 0;
+  int oldest = 0;
+  const btQuaternion turn(btVector3(1, 2, 0).normalized(), btScalar(0.03));
+  for (int step = 0; step < 80; ++step) {
+    const btVector3 together = bodies_[0]->m_nodes[0].m_x - bodies_[1]->m_nodes[0].m_x;
+    bodies_[1]->translate(together.normalized() * btScalar(0.001));
+    for (const auto& body : bodies_) body->transform(btTransform(turn, btVector3(btScalar(0.02), 0, 0)));
+    for (ContactBody* body : {first.get(), second.get()}) body->read();
+    PairMemory fromNothing = memory;
+    fromNothing.candidates = {};
+    std::vector<Touch> touches, wanted;
+    search.find(*first, *second, btScalar(0.004), btVector3(0, 0, 0), 0, fromNothing, wanted);
+    search.find(*first, *second, btScalar(0.004), btVector3(0, 0, 0), 0, memory, touches);
+    oldest = std::max(oldest, memory.candidates.age());
+    const auto isTouch = [](const Touch& touch) { return touch.distance < 0; };
+    ASSERT_EQ(std::count_if(touches.begin(), touches.end(), isTouch),
+              std::count_if(wanted.begin(), wanted.end(), isTouch))
+        << step;
+    found += static_cast<std::size_t>(std::count_if(wanted.begin(), wanted.end(), isTouch));
+  }
+  EXPECT_GT(found, 500u);
+  EXPECT_GT(oldest, 5);
+}
+
 /// A ball that sinks into another, turns and is squeezed slightly in each step, so that most candidates are skipped.
 TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.8, 0.2, 0.1));

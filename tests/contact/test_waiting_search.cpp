@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// With threads, searches for contacts with rigid objects wait until all pairs of a step are known.
+#include "contact_test.h"
+#include "support/shuffled_threads.h"
+
+namespace tetskin::test {
+namespace {
+
+/// Three balls that fall on a floor and on a rigid box that sleeps on it.
+struct BallsAndABox {
+  explicit BallsAndABox(ParallelFor* threads)
+      : floor(world, std::make_unique<btBoxShape>(btVector3(9, 1, 9)), placeAt(btVector3(0, -1, 0))),
+        box(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.3))),
+            placeAt(btVector3(0, btScalar(0.1), 0)), 1) {
+    world.bodySolver().setThreads(threads);
+    box.body().forceActivationState(ISLAND_SLEEPING);
+    for (int k = 0; k < 3; ++k) {
+      balls.push_back(std::make_unique<TouchingBody>(world, ballMesh(16, 0.35), btVector3(btScalar(1.5) * k, 1, 0)));
+    }
+  }
+
+  TetskinWorld world;
+  Obstacle floor, box;
+  std::vector<std::unique_ptr<TouchingBody>> balls;
+};
+
+TEST(WaitingSearch, GivesTheSameBitsAsASearchAtOnce) {
+  ShuffledThreads threads(3);
+  BallsAndABox alone(nullptr), together(&threads);
+  std::size_t contacts = 0;
+  for (int s = 0; s < 120; ++s) {
+    step(alone.world, 1);
+    step(together.world, 1);
+    for (std::size_t k = 0; k < alone.balls.size(); ++k) {
+      const auto& wanted = alone.balls[k]->contact->contacts();
+      ASSERT_EQ(together.balls[k]->contact->contacts().size(), wanted.size()) << s;
+      contacts += wanted.size();
+      ASSERT_TRUE(sameBits(positionsOf(alone.balls[k]->body->body()), positionsOf(together.balls[k]->body->body())))
+          << s;
+    }
+  }
+  EXPECT_GT(contacts, 100U);
+}
+
+TEST(WaitingSearch, WakesWhatSleepsInTheSameStep) {
+  ShuffledThreads threads(3);
+  BallsAndABox alone(nullptr), together(&threads);
+  for (int s = 0; s < 120 && !alone.box.body().isActive(); ++s) {
+    step(alone.world, 1);
+    step(together.world, 1);
+    ASSERT_EQ(together.box.body().isActive(), alone.box.body().isActive()) << s;
+  }
+  EXPECT_TRUE(together.box.body().isActive());
+}
+
+TEST(WaitingSearch, ForgetsAnObjectThatIsRemovedBetweenSteps) {
+  ShuffledThreads threads(3);
+  BallsAndABox balls(&threads);
+  step(balls.world, 40);
+  {
+    const Obstacle other(balls.world, std::make_unique<btSphereShape>(btScalar(0.2)),
+                         placeAt(btVector3(3, btScalar(0.2), 0)));
+    step(balls.world, 60);
+  }
+  step(balls.world, 20);
+  EXPECT_LT(balls.balls[2]->height(), 0.1);
+}
+
+}  // namespace
+}  // namespace tetskin::test
