@@ -37,8 +37,8 @@ TEST(WaitingSearch, GivesTheSameBitsAsASearchAtOnce) {
       const auto& wanted = alone.balls[k]->contact->contacts();
       ASSERT_EQ(together.balls[k]->contact->contacts().size(), wanted.size()) << s;
       contacts += wanted.size();
-      ASSERT_TRUE(sameBits(positionsOf(alone.balls[k]->body->body()), positionsOf(together.balls[k]->body->body())))
-          << s;
+      const btSoftBody &a = alone.balls[k]->body->body(), &b = together.balls[k]->body->body();
+      for (int n = 0; n < a.m_nodes.size(); ++n) ASSERT_EQ(a.m_nodes[n].m_x, b.m_nodes[n].m_x) << s;
     }
   }
   EXPECT_GT(contacts, 100U);
