@@ -22,6 +22,8 @@
 
 #if defined(TETSKIN_GNU) && !defined(TETSKIN_PLAIN_LANES)
 #define TETSKIN_VECTOR_TYPES 1
+// Vectors wider than a register are only passed between functions that are compiled alike.
+#pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
