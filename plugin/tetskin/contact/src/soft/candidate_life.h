@@ -10,13 +10,15 @@
 
 namespace tetskin::contact_detail {
 
+class RigidMotion;
+
 /// Candidates are all samples and tets whose boxes were nearer to each other than a slack. Others have not met while no
 /// two of their nodes have approached each other by more than that; far from the other body, by more than the distance
 /// from all of it. What both bodies move by in the same way, as by one rigid motion, does not count.
 class CandidateLife {
  public:
-  /// Begins at the current positions, with a slack by how fast the one before was used up. Both bodies have been
-  /// fitted. Cost  O(runs and tets)
+  /// Begins at the current positions, with a slack by how fast the one before was used up. Both bodies are fitted.
+  /// Cost  O(runs and tets)
   void begin(const ContactBody& first, const ContactBody& second);
   /// Called once after each step. Returns false if a sample may have met a tet that is no candidate.
   /// Cost  O(1) while the bodies have moved little, else O(nodes)
@@ -30,13 +32,12 @@ class CandidateLife {
   struct Deviation {
     btScalar near = 0, anywhere = 0;
   };
-  Deviation deviate(int k, const ContactBody& body, const class RigidMotion& motion);
+  Deviation deviate(int k, const ContactBody& body, const RigidMotion& motion);
   btScalar usedUp(int k, btScalar spread, btScalar other) const;
 
   btScalar slack_ = 0;
-  btScalar moved_ =
-      0;  ///< bound of the relative motion of any two nodes since the beginning, less what they had room for
-  btScalar drift_ = 0;  ///< the same, of those that were near
+  btScalar moved_ = 0;  ///< bound of what has been used up of the slack
+  btScalar drift_ = 0;  ///< relative motion of nodes that were near, when it was last measured
   int age_ = 0;
   std::vector<int> near_;  ///< nodes of the second body that were near the first one
   // By body, then by node.
