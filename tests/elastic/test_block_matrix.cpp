@@ -128,6 +128,43 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   });
 }
 
+TYPED_TEST(BlockMatrixOf, ReturnsTheNormOfTheResidualWhichStays) {
+  onEachInstructionSet([&] {
+    AssembledBody<TypeParam> body(cageForMatrix());
+    body.toWide(test::Random(35).vector(3 * body.nodes.size()), body.matrix.residual());
+    const VectorXd r = body.fromWide(body.matrix.residual());
+    const double norm = body.matrix.squaredResidual(nullptr);
+    EXPECT_EQ(body.fromWide(body.matrix.residual()), r);
+    EXPECT_EQ(norm, body.matrix.lower(nullptr));
+  });
+}
+
+TYPED_TEST(BlockMatrixOf, MultipliesADifferenceOfWhatIsNotPinned) {
+  onEachInstructionSet([&] {
+    AssembledBody<TypeParam> body(cageForMatrix());
+    body.hold(3);
+    body.assemble();
+    BlockMatrix<TypeParam>& matrix = body.matrix;
+    std::vector<TypeParam> first(matrix.wideSize()), second = first, difference = first, image = first;
+    const VectorXd x = test::Random(37).vector(3 * body.nodes.size());
+    const VectorXd y = test::Random(38).vector(3 * body.nodes.size());
+    body.toWide(x, first.data());
+    body.toWide(y, second.data());
+    for (const bool both : {false, true}) {
+      matrix.multiplyDifference(first.data(), both ? second.data() : nullptr, difference.data(), image.data(), nullptr);
+      VectorXd expected = both ? VectorXd(x - y) : x;
+      expected.segment<3>(9).setZero();
+      const VectorXd found = body.fromWide(difference.data());
+      EXPECT_LT((found - expected).norm(), 2.0 * this->kEpsilon * expected.norm());
+      EXPECT_TRUE(found.segment(9, 3).isZero(0.0));
+      const VectorXd product = body.dense() * expected;
+      EXPECT_LT((body.fromWide(image.data()) - product).norm(), 10.0 * this->kEpsilon * product.norm());
+    }
+    EXPECT_NEAR(matrix.inner(first.data(), second.data(), nullptr), x.dot(y),
+                10.0 * this->kEpsilon * x.norm() * y.norm());
+  });
+}
+
 TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
   const TetMesh cage = test::latticeCage(120, 7, 7);  // several parts
   const AssembledBody<TypeParam> fresh(cage);
@@ -143,6 +180,10 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
     };
     body.toWide(x, matrix.residual());
     body.toWide(x, matrix.solution());
+    std::vector<TypeParam> difference(matrix.wideSize()), image = difference;
+    matrix.multiplyDifference(matrix.residual(), nullptr, difference.data(), image.data(), threads);
+    append(body.fromWide(image.data()));
+    append(Eigen::Vector2d(matrix.squaredResidual(threads), matrix.inner(difference.data(), image.data(), threads)));
     const double norm = matrix.lower(threads);
     matrix.backward(0, threads);
     const double bend = matrix.forward(nullptr, threads);

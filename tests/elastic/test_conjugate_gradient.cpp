@@ -148,6 +148,19 @@ TEST(ConjugateGradient, StopsAtWhatIsEnough) {
   limits.enough = 1e6;
   EXPECT_EQ(iterationsWith(limits), std::make_pair(0, true));
 
+  // A start whose residual is a hundredth of the one that the tolerance relates to.
+  limits = closely();
+  limits.tolerance = 1e-4;
+  const int all = iterationsWith(limits).first;
+  begin(body, a, b, VectorXd::Zero(b.size()));
+  limits.tolerance = 1e-2;
+  limits.initial = 1e-4 * body.matrix.squaredResidual(nullptr);
+  EXPECT_EQ(iterationsWith(limits), std::make_pair(all, true));
+  limits.reduction = 1e-6;
+  EXPECT_GT(iterationsWith(limits).first, all) << "whichever is less";
+  limits.enough = 1e6;
+  EXPECT_EQ(iterationsWith(limits), std::make_pair(0, true));
+
   // Here the limit is the square of a residual, as the solver reports it.
   begin(body, a, b, VectorXd::Zero(b.size()));
   Solver solver;

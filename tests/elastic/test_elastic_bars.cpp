@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -113,6 +114,41 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
     }
     before = error;
   }
+}
+
+/// What a solve leaves is small beside gravity in each step, and must not add up to a wrong sag, or to a creeping one.
+TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
+  const TetMesh cage = test::latticeCage(20, 3, 3, 0.1);
+  const auto settled = [&](double tolerance) {
+    ElasticOptions options = soft();
+    options.youngsModulus = 1e4;
+    options.density = 10.0;
+    options.stiffnessDamping = 0.5;
+    options.tolerance = tolerance;
+    options.maxIterations = 1000;
+    return made<float>(cage, options);
+  };
+  const std::array<double, 3> gravity = {0, 0, -0.8};
+  double sag[2] = {};
+  for (const bool exact : {false, true}) {
+    ElasticBody<float> body = settled(exact ? 1e-6 : ElasticOptions().tolerance);
+    pinTheEnd(body, cage);
+    int most = 0, last = 0;
+    for (int k = 0; k < 2400; ++k) {
+      const int iterations = body.step(1.0 / 240.0, gravity);
+      most = std::max(most, iterations);
+      last += k >= 2160 ? iterations : 0;
+    }
+    sag[exact] = tipOf(body, cage, 2.0).z();
+    if (exact) continue;
+    EXPECT_GT(most, 15);
+    EXPECT_LT(last, 240) << "one per step";
+    double fastest = 0.0;
+    for (const Vector3d& v : pointsOf(body.velocities())) fastest = std::max(fastest, v.norm());
+    EXPECT_LT(fastest, 1e-3 * std::abs(sag[0])) << "per second";
+  }
+  EXPECT_LT(sag[1], -0.1);
+  EXPECT_NEAR(sag[0] / sag[1], 1.0, 2e-3);
 }
 
 TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {

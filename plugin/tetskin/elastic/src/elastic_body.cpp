@@ -169,9 +169,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   p.dynamics.start(seconds, threads);
   elastic_detail::SolveLimits limits = p.limits;
   limits.floor = p.dynamics.roundingSpeed(seconds);
-  limits.enough = limits.tolerance * limits.tolerance * p.dynamics.squaredDeviation();
-  p.solve.start({&p.dynamics.matrix()}, limits, nullptr, threads);
-  p.solve.iterate(p.limits.iterations, threads);
+  p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
   p.dynamics.removeMomentum();
   p.write(seconds);
   return p.solve.iterations();

@@ -242,9 +242,7 @@ void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelF
   limits.tolerance = body.settings->tolerance;
   limits.iterations = body.settings->iterations;
   limits.floor = std::max(kUnseen * seconds, body.dynamics->roundingSpeed(seconds));
-  limits.enough = limits.tolerance * limits.tolerance * body.dynamics->squaredDeviation();
-  body.solve->start({&body.dynamics->matrix()}, limits, nullptr, inner);
-  body.solve->iterate(maximum, inner);
+  body.dynamics->solve(*body.solve, limits, maximum, inner);
   body.iterations = body.solve->iterations();
 }
 

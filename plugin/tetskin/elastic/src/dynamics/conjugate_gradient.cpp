@@ -43,11 +43,13 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, A
   }
   forEachMatrix(threads, [](std::size_t, BlockMatrix<S>& matrix, ParallelFor* inner) { return matrix.lower(inner); });
   rho_ = summed();
-  target_ = std::max(limits.tolerance * limits.tolerance * rho_, limits.floor * limits.floor * mass);
-  target_ = std::max(target_, limits.enough);
-  // Below this, products of residuals lose their digits, and the next step lengths would be arbitrary.
+  // Below the last of these, products of residuals lose their digits, and the next step lengths would be arbitrary.
   constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-  target_ = std::max(target_, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));
+  const double least = std::max({limits.floor * limits.floor * mass, limits.enough,
+                                 static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon)});
+  const double relative = limits.tolerance * limits.tolerance * (limits.initial > 0.0 ? limits.initial : rho_);
+  enough_ = std::max(relative, least);
+  target_ = std::max(std::min(relative, limits.reduction * limits.reduction * rho_), least);
   stopped_ = false;
   if (!std::isfinite(rho_)) stop();
   factor_ = 0;

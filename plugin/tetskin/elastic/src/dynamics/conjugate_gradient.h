@@ -13,6 +13,8 @@ namespace tetskin::elastic_detail {
 
 struct SolveLimits {
   double tolerance = 5e-3;  ///< of the residual relative to its initial value, in the preconditioner's norm
+  double initial = 0.0;     ///< that value, squared; 0: that at the start of the solve
+  double reduction = 1.0;   ///< of the residual relative to that at the start, in addition
   double floor = 0.0;       ///< an error in velocity that always counts as converged
   double enough = 0.0;      ///< a residual norm, squared as `enough()`, that always counts as converged
   int iterations = 200;     ///< bound of their number
@@ -49,8 +51,8 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   bool iterate(int maximum, ParallelFor* threads);
 
   bool converged() const { return rho_ <= target_; }
-  /// The square of the residual's norm at which it has converged.
-  double enough() const { return target_; }
+  /// The square of the residual's norm at which it has converged, whatever it was at the start.
+  double enough() const { return enough_; }
   /// The current square of the residual's norm.
   double squaredResidual() const { return rho_; }
   int iterations() const { return iterations_; }
@@ -67,7 +69,7 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
   std::vector<std::size_t> sizes_;  ///< by matrix
   Addition* addition_ = nullptr;
   std::vector<double> partial_;  ///< by matrix
-  double rho_ = 0.0, target_ = 0.0;
+  double rho_ = 0.0, enough_ = 0.0, target_ = 0.0;
   S factor_ = 0;
   int iterations_ = 0, max_ = 0;
   bool stopped_ = false;  ///< because an addition is not positive, or a value is not finite

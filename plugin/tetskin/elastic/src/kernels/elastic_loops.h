@@ -11,8 +11,8 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S, int W>
 constexpr ElasticTable<S> elasticTable() {
-  return {forces<S, W>,   rotatedGradients<S, W>, sum<S>,        assemble<S, W>, multiply<S, W>,
-          backward<S, W>, forward<S, W>,          advance<S, W>, lower<S, W>};
+  return {forces<S, W>,  rotatedGradients<S, W>, sum<S>,      assemble<S, W>,   multiply<S, W>, backward<S, W>,
+          forward<S, W>, advance<S, W>,          lower<S, W>, difference<S, W>, inner<S, W>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

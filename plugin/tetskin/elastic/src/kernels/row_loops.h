@@ -198,10 +198,41 @@ S lower(const RowWork<S>& work) {
   Lanes<S, W> total{};
   for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
     for (int lane = 0; lane < kGroup; lane += W) {
-      S* residual = work.residual + kWideVector * c + lane;
-      const auto y = solveLower<S, W>(work, c, lane, wideVector<S, W>(residual));
-      put<S, W>(y, residual);
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      const auto y = solveLower<S, W>(work, c, lane, wideVector<S, W>(work.residual + at));
+      put<S, W>(y, work.rest + at);
       total += dot<S, W>(y, symmetricTimes<S, W>(work.diagonal + kWideSymmetric * c + lane, y));
+    }
+  }
+  return laneSum<S, W>(total);
+}
+
+template <class S, int W>
+void difference(const RowWork<S>& work) {
+  using V = Lanes<S, W>;
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      auto v = wideVector<S, W>(work.first + at);
+      if (work.second) {
+        const auto other = wideVector<S, W>(work.second + at);
+        v = {v.x - other.x, v.y - other.y, v.z - other.z};
+      }
+      const auto moves = wide<S, W>(work.masses + kGroup * c + lane) > S(0);
+      v = {moves ? v.x : V{}, moves ? v.y : V{}, moves ? v.z : V{}};
+      put<S, W>(v, work.step + at);
+      putPoints<S, W>(v, work.stepPoints + 4 * (kGroup * c + static_cast<std::size_t>(lane)), 4);
+    }
+  }
+}
+
+template <class S, int W>
+S inner(const RowWork<S>& work) {
+  Lanes<S, W> total{};
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const std::size_t at = kWideVector * c + static_cast<std::size_t>(lane);
+      total += dot<S, W>(wideVector<S, W>(work.first + at), wideVector<S, W>(work.second + at));
     }
   }
   return laneSum<S, W>(total);

@@ -340,7 +340,46 @@ template <class S>
 double BlockMatrix<S>::lower(ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
+    auto part = work(first, last);
+    part.rest = residual_.data();
+    partial_[range] = table.lower(part);
+  });
+  return summed();
+}
+
+template <class S>
+double BlockMatrix<S>::squaredResidual(ParallelFor* threads) {
+  const auto& table = kernels::elasticInUse<S>();
+  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     partial_[range] = table.lower(work(first, last));
+  });
+  return summed();
+}
+
+template <class S>
+void BlockMatrix<S>::multiplyDifference(const S* first, const S* second, S* difference, S* image,
+                                        ParallelFor* threads) {
+  assert(first && difference && image);
+  const auto& table = kernels::elasticInUse<S>();
+  everywhere(threads, [&](std::size_t, std::size_t firstChunk, std::size_t lastChunk) {
+    auto part = work(firstChunk, lastChunk);
+    part.first = first;
+    part.second = second;
+    part.step = difference;
+    table.difference(part);
+  });
+  multiply(stepPoints_.data(), image, threads);
+}
+
+template <class S>
+double BlockMatrix<S>::inner(const S* first, const S* second, ParallelFor* threads) const {
+  assert(first && second);
+  const auto& table = kernels::elasticInUse<S>();
+  everywhere(threads, [&](std::size_t range, std::size_t firstChunk, std::size_t lastChunk) {
+    auto part = work(firstChunk, lastChunk);
+    part.first = first;
+    part.second = second;
+    partial_[range] = table.inner(part);
   });
   return summed();
 }

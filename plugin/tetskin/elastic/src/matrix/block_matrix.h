@@ -106,6 +106,14 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// One node's row of A times the solution.
   void rowTimesSolution(std::size_t node, S out[3]) const;
 
+  /// The square of the residual's norm, as `lower` returns it; the residual stays as it is.
+  double squaredResidual(ParallelFor* threads);
+  /// Computes difference = first - second, in the wide layout, 0 at pinned nodes, and A times it.
+  /// second  null: 0
+  void multiplyDifference(const S* first, const S* second, S* difference, S* image, ParallelFor* threads);
+  /// The inner product of two vectors in the wide layout.
+  double inner(const S* first, const S* second, ParallelFor* threads) const;
+
   // Each does one step of the conjugate gradient; see ElasticTable. The caller fills `residual` and `solution`.
   double lower(ParallelFor* threads);
   void backward(S factor, ParallelFor* threads);

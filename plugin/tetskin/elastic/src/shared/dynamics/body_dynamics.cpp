@@ -259,6 +259,7 @@ void BodyDynamics<S>::startLater(double seconds) {
     std::fill(rightSide_.begin(), rightSide_.end(), S(0));
     return;
   }
+  if (guess_.isUsed()) guess_.remember(matrix_);
   const auto dt = static_cast<S>(seconds);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S mass = matrix_.massAt(slot);
@@ -286,6 +287,17 @@ void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
   }
   matrix_.multiply(relative_.data(), image_.data(), threads);
   for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+void BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
+  assert(tets_ && maximum >= 0);
+  limits.enough = limits.tolerance * limits.tolerance * squaredDeviation_;
+  if (maximum > 0 && !stiff_) guess_.improve(matrix_, limits, threads);
+  gradient.start({&matrix_}, limits, nullptr, threads);
+  const double squared = gradient.squaredResidual();
+  gradient.iterate(maximum, threads);
+  if (maximum > 0 && (!stiff_ || getenv("STIFF"))) guess_.learn(squared, gradient.iterations());
 }
 
 template <class S>

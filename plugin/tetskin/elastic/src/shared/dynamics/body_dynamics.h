@@ -16,6 +16,7 @@
 
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
+#include <tetskin/elastic/src/dynamics/initial_guess.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
@@ -65,6 +66,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// The squared error of the solution, in the norm of the masses, that corresponds to the relative tolerance of the
   /// residual: above 0 for stiff bodies, whose initial residual consists of rounding.
   double squaredDeviation() const { return squaredDeviation_; }
+  /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations.
+  /// limits  the tolerance is relative to the residual without elasticity; `enough` is replaced
+  void solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
   /// True if the body counted as stiff in the last `predict`.
   bool isStiff() const { return stiff_; }
   /// The stiffness factor of the last `predict`: dt (dt + damping) times the sum of V (2 mu + lambda) over the least
@@ -142,6 +146,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::vector<double> stiffness_;         ///< by component: sum of V (2 mu + lambda) over its tets
   double stiffnessOverInertia_ = 0.0;     ///< times dt^2: how much rotation is taken for strain; the largest
   double squaredDeviation_ = 0.0;
+  InitialGuess<S> guess_;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -77,6 +77,10 @@ struct RowWork {
   S* stepPoints = nullptr;   ///< t as points
   S* lowerPoints = nullptr;  ///< y as points
   S factor = 0;              ///< factor of the previous direction, or of the step
+
+  // Used for the start of solves.
+  const S* first = nullptr;   ///< wide
+  const S* second = nullptr;  ///< wide; null: 0
 };
 
 /// Points summed by lists of corners.
@@ -95,7 +99,7 @@ struct SumWork {
 ///   backward  p <- D r + factor p;  t = (D + U)^-1 p;  rest = U t
 ///   forward   y = (D + L)^-1 (rest + extra);  rest <- t + y, which is (D + L)^-1 A t;  returns p . (t + y)
 ///   advance   solution += factor t;  r -= factor rest;  returns r . D r
-///   lower     residual <- (D + L)^-1 residual;  returns r . D r
+///   lower     rest <- (D + L)^-1 residual, which may be the same vector;  returns rest . D rest
 /// `backward` must be called for the last rows first, `forward` and `lower` for the first ones.
 template <class S>
 struct ElasticTable {
@@ -112,6 +116,10 @@ struct ElasticTable {
   S (*forward)(const RowWork<S>&);
   S (*advance)(const RowWork<S>&);
   S (*lower)(const RowWork<S>&);
+  /// Computes step = first - second, 0 where the mass is 0, and the same as points.
+  void (*difference)(const RowWork<S>&);
+  /// Returns first . second.
+  S (*inner)(const RowWork<S>&);
 };
 
 TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const ElasticTable<float> elasticFloat;

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/elastic/src/dynamics/initial_guess.h>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// By how much the solve reduces the residual that a guess has left, at least.
+constexpr double kReduction = 0.2;
+/// Iterations of a solve from which on a guess is worth its cost.
+constexpr int kMany = 8;
+/// A guess that leaves more than this fraction of the residual is useless. After so many of them, one after the other,
+/// there are none for so many solves.
+constexpr double kUseless = 0.25;
+constexpr int kUselessGuesses = 8, kPause = 64;
+/// Combinations of unit directions whose squared length is below this consist of rounding.
+constexpr double kDependent = 1e-6;
+
+}  // namespace
+
+template <class S>
+void InitialGuess<S>::remember(const BlockMatrix<S>& matrix) {
+  std::swap(last_, before_);
+  last_.assign(matrix.solution(), matrix.solution() + matrix.wideSize());
+  known_ = std::min<std::size_t>(known_ + 1, 2);
+}
+
+template <class S>
+void InitialGuess<S>::improve(BlockMatrix<S>& matrix, SolveLimits& limits, ParallelFor* threads) {
+  assert(limits.initial == 0.0);
+  initial_ = 0.0;
+  if (!used_ || known_ == 0) return;
+  assert(last_.size() == matrix.wideSize());
+  limits.initial = initial_ = matrix.squaredResidual(threads);
+  limits.reduction = kReduction;
+  start_.assign(matrix.solution(), matrix.solution() + matrix.wideSize());
+  count_ = 0;
+  addDirection(matrix, last_, start_.data(), threads);
+  addDirection(matrix, last_, nullptr, threads);
+  if (known_ > 1) addDirection(matrix, last_, before_.data(), threads);
+  const Factors factors = bestFactors(matrix, threads);
+  S *solution = matrix.solution(), *residual = matrix.residual();
+  for (std::size_t k = 0; k < count_; ++k) {
+    const auto factor = static_cast<S>(factors[k]);
+    const S *direction = directions_[k].data(), *image = images_[k].data();
+    if (factor == S(0)) continue;  // they may not be finite
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+      solution[i] += factor * direction[i];
+      residual[i] -= factor * image[i];
+    }
+  }
+}
+
+/// The direction is the difference of two vectors; null: 0.
+template <class S>
+void InitialGuess<S>::addDirection(BlockMatrix<S>& matrix, const Wide& first, const S* second, ParallelFor* threads) {
+  assert(count_ < kDirections && first.size() == matrix.wideSize());
+  Wide &direction = directions_[count_], &image = images_[count_];
+  direction.resize(matrix.wideSize());
+  image.resize(matrix.wideSize());
+  matrix.multiplyDifference(first.data(), second, direction.data(), image.data(), threads);
+  ++count_;
+}
+
+/// By the eigenvectors of the products of directions, which are nearly dependent in smooth motion. 0 if the values are
+/// not finite.
+template <class S>
+typename InitialGuess<S>::Factors InitialGuess<S>::bestFactors(BlockMatrix<S>& matrix, ParallelFor* threads) const {
+  constexpr auto kSize = static_cast<Eigen::Index>(kDirections);
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  Eigen::Matrix<double, kSize, kSize> products = Eigen::Matrix<double, kSize, kSize>::Zero();
+  Vector right = Vector::Zero(), scales = Vector::Zero();
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t k = 0; k <= i; ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      products(row, column) = products(column, row) = matrix.inner(directions_[k].data(), images_[i].data(), threads);
+    }
+    right[row] = matrix.inner(directions_[i].data(), matrix.residual(), threads);
+    if (products(row, row) > 0.0) scales[row] = 1.0 / std::sqrt(products(row, row));
+  }
+  products = (scales.asDiagonal() * products * scales.asDiagonal()).eval();
+  right = scales.cwiseProduct(right).eval();
+  Factors factors{};
+  if (!products.allFinite() || !right.allFinite()) return factors;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(products);
+  Vector found = Vector::Zero();
+  for (Eigen::Index k = 0; k < kSize; ++k) {
+    const double value = eigen.eigenvalues()[k];
+    if (value > kDependent) found += eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(right) / value);
+  }
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    factors[k] = scales[row] * found[row];
+  }
+  return factors;
+}
+
+template <class S>
+void InitialGuess<S>::learn(double squared, int iterations) {
+  if (!used_) {
+    pause_ = std::max(pause_ - 1, 0);
+    used_ = pause_ == 0 && iterations >= kMany;
+    return;
+  }
+  if (initial_ > 0.0) useless_ = squared > kUseless * kUseless * initial_ ? useless_ + 1 : 0;
+  if (useless_ < kUselessGuesses) return;
+  used_ = false;
+  useless_ = 0;
+  known_ = 0;
+  pause_ = kPause;
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class InitialGuess<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail
