@@ -109,6 +109,20 @@ TEST_F(NodeContacts, AreTheNodesWhosePredictedPositionsAreWithinTheMarginOfAnExa
   }
 }
 
+/// Bullet passes two triangles of a plane, and keeps those of the first step.
+TEST_F(NodeContacts, OfATriangleOfAPlaneAreThoseOfThePlaneOnce) {
+  btStaticPlaneShape plane(btVector3(0, 1, 0), btScalar(0.2));
+  const std::set<long> expected = find(plane, true);
+  ASSERT_GT(expected.size(), 100u);
+  btConvexHullShape triangle;
+  for (const btVector3& corner : {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1)})
+    triangle.addPoint(corner);
+  body_.m_nodeRigidContacts.clear();
+  const btCollisionObjectWrapper wrapper(nullptr, &triangle, &object_, object_.getWorldTransform(), 0, 1);
+  for (int k = 0; k < 2; ++k) findNodeContacts(body_, wrapper, paths_, true);
+  EXPECT_EQ(nodesInContact(), expected);
+}
+
 TEST_F(NodeContacts, OfOtherShapesAreBullets) {
   btConvexHullShape hull = pyramid();
   const std::set<long> expected = findByBullet(hull);

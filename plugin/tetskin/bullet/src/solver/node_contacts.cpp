@@ -28,6 +28,19 @@ BvhBox<btScalar> boxOf(const btCollisionObjectWrapper& object, const btTransform
   return box.grownBy(margin);
 }
 
+/// Bullet passes a plane as two triangles around the place where its box and the body's met first; it keeps these
+/// triangles, so that a body that moves on would leave them and fall.
+bool isPartOfPlane(const btCollisionObjectWrapper& object) {
+  const btCollisionShape* whole = object.getCollisionObject()->getCollisionShape();
+  return whole->getShapeType() == STATIC_PLANE_PROXYTYPE && object.getCollisionShape() != whole;
+}
+
+/// The contacts with an object are found one after the other.
+bool hasContactsWith(const btSoftBody& body, const btCollisionObject& object) {
+  const auto& contacts = body.m_nodeRigidContacts;
+  return contacts.size() > 0 && contacts[contacts.size() - 1].m_cti.m_colObj == &object;
+}
+
 /// Distances of points from a shape, less the margin.
 class ShapeField {
  public:
@@ -77,6 +90,12 @@ btSoftBody::DeformableNodeRigidContact contactOf(const btSoftBody& body, btSoftB
 
 void findNodeContacts(btSoftBody& body, const btCollisionObjectWrapper& object, NodePaths& paths, bool solved) {
   assert(body.getWorldInfo() && object.getCollisionShape());
+  if (solved && isPartOfPlane(object)) {
+    const btCollisionObject& whole = *object.getCollisionObject();
+    const btCollisionObjectWrapper plane(nullptr, whole.getCollisionShape(), &whole, whole.getWorldTransform(), -1, -1);
+    if (!hasContactsWith(body, whole)) findNodeContacts(body, plane, paths, solved);
+    return;
+  }
   const btRigidBody* rigid = btRigidBody::upcast(object.getCollisionObject());
   const btTransform predicted = predictedTransform(object);
   const btScalar margin = body.getCollisionShape()->getMargin();

@@ -12,7 +12,7 @@ namespace tetskin {
 /// Appends to `m_nodeRigidContacts` the nodes that a step would take into the object, or nearer to it than the body's
 /// margin: those that Bullet's own search finds. For a plane, box, sphere, capsule or round cylinder the distances are
 /// exact; for other shapes, they are those of Bullet's sparse distance field.
-/// object  convex
+/// object  convex, or a triangle of a plane, which stands for the whole plane
 /// solved  this solver solves for the contacts, and needs no impulse matrices; otherwise Bullet computes them, with its
 ///         distances
 /// Cost    see NodePaths::near, and O(1) per node near the object's box
