@@ -146,6 +146,32 @@ void cloth(State& state) {
   world.removeSoftBody(body.get());
 }
 
+/// Four steps per frame of a serpent of one kilogram that is held at one end, and swings.
+/// stiffness  Young's modulus, Pa
+void held(State& state, std::size_t tets, double stiffness) {
+  constexpr double kHeld = 0.08;  // of its length
+  const TetMesh cage = worldCage(tets);
+  const Box3 box = boundingBox(cage.nodes);
+  const double end = box.min().x() + kHeld * (box.max().x() - box.min().x());
+  SoftBodyOptions options = scenes::oneKilogram();
+  options.youngsModulus = stiffness;
+  options.pinned = [end](const Eigen::Vector3d& p) { return p.x() < end; };
+  std::unique_ptr<scenes::World> world;
+  double iterations = 0.0, steps = 0.0;
+  const auto restart = [&] {
+    world = std::make_unique<scenes::World>(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
+    world->add(cage, options).setActivationState(DISABLE_DEACTIVATION);
+  };
+  timeFrames(state, restart, [&] {
+    for (int k = 0; k < 4; ++k, ++steps) {
+      world->step(1.0 / 240.0);
+      iterations += world->iterations();
+    }
+  });
+  state.counters["iterations"] = iterations / std::max(steps, 1.0);
+  state.counters["tets"] = static_cast<double>(cage.tetCount());
+}
+
 /// The serpent scaled to the world, and its contact shape with 4,000 samples.
 struct TouchingModel {
   explicit TouchingModel(std::size_t tets) {
@@ -220,6 +246,17 @@ void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
   timeSettled(state, world, model.cage);
 }
 
+void registerHeld() {
+  for (const std::size_t tets : {500, 3000, 30000}) {
+    for (const int kilopascals : {3, 30, 300}) {
+      const std::string name = "Step/held/kPa:" + std::to_string(kilopascals) + "/tets:" + std::to_string(tets);
+      benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
+        held(state, tets, 1e3 * kilopascals);
+      })->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
 void registerSoftPairs() {
   for (const std::size_t tets : {503, 1004}) {
     for (const bool apart : {false, true}) {
@@ -253,6 +290,7 @@ void registerSoftSelves() {
 void registerStepCases() {
   benchmark::RegisterBenchmark("Step/cloth/bullet", cloth<btDeformableBodySolver>)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("Step/cloth/tetskin", cloth<DeformableSolver>)->Unit(benchmark::kMicrosecond);
+  registerHeld();
   registerSoftPairs();
   registerSoftSelves();
   const std::pair<const char*, Force> forces[] = {{"bullet_neo_hookean", Force::NeoHookean},
