@@ -123,6 +123,29 @@ TEST(BulletsContact, MissesBodiesThatWereOnlyToldOnceWhereTheyAre) {
   }
 }
 
+/// Bullet makes two triangles of a plane where it and a body meet first, and keeps them. The library's counterpart is
+/// DeformableWorld.ABodySlidesAlongAPlaneAnyFar, for contact by nodes; here, the surface.
+TEST(BulletsContact, LosesAPlaneWhereABodySlidesAlongIt) {
+  constexpr double kHeight = 3.0;
+  const auto slide = [](EmptyWorld& world, btSoftBody& body) {
+    const Obstacle plane(world, std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(kHeight)),
+                         placeAt(btVector3(0, 0, 0)));
+    body.m_cfg.kDF = 0;
+    body.addVelocity(btVector3(10, 0, 0));
+    step(world, 60);
+    return lowest(body) - kHeight;
+  };
+  const btVector3 above(0, btScalar(kHeight + 0.6), 0);
+  EmptyWorld bullets;
+  const auto body = bulletsBody(bullets, above);
+  const double depth = slide(bullets, body->body());
+  figure("height over a plane after a second, of a body that slides by ten of its sizes", depth);
+  EXPECT_LT(depth, -0.5);
+  TetskinWorld world;
+  TouchingBody ours(world, boxMesh(Eigen::Vector3d(0.3, 0.3, 0.3)), above);
+  EXPECT_NEAR(slide(world, ours.body->body()), -0.2, 0.1) << "the surface is this far within the cage";
+}
+
 /// The library's counterpart is ContactFilters.ForbidWhatBegins, for contact by the surface and by nodes.
 TEST(BulletsContact, AsksOnlyTheRigidBodyWhetherItResponds) {
   EmptyWorld world;
