@@ -28,8 +28,8 @@ class TETSKIN_ELASTIC_API InitialGuess {
   void remember(const BlockMatrix<S>& matrix);
   /// Replaces the matrix's solution x0, and its residual b - A x0. Pinned nodes keep x0. The tolerance becomes relative
   /// to the residual at x0; beside it, the solve is to reduce the residual that is left: otherwise an error small
-  /// beside the impulses of a step, such as the last of a body's sag, would never be removed. Does nothing, if it is
-  /// not used or knows no solution. Cost  three products, about as much as two iterations
+  /// beside the impulses of a step, such as the last of a body's sag, would never be removed. Does nothing if it is not
+  /// used, or knows no solution. Cost: three products, about as much as two iterations
   void improve(BlockMatrix<S>& matrix, SolveLimits& limits, ParallelFor* threads);
 
   /// Whether it is worth its cost, according to the solves before.
