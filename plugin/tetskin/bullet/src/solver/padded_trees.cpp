@@ -22,9 +22,9 @@ bool collidesWithSoftBodies(btSoftBody& body) {
   return (body.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0 || body.useSelfCollision();
 }
 
-bool collidesByFaces(btSoftBody& body) {
+bool needsBulletsTrees(btSoftBody& body) {
   constexpr int kFaces = btSoftBody::fCollision::SDF_RDF | btSoftBody::fCollision::SDF_MDF;
-  return (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
+  return body.m_bUpdateRtCst || (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
 }
 
 void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {

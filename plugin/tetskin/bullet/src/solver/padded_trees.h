@@ -16,8 +16,9 @@ struct SolvedBody;
 
 /// True if Bullet tests the body against any soft body, itself included.
 bool collidesWithSoftBodies(btSoftBody& body);
-/// True if Bullet searches for contacts on the body's faces, whose nodes must then be at their predicted positions.
-bool collidesByFaces(btSoftBody& body);
+/// True if Bullet's own search for contacts is going to use the body's trees: it searches for them on the body's faces,
+/// whose nodes must then be at their predicted positions.
+bool needsBulletsTrees(btSoftBody& body);
 
 /// Where the nodes were when a body's tree of faces was fitted. The leaves are padded: as long as nodes stay in them,
 /// rays miss nothing.

@@ -79,11 +79,6 @@ double moveNodes(btSoftBody& body, btScalar dt, std::vector<NodeTravel>& travels
   return maximum;
 }
 
-/// True if Bullet's own search for contacts is going to use the body's trees.
-bool needsBulletsTrees(btSoftBody& body) {
-  return body.m_bUpdateRtCst || collidesByFaces(body);
-}
-
 btScalar fastestNode(const btSoftBody& body) {
   btScalar squared = 0;
   for (int n = 0; n < body.m_nodes.size(); ++n) squared = std::max(squared, body.m_nodes[n].m_v.length2());
