@@ -22,7 +22,7 @@ namespace tetskin::elastic_detail {
 /// rest begins with its solution, and one that moves smoothly with an extrapolated one. Any history is safe: x0 is
 /// among the combinations.
 template <class S>
-class TETSKIN_ELASTIC_API InitialGuess {
+class InitialGuess {
  public:
   /// Keeps the solution of a step, in the wide layout, for the next two. Cost O(nodes)
   void remember(const BlockMatrix<S>& matrix);
