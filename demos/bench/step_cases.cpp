@@ -12,8 +12,10 @@
 #include <tetskin/contact/soft_contacts.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/xpbd.h"
 #include "scenes/input_error.h"
@@ -146,6 +148,37 @@ void cloth(State& state) {
   world.removeSoftBody(body.get());
 }
 
+/// Where the node at the free end is after each step of a second.
+std::vector<btVector3> swing(const TetMesh& cage, const SoftBodyOptions& options) {
+  constexpr int kSteps = 240;
+  scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
+  btSoftBody& body = world.add(cage, options);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  const auto before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() < b.x(); };
+  const auto end = std::max_element(cage.nodes.begin(), cage.nodes.end(), before) - cage.nodes.begin();
+  std::vector<btVector3> path = {body.m_nodes[static_cast<int>(end)].m_x};
+  for (int step = 0; step < kSteps; ++step) {
+    world.step(1.0 / kSteps);
+    path.push_back(body.m_nodes[static_cast<int>(end)].m_x);
+  }
+  return path;
+}
+
+/// RMS distance of the free end from where it is if each step is solved for closely, over the longest way that it
+/// swings.
+double swingError(const TetMesh& cage, SoftBodyOptions options) {
+  const std::vector<btVector3> path = swing(cage, options);
+  options.solverTolerance = 1e-5;
+  options.maxIterations = 1000;
+  const std::vector<btVector3> exact = swing(cage, options);
+  double squared = 0.0, way = 0.0;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    squared += static_cast<double>((path[k] - exact[k]).length2());
+    way = std::max(way, static_cast<double>((exact[k] - exact[0]).length()));
+  }
+  return std::sqrt(squared / static_cast<double>(path.size())) / way;
+}
+
 /// Four steps per frame of a serpent of one kilogram that is held at one end, and swings.
 /// stiffness  Young's modulus, Pa
 void held(State& state, std::size_t tets, double stiffness) {
@@ -169,6 +202,7 @@ void held(State& state, std::size_t tets, double stiffness) {
     }
   });
   state.counters["iterations"] = iterations / std::max(steps, 1.0);
+  state.counters["error"] = swingError(cage, options);
   state.counters["tets"] = static_cast<double>(cage.tetCount());
 }
 

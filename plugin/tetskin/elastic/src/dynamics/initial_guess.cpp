@@ -13,7 +13,7 @@ namespace tetskin::elastic_detail {
 namespace {
 
 /// By how much the solve reduces the residual that a guess has left, at least.
-constexpr double kReduction = 0.2;
+constexpr double kReduction = 0.1;
 /// Iterations of a solve from which on a guess is worth its cost.
 constexpr int kMany = 8;
 /// A guess that leaves more than this fraction of the residual is useless. After so many of them, one after the other,

@@ -337,23 +337,24 @@ void BlockMatrix<S>::rowTimesSolution(std::size_t node, S out[3]) const {
 }
 
 template <class S>
-double BlockMatrix<S>::lower(ParallelFor* threads) {
+double BlockMatrix<S>::lowerInto(S* wide, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>();
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
-    part.rest = residual_.data();
+    part.rest = wide;
     partial_[range] = table.lower(part);
   });
   return summed();
 }
 
 template <class S>
+double BlockMatrix<S>::lower(ParallelFor* threads) {
+  return lowerInto(residual_.data(), threads);
+}
+
+template <class S>
 double BlockMatrix<S>::squaredResidual(ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>();
-  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
-    partial_[range] = table.lower(work(first, last));
-  });
-  return summed();
+  return lowerInto(rest_.data(), threads);
 }
 
 template <class S>

@@ -138,6 +138,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void forwards(ParallelFor* threads, Kernel&& kernel) const;
   template <class Kernel>
   void backwards(ParallelFor* threads, Kernel&& kernel) const;
+  double lowerInto(S* wide, ParallelFor* threads);
   double summed() const;
   void setInverse(std::size_t slot, const S inverse[6]);
   /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.

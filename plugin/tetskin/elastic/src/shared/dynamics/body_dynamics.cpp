@@ -293,11 +293,13 @@ template <class S>
 void BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
   assert(tets_ && maximum >= 0);
   limits.enough = limits.tolerance * limits.tolerance * squaredDeviation_;
-  if (maximum > 0 && !stiff_) guess_.improve(matrix_, limits, threads);
+  // Stiff bodies begin with 0.
+  const bool guesses = maximum > 0 && !stiff_;
+  if (guesses) guess_.improve(matrix_, limits, threads);
   gradient.start({&matrix_}, limits, nullptr, threads);
   const double squared = gradient.squaredResidual();
   gradient.iterate(maximum, threads);
-  if (maximum > 0 && (!stiff_ || getenv("STIFF"))) guess_.learn(squared, gradient.iterations());
+  if (guesses) guess_.learn(squared, gradient.iterations());
 }
 
 template <class S>
