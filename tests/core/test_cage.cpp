@@ -19,14 +19,14 @@ using test::platesOfCopies;
 using test::TwoPlates;
 
 void expectFault(const Cage& cage, StatusCode code, const std::string& words) {
-  const Status status = checkKnowledge(cage);
+  const Status status = validateAttributes(cage);
   EXPECT_STREQ(toString(status.code), toString(code)) << status.message;
   EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
 }
 
 TEST(Cage, OfAMeshOfTetsNothingElseIsKnown) {
   const Cage cage = test::latticeCage(2, 1, 1);
-  EXPECT_TRUE(checkKnowledge(cage).ok());
+  EXPECT_TRUE(validateAttributes(cage).ok());
   EXPECT_TRUE(cage.checkMesh(test::sphere(4, 1.0, Vector3d::Zero())).ok());
   EXPECT_TRUE(cage.stiffnessScale().empty());
   EXPECT_FALSE(cage.hasDuplicates());
@@ -34,7 +34,7 @@ TEST(Cage, OfAMeshOfTetsNothingElseIsKnown) {
 }
 
 TEST(Cage, WhatIsKnownOfItIsInOrder) {
-  const Status status = checkKnowledge(platesOfCopies().cage);
+  const Status status = validateAttributes(platesOfCopies().cage);
   EXPECT_TRUE(status.ok()) << status.message;
 }
 

@@ -171,6 +171,29 @@ TEST(MappedEmbedding, RefusesAnotherMesh) {
                 {"has 364 vertices, but the mesh has 365", "build a cage for this mesh"});
 }
 
+TEST(MappedEmbedding, LetsOnlyVerticesOfNoTriangleBeAnywhere) {
+  TwoPlates plates = platesOfCopies();
+  plates.cage.meshHash.reset();
+  plates.mesh.positions.emplace_back(900.0, 0.0, 0.0);
+  plates.cage.vertexTets.push_back(3);
+  const std::size_t loose = plates.mesh.vertexCount() - 1;
+  EmbedReport report;
+  EmbedOptions strict;
+  strict.maxDistance = 0.0;
+  const Result<Embedding> made = embed(plates.cage, plates.mesh, strict, &report);
+  ASSERT_TRUE(made.ok()) << made.status().message;
+  EXPECT_EQ(report.outside, 1u);
+  EXPECT_EQ(report.maxDistance, 0.0);
+  EXPECT_LT(report.meshBox.max().x(), 5.0);
+  EXPECT_FALSE(report.unitsDiffer());
+  EXPECT_EQ(made.value().at(loose).tet, 3);
+  EXPECT_FALSE(made.value().at(loose).inside);
+  plates.mesh.triangles[0][0] = static_cast<int>(loose);
+  expectRefused(plates.cage, plates.mesh, StatusCode::CageMismatch, {"vertex 364 at (900"});
+  plates.mesh.triangles.clear();  // a cloud, of which all points count
+  expectRefused(plates.cage, plates.mesh, StatusCode::CageMismatch, {"vertex 364 at (900"});
+}
+
 TEST(MappedEmbedding, RefusesAMapThatNamesAFlatTet) {
   TwoPlates plates = platesOfCopies();
   Tet& tet = plates.cage.mesh.tets[static_cast<std::size_t>(plates.cage.vertexTets[0])];

@@ -108,7 +108,9 @@ struct TETSKIN_CORE_API EmbedReport {
                                 ///< cage overlaps itself, and the choice of the tet is ambiguous
   std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
   std::size_t flatTets = 0;     ///< tets without volume; never used
-  double maxDistance = 0.0;     ///< longest distance from a vertex to the nearest tet; under Barycentric, to its own
+  /// Longest distance from a vertex to the nearest tet; under Barycentric, to its own. By `Cage::vertexTets`, only of
+  /// vertices that triangles use.
+  double maxDistance = 0.0;
   std::size_t maxDistanceVertex = 0;                              ///< index of that vertex
   Eigen::Vector3d maxDistancePosition = Eigen::Vector3d::Zero();  ///< rest position of that vertex
   /// Outside vertices kept on the component of their mesh neighbours, not the nearest one.
@@ -117,7 +119,7 @@ struct TETSKIN_CORE_API EmbedReport {
   double maxWeight = 1.0;  ///< largest absolute weight of a vertex, at least 1: amplification of a node's motion
   /// Largest barycentric distance, dimensionless; 0 within rounding if all vertices are inside.
   double maxBarycentricDistance = 0.0;
-  Box3 meshBox;                ///< bounding box of the vertices
+  Box3 meshBox;                ///< bounding box of the vertices; of those that triangles use, if there are triangles
   Box3 cageBox;                ///< bounding box of the nodes
   double restErrorMax = 0.0;   ///< longest distance from a vertex to its skinned rest position, in diagonals of meshBox
   std::size_t candidates = 0;  ///< pairs of a vertex and a tet that were tested
@@ -234,7 +236,8 @@ TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const fl
 /// while it works.
 ///
 /// If the cage has `vertexTets`, every vertex is bound to the tet named there, and nothing is searched. Further errors:
-/// those of `validate(const TriangleMesh&)`; CageMismatch if the vertices are others, or not in their tets.
+/// those of `validate(const TriangleMesh&)`; CageMismatch if the vertices are others, or not in their tets. Vertices
+/// that no triangle uses need not be in theirs: they count as outside, whatever `maxDistance` is.
 TETSKIN_CORE_API Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options = {},
                                          EmbedReport* report = nullptr);
 

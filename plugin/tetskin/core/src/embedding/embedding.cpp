@@ -13,6 +13,7 @@
 #include <tetskin/core/src/shared/embedding/embedding_data.h>
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 #include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <algorithm>
@@ -124,16 +125,21 @@ Result<Embedding> embedIn(const TetMesh& cage, PointReader vertices, const std::
   return made;
 }
 
-Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const Triangles* triangles,
-                                const EmbedOptions& options, EmbedReport& report) {
+Result<Embedding> embedVertices(const TetMesh& cage, PointReader vertices, const EmbedOptions& options,
+                                EmbedReport& report) {
   if (Status status = checkInputs(cage, vertices, options, report); !status.ok()) return status;
-  return embedIn(cage, vertices, tetsOf(cage, vertices, triangles, options.outside, report), options, report);
+  return embedIn(cage, vertices, tetsOf(cage, vertices, nullptr, options.outside, report), options, report);
 }
 
-Result<Embedding> embedMapped(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options,
-                              EmbedReport& report) {
+Result<Embedding> embedMesh(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options,
+                            EmbedReport& report) {
   const PointReader vertices = viewOf(mesh.positions);
   if (Status status = checkInputs(cage.mesh, vertices, options, report); !status.ok()) return status;
+  report.meshBox = surfaceBox(mesh);
+  if (cage.vertexTets.empty()) {
+    return embedIn(cage.mesh, vertices, tetsOf(cage.mesh, vertices, &mesh.triangles, options.outside, report), options,
+                   report);
+  }
   const auto tetOf = mappedTets(cage, mesh, report);
   if (!tetOf.ok()) return tetOf.status();
   return embedIn(cage.mesh, vertices, tetOf.value(), options, report);
@@ -280,12 +286,12 @@ TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 
 Result<Embedding> embed(const TetMesh& cage, PointView<const double> vertices, const EmbedOptions& options,
                         EmbedReport* report) {
-  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, nullptr, options, now); });
+  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, options, now); });
 }
 
 Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices, const EmbedOptions& options,
                         EmbedReport* report) {
-  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, nullptr, options, now); });
+  return timed(report, [&](EmbedReport& now) { return embedVertices(cage, vertices, options, now); });
 }
 
 Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options, EmbedReport* report) {
@@ -293,10 +299,7 @@ Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedO
     if (report) *report = notEmbedded(mesh);
     return status;
   }
-  return timed(report, [&](EmbedReport& now) {
-    if (!cage.vertexTets.empty()) return embedMapped(cage, mesh, options, now);
-    return embedVertices(cage.mesh, viewOf(mesh.positions), &mesh.triangles, options, now);
-  });
+  return timed(report, [&](EmbedReport& now) { return embedMesh(cage, mesh, options, now); });
 }
 
 }  // namespace tetskin

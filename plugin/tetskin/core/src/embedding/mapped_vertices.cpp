@@ -4,6 +4,7 @@
 #include <tetskin/core/src/search/tolerances.h>
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 #include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <cassert>
@@ -29,7 +30,7 @@ Status notMapped(const TriangleMesh& mesh, std::size_t vertex, int tet) {
 }  // namespace
 
 Result<std::vector<std::int32_t>> mappedTets(const Cage& cage, const TriangleMesh& mesh, EmbedReport& report) {
-  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
   if (cage.vertexTets.size() != mesh.vertexCount()) {
     return Status{StatusCode::CageMismatch,
                   "the cage's map has " + std::to_string(cage.vertexTets.size()) + " vertices, but the mesh has " +
@@ -39,6 +40,7 @@ Result<std::vector<std::int32_t>> mappedTets(const Cage& cage, const TriangleMes
   const double rounding = kInsideTolerance * maxCoordinate(report.cageBox);
   assert(!report.cageBox.isEmpty());
   std::vector<std::int32_t> tetOf(cage.vertexTets.begin(), cage.vertexTets.end());
+  const std::vector<char> used = usedVertices(mesh);
   for (std::size_t v = 0; v < tetOf.size(); ++v) {
     const int tet = tetOf[v];
     const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[tet]);
@@ -48,8 +50,12 @@ Result<std::vector<std::int32_t>> mappedTets(const Cage& cage, const TriangleMes
     }
     const Eigen::Vector4d weights = BarycentricMap(corners)(mesh.positions[v]);
     const double barycentric = barycentricDistance(weights);
-    if (!(barycentric < kNotMapped)) return notMapped(mesh, v, tet);
     if (barycentric <= 0.0) continue;
+    if (!used[v]) {  // only carried: no tets were made for it
+      tetOf[v] = ~tet;
+      continue;
+    }
+    if (!(barycentric < kNotMapped)) return notMapped(mesh, v, tet);
     const double distance = distanceToTet(mesh.positions[v], corners, weights);
     if (distance <= rounding) continue;
     tetOf[v] = ~tet;

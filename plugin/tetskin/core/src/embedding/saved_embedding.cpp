@@ -24,6 +24,7 @@
 namespace tetskin {
 namespace {
 
+/// What a file begins with, see above.
 constexpr char kMagic[] = "tetskemb";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 9 * 8;
@@ -100,6 +101,7 @@ bool runsAreSound(const EmbeddingData& d) {
 /// Makes vertexSlots from slotVertices. Returns true if these are a permutation, and ascending in every run.
 bool orderVertices(EmbeddingData& d) {
   assert(d.runs.back().firstSlot == d.slotVertices.size());
+  // A vertex without a slot so far.
   constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   d.vertexSlots.assign(d.slotVertices.size(), kNone);
   for (std::size_t r = 0; r + 1 < d.runs.size(); ++r) {

@@ -16,6 +16,7 @@ namespace {
 
 /// Some vertices of one tet, stored by coordinate, so that loops process several at a time.
 struct VertexBlock {
+  /// Twice the doubles in the widest register.
   static constexpr std::size_t kSize = 16;
   double x[kSize], y[kSize], z[kSize];
   double smallest[kSize];  ///< smallest weight

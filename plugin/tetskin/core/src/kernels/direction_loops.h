@@ -52,6 +52,7 @@ struct QuadraticDirections {
 /// A shorter sum is rounding, and has no direction; at rest its length is 1.
 template <class S>
 constexpr S kMinSquared = S(1e-20);
+/// The square of a longer one overflows.
 template <class S>
 constexpr S kMaxSquared = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
 

@@ -4,8 +4,8 @@
 // Internal to the kernels: the filter of the search.
 #pragma once
 
+#include <tetskin/core/src/kernels/points.h>
 #include <tetskin/core/src/kernels/search_kernels.h>
-#include <tetskin/core/src/shared/kernels/lanes.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 

@@ -12,6 +12,7 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 /// Columns of a gradient, P in a register, the last of which may be meaningless.
 template <class S, int P>
 struct Columns {
+  /// Three columns, P in each register.
   static constexpr int kRegisters = (3 + P - 1) / P;
   Points<S, P> item[kRegisters] = {};
 

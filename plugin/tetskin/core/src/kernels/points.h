@@ -88,6 +88,7 @@ template <int A, int B, int C, int D, class S, int P>
 TETSKIN_INLINE Points<S, P> mixed(const Points<S, P>& v, const Points<S, P>& w) {
 #if defined(__SSE2__) && defined(TETSKIN_VECTOR_TYPES)
   if constexpr (sizeof(S) == sizeof(float)) {
+    // As the processor's shuffle wants it: two bits for each lane.
     constexpr int kOrder = A | B << 2 | C << 4 | D << 6;
 #if defined(__AVX512F__)
     if constexpr (P == 4) return _mm512_shuffle_ps(v, w, kOrder);

@@ -18,9 +18,13 @@ namespace {
 using skin_tasks::firstItem;
 using skin_tasks::taskCount;
 
+/// Enough work that handing it out costs little.
 constexpr std::size_t kGroupsPerTask = 8192;
+/// Groups that are sorted at a time: all of them at once would take their vertices from memory in disorder.
 constexpr std::size_t kWindow = 256;
+/// In radians.
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
+/// A vertex that has no group so far.
 constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
 /// Rounding of the cosine of an angle between two directions given as floats.
@@ -145,17 +149,17 @@ NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::
                                double hardEdgeDegrees) {
   assert(indices.empty() || indices.size() == mesh.vertexCount());
   const std::size_t count = mesh.vertexCount();
-  const auto toPositionOf = [&](std::size_t v) { return indices.empty() ? static_cast<std::uint32_t>(v) : indices[v]; };
+  const auto slotOf = [&](std::size_t v) { return indices.empty() ? static_cast<std::uint32_t>(v) : indices[v]; };
   const std::vector<std::uint32_t> firstAt = weldCoincident(viewOf(mesh.positions));
   std::size_t groups = 0;
   std::vector<std::uint32_t> groupOf = smoothGroups(mesh, firstAt, hardEdgeDegrees, groups);
 
   std::vector<std::uint32_t> vertexAt(count);
-  for (std::size_t v = 0; v < count; ++v) vertexAt[toPositionOf(v)] = static_cast<std::uint32_t>(v);
+  for (std::size_t v = 0; v < count; ++v) vertexAt[slotOf(v)] = static_cast<std::uint32_t>(v);
   renumber(vertexAt, mesh, groups, groupOf);
 
   Lists<> placesOf = packLists(groups, [&](auto&& add) {
-    for (const std::uint32_t v : vertexAt) add(groupOf[v], toPositionOf(v));
+    for (const std::uint32_t v : vertexAt) add(groupOf[v], slotOf(v));
   });
   groupPositions_ = std::move(placesOf.starts);
   indices_ = std::move(placesOf.values);
@@ -165,8 +169,7 @@ NormalTopology::NormalTopology(const TriangleMesh& mesh, const std::vector<std::
     for (const auto& t : mesh.triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto from = static_cast<std::size_t>(t[(k + 1) % 3]), to = static_cast<std::size_t>(t[(k + 2) % 3]);
-        add(groupOf[static_cast<std::size_t>(t[k])],
-            FarSide{toPositionOf(from), toPositionOf(to), firstAt[from], firstAt[to]});
+        add(groupOf[static_cast<std::size_t>(t[k])], FarSide{slotOf(from), slotOf(to), firstAt[from], firstAt[to]});
       }
     }
   });

@@ -19,16 +19,15 @@ namespace tetskin {
 class NormalTopology {
  public:
   NormalTopology() = default;
-  /// places           by vertex: its index in the output (its slot, for VertexOrder::Sorted); empty for the mesh's
+  /// indices          by vertex: its index in the output (its slot, for VertexOrder::Sorted); empty for the mesh's
   ///                  order
   /// hardEdgeDegrees  not below 0; from 180 on there is no hard edge
   NormalTopology(const TriangleMesh& mesh, const std::vector<std::uint32_t>& indices, double hardEdgeDegrees);
 
   std::size_t groupCount() const { return groupPositions_.size() - 1; }
   const std::vector<std::uint32_t>& groupPositions() const { return groupPositions_; }  ///< by group, and the end
-  const std::vector<std::uint32_t>& indices() const {
-    return indices_;
-  }  ///< indices in the output, group by group, ascending
+  /// Indices in the output, group by group, ascending.
+  const std::vector<std::uint32_t>& indices() const { return indices_; }
   const std::vector<std::uint32_t>& groupPaths() const { return groupPaths_; }  ///< by group, and the end
   /// Indices in the output, group by group. Two that follow each other are the far side of a triangle, unless one of
   /// them is at the group's own position, which means that the path continues elsewhere.

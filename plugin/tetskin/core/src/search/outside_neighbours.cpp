@@ -27,6 +27,7 @@ struct OutsideEdges {
   Lists<> ends;  ///< by index in `vertices`: the other ends of its edges, each from either triangle
   std::vector<std::uint32_t> indexOf;  ///< by vertex: its index in `vertices`; kInside if it is not outside
 
+  /// No index of a vertex outside.
   static constexpr std::uint32_t kInside = 0xFFFFFFFFu;
 
   OutsideEdges(const std::vector<std::uint32_t>& first, const std::vector<std::array<int, 3>>& triangles,

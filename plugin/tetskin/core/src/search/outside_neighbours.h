@@ -17,14 +17,14 @@ namespace tetskin {
 /// The nearest tet may belong to another part of the cage: a vertex that pokes out of one leg is now and then nearer to
 /// the other leg, and would be torn along with it. So a vertex outside stays with its neighbours: if its tet is not
 /// connected to any of theirs through tets around the vertex, it takes the nearest tet that is, unless that is more
-/// than an edge of it farther away. Where that one would extrapolate the vertex too far, the rule of `embed` for
-/// rescues applies among the connected ones; if they all would, it stays where it is. Vertices are visited from the
-/// inside outwards, each once; in a piece of the mesh without a vertex inside, the rescued ones are, from the others
+/// than an edge of it farther away. Where that one would extrapolate the vertex too far, the one of the smallest
+/// weights is taken among the connected ones; if they all would, it stays where it is. Vertices are visited from the
+/// inside outwards, each once; in a piece of the mesh without a vertex inside, the reassigned ones are, from the others
 /// outwards.
 ///
 /// first      by vertex: the first one at its position, see `weldCoincident`; they share edges and tets
 /// triangles  of the mesh; a vertex in none is left alone
-/// rescued    by vertex, or empty: see `TetSearch`
+/// reassigned by vertex, or empty: see `TetSearch`
 /// tetOf      by vertex: its tet, or ~tet if it lies outside of it; changed
 /// Returns    the number of vertices that changed their tet
 /// Cost       O(vertexCount + triangleCount + tetCount) if any vertex is outside. Besides, for each of these whose tet

@@ -48,7 +48,7 @@ void SpatialHash::chooseTable(std::size_t maxCells) {
 }
 
 void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_t>& first) {
-  const auto toPositionOf = [&](std::uint32_t i) {
+  const auto cellIndexOf = [&](std::uint32_t i) {
     if (!first.empty() && first[i] != i) return kNoCell;
     const Eigen::Vector3d p = points[i];
     if (!box_.contains(p)) return kNoCell;
@@ -59,7 +59,7 @@ void SpatialHash::placePoints(PointReader points, const std::vector<std::uint32_
   bool known = false;  // from the second time on
   Lists<> cells = packLists(std::size_t{table_[0]} * table_[1] * table_[2], [&](auto&& add) {
     for (std::uint32_t i = 0; i < indices.size(); ++i) {
-      if (!known) indices[i] = toPositionOf(i);
+      if (!known) indices[i] = cellIndexOf(i);
       if (indices[i] != kNoCell) add(indices[i], i);
     }
     known = true;

@@ -67,6 +67,7 @@ class SpatialHash {
     std::uint32_t first;
     std::uint32_t count;
   };
+  /// Cells of a table: most then hold one point or none; and the fewest.
   static constexpr std::size_t kCellsPerPoint = 4, kMinCells = 4096;
 
   void chooseTable(std::size_t maxCells);

@@ -49,6 +49,7 @@ class InsideSearch {
   std::size_t overlapping() const { return static_cast<std::size_t>(std::count(deep_.begin(), deep_.end(), kSeveral)); }
 
  private:
+  /// A point counts as ambiguous from its second tet on; further ones are not counted.
   static constexpr std::uint8_t kSeveral = 2;
 
   void decide(int tet, const BarycentricMap& map, std::uint32_t point) {

@@ -64,8 +64,8 @@ void addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
 
 /// Computes what the options ask for in addition to the embedding.
 template <class Scalar>
-std::unique_ptr<const SkinData<Scalar>> componentsFor(const Cage& cage, const TriangleMesh& mesh,
-                                                      const BindingOptions& options, const Embedding& embedding) {
+std::unique_ptr<const SkinData<Scalar>> makeSkinData(const Cage& cage, const TriangleMesh& mesh,
+                                                     const BindingOptions& options, const Embedding& embedding) {
   assert(embedding.vertexCount() == mesh.vertexCount() && embedding.tetCount() == cage.mesh.tetCount());
   auto made = std::make_unique<SkinData<Scalar>>();
   made->options = options;
@@ -152,7 +152,7 @@ auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, con
   embedOptions.maxDistance = options.maxDistance;
   const Result<Embedding> embedding = embed(cage, mesh, embedOptions, report);
   if (!embedding.ok()) return embedding.status();
-  return Pointer(new SkinBinding(componentsFor<Scalar>(cage, mesh, options, embedding.value())));
+  return Pointer(new SkinBinding(makeSkinData<Scalar>(cage, mesh, options, embedding.value())));
 }
 
 template <class Scalar>
@@ -162,7 +162,7 @@ auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, con
   if (Status status = checkBinding(mesh, options); !status.ok()) return status;
   if (Status status = validate(cage.mesh); !status.ok()) return status;
   if (Status status = checkEmbedded(cage.mesh, mesh, embedding); !status.ok()) return status;
-  return Pointer(new SkinBinding(componentsFor<Scalar>(cage, mesh, options, embedding)));
+  return Pointer(new SkinBinding(makeSkinData<Scalar>(cage, mesh, options, embedding)));
 }
 
 template <class Scalar>

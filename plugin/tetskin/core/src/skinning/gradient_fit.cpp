@@ -17,6 +17,8 @@ namespace {
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
+/// Most rings of neighbours among which enough are searched for; and the fewest neighbours, three more than a fit has
+/// unknowns.
 constexpr int kMaxRings = 4;
 constexpr std::size_t kMinNeighbours = 12;
 /// This many of the nearest neighbours are enough if they determine a fit: compared with all nodes of two rings, they

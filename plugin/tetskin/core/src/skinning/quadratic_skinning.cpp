@@ -15,6 +15,7 @@
 namespace tetskin {
 namespace {
 
+/// A node or an edge that no vertex needs.
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 /// A node's gradient costs about 30 times as much as a vertex.
 constexpr std::size_t kGradientsPerTask = 512;

@@ -12,6 +12,7 @@ namespace tetskin {
 template <class T>
 struct LineAllocator {
   using value_type = T;
+  /// Bytes of a cache line on most processors, and of the widest register.
   static constexpr std::align_val_t kLine{64};
 
   LineAllocator() = default;

@@ -28,6 +28,7 @@ class Hash {
   std::uint32_t mixed() const { return static_cast<std::uint32_t>(value_ * kMultiplier >> 32); }
 
  private:
+  /// 2^64 over the golden ratio, odd: its products spread neighbouring values over all upper bits (Knuth).
   static constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15u;
   std::uint64_t value_ = 0xCBF29CE484222325u;
 };

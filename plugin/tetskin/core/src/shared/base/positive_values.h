@@ -12,8 +12,8 @@ namespace tetskin {
 
 /// Checks one value per element, or none at all. Returns Ok, or reports a wrong number of values, or the first value
 /// that is not above 0, or of which it or its inverse is out of the range of Scalar.
-/// name, of  the values, and one of the elements: "stiffnessScale", "tet"
-/// times     a factor of the values; the product must be in range, too
+/// name, label  of the values, and of one of the elements: "stiffnessScale", "tet"
+/// times        a factor of the values; the product must be in range, too
 template <class Scalar>
 Status checkPositive(const std::vector<double>& values, std::size_t count, const char* name, const char* label,
                      double times = 1.0) {

@@ -73,6 +73,7 @@ struct BvhBox {
       in = std::max(in, std::min(a, b));
       out = std::min(out, std::max(a, b));
     }
+    // A ray that rounding would let pass between two boxes meets both.
     constexpr double kRounding = 1.0 + 1e-14;
     return in <= out * kRounding ? in : std::numeric_limits<double>::infinity();
   }

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to the kernels: several numbers side by side. Included once for each instruction set, in a namespace of its
-// own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h.
+// own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h. Nothing guards it
+// against a second inclusion, as a unit may need it in several namespaces; one header of each (points.h, wide.h,
+// four.h) includes it for all others.
 //
 // With GCC and Clang the compiler's vector types do the work, on every processor. Without them, or with
 // TETSKIN_PLAIN_LANES, the same code is plain C++: lanes are one wide, and only points are four numbers.
-#pragma once
-
 #if defined(__AVX2__)
 #include <immintrin.h>
 #elif defined(__SSE2__)

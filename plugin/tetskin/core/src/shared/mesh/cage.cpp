@@ -75,7 +75,7 @@ bool Cage::hasDuplicates() const {
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-Status checkKnowledge(const Cage& cage) {
+Status validateAttributes(const Cage& cage) {
   Status status = checkValues(cage.volumeFraction, cage.mesh.tetCount(), "volumeFraction", "tets", "from 0 to 1",
                               [](double value) { return value >= 0.0 && value <= 1.0; });
   if (status.ok())
@@ -99,7 +99,7 @@ Status checkKnowledge(const Cage& cage) {
 
 Status validate(const Cage& cage) {
   if (Status status = validate(cage.mesh); !status.ok()) return status;
-  return checkKnowledge(cage);
+  return validateAttributes(cage);
 }
 
 Status Cage::checkMesh(const TriangleMesh& surface) const {

@@ -24,6 +24,6 @@ TETSKIN_CORE_API Status checkTetCounts(std::size_t nodes, std::size_t tets);
 TETSKIN_CORE_API Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
 
 /// `validate` of what a cage knows beside its tet mesh.
-TETSKIN_CORE_API Status checkKnowledge(const Cage& cage);
+TETSKIN_CORE_API Status validateAttributes(const Cage& cage);
 
 }  // namespace tetskin

@@ -166,6 +166,7 @@ double totalVolume(const TetMesh& mesh) {
 }
 
 std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh) {
+  // By their corners, in the order that the header promises.
   constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
   std::vector<std::array<int, 2>> edges;
   edges.reserve(6 * mesh.tetCount());
@@ -187,6 +188,7 @@ std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh) {
 }
 
 std::vector<std::array<int, 3>> boundaryFaces(const TetMesh& mesh) {
+  // By their corners, seen from outside counter-clockwise.
   constexpr int kFaces[4][3] = {{1, 0, 2}, {3, 0, 1}, {3, 1, 2}, {2, 0, 3}};
   std::vector<std::array<int, 3>> faces;
   faces.reserve(4 * mesh.tetCount());

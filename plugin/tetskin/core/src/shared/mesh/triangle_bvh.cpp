@@ -8,6 +8,7 @@
 namespace tetskin {
 namespace {
 
+/// Few enough that few are tested in vain, many enough that the tree is small.
 constexpr int kTrianglesInLeaf = 6;
 
 std::vector<int> allTriangles(const TriangleMesh& mesh) {

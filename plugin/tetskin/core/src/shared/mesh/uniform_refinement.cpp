@@ -15,6 +15,8 @@ struct Diagonal {
   int ends[2][2];
   int ring[4][2];
 };
+/// Of the octahedron that is left in the middle: by the edges at whose midpoints it ends, with the four edges around
+/// it.
 constexpr Diagonal kDiagonals[3] = {
     {{{0, 1}, {2, 3}}, {{0, 2}, {1, 2}, {1, 3}, {0, 3}}},
     {{{0, 2}, {1, 3}}, {{0, 3}, {2, 3}, {1, 2}, {0, 1}}},

@@ -49,6 +49,7 @@ Lists<Key> dealtKeys(const std::vector<std::uint32_t>& hashes) {
 void weldBucket(PointReader points, const Key* keys, std::uint32_t count, std::vector<std::uint32_t>& table,
                 std::vector<std::uint32_t>& first) {
   assert(first.size() == points.size());
+  // A place of the table that holds no vertex.
   constexpr std::uint32_t kFree = 0xFFFFFFFFu;
   std::size_t size = 16;
   while (size < 2 * std::size_t{count}) size *= 2;  // at most half full: probes stay short

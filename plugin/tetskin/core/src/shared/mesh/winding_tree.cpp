@@ -17,6 +17,7 @@
 namespace tetskin {
 namespace {
 
+/// The solid angle of a sphere is 4 pi.
 constexpr double kPi = 3.14159265358979323846;
 /// Triangles in a leaf: few enough to sum exactly, many enough to keep the tree small.
 constexpr int kLeafSize = 8;
