@@ -4,6 +4,7 @@
 
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <map>
@@ -117,8 +118,13 @@ std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageRe
     return "dihedral angles " + std::to_string(range.minDeg) + " to " + std::to_string(range.maxDeg);
   }
   EmbedReport embedded;
-  if (const Status status = embed(cage, mesh, {}, &embedded).status(); !status.ok()) return status.message;
-  if (embedded.inside != mesh.vertexCount() || embedded.mapped != mesh.vertexCount()) return embedded.describe();
+  const Result<Embedding> embedding = embed(cage, mesh, {}, &embedded);
+  if (!embedding.ok()) return embedding.status().message;
+  if (embedded.mapped != mesh.vertexCount() || embedded.maxDistance > 0.0) return embedded.describe();
+  const std::vector<char> used = usedVertices(mesh);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] && !embedding.value().at(v).inside) return "vertex " + std::to_string(v) + " is outside";
+  }
   if (report.verticesOutside != 0) return "the report counts vertices outside";
   if (report.tets != cage.mesh.tetCount() || report.nodes != cage.mesh.nodeCount())
     return "the report has other counts";

@@ -9,8 +9,8 @@
 namespace tetskin::test {
 
 /// The first promise of a cage that does not hold; empty if all hold: clean (`checkTetMesh`), dihedral angles, every
-/// vertex inside (by `embed`, which trusts the map), what the cage stores about the mesh, components without hinges,
-/// and a report that agrees.
+/// vertex of a triangle inside (by `embed`, which trusts the map), what the cage stores about the mesh, components
+/// without hinges, and a report that agrees.
 std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageReport& report);
 
 /// The first fault in the topology of a cage without duplicate elements; empty if there is none: at most two tets at a

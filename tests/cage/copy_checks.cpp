@@ -5,6 +5,7 @@
 #include <tetskin/core/src/shared/base/disjoint_sets.h>
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +68,12 @@ bool sameSets(const std::vector<int>& a, const std::vector<int>& b) {
 std::string faultOfMap(const TriangleMesh& mesh, const Cage& cage) {
   if (cage.vertexTets.size() != mesh.vertexCount()) return "a map of another number of vertices";
   std::map<std::array<double, 3>, int> tetAt;
+  const std::vector<char> used = usedVertices(mesh);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const Eigen::Vector3d& p = mesh.positions[v];
     const int tet = cage.vertexTets[v];
     const BarycentricMap map(cornersOf(cage.mesh, cage.mesh.tets[static_cast<std::size_t>(tet)]));
-    if (!(barycentricDistance(map(p)) <= 0.0)) return "vertex " + std::to_string(v) + " is not in its tet";
+    if (used[v] && !(barycentricDistance(map(p)) <= 0.0)) return "vertex " + std::to_string(v) + " is not in its tet";
     if (tetAt.try_emplace({p.x(), p.y(), p.z()}, tet).first->second != tet) return "one position in two tets";
   }
   return "";
@@ -123,7 +125,7 @@ std::string faultOfCopies(const Cage& cage, const CageReport& report) {
 }
 
 std::string faultOfKnowledge(const TriangleMesh& mesh, const Cage& cage, const CageReport& report) {
-  if (const Status status = checkKnowledge(cage); !status.ok()) return status.message;
+  if (const Status status = validateAttributes(cage); !status.ok()) return status.message;
   if (const Status status = cage.checkMesh(mesh); !status.ok()) return status.message;
   std::string fault = faultOfMap(mesh, cage);
   if (fault.empty()) fault = faultOfMasses(cage, cage.volumeFraction.empty() ? report.cageVolume : report.meshVolume);

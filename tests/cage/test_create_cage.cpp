@@ -153,30 +153,64 @@ TEST(CageBuilder, WorksWithoutOptionsAndReport) {
   EXPECT_NEAR(static_cast<double>(cage.tetCount()), 3000.0, 300.0);
 }
 
-TEST(CageBuilder, LooseVerticesGetTetsOfTheirOwn) {
+TEST(CageBuilder, LooseVerticesShapeNoCage) {
+  const TriangleMesh sphere = unitSphere(16);
+  TriangleMesh mesh = sphere;
+  for (const double far : {0.5, 1.2, 3.0, 1e4, 1e12}) {
+    mesh.positions.emplace_back(far, 0, 0);
+    mesh.positions.emplace_back(0, -far, 0.1);
+  }
+  for (const std::size_t target : {300, 3000}) {
+    const Built built = build(mesh, target), without = build(sphere, target);
+    ASSERT_TRUE(built.status.ok());
+    EXPECT_EQ(faultOfCage(mesh, built.cage, built.report), "");
+    EXPECT_EQ(built.cage.mesh.nodes, without.cage.mesh.nodes);
+    EXPECT_EQ(built.cage.mesh.tets, without.cage.mesh.tets);
+    EXPECT_EQ(built.report.looseVertices, 10u);
+    EXPECT_EQ(built.report.components, 1u);
+    EXPECT_EQ(built.report.fusedComponents, 0u);
+    EXPECT_NE(built.report.describe().find("10 vertices shape no cage"), std::string::npos);
+    EXPECT_EQ(without.report.describe().find("shape no cage"), std::string::npos);
+  }
+}
+
+TEST(CageBuilder, TheNearestTetCarriesALooseVertex) {
+  TriangleMesh mesh = unitSphere(16);
+  const std::size_t used = mesh.vertexCount();
+  for (const Eigen::Vector3d& p :
+       randomPoints(100, Box3(Eigen::Vector3d::Constant(-3), Eigen::Vector3d::Constant(3)), 5))
+    mesh.positions.push_back(p);
+  const Built built = build(mesh, 300);
+  ASSERT_TRUE(built.status.ok());
+  const std::vector<BruteHit> wanted = bruteForce(built.cage.mesh, mesh.positions, OutsideRule::Nearest);
+  EmbedReport report;
+  const Embedding embedding = embed(built.cage, mesh, {}, &report).value();
+  std::size_t outside = 0;
+  for (std::size_t v = used; v < mesh.vertexCount(); ++v) {
+    EXPECT_EQ(built.cage.vertexTets[v], wanted[v].tet) << v;
+    EXPECT_EQ(embedding.at(v).inside, wanted[v].inside) << v;
+    outside += wanted[v].inside ? 0 : 1;
+    const auto at = embedding.at(v).position([&](int n) { return built.cage.mesh.nodes[static_cast<std::size_t>(n)]; });
+    EXPECT_LT((at - mesh.positions[v]).norm(), 1e-5);
+  }
+  EXPECT_EQ(report.outside, outside);
+  EXPECT_GT(outside, 50u);
+  EXPECT_EQ(report.maxDistance, 0.0) << "of vertices that triangles use";
+  EXPECT_LT(report.meshBox.max().maxCoeff(), 1.0 + 1e-9);
+  EXPECT_FALSE(report.unitsDiffer());
+}
+
+TEST(CageBuilder, TrianglesThatArePointsAreNone) {
   TriangleMesh mesh = unitSphere(16);
   mesh.positions.emplace_back(3, 0, 0);
-  const Built built = build(mesh, 1000);
-  EXPECT_EQ(faultOfCage(mesh, built.cage, built.report), "");
-  EXPECT_EQ(built.report.looseVertices, 1u);
-  EXPECT_EQ(built.report.components, 2u);
-}
-
-TEST(CageBuilder, FarOutliersCostNothing) {
-  TriangleMesh mesh = unitSphere(16);
-  mesh.positions.emplace_back(10000, 0, 0);
-  mesh.positions.emplace_back(-20000, 10000, 3);
-  mesh.positions.emplace_back(0, 0, 20000);
-  for (const std::size_t target : {300, 3000}) EXPECT_EQ(buildFault(mesh, target), "");
-}
-
-TEST(CageBuilder, OutlierBeyondTheRangeOfCubesGivesTheCoarseCageThatIsPossible) {
-  TriangleMesh mesh = unitSphere(8);
-  mesh.positions.emplace_back(1e12, 0, 0);
-  const Built built = build(mesh);
+  const int last = static_cast<int>(mesh.vertexCount()) - 1;
+  mesh.triangles.push_back({last, last, last});
+  const Built built = build(mesh, 300);
   ASSERT_TRUE(built.status.ok());
-  EXPECT_EQ(faultOfCage(mesh, built.cage, built.report), "");
-  EXPECT_FALSE(built.report.targetMet());
+  EXPECT_EQ(built.report.components, 1u);
+  EXPECT_EQ(built.report.looseVertices, 1u);
+  mesh.triangles = {{0, 0, 0}, {last, last, last}};
+  EXPECT_EQ(failure(mesh).code, StatusCode::Degenerate);
 }
 
 TEST(CageBuilder, TinyTargetsAreMetAsWellAsPossible) {

@@ -32,14 +32,14 @@ struct TETSKIN_CAGE_API CageReport {
   double spacing = 0.0;          ///< side of the lattice's cubes, which is a tet's longest edge before fitting
   std::size_t latticesTried = 0;  ///< number of lattices tried
 
-  std::size_t verticesOutside = 0;  ///< distinct vertex positions of the mesh in no tet: 0
+  std::size_t verticesOutside = 0;  ///< distinct vertex positions of the mesh's triangles in no tet: 0
   double minDihedralDegrees = 0.0;  ///< smallest dihedral angle of a tet, degrees
   double maxDihedralDegrees = 0.0;  ///< largest dihedral angle of a tet, degrees
   std::size_t duplicateTets = 0;    ///< tets beyond the first at their position, from duplicating elements
   std::size_t components = 0;       ///< components of the cage, connected through shared nodes
-  std::size_t fusedComponents = 0;  ///< components and loose vertices of the mesh, minus components of the cage
+  std::size_t fusedComponents = 0;  ///< components of the mesh, minus components of the cage
   std::size_t meshComponents = 0;   ///< sets of triangles connected through coincident vertices
-  std::size_t looseVertices = 0;    ///< distinct positions that no triangle uses; inside the cage as well
+  std::size_t looseVertices = 0;    ///< vertices at positions that no triangle uses: the nearest tet carries them
   std::size_t openEdges = 0;        ///< edges of the mesh without a triangle on their other side: holes
 
   double meshVolume = 0.0;           ///< 0 for an open sheet; a hole is closed by a cone from the centre of the box
@@ -55,28 +55,30 @@ struct TETSKIN_CAGE_API CageReport {
   std::string describe() const;
 };
 
-/// Builds a cage of about `options.targetTets` tets that contains every vertex of the mesh: `embed` in it reports 0
-/// vertices outside. Its tets are positive and conforming, with dihedral angles between 10 and 165 degrees (observed:
-/// 25 to 140); every node is used. Features thinner than a tet are never lost.
+/// Builds a cage of about `options.targetTets` tets that contains every vertex of the mesh's triangles: `embed` in it
+/// reports 0 vertices outside. Vertices that no triangle uses, which a modeller often leaves in a file, shape no cage:
+/// `Cage::vertexTets` has the nearest tet for them, `embed` counts those outside, and all are counted in
+/// `CageReport::looseVertices`. Its tets are positive and conforming, with dihedral angles between 10 and 165 degrees
+/// (observed: 25 to 140); every node is used. Features thinner than a tet are never lost.
 ///
 /// Where regions of the mesh are nearer to each other than the size of a tet, the cage has duplicate elements, one for
 /// each region (Molino, Bao, Fedkiw, "A Virtual Node Algorithm for Changing Mesh Topology During Simulation", SIGGRAPH
 /// 2004; see Cage). Regions thicker than an eighth of a tet, and farther apart than that, are never fused, except where
-/// a cleft ends within a tet; what edges of the mesh connect is never separated. Components of the mesh that lie inside
-/// each other, or nearer than an eighth of a tet, stay together. Without duplicates, and with `duplicateElements =
-/// false`, regions nearer to each other than a tet are fused; the boundary is a manifold, no two nodes are at one
+/// a cleft ends within a tet; what triangles of the mesh connect is never separated. Components of the mesh that lie
+/// inside each other, or nearer than an eighth of a tet, stay together. Without duplicates, and with `duplicateElements
+/// = false`, regions nearer to each other than a tet are fused; the boundary is a manifold, no two nodes are at one
 /// position, and a triangle between vertices of the mesh lies wholly inside an unfitted cage. It may protrude from a
 /// cage that is fitted or has duplicates by a few hundredths of the spacing.
 ///
 /// The same input gives the same cage.
 ///
-/// mesh     at least one triangle and some extent; a sheet, a single triangle or a line gets a thin cage. Vertices that
-///          no triangle uses get tets of their own, however far away.
+/// mesh     at least one triangle, and triangles of some extent; a sheet, a single triangle or a line gets a thin cage.
+///          A triangle whose corners are at one point counts as none
 /// report   written if not null, also on failure
 /// Cost     about proportional to triangles + tets: some five seconds per million triangles, up to ten if so few tets
 ///          are requested that many lattices are tried, and ten seconds and 300 MB per million tets
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
-///          Limits::kMaxTargetTets), Degenerate (all vertices at one point, or so near each other, or so far apart,
+///          Limits::kMaxTargetTets), Degenerate (all triangles are points, or so near each other, or so far apart,
 ///          that a lattice cannot be represented in double)
 TETSKIN_CAGE_API Result<Cage> createCage(const TriangleMesh& mesh, const CageOptions& options = {},
                                          CageReport* report = nullptr);

@@ -17,6 +17,7 @@
 //   splitLattice     duplicates joined where they are connected        split_lattice
 //   fitCage          pull the boundary towards the surface             cage_fit
 //   fillOf           volume fraction of each tet, and masses           cage_fill
+//   embed            vertices that no triangle uses, in what was built for the others
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/cage/src/fill/cage_fill.h>
 #include <tetskin/cage/src/fit/cage_binding.h>
@@ -24,6 +25,7 @@
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/cage/src/lattice/lattice_search.h>
 #include <tetskin/cage/src/surface/surface.h>
+#include <tetskin/core/embedding.h>
 
 #include <algorithm>
 #include <cassert>
@@ -52,6 +54,10 @@ constexpr double kSizeTolerance = 0.07;
 /// Distance, in half cubes, of the points on large triangles that fitting has to keep inside: several of them then lie
 /// on each face of a cube, while meshes finer than the lattice get none.
 constexpr double kHoldStep = 0.5;
+/// Loose vertices farther from the cage's centre than this, in diagonals of its box, get the tet that is nearest to the
+/// point on their way at that distance: the same but for a hundredth of their distance, and no coordinate is too large
+/// for the search.
+constexpr double kLooseReach = 100.0;
 
 Status checkInput(const TriangleMesh& mesh, const CageOptions& options) {
   if (options.targetTets == 0 || options.targetTets > Limits::kMaxTargetTets) {
@@ -76,11 +82,11 @@ Status notDivisible(const Surface& surface) {
 }
 
 Status checkExtent(const Surface& surface) {
-  const double size = surface.box.sizes().maxCoeff();
-  if (size == 0.0) {
+  if (surface.triangles.empty()) {
     return {StatusCode::Degenerate,
-            "all vertices of the mesh are at the same point; a cage needs a mesh that has an extent"};
+            "the corners of each triangle of the mesh are at the same point; a cage needs a mesh that has an extent"};
   }
+  const double size = surface.box.sizes().maxCoeff();
   const double farthest = std::max(surface.box.min().cwiseAbs().maxCoeff(), surface.box.max().cwiseAbs().maxCoeff());
   const bool computable = farthest < kMaxLength && size > 1.0 / kMaxLength;
   if (!computable || size < cage_detail::smallestSpacing(surface)) return notDivisible(surface);
@@ -161,7 +167,7 @@ BoundCage firstEnclosingCage(const Surface& surface, const WindingTree& winding,
 
 void reportSurface(const Surface& surface, CageReport& report) {
   report.meshComponents = surface.components;
-  report.looseVertices = surface.loosePoints.size();
+  report.looseVertices = surface.looseVertices;
   report.openEdges = surface.openEdges;
   report.meshVolume = surface.volume;
 }
@@ -184,12 +190,41 @@ void reportCage(const TetMesh& cage, CageReport& report) {
   const std::vector<int> components = cage_detail::componentNumbers(cage);
   report.components =
       components.empty() ? 0 : static_cast<std::size_t>(*std::max_element(components.begin(), components.end())) + 1;
-  const std::size_t meshParts = report.meshComponents + report.looseVertices;
-  report.fusedComponents = meshParts > report.components ? meshParts - report.components : 0;
+  report.fusedComponents = report.meshComponents - std::min(report.meshComponents, report.components);
   report.cageVolume = totalVolume(cage);
   if (!(report.meshVolume > 0.0)) return;
   report.volumeRatio = report.cageVolume / report.meshVolume;
   report.volumeRatioUnfitted = report.cageVolumeUnfitted / report.meshVolume;
+}
+
+/// The nearest tet of each loose vertex, in their order.
+std::vector<int> tetsOfLoose(const TriangleMesh& mesh, const Surface& surface, const TetMesh& cage) {
+  std::vector<Eigen::Vector3d> loose;
+  const Box3 box = boundingBox(cage.nodes);
+  const double reach = kLooseReach * box.diagonal().norm();
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (surface.pointOf[v] >= 0) continue;
+    const Eigen::Vector3d way = mesh.positions[v] - box.center();
+    loose.push_back(box.center() + std::min(1.0, reach / way.norm()) * way);
+  }
+  assert(loose.size() == surface.looseVertices);
+  std::vector<int> tets(loose.size(), 0);
+  if (loose.empty()) return tets;
+  const Result<Embedding> embedded = embed(cage, viewOf(std::as_const(loose)));
+  if (!embedded.ok()) return tets;  // a cage so large that nothing can be embedded in it
+  const std::vector<VertexBinding> bindings = embedded.value().bindings();
+  std::transform(bindings.begin(), bindings.end(), tets.begin(), [](const VertexBinding& b) { return b.tet; });
+  return tets;
+}
+
+/// By vertex: its tet. Empty where rounding has left a vertex outside of all tets: `embed` then finds the nearest tet.
+std::vector<int> vertexTets(const TriangleMesh& mesh, const Surface& surface, const BoundCage& bound) {
+  std::vector<int> tets;
+  const std::vector<int> loose = tetsOfLoose(mesh, surface, bound.tets.mesh);
+  auto next = loose.begin();
+  for (const int point : surface.pointOf) tets.push_back(point < 0 ? *next++ : bound.tets.tetOf[point]);
+  if (std::count(tets.begin(), tets.end(), -1) > 0) tets.clear();
+  return tets;
 }
 
 Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
@@ -204,11 +239,9 @@ Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
   }
   cage.masses =
       cage_detail::nodeMasses(cage.mesh, cage.volumeFraction, solid ? surface.volume : totalVolume(cage.mesh));
+  cage.vertexTets = vertexTets(mesh, surface, bound);
   cage.sourceTet = std::move(bound.tets.latticeTets);
   cage.component = cage_detail::componentNumbers(cage.mesh);
-  for (const int point : surface.pointOf) cage.vertexTets.push_back(bound.tets.tetOf[point]);
-  // Rounding may leave a vertex outside of all tets: then the map is dropped, and `embed` finds the nearest tet.
-  if (std::count(cage.vertexTets.begin(), cage.vertexTets.end(), -1) > 0) cage.vertexTets.clear();
   cage.meshHash = positionsHash(mesh.positions);
   return cage;
 }
@@ -246,7 +279,7 @@ std::string CageReport::describe() const {
   };
   text << counted(tets, "tet", "tets") << ", " << nodes << " nodes, spacing " << spacing;
   if (!targetMet()) text << " (" << targetTets << " tets were requested; no lattice comes closer)";
-  text << "\n" << counted(verticesOutside, "vertex", "vertices") << " outside the cage\n";
+  text << "\n" << counted(verticesOutside, "vertex", "vertices") << " of triangles outside the cage\n";
   text << "dihedral angles " << minDihedralDegrees << " to " << maxDihedralDegrees << " degrees\n";
   text << counted(meshComponents, "component", "components") << " of the mesh, " << components << " of the cage";
   if (fusedComponents > 0) text << " (" << fusedComponents << " are fused with others, which are closer than a tet)";
@@ -254,7 +287,10 @@ std::string CageReport::describe() const {
     text << "; " << duplicateTets << " tets are duplicates, for components of the mesh closer than a tet";
   text << "\n";
   if (openEdges > 0) text << openEdges << " open edges; holes are closed implicitly, by the winding number\n";
-  if (looseVertices > 0) text << looseVertices << " loose vertices, which no triangle uses, have their own tets\n";
+  if (looseVertices > 0) {
+    text << counted(looseVertices, "vertex shapes", "vertices shape")
+         << " no cage, as no triangle uses them; the nearest tet carries them\n";
+  }
   if (bridgingTets > 0)
     text << bridgingTets << " tets were added to join components that shared only a node or an edge\n";
   if (meshVolume > 0.0) {

@@ -13,6 +13,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
+/// A full tet, in the unit of `Cage::fineVolumeFraction`.
 constexpr int kFull = 255;
 /// Mass of the lightest node, relative to the mean. Mass added to reach it is not where the mesh's mass is: with a
 /// fifth, the load of thin ends makes the serpent's sag wrong by half as much again.

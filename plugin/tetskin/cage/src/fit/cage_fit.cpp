@@ -22,6 +22,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
+/// A degree.
 constexpr double kRadians = 3.14159265358979323846 / 180.0;
 /// Limits while fitting, narrower than those promised: 10 and 165 degrees would save 1 % more of the volume.
 constexpr double kFitMinDihedralDeg = 25.0;
@@ -134,6 +135,7 @@ class CageFit {
 
   /// Six times the derivative of the cage's volume by the node's position. Zero for an inner node.
   Eigen::Vector3d volumeGradient(int n) const {
+    // By corner: the others, counter-clockwise as seen from it.
     constexpr int kOpposite[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (int k = 0; k < starSize(n); ++k) {

@@ -38,6 +38,7 @@ std::vector<int> componentNumbers(const TetMesh& mesh) {
 }  // namespace cage_detail
 
 DihedralRange dihedralRange(const TetMesh& mesh) {
+  // A radian.
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   double smallest = 1.0, largest = -1.0;  // cosines of the angles
   for (const Tet& tet : mesh.tets) {

@@ -12,6 +12,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
+/// The bits of all tets around a node.
 constexpr std::uint32_t kWholeStar = (1u << kStarSize) - 1;
 
 using Links = std::array<std::uint32_t, kStarSize>;

@@ -182,10 +182,6 @@ bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
     points[p].tet = locate(points[p].position);
     points[p].deep = isDeep(points[p].position);
   }
-  for (const int p : surface.loosePoints) {
-    cover.addTriangle({points[p].position, points[p].position, points[p].position}, points[p].tet);
-    if (cover.full()) return false;
-  }
   for (std::uint32_t k = 0; k < surface.triangles.size(); ++k) {
     const auto& t = surface.triangles[k];
     cover.setTriangle(k);
@@ -215,10 +211,7 @@ Lists<> trianglesByTet(const Surface& surface, const LatticeFrame& frame, const 
   std::vector<Cover::Touch> touches;
   LatticeSet touched;
   Cover cover(touched, std::numeric_limits<std::size_t>::max(), &touches);
-  Surface solid;  // loose points form no triangles
-  solid.points = surface.points;
-  solid.triangles = surface.triangles;
-  (void)coverAll(solid, frame, cover);
+  (void)coverAll(surface, frame, cover);
   return packLists(lattice.mesh.tetCount(), [&](auto&& add) {
     for (const Cover::Touch& touch : touches) {
       const int tet = lattice.indexOf(set, touch.tet);

@@ -13,9 +13,9 @@ namespace tetskin::cage_detail {
 /// when they or the cage are rounded to single precision; far below anything that would show in the count.
 constexpr double kTouch = 2e-5;
 
-/// Adds to an empty set all tets that a triangle or a loose point of the surface touches. Each triangle is followed
-/// from the tet of a corner to its neighbours, as long as they are touched too; so the cost is proportional to the
-/// number of pairs of triangle and touched tet, whatever the triangles' size.
+/// Adds to an empty set all tets that a triangle of the surface touches. Each triangle is followed from the tet of a
+/// corner to its neighbours, as long as they are touched too; so the cost is proportional to the number of pairs of
+/// triangle and touched tet, whatever the triangles' size.
 /// limit   the cover stops when there are more tets than this; it then returns false
 bool coverSurface(const Surface& surface, const LatticeFrame& frame, std::size_t limit, LatticeSet& set);
 

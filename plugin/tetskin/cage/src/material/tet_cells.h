@@ -12,6 +12,7 @@
 
 namespace tetskin::cage_detail {
 
+/// Two uniform refinements, and the bits of a CellMask.
 constexpr int kCellsPerTet = 64;
 /// Cells along a face of a tet.
 constexpr int kCellsPerFace = 16;
@@ -20,6 +21,7 @@ constexpr int kCellDivision = 4;
 
 /// Bit k is set for cell k of a tet.
 using CellMask = std::uint64_t;
+/// A tet that is full.
 constexpr CellMask kAllCells = ~CellMask{0};
 constexpr CellMask cellBit(int cell) {
   return CellMask{1} << cell;

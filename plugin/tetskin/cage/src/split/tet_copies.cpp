@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <map>
 
 namespace tetskin::cage_detail {
 namespace {
@@ -172,18 +171,6 @@ int pieceWith(const TetPieces& pieces, const TetMaterial& material, int triangle
   return pieces.pieceOf[static_cast<std::size_t>(found - begin)];
 }
 
-/// Loose points belong to no piece: they get the first duplicate of their tet, or a new one.
-void placeLoosePoints(const Surface& surface, const std::vector<int>& tetOf, TetCopies& made) {
-  std::map<int, int> firstIn;
-  for (int k = static_cast<int>(made.copies.size()); k-- > 0;) firstIn[made.copies[k].tet] = k;
-  for (const int p : surface.loosePoints) {
-    if (tetOf[p] < 0) continue;
-    const auto [entry, isNew] = firstIn.try_emplace(tetOf[p], static_cast<int>(made.copies.size()));
-    if (isNew) made.copies.push_back({tetOf[p], 0});
-    made.copyOf[p] = entry->second;
-  }
-}
-
 }  // namespace
 
 TetCopies copyTets(const Surface& surface, const WindingTree& winding, const SurfaceSamples& samples,
@@ -195,17 +182,15 @@ TetCopies copyTets(const Surface& surface, const WindingTree& winding, const Sur
   TetCopies made;
   made.links = CopyLinks(pieces, surface, material, lattice, links, directions).run();
   made.copyOf.assign(tetOf.size(), -1);
-  const auto toPosition = [&](std::size_t point, int triangle) {
+  const auto assign = [&](std::size_t point, int triangle) {
     if (made.copyOf[point] < 0) made.copyOf[point] = pieceWith(pieces, material, triangle, tetOf[point]);
   };
   for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
-    for (const int p : surface.triangles[t]) toPosition(static_cast<std::size_t>(p), t);
+    for (const int p : surface.triangles[t]) assign(static_cast<std::size_t>(p), t);
   }
-  for (std::size_t k = 0; k < samples.triangleOf.size(); ++k)
-    toPosition(surface.points.size() + k, samples.triangleOf[k]);
+  for (std::size_t k = 0; k < samples.triangleOf.size(); ++k) assign(surface.points.size() + k, samples.triangleOf[k]);
   assert(surface.points.size() + samples.triangleOf.size() == tetOf.size());
   made.copies = std::move(pieces.pieces);
-  if (!surface.loosePoints.empty()) placeLoosePoints(surface, tetOf, made);
   return made;
 }
 

@@ -17,19 +17,42 @@ namespace {
 /// A triangle whose area is below this fraction of its longest edge squared has no side: its normal is rounding error.
 constexpr double kThinTriangle = 1e-12;
 
-/// The point that each vertex became.
-std::vector<int> weld(const TriangleMesh& mesh, Surface& surface) {
-  const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
-  std::vector<int> pointOf(mesh.vertexCount());
-  for (std::size_t v = 0; v < pointOf.size(); ++v) {
-    if (first[v] == v) {
-      pointOf[v] = static_cast<int>(surface.points.size());
-      surface.points.push_back(mesh.positions[v]);
-    } else {
-      pointOf[v] = pointOf[first[v]];
-    }
+using Triangles = std::vector<std::array<int, 3>>;
+
+/// The triangles by the first vertex at each corner's position, without those that are points: they join nothing, and
+/// have no extent that a tet could cover.
+Triangles weldedTriangles(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first) {
+  Triangles welded;
+  welded.reserve(mesh.triangleCount());
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    const auto corner = [&](int i) { return static_cast<int>(first[static_cast<std::size_t>(t[i])]); };
+    const std::array<int, 3> corners = {corner(0), corner(1), corner(2)};
+    if (corners[0] != corners[1] || corners[0] != corners[2]) welded.push_back(corners);
   }
-  return pointOf;
+  return welded;
+}
+
+/// Makes a point of each position that triangles use, in the order of the vertices. What a modeller cut off often
+/// leaves its vertices in the file: tets around those would belong to nothing, and fall apart.
+void makePoints(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first, Triangles& triangles,
+                Surface& surface) {
+  std::vector<char> used(mesh.vertexCount(), 0);
+  for (const std::array<int, 3>& t : triangles) {
+    for (const int v : t) used[v] = 1;
+  }
+  surface.pointOf.assign(mesh.vertexCount(), -1);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) {
+      surface.pointOf[v] = static_cast<int>(surface.points.size());
+      surface.points.push_back(mesh.positions[v]);
+    } else if (first[v] != v) {
+      surface.pointOf[v] = surface.pointOf[first[v]];
+    }
+    surface.looseVertices += surface.pointOf[v] < 0 ? 1 : 0;
+  }
+  for (std::array<int, 3>& t : triangles) {
+    for (int& v : t) v = surface.pointOf[v];
+  }
 }
 
 bool hasArea(const Surface& surface, const std::array<int, 3>& t) {
@@ -42,7 +65,7 @@ bool hasArea(const Surface& surface, const std::array<int, 3>& t) {
 }
 
 /// Keeps the first of every set of triangles with the same three points. Bucketed by lowest point: linear.
-void addDistinct(const std::vector<std::array<int, 3>>& triangles, Surface& surface) {
+void addDistinct(const Triangles& triangles, Surface& surface) {
   const auto sorted = [](std::array<int, 3> t) {
     std::sort(t.begin(), t.end());
     return t;
@@ -61,16 +84,6 @@ void addDistinct(const std::vector<std::array<int, 3>>& triangles, Surface& surf
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (keep[t]) surface.triangles.push_back(triangles[t]);
-  }
-}
-
-void findLoosePoints(Surface& surface) {
-  std::vector<char> used(surface.points.size(), 0);
-  for (const auto& t : surface.triangles) {
-    for (const int p : t) used[p] = 1;
-  }
-  for (std::size_t p = 0; p < used.size(); ++p) {
-    if (!used[p]) surface.loosePoints.push_back(static_cast<int>(p));
   }
 }
 
@@ -105,18 +118,15 @@ void measure(Surface& surface) {
 
 Surface prepareSurface(const TriangleMesh& mesh) {
   Surface surface;
-  surface.pointOf = weld(mesh, surface);
+  const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
+  Triangles triangles = weldedTriangles(mesh, first);
+  makePoints(mesh, first, triangles, surface);
   surface.box = boundingBox(surface.points);
-  std::vector<std::array<int, 3>> triangles(mesh.triangleCount());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) triangles[t][i] = surface.pointOf[mesh.triangles[t][i]];
-  }
   addDistinct(triangles, surface);
   const auto solidEnd = std::stable_partition(surface.triangles.begin(), surface.triangles.end(),
                                               [&](const auto& t) { return hasArea(surface, t); });
   assert(surface.pointOf.size() == mesh.vertexCount() && surface.triangles.size() <= mesh.triangleCount());
   surface.solidCount = static_cast<std::size_t>(solidEnd - surface.triangles.begin());
-  findLoosePoints(surface);
   surface.components = countComponents(surface);
   orient(surface);
   measure(surface);

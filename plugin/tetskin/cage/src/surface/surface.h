@@ -20,12 +20,12 @@ namespace tetskin::cage_detail {
 constexpr double kSheetVolume = 1e-6;
 
 struct Surface {
-  std::vector<Eigen::Vector3d> points;        ///< distinct positions of the mesh's vertices, rest space
-  std::vector<int> pointOf;                   ///< by vertex of the mesh: its point
+  std::vector<Eigen::Vector3d> points;        ///< distinct positions that triangles use, rest space
+  std::vector<int> pointOf;                   ///< by vertex of the mesh: its point; -1 if no triangle uses its position
   std::vector<std::array<int, 3>> triangles;  ///< distinct ones; the first `solidCount` of them have an area
   std::size_t solidCount = 0;
-  std::vector<int> loosePoints;  ///< points that no triangle uses
-  Box3 box;                      ///< box of all points
+  std::size_t looseVertices = 0;  ///< vertices without a point
+  Box3 box;                       ///< box of all points
 
   std::size_t components = 0;  ///< number of sets of triangles connected by points
   std::size_t openEdges =
@@ -35,9 +35,9 @@ struct Surface {
   double volume = 0.0;  ///< enclosed volume, by the divergence theorem about the box's centre; 0 for a sheet
 };
 
-/// Welds coincident vertices, drops repeated triangles (double-sided faces are one face), makes the orientation of
-/// neighbours agree, and measures. The mesh must have passed `validate`. Cost O(n log n) at worst, in practice
-/// linear in vertices and triangles.
+/// Welds coincident vertices, drops repeated triangles (double-sided faces are one face), triangles whose corners are
+/// at one position, and vertices that no triangle uses, makes the orientation of neighbours agree, and measures. The
+/// mesh must have passed `validate`. Cost O(n log n) at worst, in practice linear in vertices and triangles.
 Surface prepareSurface(const TriangleMesh& mesh);
 
 inline WindingTree windingTreeOf(const Surface& surface) {

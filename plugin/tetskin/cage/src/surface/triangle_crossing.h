@@ -23,7 +23,7 @@ struct Crossing {
 /// the same numbers except for the sign: no segment passes between them, unless it hits the edge to the last bit.
 class SeenTriangle {
  public:
-  /// corners  relative to the point
+  /// a, b, c  its corners, relative to the point
   SeenTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
       : edges_{a.cross(b), b.cross(c), c.cross(a)}, volume_(a.dot(edges_[1])) {}
 
