@@ -21,6 +21,7 @@ using test::write;
 std::string writeAll(char format, const std::string& bytes) {
   if (format == 'v') return write("c.vtk", bytes);
   if (format == 'm') return write("c.msh", bytes);
+  if (format == 'd') return write("c.mesh", bytes);
   const std::size_t split = bytes.find('\f');
   write("c.node", bytes.substr(0, split));
   return write("c.ele", split == std::string::npos ? "" : bytes.substr(split + 1));
@@ -33,7 +34,7 @@ void checkCage(const std::string& path, const TetMesh& mesh) {
     TETSKIN_FUZZ_EXPECT(!cage.status().message.empty());
     return;
   }
-  TETSKIN_FUZZ_EXPECT(checkKnowledge(cage.value()).ok());
+  TETSKIN_FUZZ_EXPECT(validateAttributes(cage.value()).ok());
   TETSKIN_FUZZ_EXPECT(cage.value().mesh.tets == mesh.tets && cage.value().mesh.nodes == mesh.nodes);
   const std::string copy = (test::folder() / "copy.vtk").string();
   TETSKIN_FUZZ_EXPECT(saveCage(cage.value(), copy).ok());
@@ -52,7 +53,7 @@ void checkCage(const std::string& path, const TetMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto format = static_cast<char>(data[0]);
-  if (format != 'v' && format != 'm' && format != 't') return 0;
+  if (format != 'v' && format != 'm' && format != 'd' && format != 't') return 0;
   const std::string path = writeAll(format, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
   Result<TetMesh> mesh = loadTetMesh(path);
   if (!mesh.ok()) {

@@ -52,6 +52,34 @@ TEST(BinaryCageFiles, ReadsBinaryData) {
   EXPECT_EQ(cage.masses, (std::vector<double>{1, 0.5, 1, 0.5}));
 }
 
+/// The length in front of a string is in 1, 2, 4 or 8 bytes, by its two bits on top.
+TEST(BinaryCageFiles, ReadsOverStrings) {
+  const std::string longer(300, 'x');
+  const std::string strings =
+      "\xC3"
+      "abc" +
+      std::string("\xC0") + "\x81\x2C" + longer + big({0x40000002}) + "\n\n" + big({0, 1}) + "z";
+  const std::string text =
+      with(binaryCage(), "FIELD FieldData 2\n", "FIELD FieldData 3\nnames 1 5 string\n" + strings + "\n");
+  const Result<Cage> read = loadText(text);
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  EXPECT_EQ(read.value().meshHash, 0xFFFFFFFF00000002u);
+  expectError(loadText(with(text, "names 1 5", "names 1 9999")).status(), StatusCode::Malformed, {});
+  expectError(loadText(with(text, big({0x40000002}), big({0x7FFFFFFF}))).status(), StatusCode::Malformed,
+              {"c.vtk", "complete"});
+}
+
+TEST(BinaryCageFiles, MassesFollowTheNodesOfTetsOfSecondOrder) {
+  const std::string cage =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n0 0 0 .5 0 0 1 0 0 .5 .5 0 0 "
+      "1 "
+      "0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5 0 0 1\nCELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n24\nPOINT_DATA 10\n"
+      "SCALARS mass double 1\nLOOKUP_TABLE default\n1 9 2 9 3 9 9 9 9 4\n";
+  const Result<Cage> read = loadText(cage);
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  EXPECT_EQ(read.value().masses, (std::vector<double>{1, 2, 3, 4}));
+}
+
 TEST(BinaryCageFiles, SurvivesBinaryDataCutShortAnywhere) {
   const std::string bytes = binaryCage();
   std::size_t read = 0;

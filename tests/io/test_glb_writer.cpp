@@ -302,6 +302,27 @@ TEST(GlbWriter, RefusesWhatItCannotHold) {
   expectError(GlbWriter::create(folder.path("b.glb"), 0.0).status(), StatusCode::InvalidOption, {"frames per second"});
 }
 
+TEST(GlbWriter, CallsAfterItsEndAreErrors) {
+  const TempFolder folder;
+  const CagedBar bar;
+  GlbWriter writer = writerOf(folder.path("a.glb"));
+  const std::size_t model = writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).value();
+  writer.addBody(model, "bar");
+  ASSERT_TRUE(writer.addFrame({viewOf(bar.cage.mesh.nodes)}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  const std::string written = TempFolder::read(folder.path("a.glb"));
+  const StatusCode code = StatusCode::FileNotWritable;
+  expectError(writer.addFrame({viewOf(bar.cage.mesh.nodes)}), code, {"finished", "another writer"});
+  expectError(writer.addObject("floor", bar.mesh, false), code, {"finished"});
+  expectError(writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).status(), code,
+              {"finished"});
+  writer.addBody(model, "bar");
+  writer.setMaterials({});
+  EXPECT_EQ(writer.bytesFor(10), 0.0);
+  expectError(writer.finish(), code, {"finished"});
+  EXPECT_EQ(TempFolder::read(folder.path("a.glb")), written);
+}
+
 TEST(GlbWriter, NamesAFolderThatItCannotWriteToBeforeTheRun) {
   const TempFolder folder;
   expectError(GlbWriter::create(folder.path("no/a.glb"), 60.0).status(), StatusCode::FileNotWritable, {"no/a.glb"});

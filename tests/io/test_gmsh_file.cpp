@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "raw_bytes.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
+using test::raw;
 using test::TempFolder;
 
 Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
@@ -42,7 +44,7 @@ TEST(LoadGmsh, ReadsVersion2) {
   TetFileReport report;
   expectTwoTets(loadText(kHead2 + kNodes2 + kElements2, &report));
   EXPECT_EQ(report.skippedCells, 2u);
-  EXPECT_EQ(report.skippedHighOrder, 0u);
+  EXPECT_EQ(report.cornersOnly, 0u);
 }
 
 TEST(LoadGmsh, ReadsVersion4WithParametricNodes) {
@@ -75,20 +77,98 @@ TEST(LoadGmsh, SectionsMayComeInAnyOrder) {
   expectTwoTets(loadText(kHead2 + kElements2 + kNodes2));
 }
 
-TEST(LoadGmsh, SkipsAndCountsTetsOfHigherOrder) {
+TEST(LoadGmsh, ReadsTetsOfSecondOrderByTheirCorners) {
+  const std::string nodes =
+      "$Nodes\n11\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n15 .5 0 0\n16 .5 .5 0\n17 0 .5 0\n18 0 0 .5\n19 .5 0 .5\n20 0 "
+      ".5 "
+      ".5\n7 9 9 9\n$EndNodes\n";
   TetFileReport report;
-  const Result<TetMesh> mesh =
-      loadText(kHead2 + kNodes2 + "$Elements\n1\n1 11 2 0 1 10 20 15 40 10 20 15 40 10 20\n$EndElements\n", &report);
-  expectError(mesh.status(), StatusCode::Empty, {"c.msh: ", "no linear tets", "1 of them higher-order tets"});
-  EXPECT_EQ(report.skippedHighOrder, 1u);
+  const Result<TetMesh> mesh = loadText(
+      kHead2 + nodes + "$Elements\n2\n1 11 2 0 1 1 2 3 4 15 16 17 18 19 20\n2 15 2 0 1 7\n$EndElements\n", &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
+  ASSERT_EQ(mesh.value().nodeCount(), 5u) << "the corners, and a node that has nothing to do with the tet";
+  EXPECT_EQ(mesh.value().nodes[4], Eigen::Vector3d(9, 9, 9));
+  EXPECT_EQ(report.cornersOnly, 1u);
+  EXPECT_EQ(report.droppedNodes, 6u);
+  EXPECT_EQ(report.describe(),
+            "1 cells that are no tets were skipped, 1 tets of higher order were read by their corners, without 6 other "
+            "nodes");
 }
 
-TEST(LoadGmsh, RefusesBinaryFilesAndOtherVersions) {
+TEST(LoadGmsh, ReadsVersion40) {
+  expectTwoTets(
+      loadText("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n$Nodes\n3 5\n1 2 0 3\n10 0 0 0\n20 1 0 0\n15 0 1 0\n"
+               "2 2 1 1\n40 0 0 1 0.5 0.25\n1 3 0 1\n1000000 0.1 1 1\n$EndNodes\n"
+               "$Elements\n2 3\n1 2 2 1\n1 10 20 15\n1 3 4 2\n2 10 20 15 40\n3 20 15 40 1000000\n$EndElements\n"));
+}
+
+/// A binary file of either version: two tets and a triangle.
+std::string binaryText(int version) {
+  using I = std::int32_t;
+  using L = std::int64_t;
+  const std::vector<I> tags = {10, 20, 15, 40, 13};  // 13: a carriage return
+  const std::vector<std::string> points = {raw<double>({0, 0, 0}), raw<double>({1, 0, 0}), raw<double>({0, 1, 0}),
+                                           raw<double>({0, 0, 1}), raw<double>({0.1, 1, 1})};
+  std::string text =
+      std::string("$MeshFormat\n") + (version == 2 ? "2.2" : "4.1") + " 1 8\n" + raw<I>({1}) + "\n$EndMeshFormat\n";
+  if (version == 2) {
+    text += "$Nodes\n5\n";
+    for (std::size_t n = 0; n < 5; ++n) text += raw<I>({tags[n]}) + points[n];
+    return text + "\n$EndNodes\n$Elements\n3\n" + raw<I>({2, 1, 2, 1, 0, 1, 10, 20, 15}) +
+           raw<I>({4, 2, 2, 2, 0, 1, 10, 20, 15, 40, 3, 0, 1, 20, 15, 40, 13}) + "\n$EndElements\n";
+  }
+  text += "$Entities\n" + raw<L>({0, 0, 0, 0}) + "\r $End\n$EndEntities\n$Nodes\n" + raw<L>({2, 5, 10, 40}) +
+          raw<I>({2, 1, 1}) + raw<L>({1, 10}) + points[0] + raw<double>({0.5, 0.5}) + raw<I>({3, 1, 0}) + raw<L>({4});
+  for (std::size_t n = 1; n < 5; ++n) text += raw<L>({tags[n]});
+  for (std::size_t n = 1; n < 5; ++n) text += points[n];
+  return text + "\n$EndNodes\n$Elements\n" + raw<L>({2, 3, 1, 3}) + raw<I>({2, 1, 2}) + raw<L>({1, 1, 10, 20, 15}) +
+         raw<I>({3, 1, 4}) + raw<L>({2, 2, 10, 20, 15, 40, 3, 20, 15, 40, 13}) + "\n$EndElements\n";
+}
+
+TEST(LoadGmsh, ReadsBinaryOfBothVersions) {
+  for (const int version : {2, 4}) {
+    TetFileReport report;
+    expectTwoTets(loadText(binaryText(version), &report));
+    EXPECT_EQ(report.skippedCells, 1u);
+  }
+}
+
+TEST(LoadGmsh, ReadsBinaryOfSecondOrder) {
+  std::string text = "$MeshFormat\n2.2 1 8\n" + raw<std::int32_t>({1}) + "\n$EndMeshFormat\n$Nodes\n10\n";
+  for (std::int32_t n = 1; n <= 10; ++n)
+    text += raw<std::int32_t>({n}) + raw<double>({1.0 * n, 1.0 * n * n, n == 4 ? 1.0 : 0.0});
+  text += "\n$EndNodes\n$Elements\n1\n" + raw<std::int32_t>({11, 1, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) +
+          "\n$EndElements\n";
+  TetFileReport report;
+  const Result<TetMesh> mesh = loadText(text, &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().nodeCount(), 4u);
+  EXPECT_EQ(report.droppedNodes, 6u);
+}
+
+TEST(LoadGmsh, BinaryFilesThatAreCutShortOrDamagedAreErrors) {
+  for (const int version : {2, 4}) {
+    const std::string sound = binaryText(version);
+    const std::size_t last = sound.find("$EndElements");
+    for (std::size_t length = 0; length < last; ++length)
+      EXPECT_FALSE(loadText(sound.substr(0, length)).ok()) << length;
+    for (std::size_t at = 30; at + 4 < last; ++at) {
+      std::string damaged = sound;
+      damaged.replace(at, 4, "\xFF\xFF\xFF\x7F");
+      const Result<TetMesh> mesh = loadText(damaged);
+      EXPECT_TRUE(mesh.ok() ? checkTetMesh(mesh.value()).indexOutOfRange.count == 0 : !mesh.status().message.empty());
+    }
+  }
+}
+
+TEST(LoadGmsh, RefusesOtherVersions) {
   const StatusCode code = StatusCode::UnsupportedFormat;
-  expectError(loadText(std::string("$MeshFormat\n4.1 1 8\n\1\0\0\0\n", 26)).status(), code,
-              {"c.msh:2:", "binary", "ASCII"});
-  expectError(loadText("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'4.0'", "2.2 or 4.1"});
+  expectError(loadText("$MeshFormat\n4.0 1 8\n").status(), code, {"c.msh:2:", "'4.0', binary", "2.2 or 4.1"});
   expectError(loadText("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'1.0'"});
+  std::string text = binaryText(2);
+  text.replace(text.find("$Elements\n3\n") + 12, 4, raw<std::int32_t>({99}));
+  expectError(loadText(text).status(), code, {"c.msh: ", "type 99", "ASCII"});
 }
 
 TEST(LoadGmsh, RefusesWhatIsNoGmshFile) {

@@ -220,8 +220,45 @@ TEST(LoadObj, NamesTheLineOfAnIndexOutOfRange) {
   expectError(loadText(three + "\nf 1 2 0\n").status(), code, {"m.obj:5:", "counts from 1"});
   expectError(loadText(three + "f 1 2 -4\n").status(), code, {"m.obj:4:", "vertex -4"});
   expectError(loadText(three + "f 1 2 99999999999\n").status(), code, {"m.obj:4:", "99999999999"});
-  expectError(loadText(three + "f 1/1 2/1 3/1\n").status(), code, {"m.obj:4:", "texture coordinates", "has 0"});
-  expectError(loadText(three + "vn 0 0 1\nf 1//1 2//1 3//2\n").status(), code, {"m.obj:5:", "normals", "has 1"});
+}
+
+TEST(LoadObj, FacesThatNameWhatTheFileLacksAreReadWithoutIt) {
+  const std::string three = kThree;
+  for (const char* face :
+       {"f 1/1 2/1 3/1\n", "f 1/-1 2/-1 3/-1\n", "f 1/0 2/0 3/0\n", "f 1//1 2//2 3//99999999999\n"}) {
+    const TempFolder folder;
+    MeshFileReport report;
+    const Result<TriangleMesh> mesh = loadMesh(folder.write("m.obj", three + face + face), &report);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh.value().triangleCount(), 2u);
+    EXPECT_TRUE(mesh.value().texcoords.empty());
+    EXPECT_EQ(report.incompleteFaces.count, 2u);
+    EXPECT_EQ(report.incompleteFaces.firstLine, 4u);
+    EXPECT_EQ(report.describe(),
+              "2 faces read without texture coordinates or normals that do not exist (first in line 4)");
+  }
+  // What comes later exists.
+  MeshFileReport report;
+  const TempFolder folder;
+  const Result<TriangleMesh> mesh = loadMesh(folder.write("m.obj", three + "f 1//1 2//1 3//1\nvn 0 0 1\n"), &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().normals.size(), 3u);
+  EXPECT_EQ(report.describe(), "");
+}
+
+TEST(LoadObj, FacesOfFewerThanThreeCornersAreLeftOut) {
+  const TempFolder folder;
+  MeshFileReport report;
+  const std::string text = std::string(kThree) + "g a\nf 1 2\nf 1 2 3\nf\nf 3\nf 3/1 2 1\n";
+  const Result<TriangleMesh> mesh = loadMesh(folder.write("m.obj", text), &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}, {2, 1, 0}}));
+  ASSERT_EQ(mesh.value().groups.size(), 1u);
+  EXPECT_EQ(mesh.value().groups[0].triangleCount, 2u);
+  EXPECT_EQ(report.describe(),
+            "3 faces of fewer than 3 corners left out (first in line 5), 1 face read without texture coordinates or "
+            "normals that do not exist (first in line 9)");
+  expectError(loadText(std::string(kThree) + "f 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
 }
 
 TEST(LoadObj, NamesTheLineOfMalformedText) {
@@ -231,7 +268,7 @@ TEST(LoadObj, NamesTheLineOfMalformedText) {
   expectError(loadText(three + "v 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "needs 3 numbers and has 2"});
   expectError(loadText(three + "vn 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vn' needs 3"});
   expectError(loadText(three + "vt\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vt' needs 1"});
-  expectError(loadText(three + "f 1 2\n").status(), code, {"m.obj:4:", "a face of 2 corners"});
+  expectError(loadText(three + "f 1/x 2 3\n").status(), code, {"m.obj:4:", "'x'", "texture coordinate"});
   expectError(loadText(three + "f 1 2 3x\n").status(), code, {"m.obj:4:", "'3x'"});
   expectError(loadText(three + "vt 0 0\nvn 0 0 1\nf 1/1/1/1 2 3\n").status(), code, {"m.obj:6:", "'1/1/1/1'"});
 }

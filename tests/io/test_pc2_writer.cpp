@@ -99,5 +99,20 @@ TEST(Pc2Writer, RefusesWhatItCannotHold) {
   expectError(Pc2Writer::create(folder.path("no/a.pc2"), 2).status(), StatusCode::FileNotWritable, {"no/a.pc2"});
 }
 
+TEST(Pc2Writer, CallsAfterItsEndAreErrors) {
+  const TempFolder folder;
+  Pc2Writer writer = writerOf(folder.path("a.pc2"));
+  ASSERT_TRUE(writer.addFrame(viewOf(kFloats)).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  const std::string written = TempFolder::read(folder.path("a.pc2"));
+  expectError(writer.addFrame(viewOf(kFloats)), StatusCode::FileNotWritable, {"finished", "another writer"});
+  expectError(writer.finish(), StatusCode::FileNotWritable, {"finished"});
+  EXPECT_EQ(TempFolder::read(folder.path("a.pc2")), written);
+  Pc2Writer first = writerOf(folder.path("b.pc2"));
+  Pc2Writer second = std::move(first);
+  expectError(first.finish(), StatusCode::FileNotWritable, {"finished"});
+  EXPECT_TRUE(second.addFrame(viewOf(kFloats)).ok());
+}
+
 }  // namespace
 }  // namespace tetskin

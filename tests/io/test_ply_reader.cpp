@@ -58,6 +58,16 @@ TEST(LoadPly, LineBreaksOfTheBodyMeanNothing) {
   expectPlate(loadText(kHead + "0 0 0 1 0 0\n\n1 1 0\t0 1\n.1 4 0 1 2 3 3 0 2 1"));
 }
 
+TEST(LoadPly, IgnoresWhatStandsBehindAnElementInItsLine) {
+  expectPlate(loadText(kHead + "0 0 0 255 0\n1 0 0 7\n1 1 0 red\n0 1 .1\n4 0 1 2 3 6 0 0 1 0 1 1\n3 0 2 1 9 1 1 1\n"));
+}
+
+TEST(LoadPly, ReadsOverALineOfAnOldBlenderInTheHeader) {
+  std::string text = kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n";
+  text.replace(text.find("comment any"), 11, "Created by Blender3D 247 - www.blender.org, source file: ");
+  expectPlate(loadText(text));
+}
+
 TEST(LoadPly, ReadsTheLineEndsOfWindowsAndOldMacs) {
   const std::string text = kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n";
   std::string windows, mac = text;
@@ -215,7 +225,7 @@ TEST(LoadPly, RefusesBadHeaders) {
               {"m.ply:", "end_header", "complete"});
   expectError(loadText("ply\nelement vertex 0\nend_header\n").status(), code, {"m.ply:", "no 'format'"});
   expectError(loadText("ply\nformat ascii 1.0\nproperty int x\nend_header\n").status(), code, {"m.ply:3:", "before"});
-  expectError(loadText("ply\nformat ascii 1.0\nsolid\nend_header\n").status(), code, {"m.ply:3:", "'solid'"});
+  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\nsolid\n").status(), code, {"m.ply:4:", "'solid'"});
   expectError(loadText("ply\nformat xml 1.0\n").status(), StatusCode::UnsupportedFormat, {"m.ply:2:", "'xml'"});
   expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n").status(),
               StatusCode::UnsupportedFormat, {"m.ply:4:", "'half'"});

@@ -30,13 +30,13 @@ TEST(LoadTetMesh, TellsTheFormatByTheExtensionInAnyCase) {
 TEST(LoadTetMesh, RefusesOtherFormatsByName) {
   const StatusCode code = StatusCode::UnsupportedFormat;
   expectError(loadTetMesh("cage.vtu").status(), code, {"cage.vtu", "XML", "save it as legacy VTK"});
-  expectError(loadTetMesh("cage.xyz").status(), code, {"cage.xyz", ".node", ".msh"});
+  expectError(loadTetMesh("cage.xyz").status(), code, {"cage.xyz", ".node", ".msh", ".mesh"});
   expectError(loadTetMesh("cage").status(), code, {"cage: "});
 }
 
 TEST(LoadTetMesh, NamesAMissingFile) {
   const TempFolder folder;
-  for (const char* name : {"c.vtk", "c.msh", "c.node", "c.ele"}) {
+  for (const char* name : {"c.vtk", "c.msh", "c.node", "c.ele", "c.mesh"}) {
     expectError(loadTetMesh(folder.path(name)).status(), StatusCode::FileNotFound,
                 {folder.path("c."), "check the path"});
   }
@@ -80,6 +80,10 @@ std::vector<std::pair<std::string, std::string>> validFiles() {
       "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nc\n$EndComments\n$Nodes\n1 4 1 4\n3 1 1 "
       "4\n1\n2\n3\n4\n0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n0 0 1 0 0 0\n$EndNodes\n$Elements\n1 1 1 1\n3 1 4 "
       "1\n1 1 2 3 4\n$EndElements\n");
+  files.emplace_back(
+      "c.mesh",
+      "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTriangles\n1\n"
+      "1 2 3 0\nTetrahedra\n1\n1 2 3 4 0\nEnd\n");
   return files;
 }
 

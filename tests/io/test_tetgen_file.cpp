@@ -63,6 +63,17 @@ TEST(LoadTetgen, ReadsOverCommentsAttributesAndMarkers) {
 
 TEST(LoadTetgen, TakesTheCornersOfTetsWithTenNodes) {
   expectTwoTets(loadTexts(kNodes, "2 10 0\n0 0 1 2 3 4 4 4 4 4 4\n1 1 2 3 4 0 0 0 0 0 0\n"));
+  const TempFolder folder;
+  folder.write("c.node",
+               "11 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .5 0 0\n6 .5 .5 0\n7 0 .5 0\n8 0 0 .5\n9 .5 0 .5\n"
+               "10 0 .5 .5\n11 7 7 7\n");
+  TetFileReport report;
+  const auto mesh = loadTetMesh(folder.write("c.ele", "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n"), &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  ASSERT_EQ(mesh.value().nodeCount(), 5u) << "the corners, and a node that no tet names";
+  EXPECT_EQ(mesh.value().nodes[4], Eigen::Vector3d(7, 7, 7));
+  EXPECT_EQ(report.cornersOnly, 1u);
+  EXPECT_EQ(report.droppedNodes, 6u);
 }
 
 TEST(LoadTetgen, NamesTheFileThatIsMissing) {
@@ -104,7 +115,7 @@ TEST(LoadTetgen, NamesTheLineOfACoordinateThatIsNotFinite) {
 
 TEST(LoadTetgen, RefusesPlaneMeshesAndMeshesWithoutTets) {
   expectError(loadTexts("1 2\n0 0 0\n", kTets).status(), StatusCode::UnsupportedFormat, {"c.1.node:1:", "dimension 2"});
-  expectError(loadTexts(kNodes, "0 4 0\n").status(), StatusCode::Empty, {"c.1.ele: ", "no linear tets"});
+  expectError(loadTexts(kNodes, "0 4 0\n").status(), StatusCode::Empty, {"c.1.ele: ", "no tets"});
 }
 
 }  // namespace

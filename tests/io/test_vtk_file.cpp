@@ -80,15 +80,43 @@ TEST(LoadVtk, ALoneTypeOfTetsStandsForAllCells) {
   expectError(loadText(kHead + kPoints + wedge + "CELL_TYPES 10\n").status(), StatusCode::Malformed, {"6 nodes"});
 }
 
-TEST(LoadVtk, SkipsAndCountsOtherCells) {
+TEST(LoadVtk, SkipsAndCountsWhatIsNoTet) {
   TetFileReport report;
-  expectTwoTets(loadText(kHead + kPoints +
-                             "CELLS 4 25\n3 0 1 2\n4 0 1 2 3\n10 0 1 2 3 4 0 1 2 3 4\n4 1 2 3 4\n"
-                             "CELL_TYPES 4\n5\n10\n24\n10\n",
-                         &report));
-  EXPECT_EQ(report.skippedCells, 2u);
-  EXPECT_EQ(report.skippedHighOrder, 1u);
-  EXPECT_NE(report.describe().find("2 cells"), std::string::npos);
+  expectTwoTets(
+      loadText(kHead + kPoints + "CELLS 3 14\n3 0 1 2\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5\n10\n10\n", &report));
+  EXPECT_EQ(report.skippedCells, 1u);
+  EXPECT_EQ(report.cornersOnly, 0u);
+  EXPECT_EQ(report.describe(), "1 cells that are no tets were skipped");
+}
+
+TEST(LoadVtk, ReadsTetsOfSecondOrderByTheirCorners) {
+  const std::string points =
+      "POINTS 11 float\n0 0 0 .5 0 0 1 0 0 .5 .5 0 0 1 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5 0 0 1 7 7 7\n";
+  for (const char* type : {"24", "71", "79"}) {
+    TetFileReport report;
+    const Result<TetMesh> mesh =
+        loadText(kHead + points + "CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n" + type + "\n", &report);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
+    ASSERT_EQ(mesh.value().nodeCount(), 5u) << "a node that no cell names stays";
+    EXPECT_EQ(mesh.value().nodes[2], Eigen::Vector3d(0, 1, 0));
+    EXPECT_EQ(report.cornersOnly, 1u);
+    EXPECT_EQ(report.droppedNodes, 6u);
+  }
+}
+
+TEST(LoadVtk, ANodeThatIsACornerElsewhereStays) {
+  TetFileReport report;
+  const std::string points = "POINTS 10 float\n0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\n";
+  const Result<TetMesh> mesh =
+      loadText(kHead + points +
+                   "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 6 7\nCELL_TYPES 2\n24 10\nPOINT_DATA 10\nSCALARS x "
+                   "float\nLOOKUP_TABLE default\n0 0 0 0 0 0 0 0 0 0\n",
+               &report);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {0, 4, 5, 6}}));
+  EXPECT_EQ(mesh.value().nodes[5], Eigen::Vector3d(0, 0.5, 0));
+  EXPECT_EQ(report.droppedNodes, 3u);
 }
 
 TEST(LoadVtk, ReadsOverFieldsAndData) {
@@ -151,7 +179,7 @@ TEST(LoadVtk, RefusesBinaryFilesThatAreDamaged) {
   index.replace(index.find("CELLS 3 14\n") + 11 + 4, 4, big(std::int32_t(-2)));
   expectError(loadText(index).status(), StatusCode::IndexOutOfRange, {"c.vtk: ", "cell 0", "node -2"});
   std::string type = text;
-  type.replace(type.find("double"), 6, "string");
+  type.replace(type.find("POINTS 5 double") + 9, 6, "string");
   expectError(loadText(type).status(), StatusCode::UnsupportedFormat, {"c.vtk:", "'string'", "save it as ASCII"});
 }
 
@@ -229,7 +257,7 @@ TEST(LoadVtk, RefusesCountsThatDoNotFit) {
 TEST(LoadVtk, RefusesAMeshWithoutTets) {
   TetFileReport report;
   const Result<TetMesh> mesh = loadText(kHead + kPoints + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", &report);
-  expectError(mesh.status(), StatusCode::Empty, {"c.vtk: ", "no linear tets", "1 cells"});
+  expectError(mesh.status(), StatusCode::Empty, {"c.vtk: ", "no tets", "1 cells"});
   EXPECT_EQ(report.skippedCells, 1u);
 }
 

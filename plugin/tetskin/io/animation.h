@@ -36,14 +36,14 @@ struct SurfaceMaterial {
 ///   is two nodes, as F = U S V^T is a rotation and a scale above a rotation, which holds any F; the mesh has normals,
 ///   which viewers turn with the bones, about as the surface turns.
 ///
-/// A vertex outside of its tet would need weights below 0, which glTF has not: it takes those of the tet's closest
-/// point
-/// (`EmbeddedPoint::clampedWeights`). A linear surface then keeps the vertex' distance vector to that point, as at
-/// rest, instead of turning it with the tet; a quadratic one differs to second order in that distance.
+/// A vertex outside of its tet would need weights below 0, which glTF does not allow: it takes those of the tet's
+/// closest point (`EmbeddedPoint::clampedWeights`). A linear surface then keeps the vector from that point to the
+/// vertex as it is at rest, instead of turning it with the tet; a quadratic one differs to second order in its length.
 ///
 /// Coordinates are float; of bodies that are far from the origin for their size, they are relative to a point near
 /// them, which the scene's `extras` have as `origin`.
-/// Memory: the keyframes, 12 bytes per bone and frame, 56 if quadratic, until `finish`. Can be moved, not copied.
+/// Memory: the keyframes, 12 bytes per bone and frame, 56 if quadratic, until `finish`. Can be moved, not copied. After
+/// `finish`, and when moved from, every call returns FileNotWritable, or does nothing where there is no status.
 class TETSKIN_IO_API GlbWriter {
  public:
   /// Why this build cannot write GLB: it was made without tinygltf. Empty if it can.
@@ -63,8 +63,9 @@ class TETSKIN_IO_API GlbWriter {
   // What is shown, before the first frame.
 
   /// Adds a mesh in its cage at rest, which any number of bodies may share. Returns its number, from 0. Nothing is
-  /// kept. embedding  of the mesh in the cage Errors     Empty for a mesh without triangles; those of
-  /// `SkinBinding::create`; TooLarge: 65,536 bones or more
+  /// kept.
+  /// embedding  of the mesh in the cage
+  /// Errors     Empty for a mesh without triangles; those of `SkinBinding::create`; TooLarge: 65,536 bones or more
   Result<std::size_t> addModel(const std::string& name, const Cage& cage, const TriangleMesh& mesh,
                                const Embedding& embedding, Interpolation interpolation);
   /// Adds a body of a model, below the number of models.
@@ -93,7 +94,8 @@ class TETSKIN_IO_API GlbWriter {
 
 /// Writes the positions of a deforming mesh's vertices in every frame: the point cache PC2, which Blender (modifier
 /// Mesh Cache), Maya and 3ds Max apply to a mesh with as many vertices in the same order. It holds any deformation, as
-/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, nothing is left.
+/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, nothing is left. After
+/// `finish`, and when moved from, every call returns FileNotWritable.
 class TETSKIN_IO_API Pc2Writer {
  public:
   /// Creates a writer.

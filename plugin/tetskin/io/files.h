@@ -13,44 +13,69 @@
 
 namespace tetskin {
 
+/// What was not read of a mesh file as it stands there. Also written if reading fails, up to the point of failure.
+struct TETSKIN_IO_API MeshFileReport {
+  /// Faces of one kind.
+  struct Faces {
+    std::size_t count = 0;      ///< number of them
+    std::size_t firstLine = 0;  ///< line of the first one, from 1 (undefined where the count is 0)
+  };
+  Faces droppedFaces;     ///< faces of an `.obj` file with fewer than three corners
+  Faces incompleteFaces;  ///< faces that name texture coordinates or normals that the file lacks: read without these
+
+  /// Readable summary in one line; empty if everything was read.
+  std::string describe() const;
+};
+
 /// Reads a render mesh.
 ///
 /// `.obj` files (in any case) are read as they are: vertices in the file's order, including unused ones; polygons split
 /// into triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has exactly one.
 ///
-/// `.ply` files are read as they are, too: vertices in the file's order, polygons split into triangles, no groups,
-/// normals and texture coordinates if the file has them.
+/// `.ply` and `.off` files are read as they are, too: vertices in the file's order, polygons split into triangles, no
+/// groups, normals if the file has them, and texture coordinates of a `.ply` file.
 ///
-/// Everything else (STL, glTF, FBX, Collada, 3DS, OFF, ...) is read by assimp, with the transforms of its scene:
-/// - every mesh once for each node that shows it, transformed, as one group; in the file's own unit;
-/// - vertices are those of assimp (three per triangle for STL), none merged; those of lines and points are left out,
-///   and so are bones and animations;
+/// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (STL, FBX, Collada, 3DS, 3MF,
+/// ...) by assimp, with the transforms of their scenes:
+/// - every mesh once for each node that shows it, transformed, as one group, or one for each primitive of a glTF mesh,
+///   which share its vertices; in the file's own unit;
+/// - vertices are those of the file, for assimp those that it makes (three per triangle for STL), none merged; those of
+///   lines and points are left out, and so are bones, morph targets and animations;
 /// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
 ///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
+///
+/// Of a glTF file, buffers are read from its own folder and those below it, images and whatever else tells of no shape
+/// from nowhere. An extension that it requires and that is not supported is named (KHR_mesh_quantization is supported,
+/// compressed meshes are not).
+///
+/// report  what was left out, if not null
 ///
 /// Errors: FileNotFound, UnsupportedFormat, Malformed, IndexOutOfRange, NonFinite (also for a coordinate beyond
 /// Limits::kMaxCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the
 /// line of an `.obj` or an ASCII `.ply` file. Throws nothing.
-TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path);
+TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report = nullptr);
 
 /// What a file contained besides the tets that were read. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API TetFileReport {
-  std::size_t skippedCells = 0;  ///< cells that are not linear tets: surfaces, lines, hexahedra, quadratic tets, ...
-  std::size_t skippedHighOrder = 0;  ///< of these, tets with nodes on their edges
+  std::size_t skippedCells = 0;  ///< cells that are no tets: surfaces, lines, hexahedra, ...
+  std::size_t cornersOnly = 0;   ///< tets of higher order, with nodes on their edges, read by their four corners
+  std::size_t droppedNodes = 0;  ///< nodes on the edges of these, and inside, which no tet names any more
 
-  /// Readable summary in one line; empty if nothing was skipped.
+  /// Readable summary in one line; empty if everything was read.
   std::string describe() const;
 };
 
 /// Reads a tet mesh; the extension, in any case, selects the format:
 /// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid; deviations from the
 ///                   standard as in Bullet's own files are accepted
-/// - `.node`, `.ele` TetGen: given either, the other is found beside it; numbered from 0 or 1; corners of 10-node tets
-/// - `.msh`          Gmsh, ASCII, versions 2.x and 4.1
+/// - `.node`, `.ele` TetGen: given either, the other is found beside it; numbered from 0 or 1
+/// - `.msh`          Gmsh, ASCII or binary, versions 2.x, 4.0 and 4.1
+/// - `.mesh`         Medit, ASCII
 ///
-/// Nodes and tets are in the file's order and unit. Cells other than tets of 4 nodes are skipped and counted in
-/// `report`, including tets with more nodes (VTK types 24 and 71, Gmsh type 11, ...). In the result, every index names
-/// a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see `checkTetMesh`.
+/// Nodes and tets are in the file's order and unit. Tets of higher order (VTK types 24 and 71, Gmsh type 11, ..., 10
+/// nodes of TetGen) are read by their corners, without the nodes that they have beside these; cells that are no tets
+/// are skipped. Both are counted in `report`. In the result, every index names a node and no coordinate is beyond
+/// Limits::kMaxCoordinate; for other faults see `checkTetMesh`.
 ///
 /// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scene as binary glTF 2.0, by tinygltf: the only source that includes it.
+// A scene as binary glTF 2.0, by tinygltf.
 #include <tetskin/io/src/animation/glb_scene.h>
 
 #include <tiny_gltf.h>
@@ -20,7 +20,8 @@ class GlbBuffer {
  public:
   explicit GlbBuffer(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
 
-  /// A view that the following accessors are in. target  0: not of vertices or indices
+  /// A view that the following accessors are in.
+  /// target  0: not of vertices or indices
   void beginView(int target) {
     align();
     tinygltf::BufferView& view = model_.bufferViews.emplace_back();
@@ -35,7 +36,8 @@ class GlbBuffer {
     model_.bufferViews.back().byteLength = plain.size();
     return static_cast<int>(model_.bufferViews.size()) - 1;
   }
-  /// Adds an accessor of `arity` numbers per element. bounded  states the smallest and the largest values
+  /// Adds an accessor of `arity` numbers per element.
+  /// bounded  states the smallest and the largest values
   template <class Number>
   int add(const std::vector<Number>& numbers, int arity, int type, bool bounded = false) {
     assert(!numbers.empty() && numbers.size() % static_cast<std::size_t>(arity) == 0);

@@ -5,6 +5,7 @@
 #include <tetskin/io/src/animation/affine_bone.h>
 #include <tetskin/io/src/animation/glb_scene.h>
 #include <tetskin/io/src/animation/skinned_geometry.h>
+#include <tetskin/io/src/mesh/gltf_reader.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 
@@ -47,6 +48,10 @@ void appendRotation(const Eigen::Matrix3d& rotation, GlbNode& node) {
 
 void appendScale(const Eigen::Vector3d& scale, GlbNode& node) {
   for (int k = 0; k < 3; ++k) node.scales.push_back(static_cast<float>(scale[k]));
+}
+
+Status animationFinished() {
+  return {StatusCode::FileNotWritable, "the animation is finished; create another writer"};
 }
 
 Status checkTriangles(const std::string& path, const std::string& name, const io::GlbMesh& mesh) {
@@ -130,11 +135,7 @@ GlbWriter::GlbWriter(GlbWriter&& other) noexcept = default;
 GlbWriter& GlbWriter::operator=(GlbWriter&& other) noexcept = default;
 
 std::string GlbWriter::whyNot() {
-#ifdef TETSKIN_TINYGLTF
-  return {};
-#else
-  return "tetskin was built without tinygltf; install it (Debian: libtinygltf-dev) and configure again";
-#endif
+  return io::whyNoGltf();
 }
 
 Result<GlbWriter> GlbWriter::create(const std::string& path, double framesPerSecond) {
@@ -153,13 +154,15 @@ Result<GlbWriter> GlbWriter::create(const std::string& path, double framesPerSec
 }
 
 void GlbWriter::setMaterials(std::vector<SurfaceMaterial> materials) {
-  assert(impl_ && impl_->scene.meshes.empty());
+  if (!impl_) return;
+  assert(impl_->scene.meshes.empty());
   impl_->materials = std::move(materials);
 }
 
 Result<std::size_t> GlbWriter::addModel(const std::string& name, const Cage& cage, const TriangleMesh& mesh,
                                         const Embedding& embedding, Interpolation interpolation) {
-  assert(impl_ && impl_->scene.times.empty());
+  if (!impl_) return animationFinished();
+  assert(impl_->scene.times.empty());
   BindingOptions options;
   options.interpolation = interpolation;
   const auto binding = SkinBinding<double>::create(cage, mesh, options, embedding);
@@ -190,7 +193,8 @@ Result<std::size_t> GlbWriter::addModel(const std::string& name, const Cage& cag
 }
 
 void GlbWriter::addBody(std::size_t model, const std::string& name) {
-  assert(impl_ && impl_->scene.times.empty() && model < impl_->models.size());
+  if (!impl_) return;
+  assert(impl_->scene.times.empty() && model < impl_->models.size());
   io::GlbScene& scene = impl_->scene;
   const Impl::Model& shared = impl_->models[model];
   const std::size_t drawn = impl_->addNode(name);
@@ -219,7 +223,8 @@ void GlbWriter::addBody(std::size_t model, const std::string& name) {
 }
 
 Status GlbWriter::addObject(const std::string& name, const TriangleMesh& mesh, bool moves) {
-  assert(impl_ && impl_->scene.times.empty());
+  if (!impl_) return animationFinished();
+  assert(impl_->scene.times.empty());
   Impl::Object object;
   object.moves = moves;
   object.origin = originFor(boundingBox(mesh.positions));
@@ -324,7 +329,7 @@ void GlbWriter::Impl::addAffineBones(Body& body, PointView<const double> nodes) 
 
 Status GlbWriter::addFrame(const std::vector<PointView<const double>>& nodes,
                            const std::vector<Eigen::Affine3d>& places) {
-  assert(impl_);
+  if (!impl_) return animationFinished();
   io::GlbScene& scene = impl_->scene;
   if (Status status = impl_->checkFrame(nodes, places); !status.ok()) return status;
   if (scene.times.empty()) impl_->begin(nodes);
@@ -348,7 +353,7 @@ Status GlbWriter::addFrame(const std::vector<PointView<const double>>& nodes,
 }
 
 Status GlbWriter::finish() {
-  assert(impl_);
+  if (!impl_) return animationFinished();
   const std::unique_ptr<Impl> impl = std::move(impl_);
   if (impl->scene.times.empty() || impl->scene.roots.empty()) {
     return io::fileError(StatusCode::Empty, impl->path, 0,

@@ -5,7 +5,6 @@
 #include <tetskin/io/src/text/binary_numbers.h>
 #include <tetskin/io/src/text/file_text.h>
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,6 +15,10 @@ namespace {
 /// Where the header states the number of frames: after the name, the version, the number of vertices, the first frame
 /// and the step.
 constexpr long kFrameCountOffset = 28;
+
+Status cacheFinished() {
+  return {StatusCode::FileNotWritable, "the point cache is finished; create another writer"};
+}
 
 }  // namespace
 
@@ -58,7 +61,7 @@ Result<Pc2Writer> Pc2Writer::create(const std::string& path, std::size_t vertexC
 
 template <class Scalar>
 Status Pc2Writer::add(PointView<const Scalar> positions) {
-  assert(impl_);
+  if (!impl_) return cacheFinished();
   if (positions.size() != impl_->vertexCount) {
     return io::fileError(StatusCode::SizeMismatch, impl_->path, 0,
                          std::to_string(positions.size()) + " positions were given for " +
@@ -87,7 +90,7 @@ Status Pc2Writer::addFrame(PointView<const double> positions) {
 }
 
 Status Pc2Writer::finish() {
-  assert(impl_);
+  if (!impl_) return cacheFinished();
   const std::unique_ptr<Impl> impl = std::move(impl_);
   if (impl->frames == 0) {
     return io::fileError(StatusCode::Empty, impl->path, 0, "cannot be written without frames; add one first");

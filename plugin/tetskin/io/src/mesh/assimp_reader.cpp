@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/area_vectors.h>
 #include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
+#include <tetskin/io/src/mesh/scene_mesh.h>
 #include <tetskin/io/src/mesh/stated_sizes.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
-#include <tetskin/io/src/text/coordinate_fault.h>
+#include <tetskin/io/src/mesh/zip_entries.h>
 #include <tetskin/io/src/text/file_text.h>
 
 #include <assimp/config.h>
@@ -18,7 +18,6 @@
 #include <cassert>
 #include <exception>
 #include <filesystem>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -41,14 +40,6 @@ Eigen::Affine3d affine(const aiMatrix4x4& m) {
 
 Eigen::Vector3d vector(const aiVector3D& v) {
   return {v.x, v.y, v.z};
-}
-
-/// Matrix of cofactors times the sign of the determinant: a positive multiple of the inverse transpose, which normals
-/// need, that exists for flattening transforms as well.
-Eigen::Matrix3d normalMatrix(const Eigen::Matrix3d& m) {
-  Eigen::Matrix3d cofactors;
-  cofactors << m.row(1).cross(m.row(2)), m.row(2).cross(m.row(0)), m.row(0).cross(m.row(1));
-  return m.determinant() < 0.0 ? Eigen::Matrix3d(-cofactors) : cofactors;
 }
 
 /// Ok if no face names a vertex that its mesh lacks.
@@ -116,16 +107,8 @@ std::vector<Instance> instances(const aiScene& scene) {
   return result;
 }
 
-/// Appends smooth normals of the vertices from `firstVertex` on, computed from the triangles from `firstTriangle` on,
-/// weighted by area.
-void appendSmoothNormals(TriangleMesh& mesh, std::size_t firstVertex, std::size_t firstTriangle) {
-  assert(mesh.normals.size() == firstVertex && firstVertex <= mesh.vertexCount());
-  std::vector<Eigen::Vector3d> sums(mesh.vertexCount() - firstVertex, Eigen::Vector3d::Zero());
-  sumAreaVectors(mesh, firstTriangle, [&](std::size_t v) -> Eigen::Vector3d& { return sums[v - firstVertex]; });
-  for (const Eigen::Vector3d& sum : sums) mesh.normals.push_back(unitNormal(sum));
-}
-
-void appendTriangles(const Instance& instance, const std::vector<int>& vertices, TriangleMesh& mesh) {
+/// vertices  by vertex of the mesh, its number in the part, -1 for none
+void appendTriangles(const Instance& instance, const std::vector<int>& vertices, ScenePart& part) {
   assert(vertices.size() == instance.mesh->mNumVertices);
   const bool mirrored = instance.toScene.linear().determinant() < 0.0;
   std::vector<int> polygon;
@@ -135,12 +118,11 @@ void appendTriangles(const Instance& instance, const std::vector<int>& vertices,
     polygon.clear();
     for (unsigned i = 0; i < face.mNumIndices; ++i) polygon.push_back(vertices[face.mIndices[i]]);
     if (mirrored) std::reverse(polygon.begin() + 1, polygon.end());
-    appendPolygon(mesh.positions, polygon, mesh.triangles);
+    appendPolygon(part.positions, polygon, part.triangles);
   }
 }
 
-TriangleGroup groupOf(const aiScene& scene, const Instance& instance, const TriangleMesh& mesh, std::size_t first) {
-  assert(first <= mesh.triangleCount());
+TriangleGroup groupOf(const aiScene& scene, const Instance& instance) {
   TriangleGroup group;
   group.name = instance.mesh->mName.length > 0 ? instance.mesh->mName.C_Str() : instance.node->mName.C_Str();
   if (instance.mesh->mMaterialIndex < scene.mNumMaterials) {
@@ -148,71 +130,32 @@ TriangleGroup groupOf(const aiScene& scene, const Instance& instance, const Tria
   }
   // The material that assimp adds to a file without materials does not count.
   if (group.material == AI_DEFAULT_MATERIAL_NAME) group.material.clear();
-  group.firstTriangle = first;
-  group.triangleCount = mesh.triangleCount() - first;
   return group;
 }
 
-/// Appends the normals of the mesh, if it has any, or smooth ones.
-void appendNormals(const Instance& instance, const std::vector<bool>& kept, std::size_t firstVertex,
-                   std::size_t firstTriangle, TriangleMesh& mesh) {
-  const aiMesh& part = *instance.mesh;
-  if (!part.HasNormals()) return appendSmoothNormals(mesh, firstVertex, firstTriangle);
-  const Eigen::Matrix3d toScene = normalMatrix(instance.toScene.linear());
-  for (unsigned v = 0; v < part.mNumVertices; ++v) {
-    if (kept[v]) mesh.normals.push_back(unitNormal(toScene * vector(part.mNormals[v])));
-  }
-}
-
-void append(const Instance& instance, bool texcoords, bool normals, TriangleMesh& mesh) {
-  const aiMesh& part = *instance.mesh;
-  const std::vector<bool> kept = keptVertices(part);
-  const std::size_t firstVertex = mesh.vertexCount(), firstTriangle = mesh.triangleCount();
-  std::vector<int> vertices(part.mNumVertices, -1);
-  for (unsigned v = 0; v < part.mNumVertices; ++v) {
+ScenePart partOf(const aiScene& scene, const Instance& instance) {
+  const aiMesh& mesh = *instance.mesh;
+  const std::vector<bool> kept = keptVertices(mesh);
+  const Eigen::Matrix3d normals = normalMatrix(instance.toScene.linear());
+  ScenePart part;
+  std::vector<int> vertices(mesh.mNumVertices, -1);
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     if (!kept[v]) continue;
-    vertices[v] = static_cast<int>(mesh.vertexCount());
-    mesh.positions.emplace_back(instance.toScene * vector(part.mVertices[v]));
-    if (!texcoords) continue;
-    const aiVector3D texcoord = part.HasTextureCoords(0) ? part.mTextureCoords[0][v] : aiVector3D();
-    mesh.texcoords.emplace_back(texcoord.x, texcoord.y);
+    vertices[v] = static_cast<int>(part.positions.size());
+    part.positions.emplace_back(instance.toScene * vector(mesh.mVertices[v]));
+    if (mesh.HasNormals()) part.normals.push_back(unitNormal(normals * vector(mesh.mNormals[v])));
+    if (mesh.HasTextureCoords(0)) part.texcoords.emplace_back(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y);
   }
-  appendTriangles(instance, vertices, mesh);
-  if (normals) appendNormals(instance, kept, firstVertex, firstTriangle, mesh);
+  appendTriangles(instance, vertices, part);
+  part.groups.push_back(groupOf(scene, instance));
+  part.groups.back().triangleCount = part.triangles.size();
+  return part;
 }
 
 Result<TriangleMesh> collect(const std::string& path, const aiScene& scene) {
-  const std::vector<Instance> parts = instances(scene);
-  bool texcoords = false, normals = false;
-  std::size_t vertexCount = 0;
-  for (const Instance& part : parts) {
-    texcoords = texcoords || part.mesh->HasTextureCoords(0);
-    normals = normals || part.mesh->HasNormals();
-    vertexCount += part.mesh->mNumVertices;
-  }
-  if (vertexCount > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    return fileError(StatusCode::UnsupportedFormat, path, 0, "has more than 2147483647 vertices; split the model");
-  }
-  TriangleMesh mesh;
-  mesh.positions.reserve(vertexCount);
-  for (const Instance& part : parts) {
-    const std::size_t firstTriangle = mesh.triangleCount();
-    append(part, texcoords, normals, mesh);
-    assert((normals ? mesh.vertexCount() : 0) == mesh.normals.size());
-    assert((texcoords ? mesh.vertexCount() : 0) == mesh.texcoords.size());
-    mesh.groups.push_back(groupOf(scene, part, mesh, firstTriangle));
-  }
-  if (mesh.triangles.empty()) {
-    return fileError(StatusCode::Empty, path, 0, "has no triangles; export the model as a surface of polygons");
-  }
-  if (mesh.groups.size() == 1 && mesh.groups[0].name.empty() && mesh.groups[0].material.empty()) mesh.groups.clear();
-  const Status status = validate(mesh);
-  if (!status.ok()) return fileError(status.code, path, 0, status.message + " in the model, or export it again");
-  const PointView<const double> positions = viewOf(std::as_const(mesh.positions));
-  if (const std::string fault = coordinateFault(positions); !fault.empty()) {
-    return fileError(StatusCode::NonFinite, path, 0, "vertex " + std::to_string(firstUnusable(positions)) + fault);
-  }
-  return mesh;
+  std::vector<ScenePart> parts;
+  for (const Instance& instance : instances(scene)) parts.push_back(partOf(scene, instance));
+  return joinParts(path, parts);
 }
 
 Status checkPath(const std::string& path, const Assimp::Importer& importer) {
@@ -231,6 +174,18 @@ Status checkPath(const std::string& path, const Assimp::Importer& importer) {
           "; convert it to OBJ, PLY, STL or glTF");
 }
 
+/// The package without its images. assimp reads one model of it.
+Result<Models3mf> readModels(const std::string& path) {
+  const Result<std::string> bytes = readFile(path);
+  if (!bytes.ok()) return bytes.status();
+  Result<Models3mf> models = modelsOf3mf(path, bytes.value());
+  if (!models.ok() || models.value().count < 2) return models;
+  return fileError(StatusCode::UnsupportedFormat, path, 0,
+                   "has " + std::to_string(models.value().count) +
+                       " models in one package (the production extension of 3MF), which is not supported; save it as "
+                       "STL, or as a plain 3MF");
+}
+
 Result<TriangleMesh> importFile(const std::string& path) {
   Assimp::Importer importer;
   Status status = checkPath(path, importer);
@@ -239,7 +194,12 @@ Result<TriangleMesh> importFile(const std::string& path) {
   // A file that contains only bones would otherwise appear as a mesh of its bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // None of assimp's post-processing is used: it trusts the scene, and aborts on damaged ones.
-  const aiScene* scene = importer.ReadFile(path, 0);
+  const bool is3mf = lowerExtension(path) == ".3mf";
+  const Result<Models3mf> models = is3mf ? readModels(path) : Models3mf();
+  if (!models.ok()) return models.status();
+  const std::string& bytes = models.value().bytes;
+  const aiScene* scene =
+      is3mf ? importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "3mf") : importer.ReadFile(path, 0);
   if (!scene) {
     return fileError(StatusCode::Malformed, path, 0,
                      "cannot be read: " + std::string(importer.GetErrorString()) + "; export the model again");

@@ -254,6 +254,7 @@ template <class Scalar>
 std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vector<char>& buffer,
                                    PointView<const float> normals) const {
   assert(positions.size() == vertexCount() && normals.size() == normalGaps_.size());
+  // Characters: three numbers, and blanks between them.
   constexpr std::size_t kPointRoom = 3 * io::kNumberRoom + 2;
   buffer.resize(std::max(buffer.size(), text_.size() + (gaps_.size() + normalGaps_.size()) * kPointRoom));
   char* out = buffer.data();

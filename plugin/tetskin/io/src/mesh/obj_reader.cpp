@@ -17,7 +17,9 @@ namespace tetskin::io {
 
 namespace {
 
+/// A corner without this index.
 constexpr int kNone = -1;
+constexpr int kMissing = std::numeric_limits<int>::max();  ///< more than there can be
 
 struct Corner {
   int vertex = kNone, texcoord = kNone, normal = kNone;
@@ -26,6 +28,7 @@ struct Corner {
 struct Face {
   std::size_t firstCorner = 0;
   std::size_t line = 0;
+  bool complete = true;  ///< the texture coordinates and normals that it names exist
 };
 
 struct Run {
@@ -33,10 +36,15 @@ struct Run {
   std::string_view name, material;
 };
 
+void note(MeshFileReport::Faces& faces, std::size_t line) {
+  if (faces.count++ == 0) faces.firstLine = line;
+}
+
 /// Collects the statements of one file, with polygons that are not yet triangulated.
 class ObjParser {
  public:
-  ObjParser(const std::string& path, std::string_view text) : path_(path), scanner_(text) {}
+  ObjParser(const std::string& path, std::string_view text, MeshFileReport& report)
+      : path_(path), scanner_(text), report_(report) {}
   Result<TriangleMesh> parse();
 
  private:
@@ -45,10 +53,12 @@ class ObjParser {
   Status readPosition();
   Status readFace();
   Status readCorner(std::string_view word, Corner& corner);
-  Status readIndex(std::string_view text, const char* what, std::size_t count, int& index);
+  Status readIndex(std::string_view text, const char* what, std::size_t count, long long& index);
+  Status readVertex(std::string_view text, int& vertex);
+  Status readAttribute(std::string_view text, const char* what, std::size_t count, int& attribute);
   void beginRun();
-  Status checkIndices() const;
-  Status checkIndex(int index, std::size_t count, const char* what, std::size_t line) const;
+  Status checkIndices();
+  void dropMissing(Face& face, std::size_t count, int& attribute) const;
   std::size_t cornerEnd(std::size_t face) const {
     assert(face < faces_.size());
     return face + 1 < faces_.size() ? faces_[face + 1].firstCorner : corners_.size();
@@ -61,6 +71,7 @@ class ObjParser {
   const std::string& path_;
   ObjScanner scanner_;
   ObjStatement statement_;
+  MeshFileReport& report_;
   std::string_view name_, material_;
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
@@ -151,13 +162,13 @@ Status ObjParser::readFace() {
     if (!status.ok()) return status;
     corners_.push_back(corner);
   }
-  const std::size_t count = corners_.size() - firstCorner;
-  if (count < 3) {
-    return error(StatusCode::Malformed, "a face of " + std::to_string(count) +
-                                            " corners, but at least 3 are needed; complete the line or remove it");
+  if (corners_.size() - firstCorner < 3) {  // a point or a line, as some programs write them
+    corners_.resize(firstCorner);
+    note(report_.droppedFaces, statement_.line);
+    return {};
   }
   beginRun();
-  faces_.push_back({firstCorner, statement_.line});
+  faces_.push_back({firstCorner, statement_.line, true});
   return {};
 }
 
@@ -169,30 +180,43 @@ Status ObjParser::readCorner(std::string_view word, Corner& corner) {
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));
   }
   if (!rest.empty()) return error(StatusCode::Malformed, excerpt(word) + " is not a corner of a face; use v/vt/vn");
-  Status status = readIndex(parts[0], "vertex", mesh_.vertexCount(), corner.vertex);
-  if (status.ok() && !parts[1].empty()) {
-    status = readIndex(parts[1], "texture coordinate", texcoords_.size(), corner.texcoord);
-  }
-  if (status.ok() && !parts[2].empty()) status = readIndex(parts[2], "normal", normals_.size(), corner.normal);
+  Status status = readVertex(parts[0], corner.vertex);
+  if (status.ok()) status = readAttribute(parts[1], "texture coordinate", texcoords_.size(), corner.texcoord);
+  if (status.ok()) status = readAttribute(parts[2], "normal", normals_.size(), corner.normal);
   return status;
 }
 
 /// Converts an index of the file, which counts from 1, or backwards from the last one so far, to one that counts from
 /// 0. Whether it is too large is only known at the end of the file, as faces may refer to what comes later.
-Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t count, int& index) {
+Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t count, long long& index) {
   long long number = 0;
   if (!parseInteger(text, number)) {
     return error(StatusCode::Malformed, excerpt(text) + " is not the index of a " + what + "; correct the face");
   }
-  const long long resolved = number > 0 ? number - 1 : static_cast<long long>(count) + number;
-  if (number == 0 || resolved < 0 || resolved > std::numeric_limits<int>::max()) {
+  index = number > 0 ? number - 1 : number == 0 ? -1 : static_cast<long long>(count) + number;
+  return {};
+}
+
+Status ObjParser::readVertex(std::string_view text, int& vertex) {
+  long long index = 0;
+  if (Status status = readIndex(text, "vertex", mesh_.vertexCount(), index); !status.ok()) return status;
+  if (index < 0 || index > std::numeric_limits<int>::max()) {
     return error(StatusCode::IndexOutOfRange,
-                 "the face refers to " + std::string(what) + " " + std::to_string(number) +
-                     (number == 0 ? ", but an OBJ file counts from 1" : ", which does not exist") +
+                 "the face refers to vertex " + std::string(text) +
+                     (text == "0" ? ", but an OBJ file counts from 1" : ", which does not exist") +
                      "; correct the face");
   }
-  index = static_cast<int>(resolved);
+  vertex = static_cast<int>(index);
   return {};
+}
+
+/// One that cannot exist is kMissing until the end of the file.
+Status ObjParser::readAttribute(std::string_view text, const char* what, std::size_t count, int& attribute) {
+  if (text.empty()) return {};
+  long long index = 0;
+  Status status = readIndex(text, what, count, index);
+  attribute = index < 0 || index > kMissing ? kMissing : static_cast<int>(index);
+  return status;
 }
 
 /// Starts a group at the next face if its name or material differ from the last one's.
@@ -202,24 +226,29 @@ void ObjParser::beginRun() {
   runs_.push_back({faces_.size(), name_, material_});
 }
 
-Status ObjParser::checkIndices() const {
+/// Drops references to texture coordinates and normals that do not exist.
+Status ObjParser::checkIndices() {
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     for (std::size_t c = faces_[f].firstCorner; c < cornerEnd(f); ++c) {
-      Status status = checkIndex(corners_[c].vertex, mesh_.vertexCount(), "vertices", faces_[f].line);
-      if (status.ok())
-        status = checkIndex(corners_[c].texcoord, texcoords_.size(), "texture coordinates", faces_[f].line);
-      if (status.ok()) status = checkIndex(corners_[c].normal, normals_.size(), "normals", faces_[f].line);
-      if (!status.ok()) return status;
+      const auto vertex = static_cast<std::size_t>(corners_[c].vertex);
+      if (vertex >= mesh_.vertexCount()) {
+        return fileError(StatusCode::IndexOutOfRange, path_, faces_[f].line,
+                         "the face refers to number " + std::to_string(vertex + 1) +
+                             " of the vertices, but the file has " + std::to_string(mesh_.vertexCount()) +
+                             "; correct the face or complete the file");
+      }
+      dropMissing(faces_[f], texcoords_.size(), corners_[c].texcoord);
+      dropMissing(faces_[f], normals_.size(), corners_[c].normal);
     }
+    if (!faces_[f].complete) note(report_.incompleteFaces, faces_[f].line);
   }
   return {};
 }
 
-Status ObjParser::checkIndex(int index, std::size_t count, const char* what, std::size_t line) const {
-  if (index < 0 || static_cast<std::size_t>(index) < count) return {};
-  return fileError(StatusCode::IndexOutOfRange, path_, line,
-                   "the face refers to number " + std::to_string(std::size_t(index) + 1) + " of the " + what +
-                       ", but the file has " + std::to_string(count) + "; correct the face or complete the file");
+void ObjParser::dropMissing(Face& face, std::size_t count, int& attribute) const {
+  if (attribute == kNone || static_cast<std::size_t>(attribute) < count) return;
+  attribute = kNone;
+  face.complete = false;
 }
 
 void ObjParser::triangulate() {
@@ -264,10 +293,10 @@ std::vector<Point> ObjParser::perVertex(int Corner::*attribute, const std::vecto
 
 }  // namespace
 
-Result<TriangleMesh> readObj(const std::string& path) {
+Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report) {
   const Result<std::string> text = readObjText(path);
   if (!text.ok()) return text.status();
-  return ObjParser(path, withoutMark(text.value())).parse();
+  return ObjParser(path, withoutMark(text.value()), report).parse();
 }
 
 }  // namespace tetskin::io

@@ -55,6 +55,7 @@ class PlyReader {
   Result<TriangleMesh> read();
 
  private:
+  bool linesSuffice() const;
   Status readElement(const PlyElement& element);
   Status checkVertices(const PlyElement& element);
   Status checkRoom(const PlyElement& element) const;
@@ -75,7 +76,8 @@ class PlyReader {
   const std::string& path_;
   TextScanner in_;
   PlyHeader header_;
-  Columns columns_;  ///< of the element that is being read
+  bool byLine_ = false;  ///< a text whose elements each begin a line; what stands behind one is ignored
+  Columns columns_;      ///< of the element that is being read
   std::vector<int> polygon_;
   std::vector<char> hasTexcoord_;  ///< by vertex; used if texture coordinates come from the corners of faces
   bool texcoordsDiffer_ = false;   ///< corners at one vertex have different ones, or some have none
@@ -86,6 +88,7 @@ Result<TriangleMesh> PlyReader::read() {
   Result<PlyHeader> header = readPlyHeader(path_, in_);
   if (!header.ok()) return header.status();
   header_ = std::move(header).value();
+  byLine_ = !header_.binary && linesSuffice();
   for (const PlyElement& element : header_.elements) {
     Status status = readElement(element);
     if (!status.ok()) return status;
@@ -102,6 +105,18 @@ Result<TriangleMesh> PlyReader::read() {
   return std::move(mesh_);
 }
 
+/// Whether there are as many lines as elements. Otherwise line breaks mean nothing.
+bool PlyReader::linesSuffice() const {
+  std::uint64_t lines = 0;
+  for (TextScanner ahead = in_; ahead.remaining() > 0; ++lines) ahead.restOfLine();
+  for (const PlyElement& element : header_.elements) {
+    if (element.properties.empty()) continue;
+    if (element.count > lines) return false;
+    lines -= element.count;
+  }
+  return true;
+}
+
 Status PlyReader::readElement(const PlyElement& element) {
   Status status = checkRoom(element);
   if (!status.ok() || element.properties.empty()) return status;
@@ -116,6 +131,7 @@ Status PlyReader::readElement(const PlyElement& element) {
     if (isVertex) status = addVertex(index, row);
     if (isFace && columns_.corners < row.size()) status = addFace(index, row);
     if (isStrip && columns_.corners < row.size()) status = addStrips(index, row);
+    if (byLine_) in_.restOfLine();
   }
   return status;
 }

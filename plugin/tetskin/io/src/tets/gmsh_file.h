@@ -9,6 +9,6 @@
 namespace tetskin::io {
 
 /// Reads an ASCII file of Gmsh as `loadTetMesh` describes. If the file contains no tets, the mesh has none.
-Result<TetMesh> readGmshFile(const std::string& path, TetFileReport& report);
+Result<Cage> readGmshFile(const std::string& path, TetFileReport& report);
 
 }  // namespace tetskin::io

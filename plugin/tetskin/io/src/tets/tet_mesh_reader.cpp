@@ -3,6 +3,7 @@
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/gmsh_file.h>
+#include <tetskin/io/src/tets/medit_file.h>
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/text/file_text.h>
@@ -11,21 +12,16 @@ namespace tetskin {
 
 namespace {
 
-/// A cage with tets only, as other formats contain no more.
-Result<Cage> bare(Result<TetMesh> mesh) {
-  if (!mesh.ok()) return mesh.status();
-  return Cage(std::move(mesh).value());
-}
-
 Result<Cage> readByExtension(const std::string& path, io::VtkData data, TetFileReport& report) {
   const std::string extension = io::lowerExtension(path);
   if (extension == ".vtk") return io::readVtkFile(path, data, report);
-  if (extension == ".node" || extension == ".ele") return bare(io::readTetgenFiles(path, report));
-  if (extension == ".msh") return bare(io::readGmshFile(path, report));
+  if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path, report);
+  if (extension == ".msh") return io::readGmshFile(path, report);
+  if (extension == ".mesh") return io::readMeditFile(path, report);
   const std::string what = extension == ".vtu" || extension == ".pvtu"
                                ? "is an XML file of VTK, which is not supported; save it as legacy VTK (.vtk)"
                                : "unsupported input format; convert it to legacy VTK (.vtk), TetGen (.node and "
-                                 ".ele) or Gmsh (.msh)";
+                                 ".ele), Gmsh (.msh) or Medit (.mesh)";
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
 }
 
@@ -35,16 +31,18 @@ Result<Cage> load(const std::string& path, io::VtkData data, TetFileReport* repo
   if (report) *report = skipped;
   if (!cage.ok() || !cage.value().mesh.tets.empty()) return cage;
   return io::fileError(StatusCode::Empty, path, 0,
-                       "has no linear tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
-                           "; export a volume mesh of tets with 4 nodes each");
+                       "has no tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
+                           "; export a volume mesh of tets");
 }
 
 }  // namespace
 
 std::string TetFileReport::describe() const {
-  if (skippedCells == 0) return {};
-  return std::to_string(skippedCells) + " cells that are not linear tets were skipped" +
-         (skippedHighOrder > 0 ? ", " + std::to_string(skippedHighOrder) + " of them higher-order tets" : "");
+  std::string words;
+  if (skippedCells > 0) words = std::to_string(skippedCells) + " cells that are no tets were skipped";
+  if (cornersOnly == 0) return words;
+  return words + (words.empty() ? "" : ", ") + std::to_string(cornersOnly) +
+         " tets of higher order were read by their corners, without " + std::to_string(droppedNodes) + " other nodes";
 }
 
 Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
@@ -56,7 +54,7 @@ Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
 Result<Cage> loadCage(const std::string& path, TetFileReport* report) {
   Result<Cage> cage = load(path, io::VtkData::OfCage, report);
   if (!cage.ok()) return cage;
-  const Status status = checkKnowledge(cage.value());
+  const Status status = validateAttributes(cage.value());
   if (status.ok()) return cage;
   return io::fileError(status.code, path, 0, status.message + "; correct the array, or remove it");
 }

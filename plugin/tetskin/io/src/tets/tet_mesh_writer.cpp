@@ -137,7 +137,7 @@ Status saveCage(const Cage& cage, const std::string& path) {
   Status status = checkExtension(path);
   if (status.ok()) status = checkWritable(cage.mesh, path);
   if (!status.ok()) return status;
-  if (status = checkKnowledge(cage); !status.ok()) {
+  if (status = validateAttributes(cage); !status.ok()) {
     return io::fileError(status.code, path, 0,
                          "cannot be written, as " + status.message + "; check the source of the cage");
   }

@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   Hang Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", file formats .node and .ele
+#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 #include <tetskin/io/src/text/file_text.h>
@@ -91,7 +92,9 @@ Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, st
 }
 
 /// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...".
-Status readTets(const std::string& path, std::string_view text, std::int64_t base, TetMesh& mesh) {
+/// edgeNodes  takes the other nodes of tets of 10
+Status readTets(const std::string& path, std::string_view text, std::int64_t base, TetMesh& mesh,
+                EdgeNodes& edgeNodes) {
   TextRecords records(text);
   TextScanner header = records.next();
   std::uint64_t count = 0, corners = 0;
@@ -111,6 +114,10 @@ Status readTets(const std::string& path, std::string_view text, std::int64_t bas
     Status status = readTet(path, record, t, mesh.nodeCount(), base, tet);
     if (!status.ok()) return status;
     mesh.tets.push_back(tet);
+    for (std::uint64_t i = 4; i < corners; ++i) {
+      std::int64_t node = 0;
+      if (record.integer(node)) edgeNodes.add(node - base);
+    }
   }
   return {};
 }
@@ -125,7 +132,7 @@ std::string sibling(const std::string& path, const char* extension, const char* 
 
 }  // namespace
 
-Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport&) {
+Result<Cage> readTetgenFiles(const std::string& path, TetFileReport& report) {
   const bool isNode = lowerExtension(path) == ".node";
   const std::string nodePath = isNode ? path : sibling(path, ".node", ".NODE");
   const std::string elePath = isNode ? sibling(path, ".ele", ".ELE") : path;
@@ -134,12 +141,15 @@ Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport&) {
   const Result<std::string> eleText = readText(elePath);
   if (!eleText.ok()) return eleText.status();
 
-  TetMesh mesh;
+  Cage cage;
+  EdgeNodes edgeNodes;
   std::int64_t base = 0;
-  Status status = readNodes(nodePath, nodeText.value(), mesh.nodes, base);
-  if (status.ok()) status = readTets(elePath, eleText.value(), base, mesh);
+  Status status = readNodes(nodePath, nodeText.value(), cage.mesh.nodes, base);
+  if (status.ok()) status = readTets(elePath, eleText.value(), base, cage.mesh, edgeNodes);
   if (!status.ok()) return status;
-  return mesh;
+  if (!edgeNodes.empty()) report.cornersOnly = cage.mesh.tetCount();
+  edgeNodes.drop(cage, report);
+  return cage;
 }
 
 }  // namespace tetskin::io

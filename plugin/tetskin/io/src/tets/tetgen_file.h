@@ -10,6 +10,6 @@ namespace tetskin::io {
 
 /// Reads a pair of TetGen files, given the path of either, as `loadTetMesh` describes. If they contain no tets, the
 /// mesh has none.
-Result<TetMesh> readTetgenFiles(const std::string& path, TetFileReport& report);
+Result<Cage> readTetgenFiles(const std::string& path, TetFileReport& report);
 
 }  // namespace tetskin::io

@@ -18,6 +18,7 @@ struct Attribute {
   std::uint64_t components;  ///< 0: the file states it
   bool typed;                ///< otherwise the values are bytes in binary files, numbers in text
 };
+/// What the format calls data with a meaning: the word, the numbers per element, and whether a type is stated.
 constexpr std::array<Attribute, 10> kAttributes = {{{"vectors", 3, true},
                                                     {"normals", 3, true},
                                                     {"tensors", 9, true},

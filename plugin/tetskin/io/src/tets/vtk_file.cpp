@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
+#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/tets/vtk_text.h>
@@ -17,9 +18,11 @@ namespace tetskin::io {
 
 namespace {
 
+/// VTK's numbers for cells of these types.
 constexpr int kVtkTet = 10;
 constexpr int kVtkQuadraticTet = 24;
 constexpr int kVtkLagrangeTet = 71;
+constexpr int kVtkBezierTet = 79;
 
 class VtkReader {
  public:
@@ -41,10 +44,12 @@ class VtkReader {
                       std::vector<std::size_t>* lines = nullptr);
 
   Status collectTets();
-  bool isTet(std::size_t cell) const {
+  bool isHighOrderTet(std::size_t cell) const {
     assert(!hasTypes_ || cell < cellTypes_.size());
-    return !hasTypes_ || cellTypes_[cell] == kVtkTet;
+    return hasTypes_ && (cellTypes_[cell] == kVtkQuadraticTet || cellTypes_[cell] == kVtkLagrangeTet ||
+                         cellTypes_[cell] == kVtkBezierTet);
   }
+  bool isTet(std::size_t cell) const { return !hasTypes_ || cellTypes_[cell] == kVtkTet || isHighOrderTet(cell); }
   Status addTet(std::size_t cell);
   Status error(StatusCode code, const std::string& what) const { return file_.error(code, what); }
   Status errorAt(std::size_t line, StatusCode code, const std::string& what) const {
@@ -62,6 +67,7 @@ class VtkReader {
   std::vector<std::size_t> cellFirst_;   ///< by cell: index of its first node in entries_
   std::vector<std::size_t> cellSize_;    ///< by cell: number of its nodes
   std::vector<std::int64_t> cellTypes_;
+  EdgeNodes edgeNodes_;
   Cage cage_;
   VtkCageData data_{file_, cage_};
 };
@@ -267,8 +273,8 @@ Status VtkReader::collectTets() {
       continue;
     }
     ++report_.skippedCells;
-    report_.skippedHighOrder += cellTypes_[cell] == kVtkQuadraticTet || cellTypes_[cell] == kVtkLagrangeTet;
   }
+  edgeNodes_.drop(cage_, report_);
   if (report_.skippedCells == 0) return {};
   std::vector<bool> tets;
   for (std::size_t cell = 0; cell < cellFirst_.size(); ++cell) tets.push_back(isTet(cell));
@@ -278,11 +284,17 @@ Status VtkReader::collectTets() {
 
 Status VtkReader::addTet(std::size_t cell) {
   assert(cell < cellFirst_.size() && cellFirst_[cell] + cellSize_[cell] <= entries_.size());
-  const std::size_t first = cellFirst_[cell];
-  if (cellSize_[cell] != 4) {
+  const std::size_t first = cellFirst_[cell], size = cellSize_[cell];
+  const bool cornersOnly = isHighOrderTet(cell) && size > 4;  // which come first
+  report_.cornersOnly += cornersOnly;
+  if (cornersOnly) {
+    const auto nodes = entries_.begin() + static_cast<std::ptrdiff_t>(first);
+    edgeNodes_.add(nodes + 4, nodes + static_cast<std::ptrdiff_t>(size));
+  }
+  if (size != 4 && !cornersOnly) {
     return errorAt(
         lineOf(first), StatusCode::Malformed,
-        "cell " + std::to_string(cell) + " has " + std::to_string(cellSize_[cell]) + " nodes where a tet has 4" +
+        "cell " + std::to_string(cell) + " has " + std::to_string(size) + " nodes where a tet has 4" +
             (hasTypes_ ? "; correct its type" : ", and without CELL_TYPES all cells must be tets; add them"));
   }
   Tet tet;

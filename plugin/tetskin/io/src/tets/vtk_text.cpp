@@ -51,7 +51,23 @@ Status VtkText::checkSize(const VtkArray& array) const {
   return error(StatusCode::Malformed, "states an array larger than the file; is it complete? Save it again");
 }
 
+/// A string in binary is its length, in 1, 2, 4 or 8 bytes by the two bits on top, and its bytes.
+Status VtkText::skipStrings(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (in_.remaining() == 0) return notANumber();
+    const auto first = static_cast<unsigned char>(TextScanner(in_).bytes(1)[0]);
+    const std::size_t bytes = std::size_t(8) >> (first >> 6);
+    if (in_.remaining() < bytes) return notANumber();
+    const std::uint64_t bits = bitsAt(in_.bytes(bytes).data(), bytes, ByteOrder::Big);
+    const std::uint64_t length = bits & ~(std::uint64_t{3} << (8 * bytes - 2));
+    if (length > in_.remaining()) return notANumber();
+    in_.bytes(static_cast<std::size_t>(length));
+  }
+  return {};
+}
+
 Status VtkText::skip(const VtkArray& array) {
+  if (binary_ && (array.type == "string" || array.type == "utf8_string")) return skipStrings(array.count());
   if (binary_) {
     Status status = checkRoom(array.count(), array.type);
     if (status.ok()) in_.bytes(static_cast<std::size_t>(array.count()) * vtkNumberType(array.type).bytes);

@@ -78,6 +78,7 @@ class VtkText {
   Status checkRoom(std::uint64_t count, const std::string& type) const;
   Status notANumber() const;
   Status readArrayHeader(VtkArray& array);
+  Status skipStrings(std::uint64_t count);
 
   template <class Number>
   static Number decode(const char* data, const NumberType& type) {

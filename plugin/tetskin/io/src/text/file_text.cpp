@@ -33,6 +33,7 @@ Result<std::string> readFile(const std::string& path) {
   std::string bytes;
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored) bytes.reserve(static_cast<std::size_t>(size) + 1);
+  // Bytes that are read at a time.
   constexpr std::size_t kChunk = std::size_t(1) << 20;
   for (std::size_t got = kChunk; got == kChunk;) {
     const std::size_t before = bytes.size();
@@ -78,12 +79,11 @@ std::string lowerExtension(const std::string& path) {
   return extension;
 }
 
-std::string excerpt(std::string_view text) {
-  constexpr std::size_t kMaxCharacters = 40;
-  std::string result(text.substr(0, kMaxCharacters));
+std::string excerpt(std::string_view text, std::size_t most) {
+  std::string result(text.substr(0, most));
   std::replace_if(
       result.begin(), result.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + result + (text.size() > kMaxCharacters ? "...'" : "'");
+  return "'" + result + (text.size() > most ? "...'" : "'");
 }
 
 std::string systemReason() {

@@ -26,8 +26,8 @@ Status fileError(StatusCode code, const std::string& path, std::size_t line, con
 /// Extension of a path in lower case, with its dot; empty if it has none.
 std::string lowerExtension(const std::string& path);
 
-/// A piece of a file for use in a message: in quotes, without control characters, cut after about 40 characters.
-std::string excerpt(std::string_view text);
+/// A piece of a file for use in a message: in quotes, without control characters, cut after `most` characters.
+std::string excerpt(std::string_view text, std::size_t most = 40);
 
 /// The operating system's message for the current errno.
 std::string systemReason();

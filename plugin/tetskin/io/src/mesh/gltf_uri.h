@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <string>
+
+namespace tetskin::io {
+
+/// The bytes that a uri in a file names: those of a `data:` uri, or of a regular file in the folder of `path` or below,
+/// where links end there, too. No other file is opened, and nothing is fetched.
+/// Errors: FileNotFound, UnsupportedFormat for another place, Malformed; the message names `path`
+Result<std::string> readUri(const std::string& path, const std::string& uri);
+
+}  // namespace tetskin::io

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What readers of scenes, glTF and assimp's formats, share: meshes that nodes place, joined into one.
+#pragma once
+
+#include <tetskin/core/mesh.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tetskin::io {
+
+/// One mesh as a node shows it, in the scene's space.
+struct ScenePart {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3f> normals;    ///< by vertex, of unit length or 0; or empty
+  std::vector<Eigen::Vector2f> texcoords;  ///< by vertex; or empty
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<TriangleGroup> groups;  ///< they cover the triangles in order
+};
+
+/// Matrix of cofactors times the sign of the determinant: a positive multiple of the inverse transpose, which normals
+/// need, that exists for flattening transforms as well.
+Eigen::Matrix3d normalMatrix(const Eigen::Matrix3d& m);
+
+/// Joins parts into one mesh, as `loadMesh` describes: if only some have texture coordinates, the others get 0; if only
+/// some have normals, the others get smooth ones. Parts are emptied.
+/// Errors: Empty, NonFinite, UnsupportedFormat for too many vertices; those of `validate`.
+Result<TriangleMesh> joinParts(const std::string& path, std::vector<ScenePart>& parts);
+
+}  // namespace tetskin::io

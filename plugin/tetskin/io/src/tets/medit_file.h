@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/io/files.h>
+
+#include <string>
+
+namespace tetskin::io {
+
+/// Reads a Medit file of text as `loadTetMesh` describes. If the file contains no tets, the cage has none.
+Result<Cage> readMeditFile(const std::string& path, TetFileReport& report);
+
+}  // namespace tetskin::io

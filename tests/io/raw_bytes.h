@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <initializer_list>
+#include <string>
+
+namespace tetskin::test {
+
+/// The bytes of numbers, on machines with the lowest byte first.
+template <class Number>
+std::string raw(std::initializer_list<Number> values) {
+  std::string bytes(values.size() * sizeof(Number), '\0');
+  std::memcpy(&bytes[0], values.begin(), bytes.size());
+  return bytes;
+}
+
+inline std::string base64(const std::string& bytes) {
+  const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+}  // namespace tetskin::test
