@@ -359,7 +359,7 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
     VectorXd some = test::Random(53).vector(3 * body.nodes.size());
     for (const std::size_t n : pinned) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
     body.toWide(some, dynamics.matrix().solution());
-    dynamics.keepRigidComponent();
+    dynamics.projectToRigidMotion();
     const VectorXd kept = body.fromWide(dynamics.matrix().solution());
     const Vector3d about = pinned.empty() ? Vector3d::Zero().eval() : body.nodes[pinned[0]];
     Vector3d momentum = Vector3d::Zero(), spin = Vector3d::Zero();
@@ -392,7 +392,7 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
       EXPECT_GT(kept.norm(), 0.01);
     }
     body.toWide(kept, dynamics.matrix().solution());
-    dynamics.keepRigidComponent();
+    dynamics.projectToRigidMotion();
     EXPECT_LT((body.fromWide(dynamics.matrix().solution()) - kept).norm(), tolerance) << "it is rigid";
   }
 }

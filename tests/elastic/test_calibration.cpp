@@ -109,7 +109,7 @@ TEST(Calibration, OfASplitCageSetsItsFactorAndNothingElse) {
   EXPECT_GT(report.value().stiffnessFactor, 0.05);
   EXPECT_LT(report.value().stiffnessFactor, 0.95);
   EXPECT_EQ(report.value().skippedModes, 0);
-  EXPECT_TRUE(checkKnowledge(cage).ok());
+  EXPECT_TRUE(validateAttributes(cage).ok());
   EXPECT_EQ(cage.mesh.nodes, before.mesh.nodes);
   EXPECT_EQ(cage.mesh.tets, before.mesh.tets);
   EXPECT_EQ(cage.vertexTets, before.vertexTets);
@@ -174,7 +174,7 @@ TEST_P(CalibrationOfScraps, SurvivesWhatHangsLoosely) {
     EXPECT_LE(report.skippedModes, CalibrationOptions().modeCount);
     EXPECT_TRUE(std::isfinite(report.remainingError) && report.remainingError >= 0.0) << report.remainingError;
     for (const double response : report.responses) EXPECT_TRUE(std::isfinite(response));
-    EXPECT_TRUE(checkKnowledge(cage).ok());
+    EXPECT_TRUE(validateAttributes(cage).ok());
   }
 }
 

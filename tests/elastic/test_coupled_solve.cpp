@@ -30,7 +30,7 @@ using test::solutionOf;
 using test::Solver;
 
 /// A matrix of springs that is added to those of several bodies, whose unknowns are concatenated.
-class Springs : public Solver::Addition {
+class Springs : public Solver::CouplingOperator {
  public:
   Springs(std::vector<AssembledBody<double>*> bodies, MatrixXd springs)
       : bodies_(std::move(bodies)), springs_(std::move(springs)) {
@@ -41,7 +41,7 @@ class Springs : public Solver::Addition {
     }
   }
 
-  void read(std::size_t k) override {
+  void readPoints(std::size_t k) override {
     Eigen::Index at = starts_[k];
     for (std::size_t n = 0; n < bodies_[k]->nodes.size(); ++n, at += 3) {
       const double* p = bodies_[k]->matrix.stepPoints() + 4 * bodies_[k]->matrix.slotOf(n);
@@ -52,7 +52,7 @@ class Springs : public Solver::Addition {
     ++calls;
     image_ = springs_ * steps_;
   }
-  const double* added(std::size_t k) override {
+  const double* apply(std::size_t k) override {
     const auto size = static_cast<Eigen::Index>(3 * bodies_[k]->nodes.size());
     bodies_[k]->toWide(image_.segment(starts_[k], size), added_[k].data());
     return added_[k].data();
@@ -69,14 +69,14 @@ class Springs : public Solver::Addition {
 };
 
 /// From the fifth call on, it adds a multiple of the step; nothing before.
-class Multiple : public Solver::Addition {
+class Multiple : public Solver::CouplingOperator {
  public:
   Multiple(const AssembledBody<double>& body, double factor)
       : body_(body), factor_(factor), added_(body.matrix.wideSize()) {}
 
-  void read(std::size_t) override {}
+  void readPoints(std::size_t) override {}
   void combine() override { ++calls; }
-  const double* added(std::size_t) override {
+  const double* apply(std::size_t) override {
     if (calls <= 4) return nullptr;
     for (std::size_t n = 0; n < body_.nodes.size(); ++n) {
       for (std::size_t k = 0; k < 3; ++k) {

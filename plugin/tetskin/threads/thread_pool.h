@@ -32,8 +32,8 @@ class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
 
   /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and waits only
   /// while others finish their last task. Allocates nothing; costs less than a microsecond where the last run has just
-  /// ended, otherwise some to wake the others. Calls from
-  /// several threads wait for each other; a call from within a task never returns.
+  /// ended, otherwise some microseconds to wake the others. Calls from several threads wait for each other; a call from
+  /// within a task never returns.
   void run(std::size_t count, Task task) override;
 
  private:

@@ -134,7 +134,7 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
                                                       const ReducedBodyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   for (Status status :
-       {checkWorld(world), checkOthers(world), checkOptions(options), checkModes(modes), checkKnowledge(cage)}) {
+       {checkWorld(world), checkOthers(world), checkOptions(options), checkModes(modes), validateAttributes(cage)}) {
     if (!status.ok()) return status;
   }
   TetMesh positive = cage.mesh;

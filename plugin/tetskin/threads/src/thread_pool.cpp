@@ -26,6 +26,7 @@ constexpr std::chrono::microseconds kSpin{20};
 /// Looks for kSpin whether a condition holds. Returns whether it does.
 template <class Condition>
 bool spinUntil(Condition&& holds) {
+  // Reading the clock takes longer than a look.
   constexpr int kLooksPerClock = 16;
   const auto begin = std::chrono::steady_clock::now();
   do {

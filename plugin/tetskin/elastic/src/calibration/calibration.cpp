@@ -36,7 +36,7 @@ Status check(const Cage& cage, const CalibrationOptions& options) {
   if (report.zeroVolume.count + report.repeatedNode.count > 0) {
     return {StatusCode::Degenerate, "a cage with flat tets has no stiffness; remove them"};
   }
-  return checkKnowledge(cage);
+  return validateAttributes(cage);
 }
 
 int refinementsFor(std::size_t tets) {

@@ -63,7 +63,9 @@ Matrix3d rotationBetween(const Vector3d& from, const Vector3d& to) {
 /// The rotation Q with sum m r x Q r = `moment`, by Newton's method. If the moment exceeds what rotations can have, it
 /// is reduced; without inertia, Q is the identity.
 Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
+  // Newton's method doubles its digits in each step: what takes more does not converge.
   constexpr int kMaxSteps = 12;
+  // Radians: the next step would be below the last digit.
   constexpr double kConverged = 1e-14;
   Vector3d step = inertiaOf(Matrix3d::Identity(), spread).ldlt().solve(moment);
   const double sine = step.norm();
@@ -103,6 +105,7 @@ RigidVelocity rigidVelocity(const Vector3d& about, const Vector3d& velocity, con
 }  // namespace
 
 void PinnedNodes::add(const Vector3d& point, const Vector3d& nodeVelocity) {
+  // Sine of the angle up to which a node is on the line of those before: more than rounding of positions makes.
   constexpr double kOnLine = 1e-3;
   if (count_++ == 0) first_ = point;
   const Vector3d arm = point - first_;
@@ -220,10 +223,24 @@ double ComponentMotion::compliance(const Vector3d& point, const Vector3d& direct
   return moved + moment.dot(inverseInertia_ * moment);
 }
 
-RigidVelocity ComponentMotion::excess(const ComponentMomentum& now, const Vector3d& impulse,
-                                      const Vector3d& torque) const {
+RigidVelocity ComponentMotion::excess(const ComponentMomentum& now, const Vector3d& impulse, const Vector3d& torque,
+                                      const Resistance& held) const {
   const Vector3d momentum = vectorOf(now.momentum) - momentum_ - impulse, spin = vectorOf(now.spin) - spin_ - torque;
-  return rigidWith(momentum, spin, turn_);
+  if (pinned_.kind != PinnedNodes::Nothing || held.isZero(0.0)) return rigidWith(momentum, spin, turn_);
+  Resistance inertia = held;
+  inertia.topLeftCorner<3, 3>().diagonal().array() += mass_;
+  inertia.bottomRightCorner<3, 3>() += inertiaOf(turn_, second_);
+  Eigen::Matrix<double, 6, 1> wanted;
+  wanted << momentum, spin;
+  const Eigen::Matrix<double, 6, 1> found = inertia.partialPivLu().solve(wanted);
+  if (!found.allFinite()) return {};
+  return rigidVelocity(about_, found.head<3>(), crossMatrix(found.tail<3>()) * turn_);
+}
+
+void ComponentMotion::addResistance(const Vector3d& point, const Matrix3d& stiffness, Resistance& to) const {
+  Eigen::Matrix<double, 3, 6> motion;
+  motion << Matrix3d::Identity(), -crossMatrix(turn_ * (point - about_));
+  to += motion.transpose() * stiffness * motion;
 }
 
 RigidVelocity ComponentMotion::withMomentum(const ComponentMomentum& own) const {
@@ -247,7 +264,8 @@ RigidVelocity ComponentMotion::chord(const ComponentMomentum& now, const Compone
                                      const Vector3d& near, double seconds) const {
   ComponentMotion turned;
   turned.find(moments, near, pinned_, seconds);
-  return turned.velocities(seconds) - velocities(seconds) - excess(now, Vector3d::Zero(), Vector3d::Zero());
+  return turned.velocities(seconds) - velocities(seconds) -
+         excess(now, Vector3d::Zero(), Vector3d::Zero(), Resistance::Zero());
 }
 
 RigidVelocity RigidVelocity::operator-(const RigidVelocity& other) const {

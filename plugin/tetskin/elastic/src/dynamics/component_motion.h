@@ -5,8 +5,7 @@
 //
 // Positions are moved along straight lines, x + dt v. A body that rotates by dt omega x r thereby swells by
 // (dt omega)^2 / 2 in every step, which its stiffness must undo. Therefore the velocities of a rigid motion are taken
-// as the chords of a
-// rotation Q: v = (Q - 1) r / dt, and Q is the one that has the angular momentum of the part,
+// as the chords of a rotation Q: v = (Q - 1) r / dt, and Q is the one that has the angular momentum of the component,
 //   sum m r x Q r = dt L
 // which is what x + dt v keeps: angular momentum is exact, and a component that does not deform is not stretched.
 #pragma once
@@ -85,6 +84,10 @@ struct RigidVelocity {
   RigidVelocity operator-(const RigidVelocity& other) const;
 };
 
+/// Maps a velocity of a component, and its rate of rotation about `ComponentMotion::about`, to the change of momentum
+/// and angular momentum by what resists them.
+using Resistance = Eigen::Matrix<double, 6, 6>;
+
 class ComponentMotion {
  public:
   /// moments  about `near`, a point near the component
@@ -111,8 +114,12 @@ class ComponentMotion {
   /// pinned node, only the angular momentum about it is corrected; with pinned nodes on a line, that about the line;
   /// with more, nothing.
   /// impulse, torque  of everything else that has acted in the step
-  RigidVelocity excess(const ComponentMomentum& now, const Eigen::Vector3d& impulse,
-                       const Eigen::Vector3d& torque) const;
+  /// held             what resists these velocities, and whose impulses change by them; 0: nothing. Ignored with pinned
+  ///                  nodes
+  RigidVelocity excess(const ComponentMomentum& now, const Eigen::Vector3d& impulse, const Eigen::Vector3d& torque,
+                       const Resistance& held) const;
+  /// Adds what a point of the component with this stiffness resists.
+  void addResistance(const Eigen::Vector3d& point, const Eigen::Matrix3d& stiffness, Resistance& to) const;
 
   /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit it.
   RigidVelocity withMomentum(const ComponentMomentum& own) const;

@@ -28,12 +28,12 @@ double ConjugateGradient<S>::summed() const {
 }
 
 template <class S>
-void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, Addition* addition,
+void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, CouplingOperator* coupling,
                                  ParallelFor* threads) {
   assert(!matrices.empty() && std::find(matrices.begin(), matrices.end(), nullptr) == matrices.end());
   assert(limits.tolerance >= 0.0 && limits.iterations >= 0);
   matrices_ = std::move(matrices);
-  addition_ = addition;
+  coupling_ = coupling;
   partial_.assign(matrices_.size(), 0.0);
   sizes_.clear();
   double mass = 0.0;
@@ -75,20 +75,20 @@ template <class S>
 bool ConjugateGradient<S>::step(ParallelFor* threads) {
   assert(!stopped_ && partial_.size() == matrices_.size());
   const auto forward = [&](std::size_t k, BlockMatrix<S>& matrix, ParallelFor* inner) {
-    return matrix.forward(addition_ ? addition_->added(k) : nullptr, inner);
+    return matrix.forward(coupling_ ? coupling_->apply(k) : nullptr, inner);
   };
   forEachMatrix(threads, [&](std::size_t k, BlockMatrix<S>& matrix, ParallelFor* inner) {
     matrix.backward(factor_, inner);
-    if (!addition_) return forward(k, matrix, inner);
-    addition_->read(k);
+    if (!coupling_) return forward(k, matrix, inner);
+    coupling_->readPoints(k);
     return 0.0;
   });
-  if (addition_) {
-    addition_->combine();
+  if (coupling_) {
+    coupling_->combine();
     forEachMatrix(threads, forward);
   }
   const double bend = summed();
-  // If the addition is not positive, the iteration stops with the current solution.
+  // If the operator is not positive, the iteration stops with the current solution.
   if (!(bend > 0.0 && std::isfinite(bend))) return false;
   const auto length = static_cast<S>(rho_ / bend);
   forEachMatrix(threads,

@@ -24,30 +24,30 @@ template <class S>
 class TETSKIN_ELASTIC_API ConjugateGradient {
  public:
   using Matrices = std::vector<BlockMatrix<S>*>;
-  /// A symmetric positive addition to the matrices, which may couple them.
-  class Addition {
+  /// A symmetric positive operator that is added to the matrices, which may couple them.
+  class CouplingOperator {
    public:
-    virtual ~Addition() = default;
+    virtual ~CouplingOperator() = default;
     /// Called when the k-th matrix has its `stepPoints`; of several matrices side by side, on any threads.
-    virtual void read(std::size_t k) = 0;
+    virtual void readPoints(std::size_t k) = 0;
     /// Called when all of them have been read.
     virtual void combine() = 0;
     /// What is to be added to A t of the k-th matrix, in the wide layout, or null. Called once per matrix, side by
     /// side, on any threads.
-    virtual const S* added(std::size_t k) = 0;
+    virtual const S* apply(std::size_t k) = 0;
   };
 
   /// Begins with the matrices' residuals r = b - A x. They are transformed in place, so that `start` is called once.
-  /// addition  null: the matrices alone. Not owned, must stay valid while this is used.
-  void start(Matrices matrices, const SolveLimits& limits, Addition* addition, ParallelFor* threads);
+  /// coupling  null: the matrices alone. Not owned, must stay valid while this is used.
+  void start(Matrices matrices, const SolveLimits& limits, CouplingOperator* coupling, ParallelFor* threads);
   /// After `start`: the share of the k-th matrix in `squaredResidual`.
   double squaredResidualOf(std::size_t k) const { return partial_[k]; }
-  /// After `start`: leaves the other matrices' solutions as they are. The addition is called with the numbers that the
+  /// After `start`: leaves the other matrices' solutions as they are. The operator is called with the numbers that the
   /// matrices have then.
   /// kept  ascending numbers of matrices, at least one
   void keepOnly(const std::vector<std::size_t>& kept);
-  /// Does up to `most` iterations; returns true if it has converged. Where an addition is not positive, it stops with
-  /// the current solution.
+  /// Does up to `maximum` iterations; returns true if it has converged. Where an operator is not positive, it stops
+  /// with the current solution.
   bool iterate(int maximum, ParallelFor* threads);
 
   bool converged() const { return rho_ <= target_; }
@@ -67,12 +67,12 @@ class TETSKIN_ELASTIC_API ConjugateGradient {
 
   Matrices matrices_;
   std::vector<std::size_t> sizes_;  ///< by matrix
-  Addition* addition_ = nullptr;
+  CouplingOperator* coupling_ = nullptr;
   std::vector<double> partial_;  ///< by matrix
   double rho_ = 0.0, enough_ = 0.0, target_ = 0.0;
   S factor_ = 0;
   int iterations_ = 0, max_ = 0;
-  bool stopped_ = false;  ///< because an addition is not positive, or a value is not finite
+  bool stopped_ = false;  ///< because an operator is not positive, or a value is not finite
 };
 
 }  // namespace tetskin::elastic_detail

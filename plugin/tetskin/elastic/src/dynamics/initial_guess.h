@@ -40,6 +40,7 @@ class InitialGuess {
   void learn(double squared, int iterations);
 
  private:
+  /// Those named above.
   static constexpr std::size_t kDirections = 3;
   using Wide = AlignedVector<S>;
   using Factors = std::array<double, kDirections>;

@@ -45,7 +45,7 @@ TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Q
   return w * w + x * x + y * y + z * z;
 }
 
-/// Computes the product row by row.
+/// W matrices of 3 x 3, row by row.
 template <class S, int W>
 struct WideMatrix {
   Lanes<S, W> at[9];
@@ -335,6 +335,21 @@ TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
   return {largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)), energy};
 }
 
+/// Volume over that at rest, below which a tet counts as flat. Under its own weight or in an impact no body is flat;
+/// one that is squashed by ten times what it can carry is.
+template <class S>
+constexpr S kFlat = S(0.1);
+
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S>& work, const TetPack<S>& pack, int lane) {
+  if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);
+  const WideMatrix<S, W> f = deformationGradient<S, W>(pack, work.points, lane);
+  const auto* a = f.at;
+  const Lanes<S, W> ratio =
+      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  return ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
+}
+
 template <class S, int W>
 void rotatedGradients(const TetWork<S>& work) {
   using V = Lanes<S, W>;
@@ -342,7 +357,8 @@ void rotatedGradients(const TetWork<S>& work) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
       const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
-      const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(work.alpha * mu);
+      const V mu = S(0.5) * wide<S, W>(pack.shear + lane),
+              factor = squareRoots<S, W>(alphaOf<S, W>(work, pack, lane) * mu);
       const V ratio = wide<S, W>(pack.bulk + lane) / (mu > S(0) ? mu : all<S, W>(1));
       putCorners<S, W>(pack, lane, ratio, work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {

@@ -181,6 +181,7 @@ void BlockMatrix<S>::read(Coupling& coupling) const {
 /// Writes the blocks of a pair: their own values and the addition.
 template <class S>
 void BlockMatrix<S>::write(const Coupling& coupling) {
+  // By entry of a block: its place among xx xy xz yy yz zz.
   constexpr std::size_t kPlaces[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
   for (std::size_t k = 0; k < 9; ++k) {
     blocks_[coupling.block + k * kGroup] = coupling.own[k] + coupling.addition[kPlaces[k]];

@@ -143,6 +143,7 @@ Division divide(const std::vector<Row>& rows, const std::vector<std::uint32_t>& 
       if (division.taskOf[m] >= parts) sets.unite(static_cast<int>(partOf[n]), static_cast<int>(partOf[m]));
     }
   }
+  // A part without a number so far.
   constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   std::vector<std::uint32_t> numbers(parts, kNone);
   for (const std::uint32_t n : separators) {

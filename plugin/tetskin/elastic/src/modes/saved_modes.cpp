@@ -22,6 +22,7 @@
 namespace tetskin {
 namespace {
 
+/// What a file begins with, see above.
 constexpr char kMagic[] = "tetskmod";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 8 * 8;

@@ -91,6 +91,7 @@ void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
 template <class S>
 double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads) {
   assert(points);
+  if (!energy) points_ = points;  // a query of the energy changes nothing
   const auto& table = kernels::elasticInUse<S>();
   byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t task) {
     work.points = points;
@@ -155,11 +156,14 @@ double CorotatedTets<S>::maxTurn() const {
 }
 
 template <class S>
-const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads) {
+const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha) {
+  assert(points_ || !(flatAlpha > alpha));
   const auto& table = kernels::elasticInUse<S>();
   assembled_ = rotations_;
   byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t) {
     work.alpha = alpha;
+    work.flatAlpha = flatAlpha;
+    work.points = points_;
     table.rotatedGradients(work);
   });
   return corners_.data();

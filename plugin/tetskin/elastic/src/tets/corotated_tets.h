@@ -52,7 +52,10 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double meanTurn() const;
   double maxTurn() const;
   /// The corners for BlockMatrix::assemble, with the current rotations.
-  const S* cornersForMatrix(S alpha, ParallelFor* threads);
+  /// flatAlpha  if larger than `alpha`: its value for tets that were flat or inverted in the last `forces`, whose
+  /// points
+  ///            must still be there
+  const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
 
  private:
   template <class Kernel>
@@ -65,8 +68,9 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   AlignedVector<S> rotations_, assembled_, corners_;
   std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot
   std::size_t slots_ = 0;
-  S maxTurned_ = 0;      ///< squared difference of quaternions
-  double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
+  const S* points_ = nullptr;  ///< of the last `forces`
+  S maxTurned_ = 0;            ///< squared difference of quaternions
+  double turned_ = 0.0;        ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
 };
 

@@ -55,6 +55,8 @@ constexpr double kMaxStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
 /// volume  at rest; its cube root counts as the size
 template <class Scalar>
 Status checkStiffness(double youngsModulus, double damping, double mass, double volume) {
+  // Seconds. Damping adds stiffness times damping over the step to the matrix; the limit was tested in steps of this
+  // length.
   constexpr double kLongStep = 1.0 / 60.0;
   const double size = std::cbrt(volume), density = mass / volume;
   const double maximum = kMaxStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);

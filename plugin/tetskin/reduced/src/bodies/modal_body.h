@@ -26,10 +26,10 @@ struct ModalMaterial {
 /// - a body at rest has the speed that gravity gives it in a step, and never sleeps.
 class ModalBody : public btReducedDeformableBody {
  public:
-  /// eigenvalues  by mode, for a stiffness and density of 1
-  /// held         its modes have pinned nodes: its frame does not move
-  /// The caller adds elements, margins and trees before `begin`.
+  /// pinned  its modes have pinned nodes: its frame does not move
   ModalBody(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes, bool pinned);
+  /// The caller adds elements, margins and trees before.
+  /// eigenvalues  by mode, for a stiffness and density of 1
   void begin(const CageModes& modes, const std::vector<double>& eigenvalues, const ModalMaterial& material);
 
   /// Places the body without motion, in its current deformation.
@@ -52,8 +52,8 @@ class ModalBody : public btReducedDeformableBody {
   btScalar damping_ = 0;
   btTransform frame_ = btTransform::getIdentity();  ///< of a pinned or sleeping body
   std::vector<btVector3> momenta_;                  ///< by mode: response to gravity, in the body's frame
-  btScalar sleepSpeed_,
-      threshold_;  ///< the application's value; the value including the speed that gravity adds in a substep
+  btScalar sleepSpeed_;                             ///< the application's threshold of sleep
+  btScalar threshold_;                              ///< that, and the speed that gravity adds in a substep
 };
 
 }  // namespace tetskin::reduced_detail

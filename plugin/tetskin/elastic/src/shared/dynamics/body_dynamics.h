@@ -25,9 +25,20 @@
 
 namespace tetskin::elastic_detail {
 
+/// A point of a body where something resists a change of its velocity.
+template <class S>
+struct HeldPoint {
+  const int* nodes = nullptr;
+  const S* weights = nullptr;
+  std::size_t nodeCount = 0;
+  std::array<double, 9> stiffness{};  ///< symmetric: impulse on the body per change of velocity, opposite to it
+  std::array<double, 3> change{};     ///< result: change of the point's velocity
+};
+
 template <class S>
 class TETSKIN_ELASTIC_API BodyDynamics {
  public:
+  /// Three translations and three rotations.
   static constexpr std::size_t kRigidMotions = 6;
 
   /// rest  may be empty: a body without elasticity, which has masses only
@@ -108,11 +119,13 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::size_t componentCount() const { return motions_.size(); }
   /// Replaces the solution, for each component, by the rigid motion with its momentum, as far as pinned nodes permit
   /// it.
-  void keepRigidComponent();
+  void projectToRigidMotion();
   /// Removes from the solution the linear and the angular momentum that internal forces cannot cause, but a solve that
   /// is cut short does: see `ComponentMotion::excess`.
   /// impulse  by node, of everything else that has acted on it in the step; empty: nothing has
-  void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {});
+  /// held     points where contacts resist the change; the caller changes their impulses accordingly
+  void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {},
+                      std::vector<HeldPoint<S>>* held = nullptr);
   /// Where something other than elasticity has rotated a component in this step, the solution gets that rotation as a
   /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
   /// negligible.
@@ -129,6 +142,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads);
   double allowedTurn() const;
   std::vector<ComponentMomentum> momentaNow() const;
+  Eigen::Vector3d placeOf(const HeldPoint<S>& point) const;
 
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;

@@ -15,6 +15,8 @@
 
 namespace tetskin::kernels {
 
+/// Tets and rows that are stored side by side: as many floats as AVX2 has lanes, twice those of SSE2, half those of
+/// AVX-512.
 constexpr int kGroup = 8;
 
 /// Scalars of a chunk's vectors, of its symmetric blocks (xx xy xz yy yz zz), and of an entry's blocks (by rows).
@@ -40,7 +42,7 @@ struct TetWork {
   const S* points = nullptr;     ///< by slot
   S* corners = nullptr;          ///< by tet
   S* sums = nullptr;             ///< by slot: forces are added here; null: they are written to `corners`
-  S alpha = 0;
+  S alpha = 0, flatAlpha = 0;    ///< the second one: of flat and inverted tets, at least the first
 };
 
 template <class S>
@@ -105,7 +107,8 @@ template <class S>
 struct ElasticTable {
   /// Elastic forces at the points' positions, by corner or, with the same bits, summed; updates `rotations`.
   TetFindings<S> (*forces)(const TetWork<S>&, bool energy);
-  /// R g sqrt(alpha mu V) of all four corners; the fourth scalar of each is lambda / mu.
+  /// R g sqrt(alpha mu V) of all four corners; the fourth scalar of each is lambda / mu. Where a tet is flat at the
+  /// points' positions, with `flatAlpha`.
   void (*rotatedGradients)(const TetWork<S>&);
   void (*sum)(const SumWork<S>&);
   /// Computes the blocks, the diagonal, and its inverse, which is 0 where the mass is 0.
