@@ -98,7 +98,7 @@ TEST(BodyTrees, AreRightForASleeperAlsoOnceItIsMoved) {
   body->body().translate(btVector3(0, 2, 1));
   expectRaysAsByBruteForce(world.deformable(), body->body(), 2);
   step(world, 2);
-  ASSERT_FALSE(body->body().isActive());
+  EXPECT_TRUE(body->body().isActive()) << "it is in the air";
   expectRaysAsByBruteForce(world.deformable(), body->body(), 3);
 }
 

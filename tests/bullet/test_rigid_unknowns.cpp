@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr btScalar kStep = btScalar(1) / 240;
+constexpr btScalar kSeconds = btScalar(1) / 240;
 
 const btVector3 kHalf(btScalar(0.3), btScalar(0.1), btScalar(0.2));
 const btVector3 kImpulse(btScalar(0.3), btScalar(-0.5), btScalar(0.2));
@@ -78,7 +78,7 @@ struct Chain {
     body->setBaseOmega(btVector3(1, btScalar(0.5), -1));
     body->setJointVel(0, 2);
     body->setJointVel(1, -1);
-    world.deformable().stepSimulation(kStep, 1, kStep);
+    world.deformable().stepSimulation(kSeconds, 1, kSeconds);
   }
   ~Chain() {
     for (auto& collider : colliders) world.deformable().removeCollisionObject(collider.get());
@@ -157,7 +157,7 @@ TEST(RigidUnknowns, AreNotWhatMovesAsItIsPrescribed) {
     EXPECT_TRUE(rigids.velocity(point, wave(6)).isZero());
   }
   EXPECT_TRUE(rigids.list().empty());
-  EXPECT_TRUE(rigids.velocityAt(rigids.at(object, btVector3(1, 2, 3)), object, kStep).isZero());
+  EXPECT_TRUE(rigids.velocityAt(rigids.at(object, btVector3(1, 2, 3)), object, kSeconds).isZero());
 }
 
 TEST(RigidUnknowns, AreMovedByAnImpulseAsTheyMoveThePoint) {
@@ -226,9 +226,9 @@ TEST(RigidUnknowns, YieldAsBulletsMultibodiesDoToAnImpulse) {
   btAlignedObjectArray<btScalar> scratch;
   btAlignedObjectArray<btVector3> vectors;
   chain.body->calcAccelerationDeltasMultiDof(force.data(), answer.data(), scratch, vectors);
-  const btVector3 before = rigids.velocityAt(point, chain.last(), kStep);
+  const btVector3 before = rigids.velocityAt(point, chain.last(), kSeconds);
   chain.body->applyDeltaVeeMultiDof(answer.data(), 1);
-  const btVector3 change = rigids.velocityAt(point, chain.last(), kStep) - before;
+  const btVector3 change = rigids.velocityAt(point, chain.last(), kSeconds) - before;
   EXPECT_NEAR(rigids.compliance(point, direction), change.dot(direction), 1e-4 * change.length());
   EXPECT_GT(change.dot(direction), 0.3) << "no less than of the whole mass";
 }
@@ -240,11 +240,11 @@ TEST(RigidUnknowns, OfAMultibodyMoveAPointAsBulletDoes) {
     const auto& collider = *chain.colliders[static_cast<std::size_t>(link)];
     const btVector3 local(btScalar(0.1), btScalar(0.2), btScalar(-0.1));
     const btVector3 where = collider.getWorldTransform() * local;
-    const btVector3 velocity = rigids.velocityAt(rigids.at(collider, where), collider, kStep);
+    const btVector3 velocity = rigids.velocityAt(rigids.at(collider, where), collider, kSeconds);
     Chain later;  // the same chain one step later
-    later.world.deformable().stepSimulation(kStep, 1, kStep);
+    later.world.deformable().stepSimulation(kSeconds, 1, kSeconds);
     const auto& moved = *later.colliders[static_cast<std::size_t>(link)];
-    const btVector3 went = (moved.getWorldTransform() * local - where) / kStep;
+    const btVector3 went = (moved.getWorldTransform() * local - where) / kSeconds;
     EXPECT_LT((velocity - went).length(), btScalar(0.03)) << link;
     EXPECT_GT(velocity.length(), 0.1);
   }
@@ -320,23 +320,24 @@ TEST(RigidUnknowns, CarryAPointOfAKinematicBodyByItsPlaces) {
   btRigidBody& body = *box.body;
   body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
   const auto placeAt = [](int step) {
-    const btQuaternion turn(btVector3(0, 1, 0), btScalar(0.3) * kStep * static_cast<btScalar>(step));
-    return btTransform(turn, btVector3(btScalar(0.5) * kStep * static_cast<btScalar>(step), 0, 0));
+    const btQuaternion turn(btVector3(0, 1, 0), btScalar(0.3) * kSeconds * static_cast<btScalar>(step));
+    return btTransform(turn, btVector3(btScalar(0.5) * kSeconds * static_cast<btScalar>(step), 0, 0));
   };
   const btVector3 arm(btScalar(0.4), btScalar(0.1), btScalar(-2));
   RigidUnknowns rigids;
   const auto velocity = [&] {
-    return rigids.velocityAt(rigids.at(body, body.getWorldTransform().getOrigin() + arm), body, kStep);
+    return rigids.velocityAt(rigids.at(body, body.getWorldTransform().getOrigin() + arm), body, kSeconds);
   };
   box.moveTo(placeAt(0));
   double bullets = 0.0;
   for (int step = 1; step <= 20; ++step) {
     rigids.clear();
     body.setWorldTransform(placeAt(step));
-    body.saveKinematicState(kStep);
+    body.saveKinematicState(kSeconds);
+    rigids.paths().advance(body, kSeconds);
     const btTransform before = placeAt(step - 1);
     const btVector3 local = before.getBasis().transpose() * arm;
-    const btVector3 expected = (placeAt(step) * local - before * local) / kStep;
+    const btVector3 expected = (placeAt(step) * local - before * local) / kSeconds;
     const double error = static_cast<double>((velocity() - expected).length());
     bullets = std::max(bullets, static_cast<double>((body.getVelocityInLocalPoint(arm) - expected).length()));
     if (step > 1) {
@@ -349,6 +350,7 @@ TEST(RigidUnknowns, CarryAPointOfAKinematicBodyByItsPlaces) {
   // The body is put elsewhere, which does not count as motion.
   rigids.clear();
   body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 7, 0)));
+  rigids.paths().advance(body, kSeconds);
   EXPECT_LT((velocity() - body.getVelocityInLocalPoint(arm)).length(), 0.01);
 }
 

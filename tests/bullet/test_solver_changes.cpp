@@ -74,15 +74,18 @@ TEST(SolverWithOthers, FollowsABodyThatIsScaled) {
   EXPECT_NEAR(static_cast<double>(high - low), 2 * 0.9, 0.01);
 }
 
-/// Bullet's tets dangle after `appendNode`: the solver no longer steps the body, and reads nothing past its end.
+/// Bullet's tets dangle after `appendNode`: the solver no longer steps the body, says so, and reads nothing past its
+/// end.
 TEST(SolverWithOthers, SurvivesNodesThatAreAppended) {
   TetskinWorld world;
   const auto body = added(world, smallCageAbove(5));
   step(world, 2);
   body->body().appendNode(btVector3(0, 9, 0), btScalar(0.1));
   body->body().m_tetras.resize(0);  // otherwise Bullet itself reads through them
+  EXPECT_EQ(body->solverPath(), SolverPath::Solver);
   step(world, 5);
   EXPECT_TRUE(std::isfinite(rmsSpeed(body->body())));
+  EXPECT_EQ(body->solverPath(), SolverPath::None);
 }
 
 TEST(SolverWithOthers, BodiesMayGoInBulletsCallbacks) {

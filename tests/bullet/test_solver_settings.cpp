@@ -252,6 +252,37 @@ TEST(DeformableSolver, CountsTheIterationsOfTheLastStepAlone) {
   EXPECT_GT(world.bodySolver().iterations(), 0);
 }
 
+/// A stiff bar of 150 cubes that is anchored at one end takes many iterations to bend.
+TEST(DeformableSolver, IteratesWithAnchorsAsOftenAsItIsAllowedTo) {
+  TetMesh bar = test::latticeCage(150, 1, 1, 0.1);
+  for (Vector& p : bar.nodes) p.y() += 5;
+  const auto iterationsPerSolve = [&](int allowed) {
+    TetskinWorld world;
+    btBoxShape shape(btVector3(1, 1, 1));
+    btRigidBody wall(0, nullptr, &shape);
+    world.deformable().addRigidBody(&wall);
+    SoftBodyOptions options;
+    options.relativeStiffness = 1e6;
+    options.solverTolerance = 1e-6;
+    options.maxIterations = allowed;
+    double most = 0;
+    {
+      const auto body = added(world, bar, options);
+      for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+        if (body->body().m_nodes[n].m_x.x() < btScalar(0.05)) body->body().appendDeformableAnchor(n, &wall);
+      }
+      for (int s = 0; s < 3; ++s) {
+        step(world, 1);
+        most = std::max(most, double(world.bodySolver().iterations()) / std::max(world.bodySolver().linearSolves(), 1));
+      }
+    }
+    world.deformable().removeRigidBody(&wall);
+    return most;
+  };
+  EXPECT_LE(iterationsPerSolve(50), 51);
+  EXPECT_GT(iterationsPerSolve(1000), 220);
+}
+
 /// Rays find a body wherever it has gone, although its trees are not refitted in each step.
 TEST(DeformableSolver, LeavesBodiesToBeFoundByRays) {
   TetskinWorld world;

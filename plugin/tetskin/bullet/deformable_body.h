@@ -13,7 +13,7 @@ namespace tetskin {
 enum class SolverPath {
   Bullet,  ///< Bullet's own force
   Solver,  ///< ForceModel::Corotated, solved by a DeformableSolver
-  None,    ///< no force: the body has been removed from its world
+  None,    ///< no force: the body has been removed from its world, or has tets that cannot be simulated any more
 };
 
 /// A soft body in a deformable world, with its own gravity and elastic forces: creates, separates and deletes the

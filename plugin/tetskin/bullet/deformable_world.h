@@ -47,8 +47,12 @@ struct StepTimes {
 /// does `DeformableBody::add`) is solved by Bullet's own code.
 ///
 /// Contact at nodes respects groups, masks, the world's overlap filter callback and the collision response flags of
-/// both bodies, evaluated in each step. Sleeping bodies wake when what they lie on, or are attached to, is moved,
-/// changed or removed, and when an obstacle comes near; see the guide.
+/// both bodies, evaluated in each step. Bodies fall asleep where they would stay, never in free flight. Sleeping bodies
+/// wake when the application moves or changes them, when what they lie on, or are attached to, is moved, changed or
+/// removed, and when an obstacle comes near; see the guide.
+///
+/// A kinematic body that is moved once per frame is put, during each step, where that step takes it; callbacks within a
+/// step see it there.
 ///
 /// A body whose collision flags allow no contact with soft bodies (as `createSoftBody` makes them) is marked as
 /// sleeping between the solve and its integration, so that Bullet does not search for such contacts; only a world's
@@ -190,13 +194,13 @@ struct AppliedForces {
 ///
 /// Recorded is what a `DeformableSolver` solves for: forces of bodies of `ForceModel::Corotated`. Not recorded are
 /// forces within one body, nor those between rigid bodies, which are in Bullet's manifolds. The torque on a kinematic
-/// body is about its position as Bullet has it during a step, which is where the whole `stepSimulation` moves it.
+/// body is about its position at the end of each step.
 ///
 /// In the world's `debugDrawWorld`, with DBG_DrawContactPoints, it draws the loaded contact points of the last substep,
 /// their normals, and their forces: a force equal to the soft body's weight is drawn as long as the body. Bullet calls
 /// this only if DBG_DrawWireframe, DBG_DrawAabb or DBG_DrawNormals is set as well.
 ///
-/// Lifetime  destroy it before its world; bodies may be destroyed in any order
+/// Lifetime  it, bodies, and the world may be destroyed in any order
 /// Cost      per substep O(contact points, and nodes of bodies in contact); none in a world without it. Several records
 ///           of one world share their data
 class TETSKIN_BULLET_API ForceRecord {

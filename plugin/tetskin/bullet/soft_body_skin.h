@@ -67,7 +67,8 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// alpha    interpolation between the last two recorded steps: 0 is the previous one, 1 the body's current nodes;
   ///          clamped to this range. NaN counts as 1, and so does any value if there is nothing to interpolate: see
   ///          `recordStep`
-  /// Returns  Ok, Asleep, Hidden; or, without any change, Unbound, TopologyChanged, NonFinite
+  /// Returns  Ok, Asleep, Hidden; or, without any change, Unbound, BodyDeleted (told for bodies of `createSoftBody` and
+  ///          `DeformableBody`), TopologyChanged, NonFinite
   StatusCode update(btScalar alpha = 1);
 
   /// Updates several skins, and prefetches the data of the next ones: with many sleeping bodies, waiting for
@@ -144,6 +145,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   };
 
   bool isBetween(btScalar alpha) const { return between_ && alpha < 1; }
+  bool bodyLives() const { return !watched_ || !life_.expired(); }
   StatusCode decide(btScalar alpha);
   static void decideAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha);
   StatusCode compute(btScalar alpha);
@@ -160,10 +162,12 @@ class TETSKIN_BULLET_API SoftBodySkin {
   int nodeCount_ = 0;
   int tetCount_ = 0;
   bool visible_ = true;
+  bool watched_ = false;  ///< `life_` tells whether the body still exists
   bool moved_ = false;    ///< nodes have moved, or may have without a change of samples_: the next update does not skip
   bool between_ = false;  ///< there are two recorded steps to interpolate between
   bool sleeps_ = false;   ///< the body slept when the last step was recorded
   bool teleported_ = false;  ///< the next update counts as no motion
+  std::weak_ptr<const void> life_;
   std::array<Sample, 4> samples_;
   MeshSkin<btScalar> skin_;
   StepHistory<btScalar> steps_;

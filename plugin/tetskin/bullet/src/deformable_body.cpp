@@ -127,12 +127,14 @@ struct DeformableBody::Impl {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
       : world(ofWorld),
         solver(ofSolver),
+        hasOwnSolver(deformableSolver(&ofSolver)),
         list(*ofSolver.getLagrangianForceArray()),
         body(std::move(made)),
-        gravity(ofWorld, list) {}
+        gravity(ofWorld, list, !hasOwnSolver) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
   btDeformableBodySolver& solver;
+  bool hasOwnSolver;  ///< it is a DeformableSolver, of which it is known whether it still exists
   ForceList& list;
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
@@ -164,10 +166,15 @@ struct DeformableBody::Impl {
     if (status.ok()) apply(now);
     return status;
   }
+  void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
-  /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces.
-  bool isActedOn() const { return isInItsWorld() && gravity.m_softBodies.size() > 0; }
+  /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces, and
+  /// elasticity drops a body with tets that it cannot simulate.
+  bool isActedOn() const {
+    return isInItsWorld() && gravity.m_softBodies.size() > 0 && elasticity->m_softBodies.size() > 0;
+  }
+  bool solverLives() const { return !hasOwnSolver || deformableSolver(&solver); }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
     return {StatusCode::IndexOutOfRange, "node " + std::to_string(node) + " does not exist in a cage of " +
@@ -179,7 +186,7 @@ DeformableBody::DeformableBody(std::unique_ptr<Impl> impl) : impl_(std::move(imp
 
 Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
                                                             const SoftBodyOptions& given) {
-  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
   const SoftBodyOptions options = withCageDefaults(cage, given);
   if (options.forceModel == ForceModel::MassSpring) {
     return invalid(
@@ -251,12 +258,23 @@ SolverPath DeformableBody::solverPath() const {
   return impl_->forceModel == ForceModel::Corotated ? SolverPath::Solver : SolverPath::Bullet;
 }
 
+/// As the world would remove it, without telling the solver, which has been destroyed before the world.
+void DeformableBody::Impl::leaveWithoutSolver() {
+  assert(isInItsWorld());
+  world.getSoftBodyArray().remove(body.get());
+  world.btCollisionWorld::removeCollisionObject(body.get());
+}
+
 DeformableBody::~DeformableBody() {
   // The body was removed from the world, by the application or by the world's destructor: nothing there needs to be
   // updated, and the world may not exist any more.
   if (!impl_->isInAWorld()) return;
   if (!impl_->isInItsWorld()) {
     (void)impl_->body.release();  // another world still contains it
+    return;
+  }
+  if (!impl_->solverLives()) {
+    impl_->leaveWithoutSolver();
     return;
   }
   removeFromList(impl_->list, &impl_->gravity);

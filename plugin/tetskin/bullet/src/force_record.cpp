@@ -23,6 +23,7 @@ Result<std::unique_ptr<ForceRecord>> ForceRecord::add(btDeformableMultiBodyDynam
   std::weak_ptr<RecordedForces>& inSolver = solver->impl_->recorded;
   std::shared_ptr<RecordedForces> recorded = inSolver.lock();
   if (!recorded) inSolver = recorded = std::make_shared<RecordedForces>(world);
+  solver->impl_->recordDrawing.draw(recorded, world);
   return std::unique_ptr<ForceRecord>(new ForceRecord(std::move(recorded)));
 }
 

@@ -208,7 +208,7 @@ Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, co
 
 Result<std::unique_ptr<btSoftBody>> createSoftBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
                                                    const SoftBodyOptions& options) {
-  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
   Result<BuiltBody> built = buildBody(cage, worldInfo, withCageDefaults(cage, options));
   if (!built.ok()) return built.status();
   return std::move(built.value().body);

@@ -45,6 +45,7 @@ FourNodes independentFrom(std::size_t start, std::size_t count, At&& at) {
 template <class At>
 FourNodes nodesToSample(std::size_t count, std::size_t strideBytes, At&& at) {
   assert(count > 0 && strideBytes > 0);
+  // Bytes of a page on most systems; and how many starts are tried, see Cost.
   constexpr std::size_t kPage = 4096, kStarts = 64;
   const auto page = [&](int n) { return static_cast<std::size_t>(n) * strideBytes / kPage; };
   const auto cost = [&](const FourNodes& n) { return std::make_pair(page(n[3]) - page(n[0]), n[3] - n[0]); };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
 #include <tetskin/core/src/shared/base/compiler.h>
@@ -71,6 +72,9 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   }
   if (Status status = skin_.bind(std::move(binding), nodePositions(body), options); !status.ok()) return status;
   body_ = &body;
+  const BodyWithTrees* own = bodyWithTrees(body);
+  watched_ = own != nullptr;
+  life_ = own ? own->lifetime() : std::weak_ptr<const void>();
   nodeCount_ = body.m_nodes.size();
   tetCount_ = body.m_tetras.size();
   moved_ = between_ = teleported_ = false;
@@ -95,6 +99,7 @@ StatusCode SoftBodySkin::decide(btScalar alpha) {
   if (!skin_.bound()) return StatusCode::Unbound;
   skin_.clearMotion();  // unless it is updated
   if (!visible_) return StatusCode::Hidden;
+  if (!bodyLives()) return StatusCode::BodyDeleted;
   if (body_->m_nodes.size() != nodeCount_) return topologyChanged();
   if (!body_->isActive() && !moved_ && !isBetween(alpha) && samplesUnmoved()) return StatusCode::Asleep;
   if (body_->m_tetras.size() != tetCount_) return topologyChanged();
@@ -126,6 +131,7 @@ StatusCode SoftBodySkin::topologyChanged() {
 void SoftBodySkin::recordStep() {
   if (!skin_.bound() || !visible_) return;
   between_ = false;
+  if (!bodyLives()) return steps_.clear();
   const bool slept = std::exchange(sleeps_, !body_->isActive());
   if (slept && sleeps_) return;  // where it was
   if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return steps_.clear();
@@ -142,6 +148,7 @@ void SoftBodySkin::markTeleported() {
 void SoftBodySkin::restart() {
   between_ = false;
   if (steps_.empty()) return;
+  if (!bodyLives()) return steps_.clear();
   sleeps_ = !body_->isActive();
   steps_.clear();
   if (body_->m_nodes.size() == nodeCount_) (void)steps_.record(nodePositions(*body_));
@@ -189,7 +196,7 @@ void SoftBodySkin::fetchBody() const {
 }
 
 void SoftBodySkin::fetchNodes() const {
-  if (!skin_.bound() || !visible_ || body_->m_nodes.size() != nodeCount_) return;
+  if (!skin_.bound() || !visible_ || !bodyLives() || body_->m_nodes.size() != nodeCount_) return;
   const PointView<const btScalar> now = nodePositions(*body_);
   for (const Sample& s : samples_) prefetch(now[static_cast<std::size_t>(s.node)]);
 }

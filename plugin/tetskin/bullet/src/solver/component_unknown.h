@@ -22,7 +22,7 @@ using RowMotions = Eigen::Matrix<double, 3, 6>;
 /// Z are the six motions, A is the matrix without rows, b the right side.
 struct ComponentUnknown {
   std::size_t body = 0;                                      ///< in SolverBodies::bodies
-  Eigen::Index first = 0;                                    ///< index of its six among the system's few unknowns
+  Eigen::Index first = 0;                                    ///< index of its six among the system's reduced unknowns
   AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout
   AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, in the wide layout
   Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z

@@ -84,7 +84,7 @@ constexpr int signOf(std::size_t end) {
 }
 
 /// Where a point sticks, or has slid to, at the end of a step.
-struct Sticking {
+struct FrictionAnchor {
   std::uint32_t point = 0;
   const btCollisionObject* object = nullptr;
   btVector3 normal;

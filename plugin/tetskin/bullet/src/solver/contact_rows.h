@@ -32,7 +32,7 @@ class ContactRows {
   void addSoft(SolverBodies& bodies, SoftPointContact& contact, btScalar seconds);
   void addJoint(SolverBodies& bodies, PointJoint& joint, RigidUnknowns& rigids, btScalar seconds);
   void addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
-  void setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids);
+  void setStiffness(SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
 
   std::vector<ContactRow> rows_;
 };

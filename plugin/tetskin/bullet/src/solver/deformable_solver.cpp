@@ -55,7 +55,9 @@ const StepTimes& DeformableSolver::stepTimes() const {
   return impl_->clock.times();
 }
 
+/// Bullet calls this when a step begins, and, with a time below 0, when a body has left the world.
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
+  if (!(dt > 0)) return impl_->dropRemoved(softBodies);
   impl_->clock.restart();
   impl_->gather(softBodies, dt);
   impl_->clock.end(&StepTimes::prediction);
@@ -76,6 +78,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
     impl.assign();
   }
   impl.solving ? impl.predict() : btDeformableBodySolver::predictMotion(dt);
+  impl.noteObjects();
   impl.clock.end(&StepTimes::prediction);
 }
 
@@ -112,7 +115,7 @@ void DeformableSolver::Impl::searchSurfaces() {
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
   if (impl_->solving) {
     if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
-    impl_->obstacleChanges.notice(*body, *object);
+    impl_->obstacleChanges.syncRigidObject(*body, *object);
     if (impl_->findNodeContactsOf(*body, *object)) return;
   }
   btDeformableBodySolver::processCollision(body, object);
@@ -125,6 +128,7 @@ void DeformableSolver::setupDeformableSolve(bool implicit) {
 /// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice. Collision
 /// detection has run since the prediction.
 void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
+  impl_->dropRemovedObjects();
   impl_->searchSurfaces();
   impl_->clock.end(&StepTimes::rigidSearch);
   btDeformableBodySolver::setConstraints(info);
@@ -176,6 +180,8 @@ void DeformableSolver::applyTransforms(btScalar dt) {
   impl.driven.beforeIntegration(m_softBodies);
   btDeformableBodySolver::applyTransforms(dt);
   impl.driven.end(m_softBodies, dt);
+  impl.inStep = false;
+  impl.rigids.paths().endStep();
 }
 
 }  // namespace tetskin

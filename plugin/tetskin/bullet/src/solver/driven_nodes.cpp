@@ -66,13 +66,6 @@ DrivenNodes::Nodes* DrivenNodes::find(const btSoftBody& body) {
   return found == bodies_.end() ? nullptr : &found->second;
 }
 
-void DrivenNodes::keepOnly(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  for (auto driven = bodies_.begin(); driven != bodies_.end();) {
-    const bool here = bodies.findLinearSearch(const_cast<btSoftBody*>(driven->first)) < bodies.size();
-    driven = here ? std::next(driven) : bodies_.erase(driven);
-  }
-}
-
 void DrivenNodes::begin(const btAlignedObjectArray<btSoftBody*>& awake, btScalar dt) {
   for (int b = 0; b < awake.size(); ++b) beginBody(*awake[b], dt);
 }

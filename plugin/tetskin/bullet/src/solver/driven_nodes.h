@@ -28,8 +28,8 @@ struct DrivenNode {
 
 class DrivenNodes {
  public:
-  /// Forgets bodies that are no longer in the world.
-  void keepOnly(const btAlignedObjectArray<btSoftBody*>& bodies);
+  /// Forgets a body that has left the world.
+  void forget(const btSoftBody& body) { bodies_.erase(&body); }
   /// Call it when a step begins, before anything reads nodes: gives the nodes their velocities. Costs one pass over the
   /// nodes.
   void begin(const btAlignedObjectArray<btSoftBody*>& awake, btScalar dt);

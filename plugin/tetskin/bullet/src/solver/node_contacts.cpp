@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <BulletSoftBody/btSoftBodyInternals.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/shared/bodies/exact_distance.h>
 #include <tetskin/bullet/src/solver/node_contacts.h>
+#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <optional>
 
 namespace tetskin {
@@ -41,20 +46,69 @@ bool hasContactsWith(const btSoftBody& body, const btCollisionObject& object) {
   return contacts.size() > 0 && contacts[contacts.size() - 1].m_cti.m_colObj == &object;
 }
 
+/// A triangle of a mesh, which Bullet passes as the hull of a prism around it. Points inside belong to its upper or
+/// lower side: the others are mostly inner edges of the mesh.
+class TrianglePrism {
+ public:
+  static std::optional<TrianglePrism> of(const btCollisionObjectWrapper& object);
+  ShapeDistance distance(const btVector3& point) const;
+
+ private:
+  TriangleCorners corners_;
+  Eigen::Vector3d normal_;
+  double half_ = 0.0;  ///< half the thickness
+};
+
+std::optional<TrianglePrism> TrianglePrism::of(const btCollisionObjectWrapper& object) {
+  const btCollisionShape& shape = *object.getCollisionShape();
+  const bool isTriangle = object.m_partId >= 0;
+  if (!isTriangle || shape.getShapeType() != CONVEX_HULL_SHAPE_PROXYTYPE) return {};
+  const auto& hull = static_cast<const btConvexHullShape&>(shape);
+  if (hull.getNumPoints() != 6) return {};
+  const btVector3* points = hull.getUnscaledPoints();
+  TrianglePrism prism;
+  for (std::size_t k = 0; k < 3; ++k) prism.corners_[k] = toEigen((points[k] + points[k + 3]) * btScalar(0.5));
+  const Eigen::Vector3d up = 0.5 * toEigen(points[0] - points[3]);
+  prism.half_ = up.norm();
+  if (!(prism.half_ > 0.0)) return {};
+  prism.normal_ = up / prism.half_;
+  return prism;
+}
+
+ShapeDistance TrianglePrism::distance(const btVector3& point) const {
+  const Eigen::Vector3d p = toEigen(point);
+  const double height = normal_.dot(p - corners_[0]);
+  const Eigen::Vector3d level = p - height * normal_;
+  const Eigen::Vector3d beside = level - closestPointOnTriangle(level, corners_).point;
+  const Eigen::Vector3d up = height < 0.0 ? -normal_ : normal_;
+  const double above = std::abs(height) - half_;
+  const Eigen::Vector3d away = beside + std::max(above, 0.0) * up;
+  const double distance = away.norm();
+  const bool isBeside = beside.squaredNorm() > 1e-12 * half_ * half_;
+  if (!isBeside || !(distance > 0.0)) return {static_cast<btScalar>(above), toBullet(up)};
+  return {static_cast<btScalar>(distance), toBullet(Eigen::Vector3d(away / distance))};
+}
+
+/// Most steps along the path of a node; one that needs more passes by the shape at a grazing angle.
+constexpr int kMaxMarches = 24;
+/// Distance that counts as touching, as a fraction of the one at the beginning of the path.
+constexpr btScalar kTouching = btScalar(0.01);
+
 /// Distances of points from a shape, less the margin.
 class ShapeField {
  public:
-  ShapeField(btSoftBody& body, const btCollisionShape& shape)
-      : exact_(ExactShape::exactShape(shape)),
+  ShapeField(btSoftBody& body, const btCollisionObjectWrapper& object)
+      : exact_(ExactShape::exactShape(*object.getCollisionShape())),
+        prism_(TrianglePrism::of(object)),
         sparse_(body.getWorldInfo()->m_sparsesdf),
-        shape_(shape),
+        shape_(*object.getCollisionShape()),
         margin_(body.getCollisionShape()->getMargin()) {}
 
   /// point  in the shape's space
   ShapeDistance at(const btVector3& point) const {
     ShapeDistance found;
-    if (exact_) {
-      found = exact_->distance(point);
+    if (exact_ || prism_) {
+      found = exact_ ? exact_->distance(point) : prism_->distance(point);
       found.distance -= margin_;
     } else {
       found.distance = sparse_.Evaluate(point, &shape_, found.normal, margin_);
@@ -62,8 +116,41 @@ class ShapeField {
     return found;
   }
 
+  /// What a node meets on its straight path in the shape's space. One that slides over an edge came near to it from
+  /// aside: where its path ends beside the shape, and not on the other side of it, the side there decides. Otherwise it
+  /// is the side on which the path began; a node that is too near there is pushed out whatever its direction of motion,
+  /// as others may press it back in the step. A path may also lead through a shape; Bullet's field, which is only known
+  /// near its shape, is not followed so far.
+  std::optional<ShapeDistance> firstMet(const btVector3& begin, const btVector3& end) const {
+    const ShapeDistance now = at(begin);
+    ShapeDistance then = at(end);
+    const bool endsBeside = then.distance < 0 && then.distance > -margin_ && then.normal.dot(now.normal) > 0;
+    if (endsBeside) {
+      then.distance += then.normal.dot(begin - end);
+      return then;
+    }
+    if (now.distance < 0 || then.distance < 0) return now;
+    const btScalar length = (end - begin).length();
+    if (!(exact_ || prism_) || now.distance > length) return std::nullopt;
+    const btScalar touching = kTouching * now.distance;
+    btScalar gone = 0;
+    ShapeDistance here = now;
+    for (int k = 0; k < kMaxMarches && gone < length; ++k) {
+      const btVector3 where = begin.lerp(end, gone / length);
+      here = at(where);
+      if (here.distance <= touching) {
+        here.distance += here.normal.dot(begin - where);
+        return here;
+      }
+      if (here.distance > length - gone) return std::nullopt;
+      gone += here.distance;
+    }
+    return std::nullopt;
+  }
+
  private:
   std::optional<ExactShape> exact_;
+  std::optional<TrianglePrism> prism_;
   btSparseSdf<3>& sparse_;
   const btCollisionShape& shape_;
   btScalar margin_;
@@ -115,13 +202,14 @@ void findNodeContacts(btSoftBody& body, const btCollisionObjectWrapper& object, 
     }
     return;
   }
-  const ShapeField field(body, *object.getCollisionShape());
+  const ShapeField field(body, object);
   for (const int n : near) {
     btSoftBody::Node& node = body.m_nodes[n];
     const bool held = node.m_im == 0 && (!rigid || rigid->getInvMass() == 0);
-    if (node.m_battach != 0 || held || !(field.at(predicted.invXform(paths[n].predicted)).distance < 0)) continue;
-    const ShapeDistance now = field.at(object.getWorldTransform().invXform(paths[n].now));
-    body.m_nodeRigidContacts.push_back(contactOf(body, node, object, now));
+    if (node.m_battach != 0 || held) continue;
+    const btVector3 begin = object.getWorldTransform().invXform(paths[n].now);
+    const std::optional<ShapeDistance> met = field.firstMet(begin, predicted.invXform(paths[n].predicted));
+    if (met) body.m_nodeRigidContacts.push_back(contactOf(body, node, object, *met));
   }
 }
 

@@ -10,7 +10,7 @@ constexpr std::size_t kMaxShapes = 10'000;
 
 }  // namespace
 
-void ObstacleChanges::notice(btSoftBody& body, const btCollisionObjectWrapper& rigid) {
+void ObstacleChanges::syncRigidObject(btSoftBody& body, const btCollisionObjectWrapper& rigid) {
   auto& object = const_cast<btCollisionObject&>(*rigid.getCollisionObject());
   if (object.isStaticObject() || !object.isActive()) object.setInterpolationWorldTransform(object.getWorldTransform());
   const btCollisionShape* shape = rigid.getCollisionShape();

@@ -19,7 +19,7 @@ namespace tetskin {
 class ObstacleChanges {
  public:
   /// Call it before nodes of the body are tested against the object.
-  void notice(btSoftBody& body, const btCollisionObjectWrapper& rigid);
+  void syncRigidObject(btSoftBody& body, const btCollisionObjectWrapper& rigid);
 
  private:
   using Box = std::pair<btVector3, btVector3>;

@@ -20,6 +20,10 @@ struct WorldMembers : btDeformableMultiBodyDynamicsWorld {
   static btScalar& fixedTimeStep(btDeformableMultiBodyDynamicsWorld& world) {
     return world.*(&WorldMembers::m_fixedTimeStep);
   }
+  static bool has(btDeformableMultiBodyDynamicsWorld& world, btActionInterface* action) {
+    const auto& actions = world.*(&WorldMembers::m_actions);
+    return actions.findLinearSearch(action) < actions.size();
+  }
 };
 
 int idInWorld(const btCollisionObject& object) {
@@ -69,14 +73,6 @@ bool isAnyAwake(const SolverBodies& bodies, const Participants& participants) {
 
 }  // namespace
 
-RecordedForces::RecordedForces(btDeformableMultiBodyDynamicsWorld& world) : world_(world) {
-  world_.addAction(this);
-}
-
-RecordedForces::~RecordedForces() {
-  world_.removeAction(this);
-}
-
 // ---- a substep
 
 void RecordedForces::record(const SolverBodies& bodies, const std::vector<ContactRow>& rows, btScalar seconds) {
@@ -84,7 +80,8 @@ void RecordedForces::record(const SolverBodies& bodies, const std::vector<Contac
   if (stepBegins()) beginStep();
   seconds_ += seconds;
   for (Pair& pair : pairs_) {
-    if (!isAnyAwake(bodies, pair.participants)) pair.asleep += seconds;
+    pair.sleeps = !isAnyAwake(bodies, pair.participants);
+    if (pair.sleeps) pair.asleep += seconds;
   }
   points_.erase(std::remove_if(points_.begin(), points_.end(),
                                [&](const Point& point) { return isAnyAwake(bodies, point.participants); }),
@@ -112,6 +109,7 @@ void RecordedForces::beginStep() {
     pair.impulses = {};
     pair.asleep = 0;
   }
+  secondsBefore_ = seconds_;
   seconds_ = 0;
   dropRemoved();
 }
@@ -161,7 +159,7 @@ RecordedForces::Pair& RecordedForces::pairOf(const Participants& participants) {
   if (entry == indices_.end()) entry = indices_.find({second.object, first.object});
   if (entry == indices_.end()) {
     entry = indices_.emplace(std::make_pair(first.object, second.object), pairs_.size()).first;
-    pairs_.push_back({participants, {}, {}, 0});
+    pairs_.emplace_back().participants = participants;
   }
   assert(entry->second < pairs_.size());
   Pair& pair = pairs_[entry->second];
@@ -225,8 +223,12 @@ AppliedForces RecordedForces::on(const btCollisionObject& object, const btCollis
 AppliedForces RecordedForces::forcesOf(const Pair& pair, std::size_t side) const {
   const btScalar awake = seconds_ - pair.asleep;
   if (!(awake > 0)) return pair.before[side];
+  // The step in which bodies fall asleep has fewer substeps, of which single ones are not exact: what the solve leaves
+  // out is made up for in the next. As the bodies rest, those before count, too.
+  const btScalar before = pair.sleeps && !isNothing(pair.before[side]) ? secondsBefore_ : btScalar(0);
   AppliedForces forces;
-  addScaled(1 / awake, pair.impulses[side], forces);
+  addScaled(1 / (awake + before), pair.impulses[side], forces);
+  addScaled(before / (awake + before), pair.before[side], forces);
   return forces;
 }
 
@@ -242,19 +244,27 @@ bool RecordedForces::isPresent(const Participant& participant) const {
 
 /// The length of the arrow of a force: a force as large as the body's weight is as long as the body.
 btVector3 RecordedForces::arrowOf(const btVector3& force, const btSoftBody& body) {
-  const btVector3 size = body.m_bounds[1] - body.m_bounds[0];
   const btScalar gravity = world_.getGravity().length(), mass = weightOf(body).mass;
   const btScalar weight = mass * (gravity > 0 ? gravity : kEarthsGravity);
-  return weight > 0 ? force * (size[size.maxAxis()] / weight) : btVector3(0, 0, 0);
+  return weight > 0 ? force * (sizeOf(body) / weight) : btVector3(0, 0, 0);
 }
 
-void RecordedForces::debugDraw(btIDebugDraw* drawer) {
+void RecordDrawing::draw(std::weak_ptr<RecordedForces> recorded, btDeformableMultiBodyDynamicsWorld& world) {
+  recorded_ = std::move(recorded);
+  if (!WorldMembers::has(world, this)) world.addAction(this);
+}
+
+void RecordDrawing::debugDraw(btIDebugDraw* drawer) {
   if (!drawer || !(drawer->getDebugMode() & btIDebugDraw::DBG_DrawContactPoints)) return;
-  const btIDebugDraw::DefaultColors colors = drawer->getDefaultColors();
+  if (const auto recorded = recorded_.lock()) recorded->debugDraw(*drawer);
+}
+
+void RecordedForces::debugDraw(btIDebugDraw& drawer) const {
+  const btIDebugDraw::DefaultColors colors = drawer.getDefaultColors();
   for (const Point& point : points_) {
     if (!isPresent(point.participants[0]) || !isPresent(point.participants[1])) continue;
-    drawer->drawContactPoint(point.position, point.normal, 0, 0, colors.m_contactPoint);
-    drawer->drawLine(point.position, point.position + point.arrow, colors.m_contactPoint);
+    drawer.drawContactPoint(point.position, point.normal, 0, 0, colors.m_contactPoint);
+    drawer.drawLine(point.position, point.position + point.arrow, colors.m_contactPoint);
   }
 }
 

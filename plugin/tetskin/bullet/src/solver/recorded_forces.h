@@ -11,17 +11,16 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace tetskin {
 
-/// One of the world's actions, so that the world's debug drawing draws it.
-class RecordedForces : public btActionInterface {
+class RecordedForces {
  public:
-  explicit RecordedForces(btDeformableMultiBodyDynamicsWorld& world);
-  ~RecordedForces() override;
+  explicit RecordedForces(btDeformableMultiBodyDynamicsWorld& world) : world_(world) {}
   RecordedForces(const RecordedForces&) = delete;
   RecordedForces& operator=(const RecordedForces&) = delete;
 
@@ -30,8 +29,7 @@ class RecordedForces : public btActionInterface {
   /// other  null: the sum over all objects
   AppliedForces on(const btCollisionObject& object, const btCollisionObject* other) const;
 
-  void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override {}
-  void debugDraw(btIDebugDraw* drawer) override;
+  void debugDraw(btIDebugDraw& drawer) const;
 
  private:
   /// An object that may have been destroyed; the id tells it from a later object at the same address.
@@ -46,6 +44,7 @@ class RecordedForces : public btActionInterface {
     std::array<AppliedForces, 2> impulses;  ///< on each of the two objects, of this stepSimulation
     std::array<AppliedForces, 2> before;    ///< forces of the stepSimulation before, which stay valid while both sleep
     btScalar asleep = 0;                    ///< seconds of this stepSimulation in which both slept
+    bool sleeps = false;                    ///< both slept in the last substep
   };
   /// A point of the last substep in which either was awake.
   struct Point {
@@ -69,13 +68,28 @@ class RecordedForces : public btActionInterface {
   bool isPresent(const Participant& participant) const;
 
   btDeformableMultiBodyDynamicsWorld& world_;
-  btScalar mark_ = 0;     ///< the value left in m_fixedTimeStep, see stepBegins
-  btScalar seconds_ = 0;  ///< of this stepSimulation so far
-  int objectCount_ = 0;   ///< objects in the world when removed ones were last dropped
+  btScalar mark_ = 0;           ///< the value left in m_fixedTimeStep, see stepBegins
+  btScalar seconds_ = 0;        ///< of this stepSimulation so far
+  btScalar secondsBefore_ = 0;  ///< of the stepSimulation before
+  int objectCount_ = 0;         ///< objects in the world when removed ones were last dropped
   std::vector<Pair> pairs_;
   std::map<std::pair<const void*, const void*>, std::size_t> indices_;  ///< index in `pairs_`
   std::vector<Point> points_;
   std::unordered_map<const btSoftBody*, Weight> weights_;  ///< of this substep
+};
+
+/// One of the world's actions, so that the world's debug drawing draws what is recorded, if anything is. It goes with
+/// the solver, and stays in the world until then: a world does not tell when it is destroyed.
+class RecordDrawing : public btActionInterface {
+ public:
+  /// Adds itself to the world, unless it is there.
+  void draw(std::weak_ptr<RecordedForces> recorded, btDeformableMultiBodyDynamicsWorld& world);
+
+  void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override {}
+  void debugDraw(btIDebugDraw* drawer) override;
+
+ private:
+  std::weak_ptr<RecordedForces> recorded_;
 };
 
 }  // namespace tetskin

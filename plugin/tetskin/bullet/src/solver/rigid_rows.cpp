@@ -129,6 +129,7 @@ class RigidRowCollector {
 
 /// The rows of a joint, in the form in which Bullet's solver asks for them.
 struct JointRows {
+  /// One row for each degree of freedom; and btScalars from one to the next.
   static constexpr std::size_t kMaxRows = 6, kStride = 16;
   std::array<btScalar, kMaxRows * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
       highest{};

@@ -90,7 +90,6 @@ void RigidUnknowns::clear() {
   unknowns_.clear();
   indices_.clear();
   jacobians_.clear();
-  paths_.beginStep();
 }
 
 int RigidUnknowns::find(const btCollisionObject& object) const {
@@ -169,27 +168,24 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
 /// Bullet computes the angular velocity of a kinematic body from the arc cosine of its rotation in a step, which leaves
 /// few digits. Its transforms in this step and the one before have all of them.
 btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
-                                   btScalar seconds) {
+                                   btScalar seconds) const {
   assert(body.isKinematicObject());
-  const KinematicPath& path = paths_.pathOf(body, seconds);
-  if (!path.isKnown) return velocity;
-  const btTransform now = path.now();
-  const btVector3 turned = now.getBasis() * (path.before.getBasis().transpose() * arm);
-  const btVector3 carried = (now.getOrigin() - path.before.getOrigin() + turned - arm) / seconds;
+  const KinematicPath* path = paths_.find(body);
+  if (!path || !path->isKnown) return velocity;
+  const btTransform now = path->now();
+  const btVector3 turned = now.getBasis() * (path->before.getBasis().transpose() * arm);
+  const btVector3 carried = (now.getOrigin() - path->before.getOrigin() + turned - arm) / seconds;
+  if (path->done > 1) return carried;
   // If the difference is larger, the body was put there, or it is a different one.
   const btScalar maximum = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
   return (carried - velocity).length() <= maximum ? carried : velocity;
 }
 
-btTransform RigidUnknowns::frameOf(const btCollisionObject& object, btScalar seconds) {
+bool RigidUnknowns::isLed(const btCollisionObject& object) const {
   const btRigidBody* body = btRigidBody::upcast(&object);
-  return body && body->isKinematicObject() ? paths_.pathOf(*body, seconds).now() : object.getWorldTransform();
-}
-
-btScalar RigidUnknowns::timeToGo(const btCollisionObject& object, btScalar seconds) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  if (!body || !body->isKinematicObject()) return 0;
-  return seconds * static_cast<btScalar>(paths_.pathOf(*body, seconds).stepsLeft());
+  if (!body || !body->isKinematicObject()) return false;
+  const KinematicPath* path = paths_.find(*body);
+  return !path || path->done <= path->steps;
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {

@@ -6,8 +6,7 @@
 //
 // The unknowns are the changes of their velocities by the solve, relative to the velocities that Bullet has found.
 // They have few degrees of freedom, and are eliminated: with J the derivative of a row's point's velocity by these, H
-// the
-// stiffness of the row and M the masses,
+// the stiffness of the row and M the masses,
 //   (M + sum J^T H J) dV = sum J^T f,    dV = (1 + M^-1 sum J^T H J)^-1 M^-1 sum J^T f
 // in which only inverse masses occur, so that an axis may be locked.
 #pragma once
@@ -43,7 +42,7 @@ struct RigidUnknown {
 
 class RigidUnknowns {
  public:
-  /// Call it when a step begins.
+  /// Call it when the rows of a step are collected.
   void clear();
 
   /// The point of an object at a position. An object that is free to move becomes an unknown.
@@ -56,11 +55,9 @@ class RigidUnknowns {
   /// in the step.
   btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
-  /// The object's transform when this step ends, if its motion is prescribed.
-  btTransform frameOf(const btCollisionObject& object, btScalar seconds);
-  /// Seconds that a kinematic body still takes, including this step, to reach the transform that Bullet has already
-  /// set; 0 for others.
-  btScalar timeToGo(const btCollisionObject& object, btScalar seconds);
+  /// True if the object is kinematic, and moves in this step: Bullet has it where the step ends.
+  bool isLed(const btCollisionObject& object) const;
+  KinematicPaths& paths() { return paths_; }
 
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
@@ -82,7 +79,7 @@ class RigidUnknowns {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   Jacobian jacobianOf(const RigidPoint& at) const;
   int add(const btCollisionObject& object);
-  btVector3 carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity, btScalar seconds);
+  btVector3 carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity, btScalar seconds) const;
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <iterator>
 
 namespace tetskin {
@@ -38,6 +39,7 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   neighbour.stands = neighbour.isObstacle || (!object.isActive() && !neighbour.isSoft);
   neighbour.transform = object.getWorldTransform();
   neighbour.shape = object.getCollisionShape();
+  neighbour.friction = object.getFriction();
   if (const btBroadphaseProxy* proxy = object.getBroadphaseHandle()) {
     neighbour.low = proxy->m_aabbMin;
     neighbour.high = proxy->m_aabbMax;
@@ -50,7 +52,7 @@ Neighbour neighbourOf(const btCollisionObject& object) {
 bool wasChanged(const Neighbour& before, const Neighbour& now) {
   if (before.isObstacle != now.isObstacle) return true;
   if (!before.stands || !now.stands) return false;
-  if (!(before.transform == now.transform)) return true;
+  if (!(before.transform == now.transform) || before.friction != now.friction) return true;
   const bool sameBox = before.low == now.low && before.high == now.high;
   return now.isObstacle && !(before.shape == now.shape && sameBox);
 }
@@ -117,7 +119,43 @@ void removeStale(RestingBody& sleeper) {
                            sleeper.neighbours.end());
 }
 
+/// Compares the body with what was stored of it. Bullet sets the velocities of a sleeping body to 0 in each step; one
+/// that the application has put to sleep may have some in the first.
+void seeItself(RestingBody& sleeper) {
+  btSoftBody& body = *sleeper.body;
+  if (body.isActive()) return;
+  const SleepingState now(body);
+  const bool isNew = !sleeper.before;
+  if (isNew) sleeper.before = now;
+  const bool same = sleeper.before->nodes == now.nodes && sleeper.before->friction == now.friction;
+  sleeper.disturbed |= !same || (now.moves && !isNew);
+}
+
 }  // namespace
+
+/// A pinned node has the inverse mass 0. The products of one node do not wait for those of the one before.
+SleepingState::SleepingState(const btSoftBody& body) : friction(body.m_cfg.kDF) {
+  constexpr std::uint64_t kOdd[4] = {0x9E3779B97F4A7C15u, 0xC2B2AE3D27D4EB4Fu, 0x165667B19E3779F9u,
+                                     0xD6E8FEB86659FD93u};
+  const auto bitsOf = [](btScalar value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof value);
+    return bits;
+  };
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    const btVector3& x = node.m_x;
+    nodes = 3 * nodes + kOdd[0] * bitsOf(x.x()) + kOdd[1] * bitsOf(x.y()) + kOdd[2] * bitsOf(x.z()) +
+            kOdd[3] * bitsOf(node.m_im);
+    moves |= !node.m_v.isZero();
+  }
+}
+
+void Sleepers::store(btSoftBody& body) {
+  RestingBody& sleeper = resting_[&body];
+  sleeper.body = &body;
+  sleeper.before.emplace(body);
+}
 
 void Sleepers::wake(const btAlignedObjectArray<btSoftBody*>& bodies) {
   listResting(bodies);
@@ -131,6 +169,7 @@ void Sleepers::wake(const btAlignedObjectArray<btSoftBody*>& bodies) {
   for (auto& [object, sleeper] : resting_) {
     seeAnchors(sleeper);
     removeStale(sleeper);
+    seeItself(sleeper);
     if (sleeper.disturbed) sleeper.body->activate();
   }
 }
@@ -148,6 +187,7 @@ void Sleepers::listResting(const btAlignedObjectArray<btSoftBody*>& bodies) {
     sleeper.disturbed = false;
     sleeper.next = 0;
     sleeper.steps = body->isActive() ? 0 : sleeper.steps + 1;
+    if (body->isActive()) sleeper.before.reset();
     for (Neighbour& neighbour : sleeper.neighbours) neighbour.isHere = false;
     if (byIndex_.size() <= static_cast<std::size_t>(index)) byIndex_.resize(static_cast<std::size_t>(index) + 1);
     byIndex_[static_cast<std::size_t>(index)] = &sleeper;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace tetskin {
 namespace {
@@ -19,6 +20,12 @@ bool isGravity(const btDeformableLagrangianForce& force) {
          isOfSameClass<btDeformableLagrangianForce>(force, bullets);
 }
 
+/// A body that has been moved to another world since has none.
+void addWorld(const ForcedBody& elastic, std::vector<btDiscreteDynamicsWorld*>& worlds) {
+  if (elastic.body->getWorldInfo() != elastic.worldInfo) return;
+  if (std::find(worlds.begin(), worlds.end(), elastic.world) == worlds.end()) worlds.push_back(elastic.world);
+}
+
 }  // namespace
 
 bool SolverBodies::collect(const btAlignedObjectArray<btSoftBody*>& all, bool everyone,
@@ -27,8 +34,17 @@ bool SolverBodies::collect(const btAlignedObjectArray<btSoftBody*>& all, bool ev
   const auto countsBefore = nodeCounts_;
   awake_.clear();
   asleep_.clear();
-  nodeCounts_.clear();
   for (int i = 0; i < all.size(); ++i) (everyone || all[i]->isActive() ? awake_ : asleep_).push_back(all[i]);
+  countNodes();
+  seen_.copyFromArray(all);
+  awake.resizeNoInitialize(0);
+  for (btSoftBody* body : awake_) awake.push_back(body);
+  const bool changed = awake_ != awakeBefore || asleep_ != asleepBefore || nodeCounts_ != countsBefore;
+  return std::exchange(dropped_, false) || changed;
+}
+
+void SolverBodies::countNodes() {
+  nodeCounts_.clear();
   nodeCount_ = 0;
   for (const auto* bodies : {&awake_, &asleep_}) {
     for (const btSoftBody* body : *bodies) {
@@ -37,19 +53,58 @@ bool SolverBodies::collect(const btAlignedObjectArray<btSoftBody*>& all, bool ev
     }
     if (bodies == &awake_) awakeCount_ = nodeCount_;
   }
+}
+
+std::vector<const btSoftBody*> SolverBodies::dropAllBut(const btAlignedObjectArray<btSoftBody*>& world,
+                                                        btAlignedObjectArray<btSoftBody*>& awake) {
+  std::vector<const btSoftBody*> gone;
+  for (int k = 0; k < seen_.size(); ++k) {
+    const bool stays = k < world.size() && world[k] == seen_[k];
+    if (!stays && world.findLinearSearch(seen_[k]) == world.size()) gone.push_back(seen_[k]);
+  }
+  seen_.copyFromArray(world);
+  if (gone.empty()) return gone;
+  const auto isGone = [&](const btSoftBody* body) { return std::find(gone.begin(), gone.end(), body) != gone.end(); };
+  for (auto* bodies : {&awake_, &asleep_}) {
+    bodies->erase(std::remove_if(bodies->begin(), bodies->end(), isGone), bodies->end());
+  }
+  dropped_ = true;
+  dropSolved(isGone);
+  for (const btSoftBody* body : gone) persistent_.erase(body);
   awake.resizeNoInitialize(0);
   for (btSoftBody* body : awake_) awake.push_back(body);
-  const bool changed = awake_ != awakeBefore || asleep_ != asleepBefore || nodeCounts_ != countsBefore;
-  if (!changed) return false;
-  for (auto kept = kept_.begin(); kept != kept_.end();) {
-    const bool here = std::find(awake_.begin(), awake_.end(), kept->first) != awake_.end() ||
-                      std::find(asleep_.begin(), asleep_.end(), kept->first) != asleep_.end();
-    kept = here ? std::next(kept) : kept_.erase(kept);
+  return gone;
+}
+
+/// Systems stay as they are, without the bodies that are gone.
+template <class IsGone>
+void SolverBodies::dropSolved(const IsGone& isGone) {
+  std::vector<std::size_t> indexNow(bodies_.size(), bodies_.size());  // by index before
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!isGone(bodies_[k].body)) indexNow[k] = left++;
   }
-  return true;
+  const auto isLeft = [&](std::size_t k) { return indexNow[k] < indexNow.size(); };
+  for (SolvedSystem& system : systems_) {
+    auto& of = system.bodies;
+    of.erase(std::remove_if(of.begin(), of.end(), [&](std::size_t k) { return !isLeft(k); }), of.end());
+    for (std::size_t& k : of) k = indexNow[k];
+  }
+  systems_.erase(std::remove_if(systems_.begin(), systems_.end(), [](const auto& of) { return of.bodies.empty(); }),
+                 systems_.end());
+  bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), [&](const auto& of) { return isGone(of.body); }),
+                bodies_.end());
+  indices_.clear();
+  int first = 0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    indices_[bodies_[k].body] = k;
+    bodies_[k].first = first;
+    first += bodies_[k].body->m_nodes.size();
+  }
 }
 
 void SolverBodies::number(btDeformableBackwardEulerObjective& objective) {
+  countNodes();
   objective.m_nodes.resizeNoInitialize(0);
   int face = 0;
   for (const auto* bodies : {&awake_, &asleep_}) {
@@ -65,13 +120,15 @@ void SolverBodies::number(btDeformableBackwardEulerObjective& objective) {
 
 void SolverBodies::clear() {
   bodies_.clear();
+  worlds_.clear();
+  indices_.clear();
   systems_.clear();
 }
 
 void SolverBodies::assign(const ForceList& forces) {
   listAwake();
   takeElastic(forces);
-  lendKept();
+  attachPersistent();
   makeSystems(forces);
 }
 
@@ -93,10 +150,21 @@ std::size_t SolverBodies::indexOf(const btSoftBody* body) const {
   return found == indices_.end() ? bodies_.size() : found->second;
 }
 
+std::vector<btDiscreteDynamicsWorld*> SolverBodies::worldsOf(const ForceList& forces) {
+  std::vector<btDiscreteDynamicsWorld*> worlds;
+  for (int i = 0; i < forces.size(); ++i) {
+    auto* elastic = dynamic_cast<ElasticForce*>(inactiveForce(forces[i]));
+    if (elastic && elastic->m_softBodies.size() > 0) addWorld(elastic->body(), worlds);
+  }
+  return worlds;
+}
+
 void SolverBodies::takeElastic(const ForceList& forces) {
+  worlds_.clear();
   for (int i = 0; i < forces.size(); ++i) {
     auto* elastic = dynamic_cast<ElasticForce*>(inactiveForce(forces[i]));
     if (!elastic || elastic->m_softBodies.size() == 0) continue;
+    addWorld(elastic->body(), worlds_);
     const std::size_t k = indexOf(elastic->body().body);
     if (k == bodies_.size()) continue;
     bodies_[k].elastic = &elastic->body();
@@ -104,14 +172,14 @@ void SolverBodies::takeElastic(const ForceList& forces) {
   }
 }
 
-void SolverBodies::lendKept() {
+void SolverBodies::attachPersistent() {
   for (SolvedBody& body : bodies_) {
-    Kept& kept = kept_[body.body];
+    PersistentState& kept = persistent_[body.body];
     const auto nodes = static_cast<std::size_t>(body.body->m_nodes.size());
-    body.sticking = &kept.sticking;
+    body.frictionAnchors = &kept.frictionAnchors;
     body.bulletsContacts = &kept.bulletsContacts;
-    body.touches = &kept.touches;
-    body.wasTouched = kept.touches;
+    body.hasRows = &kept.hasRows;
+    body.hadRows = kept.hasRows;
     body.paddedTrees = &kept.paddedTrees;
     body.paths = &kept.paths;
     body.solve = &kept.solve;

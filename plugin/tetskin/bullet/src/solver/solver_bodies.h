@@ -27,28 +27,36 @@ struct FixedNode {
   btVector3 direction{0, 0, 0};
 };
 
-/// A body awake in this step.
+/// The longest side of the body's bounding box, in the world.
+inline btScalar sizeOf(const btSoftBody& body) {
+  const btVector3 size = body.m_bounds[1] - body.m_bounds[0];
+  return size[size.maxAxis()];
+}
+
+/// A body awake in this step. What it points to outlives the step: its owners are the world, the list of forces, and
+/// SolverBodies::PersistentState.
 struct SolvedBody {
   btSoftBody* body = nullptr;
-  int first = 0;                  ///< number of its first node in Bullet's vectors
-  ForcedBody* elastic = nullptr;  ///< null: only Bullet's forces act on it
-  const SolverSettings* settings = nullptr;
-  Dynamics* dynamics = nullptr;
-  bool needsDeformation = false;              ///< Bullet's own deformation gradients are needed
-  std::vector<Sticking>* sticking = nullptr;  ///< of the step before, by number of the point; for elastic bodies only
-  PointContacts* bulletsContacts = nullptr;   ///< contacts of this step that Bullet has found
-  PaddedTrees* paddedTrees = nullptr;
-  NodePaths* paths = nullptr;  ///< of this step, unless Bullet searches for the body's contacts
-  elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;
+  int first = 0;                             ///< number of its first node in Bullet's vectors
+  ForcedBody* elastic = nullptr;             ///< null: only Bullet's forces act on it
+  const SolverSettings* settings = nullptr;  ///< of the elastic force; without one, Bullet's
+  Dynamics* dynamics = nullptr;              ///< of the elastic force, or of PersistentState
+  bool needsDeformation = false;             ///< Bullet's own deformation gradients are needed
+  /// Of the step before, by number of the point; for elastic bodies only.
+  std::vector<FrictionAnchor>* frictionAnchors = nullptr;
+  PointContacts* bulletsContacts = nullptr;  ///< contacts of this step that Bullet has found
+  PaddedTrees* paddedTrees = nullptr;        ///< when Bullet's trees of the body were fitted, and by how much
+  NodePaths* paths = nullptr;                ///< of this step, unless Bullet searches for the body's contacts
+  elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;  ///< of the body's own system
   int iterations = 0;            ///< of this step; coupled bodies store them in the first one
   int rowCount = 0;              ///< rows of contacts and anchors
   std::size_t place = 0;         ///< in `SolvedSystem::bodies`, while its system is solved
-  bool* touches = nullptr;       ///< written for the next step: the body has rows
-  bool wasTouched = false;       ///< value of `touches` in the step before
-  bool waits = false;            ///< its solve begins only when contacts are known
+  bool* hasRows = nullptr;       ///< written for the next step: the body has rows
+  bool hadRows = false;          ///< value of `hasRows` in the step before
+  bool deferSolve = false;       ///< its solve begins only when contacts are known
   std::vector<FixedNode> fixed;  ///< without pinned ones
   bool solvedAgain = false;      ///< solved once more with the effects of contacts and other forces
-  bool touched = false;          ///< something other than elasticity has changed velocities, or will
+  bool velocityChanged = false;  ///< something other than elasticity has changed velocities, or will
 
   /// The index within the body of a node with this number.
   std::size_t indexOf(int number) const {
@@ -75,13 +83,19 @@ class SolverBodies {
   /// Numbers all nodes and faces in Bullet's vectors, those of awake bodies first and then those of sleeping ones:
   /// forces may refer to nodes of sleeping bodies.
   void number(btDeformableBackwardEulerObjective& objective);
+  /// Drops bodies that have left the world. The others, which may be in the middle of a step, keep their state and
+  /// their order; bodies that have been added since are not among them. Call `number` again before numbers are used.
+  /// awake    becomes those of the awake bodies that are left
+  /// Returns  the bodies dropped, which may be deleted from now on
+  std::vector<const btSoftBody*> dropAllBut(const btAlignedObjectArray<btSoftBody*>& world,
+                                            btAlignedObjectArray<btSoftBody*>& awake);
   int nodeCount() const { return nodeCount_; }
   int awakeCount() const { return awakeCount_; }
 
   /// Finds which forces act on which bodies; call it before each step.
   void assign(const ForceList& forces);
   /// Unites the systems of some bodies.
-  /// places  indices in `bodies`; not empty
+  /// indices  in `bodies`; not empty
   SolvedSystem& join(const std::vector<std::size_t>& indices);
   /// Removes all bodies.
   void clear();
@@ -91,21 +105,27 @@ class SolverBodies {
   std::vector<SolvedSystem>& systems() { return systems_; }
   /// The body to which the node with this number belongs.
   SolvedBody& bodyOf(int node);
+  /// The worlds of the bodies on which elastic forces act, asleep or awake; nearly always one.
+  static std::vector<btDiscreteDynamicsWorld*> worldsOf(const ForceList& forces);
+  const std::vector<btDiscreteDynamicsWorld*>& worlds() const { return worlds_; }  ///< known after `assign`
   /// The body's index in `bodies`; the number of bodies if it is not awake.
   std::size_t indexOf(const btSoftBody* body) const;
 
  private:
+  void countNodes();
+  template <class IsGone>
+  void dropSolved(const IsGone& isGone);
   void listAwake();
   void takeElastic(const ForceList& forces);
-  void lendKept();
+  void attachPersistent();
   void makeSystems(const ForceList& forces);
   /// Indices of the awake bodies that a force may act on, and couples.
   std::vector<std::size_t> actedOnBy(const btDeformableLagrangianForce& force) const;
 
-  struct Kept {
+  struct PersistentState {
     std::unique_ptr<Dynamics> masses;  ///< of a body without an elastic force
-    std::vector<Sticking> sticking;
-    bool touches = false;  ///< true if any row acts on the body
+    std::vector<FrictionAnchor> frictionAnchors;
+    bool hasRows = false;  ///< true if any row acts on the body
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     NodePaths paths;
@@ -115,10 +135,13 @@ class SolverBodies {
   std::vector<btSoftBody*> awake_, asleep_;
   std::vector<int> nodeCounts_;  ///< of all bodies, in the order of their numbers
   int nodeCount_ = 0, awakeCount_ = 0;
+  btAlignedObjectArray<btSoftBody*> seen_;  ///< the world's bodies, as last seen
+  bool dropped_ = false;                    ///< bodies were dropped since the last `collect`
   std::vector<SolvedBody> bodies_;
   std::unordered_map<const btSoftBody*, std::size_t> indices_;  ///< index in `bodies_`
   std::vector<SolvedSystem> systems_;
-  std::unordered_map<const btSoftBody*, Kept> kept_;
+  std::vector<btDiscreteDynamicsWorld*> worlds_;
+  std::unordered_map<const btSoftBody*, PersistentState> persistent_;
 };
 
 }  // namespace tetskin

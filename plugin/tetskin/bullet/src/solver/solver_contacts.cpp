@@ -53,7 +53,7 @@ void addDynamicFriction(const btDeformableContactProjection& projection, SolverB
     const btVector3 dv = constraint.getDv(&node);
     if (node.m_im == 0 || isNaN(dv)) return;
     residual[node.index] += dv / node.m_im;
-    bodies.bodyOf(node.index).touched = true;
+    bodies.bodyOf(node.index).velocityChanged = true;
   };
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
     const auto& nodes = projection.m_nodeRigidConstraints[static_cast<int>(b)];

@@ -15,7 +15,6 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/bullet/src/solver/recorded_forces.h>
 #include <tetskin/bullet/src/solver/solver_contacts.h>
 #include <tetskin/bullet/src/solver/step.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
@@ -147,38 +146,43 @@ std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) 
 
 // ---- gather
 
-/// seconds  0 or less: called because a body was removed, outside of a step
 void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
+  assert(seconds > 0);
+  inStep = true;
   solving = solver.ownSolveActive();
   hidden.show(world);
   all.copyFromArray(world);
-  if (seconds > 0 && solving) sleepers.wake(all);
+  if (solving) {
+    sleepers.wake(all);
+    fallAsleep();
+  }
   const bool changed = collect(world);
-  if (changed) driven.keepOnly(world);
-  if (seconds > 0) driven.begin(solver.m_softBodies, seconds);
+  driven.begin(solver.m_softBodies, seconds);
   for (int i = 0; i < (changed ? solver.m_numNodes : bodies.awakeCount()); ++i) {
     solver.m_dv[i].setZero();
     solver.m_ddv[i].setZero();
     solver.m_residual[i].setZero();
   }
-  if (seconds > 0) {
-    solver.m_dt = seconds;
-    solver.m_objective->setDt(seconds);
-  }
+  solver.m_dt = seconds;
+  solver.m_objective->setDt(seconds);
   // These calls may create a body's dynamics anew.
   for (int i = 0; i < forces().size(); ++i) forces()[i]->reinitialize(changed);
   assign();
+  if (seconds > 0 && solving) rigids.paths().beginStep(bodies.worlds(), seconds);
+}
+
+void DeformableSolver::Impl::fallAsleep() {
+  const auto waited = [](const btSoftBody* body) { return body->getActivationState() == WANTS_DEACTIVATION; };
+  for (int i = 0; i < all.size(); ++i) {
+    if (!waited(all[i])) continue;
+    for (btSoftBody* body : stillness.fallAsleep(SolverBodies::worldsOf(forces()))) sleepers.store(*body);
+    return;
+  }
 }
 
 bool DeformableSolver::Impl::collect(const btAlignedObjectArray<btSoftBody*>& world) {
   const bool changed = bodies.collect(world, !solving, solver.m_softBodies);
-  if (changed) {
-    bodies.number(*solver.m_objective);
-    solver.m_numNodes = bodies.nodeCount();
-    for (VectorStack* v : {&solver.m_dv, &solver.m_ddv, &solver.m_residual, &solver.m_backupVelocity}) {
-      v->resize(bodies.nodeCount(), btVector3(0, 0, 0));
-    }
-  }
+  if (changed) numberAnew();
   solver.m_objective->m_projection.reinitialize(changed);
   return changed;
 }
@@ -199,7 +203,7 @@ void DeformableSolver::Impl::predict() {
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
     // With other forces, the velocities at the beginning of the step determine the tolerances.
-    first.waits = first.wasTouched && system.forces.empty();
+    first.deferSolve = first.hadRows && system.forces.empty();
   }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     predictVelocities(body, inner);
@@ -225,18 +229,17 @@ void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* in
   Dynamics& dynamics = *body.dynamics;
   dynamics.predict(static_cast<double>(dt()), inner);
   dynamics.matrix().free();
-  if (body.waits) return dynamics.startLater(static_cast<double>(dt()));
+  if (body.deferSolve) return dynamics.startLater(static_cast<double>(dt()));
   dynamics.start(static_cast<double>(dt()), inner);
-  if (body.elastic) solveAlone(body, body.wasTouched ? 0 : body.settings->iterations, inner);
+  if (body.elastic) solveAlone(body, body.hadRows ? 0 : body.settings->iterations, inner);
 }
 
 void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const {
   assert(body.elastic && maximum >= 0);
-  const auto seconds = static_cast<double>(dt());
   elastic_detail::SolveLimits limits;
   limits.tolerance = body.settings->tolerance;
   limits.iterations = body.settings->iterations;
-  limits.floor = std::max(kUnseen * seconds, body.dynamics->roundingSpeed(seconds));
+  limits.floor = unseenSpeed(body);
   body.dynamics->solve(*body.solve, limits, maximum, inner);
   body.iterations = body.solve->iterations();
 }
@@ -279,6 +282,7 @@ void DeformableSolver::Impl::assemble() {
     body.dynamics->matrix().free();
     readContacts(body);
   });
+  dropRemovedForces();
   addOthers();
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
@@ -294,7 +298,7 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
     const int number = body.first + static_cast<int>(n);
     const btVector3& before = solver.m_backupVelocity[number];
     btVector3& dv = solver.m_dv[number];
-    body.touched |= !dv.isZero();
+    body.velocityChanged |= !dv.isZero();
     if (isNaN(dv)) dv.setZero();  // the same test as in btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
     // The solution relative to the rigid motion.
@@ -340,7 +344,7 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
   bool again = !system.forces.empty() || !system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& body = bodies.bodies()[b];
-    again |= !body.fixed.empty() || body.touched;
+    again |= !body.fixed.empty() || body.velocityChanged;
   }
   if (again) {
     const SolveReport report = SystemSolve(*this, system, inner).solve();
@@ -351,7 +355,7 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
   } else if (first.elastic) {
     // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
     // stopped.
-    if (first.waits) {
+    if (first.deferSolve) {
       first.dynamics->restart(inner);
       solveAlone(first, first.settings->iterations, inner);
     } else {
@@ -359,7 +363,7 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
       first.iterations = first.solve->iterations();
     }
   }
-  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.touched;
+  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.velocityChanged;
   if (free && first.elastic) first.dynamics->removeMomentum();
 }
 
@@ -378,6 +382,7 @@ void DeformableSolver::Impl::writeBack() {
     if (body.solvedAgain) body.dynamics->bendTurns(static_cast<double>(dt()));
     writeVelocities(body);
   });
+  stillness.judge(bodies, rigids, dt());
   hidden.hide(bodies.bodies(), dt());
 }
 

@@ -17,23 +17,22 @@
 #include <tetskin/bullet/src/solver/contact_rows.h>
 #include <tetskin/bullet/src/solver/driven_nodes.h>
 #include <tetskin/bullet/src/solver/obstacle_changes.h>
+#include <tetskin/bullet/src/solver/recorded_forces.h>
 #include <tetskin/bullet/src/solver/sleepers.h>
 #include <tetskin/bullet/src/solver/step_clock.h>
+#include <tetskin/bullet/src/solver/step_objects.h>
+#include <tetskin/bullet/src/solver/stillness.h>
 
 #include <memory>
 #include <vector>
 
 namespace tetskin {
 
-class RecordedForces;
-
-/// The velocity error that is not visible, as a fraction of what the earth's gravity adds in a step.
-constexpr double kUnseen = 1e-3 * 9.81;
-
 struct DeformableSolver::Impl {
   explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
   // The stages of a step; implemented in step.cpp.
+  /// seconds  above 0
   void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
   void predict();
   void assemble();
@@ -46,8 +45,19 @@ struct DeformableSolver::Impl {
   btScalar dt() const { return solver.m_dt; }
 
   // Steps of the stage `gather`.
+  void fallAsleep();
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
+
+  // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  /// Drops the bodies that have left the world.
+  void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
+  void numberAnew();
+  /// Call it before Bullet detects contacts, and again when it has called the application since.
+  void noteObjects();
+  void dropRemovedObjects();
+  void dropRemovedForces();
+  bool takesPart(const btDeformableLagrangianForce& force) const;
 
   // Steps of the stage `predict`; those about forces are in step_forces.cpp.
   /// Sets what Bullet's code uses in a step that is solved here.
@@ -55,7 +65,9 @@ struct DeformableSolver::Impl {
   /// Applies the impulses of other forces.
   void applyOthers();
   void predictVelocities(SolvedBody& body, ParallelFor* inner);
-  /// most  bound of the iterations
+  /// The velocity error that is not visible, whatever the unit of length: see step_rows.cpp.
+  double unseenSpeed(const SolvedBody& body) const;
+  /// maximum  bound of the iterations
   void solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const;
   void writePrediction(SolvedBody& body) const;
   void predictByBullet(SolvedBody& body);
@@ -74,7 +86,7 @@ struct DeformableSolver::Impl {
   std::vector<RowSource*> rowSources();
   void collectRigidRowsOfWorlds();
   void joinByRows();
-  void goOn(SolvedBody& body);
+  void reuseLastVelocity(SolvedBody& body);
   /// fastest  speed of the body's fastest node
   void speculate(const SolvedBody& body, btScalar fastest) const;
 
@@ -97,12 +109,16 @@ struct DeformableSolver::Impl {
   SolverBodies bodies;
   DrivenNodes driven;
   Sleepers sleepers;
+  Stillness stillness;
   ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
   StepClock clock;
   HiddenBodies hidden;
+  StepObjects objects;
+  bool inStep = false;                     ///< from `gather` until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
+  RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;
   bool nodeNormals = true;
   bool always = false;  ///< see DeformableSolver::requireOwnSolve

@@ -31,6 +31,7 @@ void DeformableSolver::Impl::applyOthers() {
 void DeformableSolver::Impl::addOthers() {
   for (int i = 0; i < forces().size(); ++i) {
     btDeformableLagrangianForce& force = *forces()[i];
+    if (!takesPart(force)) continue;
     if (force.getForceType() == BT_MOUSE_PICKING_FORCE) {
       force.addScaledForces(dt(), solver.m_residual);
     } else {

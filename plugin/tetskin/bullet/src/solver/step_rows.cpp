@@ -28,6 +28,8 @@ btDiscreteDynamicsWorld* worldOf(const SolvedBody& body) {
 /// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
 /// of a body turns others towards the obstacle.
 void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest) const {
+  // Boxes and balls that land, rest or stop keep their promises in `tetskin_contact` with 0, too: it is for bodies that
+  // tip over what stops them. More would cost searches of points that do not arrive.
   constexpr btScalar kPathFraction = btScalar(0.2);
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = worldOf(body);
@@ -39,6 +41,16 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   own->setSpeculation(distance);
   body.body->m_bounds[0] -= btVector3(more, more, more);
   body.body->m_bounds[1] += btVector3(more, more, more);
+}
+
+/// A fraction of what gravity adds in a step, so that a world in centimetres is solved for as one in metres; no less
+/// than what rounding takes away, below which a resting body would be solved for in vain.
+double DeformableSolver::Impl::unseenSpeed(const SolvedBody& body) const {
+  constexpr double kUnseen = 1e-3;
+  const auto seconds = static_cast<double>(dt());
+  const btDiscreteDynamicsWorld* world = worldOf(body);
+  const double gravity = world ? static_cast<double>(world->getGravity().length()) : 0.0;
+  return std::max(kUnseen * gravity * seconds, body.dynamics->roundingSpeed(seconds));
 }
 
 std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
@@ -56,12 +68,12 @@ void DeformableSolver::Impl::collectRows() {
   joinByRows();
   runTasks(threads, bodies.bodies().size(), [&](std::size_t k) {
     SolvedBody& body = bodies.bodies()[k];
-    if (body.wasTouched && body.rowCount > 0) goOn(body);
+    if (body.hadRows && body.rowCount > 0) reuseLastVelocity(body);
   });
 }
 
 /// A resting body stays at rest: the solution begins with the velocities of the step before.
-void DeformableSolver::Impl::goOn(SolvedBody& body) {
+void DeformableSolver::Impl::reuseLastVelocity(SolvedBody& body) {
   assert(body.dynamics->nodeCount() == static_cast<std::size_t>(body.body->m_nodes.size()));
   Dynamics& dynamics = *body.dynamics;
   for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
@@ -70,18 +82,12 @@ void DeformableSolver::Impl::goOn(SolvedBody& body) {
     toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
   }
   // The deformation of a stiff body does not persist to the next step.
-  if (dynamics.isStiff()) dynamics.keepRigidComponent();
+  if (dynamics.isStiff()) dynamics.projectToRigidMotion();
 }
 
 void DeformableSolver::Impl::collectRigidRowsOfWorlds() {
   if (rigids.list().empty()) return;
-  std::vector<btDiscreteDynamicsWorld*> worlds;
-  for (const SolvedBody& body : bodies.bodies()) {
-    btDiscreteDynamicsWorld* world = worldOf(body);
-    if (!world || std::find(worlds.begin(), worlds.end(), world) != worlds.end()) continue;
-    worlds.push_back(world);
-    collectRigidRows(*world, dt(), rigids, rows.rows());
-  }
+  for (btDiscreteDynamicsWorld* world : bodies.worlds()) collectRigidRows(*world, dt(), rigids, rows.rows());
 }
 
 /// Unites the systems of soft bodies that rows connect directly, or through rigid bodies.

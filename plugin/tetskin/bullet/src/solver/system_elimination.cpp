@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The few unknowns of a system: V of rigid bodies, and q of the components of stiff bodies. They are eliminated from
-// the nodes' equations, and are computed from the nodes' velocities afterwards.
+// The reduced unknowns of a system: V of rigid bodies, and q of the components of stiff bodies. They are eliminated
+// from the nodes' equations, and are computed from the nodes' velocities afterwards.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/solver/system_solve.h>
 
@@ -46,8 +46,8 @@ void SystemSolve::numberRigids() {
     const RigidUnknown& unknown = step_.rigids.list()[r];
     inverseMass_.block(unknown.first, unknown.first, unknown.size, unknown.size) = unknown.inverseMass;
   }
-  fewMatrix_.setInverseMass(inverseMass_);
-  rigidSize_ = fewSize_ = size;
+  schurComplement_.setInverseMass(inverseMass_);
+  rigidSize_ = reducedSize_ = size;
   rigidMomentum_ = rigidPush_ = Vector::Zero(size);
 }
 
@@ -65,14 +65,14 @@ void SystemSolve::collectComponents() {
     bodies_[k].firstComponent = components_.size();
     for (ComponentUnknown& unknown : found[k]) {
       unknown.body = bodies_[k].index;
-      unknown.first = fewSize_;
-      fewSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
+      unknown.first = reducedSize_;
+      reducedSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
       components_.push_back(std::move(unknown));
     }
     bodies_[k].lastComponent = components_.size();
   }
   forEachBody([&](Body& body, ParallelFor*) { findEndParts(body); });
-  few_ = fewStep_ = fewResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(fewSize_);
+  reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
 }
 
 /// The separate unknowns do not include other forces on the nodes.
@@ -102,19 +102,19 @@ void SystemSolve::findEndParts(const Body& body) {
 void SystemSolve::moveIntoComponents(const Body& body) {
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     const ComponentUnknown& component = components_[c];
-    few_.segment<6>(component.first) = ldltSolve(component.mass, component.imageProducts(body.matrix().solution()));
-    component.addMotions(-few_.segment<6>(component.first), body.dynamics());
+    reduced_.segment<6>(component.first) = ldltSolve(component.mass, component.imageProducts(body.matrix().solution()));
+    component.addMotions(-reduced_.segment<6>(component.first), body.dynamics());
   }
 }
 
 void SystemSolve::moveOutOfComponents(const Body& body) {
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c)
-    components_[c].addMotions(few_.segment<6>(components_[c].first), body.dynamics());
+    components_[c].addMotions(reduced_.segment<6>(components_[c].first), body.dynamics());
 }
 
 /// Z^T A (y + Z q)
 Vector6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
-  return images_.segment<6>(component.first) + component.mass * few_.segment<6>(component.first);
+  return images_.segment<6>(component.first) + component.mass * reduced_.segment<6>(component.first);
 }
 
 /// The nodes' equations also contain each component's rigid motion, and must agree with its own equation about it:
@@ -124,12 +124,12 @@ void SystemSolve::matchComponents(const Body& body) {
   btScalar* residual = body.matrix().residual();
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     const ComponentUnknown& component = components_[c];
-    const Vector6 excess = component.motionProducts(residual) - fewResidual_.segment<6>(component.first);
+    const Vector6 excess = component.motionProducts(residual) - reducedResidual_.segment<6>(component.first);
     component.addImages(-ldltSolve(component.mass, excess), residual);
   }
 }
 
-bool SystemSolve::meetsFew(std::size_t r) const {
+bool SystemSolve::couplesReduced(std::size_t r) const {
   assert(r < endParts_.size());
   const ContactRow& row = *system_.rows[r];
   for (std::size_t e = 0; e < 2; ++e) {
@@ -138,25 +138,25 @@ bool SystemSolve::meetsFew(std::size_t r) const {
   return false;
 }
 
-/// Index of the component's six among the few unknowns.
+/// Index of the component's six among the reduced unknowns.
 Eigen::Index SystemSolve::firstOf(const EndPart& end) const {
   assert(end.component >= 0 && static_cast<std::size_t>(end.component) < components_.size());
   return components_[static_cast<std::size_t>(end.component)].first;
 }
 
-/// The velocity that the few unknowns give a row.
-btVector3 SystemSolve::fewVelocity(std::size_t r, const Vector& few) const {
+/// The velocity that the reduced unknowns give a row.
+btVector3 SystemSolve::reducedVelocity(std::size_t r, const Vector& reduced) const {
   btVector3 sum(0, 0, 0);
   for (std::size_t e = 0; e < 2; ++e) {
     const EndPart& end = endParts_[r][e];
-    btVector3 velocity = step_.rigids.velocity(system_.rows[r]->ends[e].rigid, few);
-    if (end.component >= 0) velocity += toBullet(end.motions * few.segment<6>(firstOf(end)));
+    btVector3 velocity = step_.rigids.velocity(system_.rows[r]->ends[e].rigid, reduced);
+    if (end.component >= 0) velocity += toBullet(end.motions * reduced.segment<6>(firstOf(end)));
     sum += btScalar(signOf(e)) * velocity;
   }
   return sum;
 }
 
-/// The transpose of `fewVelocity`: adds the effect of an impulse of the row on the few unknowns.
+/// The transpose of `reducedVelocity`: adds the effect of an impulse of the row on the reduced unknowns.
 void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
   for (std::size_t e = 0; e < 2; ++e) {
     const EndPart& end = endParts_[r][e];
@@ -167,92 +167,93 @@ void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) c
 }
 
 /// The momentum of rigid bodies and components that is left.
-void SystemSolve::findFewResiduals() {
-  assert(fewResidual_.size() == fewSize_ && rigidMomentum_.size() == rigidSize_);
-  fewResidual_.setZero();
-  fewResidual_.head(rigidSize_) -= rigidMomentum_;
+void SystemSolve::findReducedResiduals() {
+  assert(reducedResidual_.size() == reducedSize_ && rigidMomentum_.size() == rigidSize_);
+  reducedResidual_.setZero();
+  reducedResidual_.head(rigidSize_) -= rigidMomentum_;
   imagesBefore_ = images_;
   for (const ComponentUnknown& component : components_) {
     partsBefore_.segment<6>(component.first) = momentumOf(component);
-    fewResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
+    reducedResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
   }
-  for (std::size_t r = 0; r < system_.rows.size() && fewSize_ > 0; ++r) {
-    addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, fewResidual_);
+  for (std::size_t r = 0; r < system_.rows.size() && reducedSize_ > 0; ++r) {
+    addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, reducedResidual_);
   }
 }
 
-/// The matrix of the few unknowns without the masses of rigid bodies: what rows, and the masses of components, couple
-/// them by.
-SystemSolve::Matrix SystemSolve::fewStiffness() const {
-  Matrix few = Matrix::Zero(fewSize_, fewSize_);
+/// The matrix of the reduced unknowns without the masses of rigid bodies: what rows, and the masses of components,
+/// couple them by.
+SystemSolve::Matrix SystemSolve::reducedStiffness() const {
+  Matrix reduced = Matrix::Zero(reducedSize_, reducedSize_);
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    if (system_.rows[r]->state == ContactRow::State::Apart || !meetsFew(r)) continue;
+    if (system_.rows[r]->state == ContactRow::State::Apart || !couplesReduced(r)) continue;
     const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
     for (std::size_t a = 0; a < 2; ++a) {
-      for (std::size_t b = 0; b < 2; ++b) addFewStiffness(r, a, b, h, few);
+      for (std::size_t b = 0; b < 2; ++b) addReducedStiffness(r, a, b, h, reduced);
     }
   }
   for (const ComponentUnknown& component : components_)
-    few.block<6, 6>(component.first, component.first) += component.mass;
-  return few;
+    reduced.block<6, 6>(component.first, component.first) += component.mass;
+  return reduced;
 }
 
 /// Adds the block of two ends of a row. The block of a rigid body and a component, and its transpose, are added when
 /// the component's end comes first.
-void SystemSolve::addFewStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
-                                  Matrix& few) const {
+void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
+                                      Matrix& reduced) const {
   const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
   const double sign = signOf(a) * signOf(b);
-  step_.rigids.addStiffness(first.rigid, second.rigid, h, sign, few);
+  step_.rigids.addStiffness(first.rigid, second.rigid, h, sign, reduced);
   const EndPart &end = endParts_[r][a], &other = endParts_[r][b];
   if (end.component < 0) return;
   if (other.component >= 0) {
-    few.block<6, 6>(firstOf(end), firstOf(other)) += sign * end.motions.transpose() * h * other.motions;
+    reduced.block<6, 6>(firstOf(end), firstOf(other)) += sign * end.motions.transpose() * h * other.motions;
   }
   for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
     Vector push = Vector::Zero(rigidSize_);
     step_.rigids.addImpulse(second.rigid, toBullet(sign * h * end.motions.col(k)), push);
-    few.col(firstOf(end) + k).head(rigidSize_) += push;
-    few.row(firstOf(end) + k).head(rigidSize_) += push.transpose();
+    reduced.col(firstOf(end) + k).head(rigidSize_) += push;
+    reduced.row(firstOf(end) + k).head(rigidSize_) += push.transpose();
   }
 }
 
 void SystemSolve::eliminate() {
-  if (fewSize_ == 0) return;
-  fewMatrix_.factor(fewStiffness());
-  const Vector few = fewMatrix_.solve(fewResidual_);
-  forEachBody([&](Body& body, ParallelFor*) { addFew(body, few, -1, false, body.matrix().residual()); });
+  if (reducedSize_ == 0) return;
+  schurComplement_.factor(reducedStiffness());
+  const Vector reduced = schurComplement_.solve(reducedResidual_);
+  forEachBody([&](Body& body, ParallelFor*) { addReduced(body, reduced, -1, false, body.matrix().residual()); });
 }
 
-/// Adds the effect of changes of the few unknowns on the body's nodes.
+/// Adds the effect of changes of the reduced unknowns on the body's nodes.
 /// withOthers  adds that of the steps of the rows' other ends, too
 /// to          in the wide layout: residuals or products
-void SystemSolve::addFew(const Body& body, const Vector& few, btScalar sign, bool withOthers, btScalar* to) const {
+void SystemSolve::addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers,
+                             btScalar* to) const {
   for (const CoupledEnd& coupled : body.coupled) {
     const bool byOther = withOthers && coupled.byOther;
-    if (!byOther && !coupled.byFew) continue;
+    if (!byOther && !coupled.byReduced) continue;
     const BodyEnd& end = coupled.end;
     const btScalar own = btScalar(signOf(end.index));
     btVector3 velocity(0, 0, 0);
-    if (coupled.byFew) velocity = fewVelocity(end.row, few);
+    if (coupled.byReduced) velocity = reducedVelocity(end.row, reduced);
     if (byOther) velocity -= own * endSteps_[end.row][1 - end.index];
     body.ends.addImpulse(end, (sign * own) * (coupled.tangent * velocity), to);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-    components_[c].addImages(static_cast<double>(sign) * few.segment<6>(components_[c].first), to);
+    components_[c].addImages(static_cast<double>(sign) * reduced.segment<6>(components_[c].first), to);
   }
 }
 
-/// Computes the few unknowns from the nodes' change in the pass.
-void SystemSolve::moveFew() {
+/// Computes the reduced unknowns from the nodes' change in the pass.
+void SystemSolve::moveReduced() {
   assert(before_.size() == system_.rows.size());
   forEachBody([&](Body& body, ParallelFor*) {
     if (body.moves) readSolution(body);
   });
   forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
-  if (fewSize_ == 0) return;
+  if (reducedSize_ == 0) return;
   // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
-  Vector push = fewResidual_, left = fewResidual_;
+  Vector push = reducedResidual_, left = reducedResidual_;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     const ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
@@ -260,8 +261,8 @@ void SystemSolve::moveFew() {
   for (const ComponentUnknown& component : components_) {
     push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
   }
-  fewStep_ = fewMatrix_.solve(push);
-  few_ += fewStep_;
+  reducedStep_ = schurComplement_.solve(push);
+  reduced_ += reducedStep_;
   forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
   if (rigidSize_ == 0) return;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
@@ -274,13 +275,13 @@ void SystemSolve::moveFew() {
 
 /// The residual that is left is small in terms of velocity, but with stiff rows its impulses need not be small. The few
 /// unknowns take them up, so that momentum agrees with the rows' impulses while velocities hardly change.
-void SystemSolve::settleFew() {
-  if (fewSize_ == 0) return;
-  const Vector change = fewMatrix_.solve(fewResidual_);
-  few_ += change;
+void SystemSolve::settleReduced() {
+  if (reducedSize_ == 0) return;
+  const Vector change = schurComplement_.solve(reducedResidual_);
+  reduced_ += change;
   for (std::size_t r = 0; r < system_.rows.size(); ++r) {
     ContactRow& row = *system_.rows[r];
-    if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * fewVelocity(r, change);
+    if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * reducedVelocity(r, change);
   }
 }
 

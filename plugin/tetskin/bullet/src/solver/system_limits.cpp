@@ -57,16 +57,18 @@ elastic_detail::SolveLimits SystemSolve::limitsOfBulletsForces() const {
 /// The strictest tolerance of all bodies of the system.
 elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   elastic_detail::SolveLimits limits;
-  limits.floor = kUnseen * static_cast<double>(step_.dt());
+  limits.floor = 0.0;
   limits.iterations = 0;
+  limits.tolerance = 1.0;
   bool changed = false, anyElastic = false, stiff = false;
   double squaredStart = 0.0;
   for (const Body& one : bodies_) {
     const SolvedBody& body = one.solved;
+    limits.floor = std::max(limits.floor, step_.unseenSpeed(body));
     limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.settings->iterations);
-    if (body.elastic && !body.waits) limits.enough += body.solve->enough();
-    changed |= !body.fixed.empty() || body.touched;
+    if (body.elastic && !body.deferSolve) limits.enough += body.solve->enough();
+    changed |= !body.fixed.empty() || body.velocityChanged;
     stiff |= body.dynamics->isStiff();
     squaredStart += body.dynamics->squaredSolution();
     anyElastic |= body.elastic != nullptr;
@@ -101,7 +103,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
     byMasses += body.byMasses;
   }
   for (const ComponentUnknown& component : components_) {
-    byMasses += few_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));
+    byMasses += reduced_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));
   }
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);

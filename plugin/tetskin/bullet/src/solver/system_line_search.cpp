@@ -32,7 +32,7 @@ double SystemSolve::slope(btScalar fraction, double linear, double quadratic) co
 /// The fraction of the pass's step to take.
 btScalar SystemSolve::searchLine() {
   findResiduals();
-  const Vector rigidStep = fewStep_.head(rigidSize_);
+  const Vector rigidStep = reducedStep_.head(rigidSize_);
   double linear = rigidStep.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep.dot(rigidPush_);
   forEachBody([](Body& body, ParallelFor*) {
     const auto& matrix = body.matrix();
@@ -50,7 +50,7 @@ btScalar SystemSolve::searchLine() {
     quadratic += body.quadratic;
   }
   for (const ComponentUnknown& component : components_) {
-    const Vector6 step = fewStep_.segment<6>(component.first);
+    const Vector6 step = reducedStep_.segment<6>(component.first);
     const Vector6 grown = momentumOf(component) - partsBefore_.segment<6>(component.first);
     linear += step.dot(partsBefore_.segment<6>(component.first) - component.began);
     quadratic += step.dot(grown);
@@ -80,7 +80,7 @@ void SystemSolve::moveBack(btScalar fraction) {
     readSolution(body);
   });
   const auto rest = static_cast<double>(1 - fraction);
-  few_ -= rest * fewStep_;
+  reduced_ -= rest * reducedStep_;
   rigidMomentum_ -= rest * rigidPush_;
   for (btVector3& step : stepped_) step *= fraction;
 }

@@ -12,7 +12,7 @@
 
 #include <tetskin/bullet/src/solver/body_ends.h>
 #include <tetskin/bullet/src/solver/component_unknown.h>
-#include <tetskin/bullet/src/solver/few_matrix.h>
+#include <tetskin/bullet/src/solver/schur_complement.h>
 #include <tetskin/bullet/src/solver/step.h>
 #include <tetskin/core/src/shared/base/run_by_size.h>
 
@@ -30,7 +30,7 @@ struct SolveReport {
 
 /// What concerns one body is done side by side with the other bodies, and what concerns one row, side by side with the
 /// other rows; sums over bodies and rows are in their order.
-class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Addition {
+class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::CouplingOperator {
  public:
   SystemSolve(DeformableSolver::Impl& step, const SolvedSystem& system, ParallelFor* threads);
 
@@ -41,15 +41,16 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
  private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
+  using HeldPoint = elastic_detail::HeldPoint<btScalar>;
   /// The component of a body on which an end of a row acts.
   struct EndPart {
     int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
     RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
   };
-  /// An end of a row that couples its body to another one, or to the few unknowns, in the current pass.
+  /// An end of a row that couples its body to another one, or to the reduced unknowns, in the current pass.
   struct CoupledEnd {
     BodyEnd end;
-    bool byOther = false, byFew = false;
+    bool byOther = false, byReduced = false;
     btMatrix3x3 tangent;
   };
   /// A body of the system.
@@ -67,7 +68,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
     double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
     double linear = 0.0, quadratic = 0.0;               ///< its share in SystemSolve::searchLine
-    Vector push;  ///< the effect of its step of the conjugate gradient on the few unknowns
+    Vector push;  ///< the effect of its step of the conjugate gradient on the reduced unknowns
   };
   using EndVelocities = std::array<btVector3, 2>;
 
@@ -81,6 +82,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   /// Calls call(r) for each row.
   template <class Call>
   void forEachRow(Call&& call) {
+    // Enough work that handing it out costs little.
     constexpr std::size_t kRowsPerTask = 128;
     const std::size_t count = system_.rows.size();
     runTasks(threads_, (count + kRowsPerTask - 1) / kRowsPerTask, [&](std::size_t task) {
@@ -104,8 +106,9 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   bool isHung(const Body& body) const;
   void giveMomentum();
   void removeMomentumError(Body& body) const;
+  void findHeld(const Body& body, std::vector<HeldPoint>& held, std::vector<ContactRow*>& rows) const;
 
-  // The few unknowns; implemented in system_elimination.cpp.
+  // The reduced unknowns; implemented in system_elimination.cpp.
   void numberRigids();
   void collectComponents();
   bool needsComponents(const Body& body) const;
@@ -115,22 +118,23 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   void moveOutOfComponents(const Body& body);
   Vector6 momentumOf(const ComponentUnknown& component) const;
   void matchComponents(const Body& body);
-  void findFewResiduals();
-  Matrix fewStiffness() const;
-  void addFewStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h, Matrix& few) const;
+  void findReducedResiduals();
+  Matrix reducedStiffness() const;
+  void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
+                           Matrix& reduced) const;
   Eigen::Index firstOf(const EndPart& end) const;
   void eliminate();
-  bool meetsFew(std::size_t row) const;
-  void moveFew();
-  void settleFew();
+  bool couplesReduced(std::size_t row) const;
+  void moveReduced();
+  void settleReduced();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
-  btVector3 fewVelocity(std::size_t row, const Vector& few) const;
-  void addFew(const Body& body, const Vector& few, btScalar sign, bool withOthers, btScalar* to) const;
+  btVector3 reducedVelocity(std::size_t row, const Vector& reduced) const;
+  void addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers, btScalar* to) const;
 
   // What is added to the matrices' products; implemented in system_products.cpp.
-  void read(std::size_t k) override;
+  void readPoints(std::size_t k) override;
   void combine() override;
-  const btScalar* added(std::size_t k) override;
+  const btScalar* apply(std::size_t k) override;
 
   // Tolerances and line search; implemented in system_limits.cpp and system_line_search.cpp.
   elastic_detail::SolveLimits limitsOfBulletsForces() const;
@@ -151,15 +155,16 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Additio
   std::vector<std::size_t> moving_;  ///< those that move in the current pass, ascending
   std::vector<ComponentUnknown> components_;
   std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
-  // The few unknowns: V of rigid bodies, followed by q of components.
-  Eigen::Index rigidSize_ = 0, fewSize_ = 0;
-  Vector few_, fewStep_, fewResidual_;  ///< their values; in the pass, their change and the residual of their equations
-  Vector images_, imagesBefore_;        ///< of components: Z^T A y, now and when the pass began
-  Vector partsBefore_;                  ///< momenta of the components when the pass began
-  Vector rigidMomentum_, rigidPush_;    ///< M V, and its change in the pass
-  Matrix inverseMass_;                  ///< M^-1
-  FewMatrix fewMatrix_;
-  Vector fewOfStep_;               ///< what the step of the conjugate gradient changes the few unknowns by
+  // The reduced unknowns: V of rigid bodies, followed by q of components.
+  Eigen::Index rigidSize_ = 0, reducedSize_ = 0;
+  Vector reduced_, reducedStep_,
+      reducedResidual_;               ///< their values; in the pass, their change and the residual of their equations
+  Vector images_, imagesBefore_;      ///< of components: Z^T A y, now and when the pass began
+  Vector partsBefore_;                ///< momenta of the components when the pass began
+  Vector rigidMomentum_, rigidPush_;  ///< M V, and its change in the pass
+  Matrix inverseMass_;                ///< M^-1
+  SchurComplement schurComplement_;
+  Vector reducedOfStep_;           ///< what the step of the conjugate gradient changes the reduced unknowns by
   std::vector<LinearRow> linear_;  ///< by row, in the current pass: close together, as each body reads them
   std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed

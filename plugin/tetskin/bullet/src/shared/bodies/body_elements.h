@@ -19,7 +19,7 @@ struct BuiltBody {
 };
 
 /// The part of `createSoftBody` after the check of the cage.
-/// cage     `checkKnowledge(cage)` is ok
+/// cage     `validateAttributes(cage)` is ok
 /// options  including the data of the cage: see `withCageDefaults`
 /// Errors   those of `createSoftBody`
 Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options);

@@ -39,19 +39,37 @@ Own* asOwn(OwnObject::Kind kind, Bullets* object) {
   return OwnObject::is(kind, object) ? static_cast<Own*>(object) : nullptr;
 }
 
+/// True if the object has type information, so that it may be cast by it. Only the C++ ABI of GCC and clang tells
+/// whether it has: with another one, the result is false.
+template <class Base>
+bool hasTypeInformation([[maybe_unused]] const Base& object) {
+#ifdef TETSKIN_GNU
+  const void* const* table = nullptr;
+  std::memcpy(&table, static_cast<const void*>(&object), sizeof table);
+  return table[-1] != nullptr;
+#else
+  return false;
+#endif
+}
+
+/// True if an object is known by its type information to be of another class than `Derived`, and of none derived from
+/// it.
+template <class Derived, class Base>
+bool isKnownNotToBe(const Base& object) {
+  return hasTypeInformation(object) && !dynamic_cast<const Derived*>(&object);
+}
+
 /// True if an object is of the same class as another one, rather than of one derived from it: both have one table of
 /// virtual functions. Two libraries may each have such a table; then type information decides, if there is any. Only
 /// the C++ ABI of GCC and clang tells whether there is: with another one, the result may be false for the same class.
 template <class Base>
 bool isOfSameClass(const Base& object, const Base& other) {
-  const void* const* table = nullptr;
-  std::memcpy(&table, static_cast<const void*>(&object), sizeof table);
-  if (std::memcmp(static_cast<const void*>(&object), static_cast<const void*>(&other), sizeof table) == 0) return true;
-#ifdef TETSKIN_GNU
-  return table[-1] != nullptr && typeid(object) == typeid(other);
-#else
-  return false;
-#endif
+  const auto tableOf = [](const Base& of) {
+    const void* table = nullptr;
+    std::memcpy(&table, static_cast<const void*>(&of), sizeof table);
+    return table;
+  };
+  return tableOf(object) == tableOf(other) || (hasTypeInformation(object) && typeid(object) == typeid(other));
 }
 
 }  // namespace tetskin

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxPointNodes = 12;
 struct PointContact {
   std::uint32_t point = 0;                         ///< number of the point, the same in each step
   const btCollisionObject* object = nullptr;       ///< rigid body, link or any other collision object
-  std::uint32_t nodeCount = 0;                     ///<
+  std::uint32_t nodeCount = 0;                     ///< number of entries in use of the next two
   std::array<int, kMaxPointNodes> nodes{};         ///< nodes of the body
   std::array<btScalar, kMaxPointNodes> weights{};  ///< sum 1; some may be below 0
   btVector3 position;                              ///< when the step begins

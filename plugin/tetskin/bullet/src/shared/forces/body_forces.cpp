@@ -48,15 +48,17 @@ void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForc
   }
 }
 
-BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list)
-    : OwnForce<btDeformableGravityForce>(list, world.getGravity()), world_(world) {}
+BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals)
+    : OwnForce<btDeformableGravityForce>(list, world.getGravity()),
+      world_(world),
+      isToldOfRemovals_(isToldOfRemovals) {}
 
 btDeformableLagrangianForceType BodyGravity::getForceType() {
   return inCallback_ ? BT_GRAVITY_FORCE : kOwnForceType;
 }
 
 void BodyGravity::removeSoftBody(btSoftBody* body) {
-  removed_ = body;
+  if (isToldOfRemovals_) removed_ = body;
   OwnForce::removeSoftBody(body);
 }
 
@@ -65,8 +67,12 @@ void BodyGravity::reinitialize(bool) {
   const bool removal = removed_ && !removed_->getBroadphaseHandle();
   removed_ = nullptr;
   inCallback_ = !removal;
+  const btVector3 before = m_gravity;
   m_gravity = own_.value_or(world_.getGravity());
-  for (int i = 0; i < m_softBodies.size(); ++i) updateConstants(*m_softBodies[i]);
+  for (int i = 0; i < m_softBodies.size(); ++i) {
+    updateConstants(*m_softBodies[i]);
+    if (m_gravity != before) m_softBodies[i]->activate();
+  }
 }
 
 /// Explicit worlds do not ask for gravity.

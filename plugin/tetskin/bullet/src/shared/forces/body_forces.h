@@ -80,7 +80,9 @@ class OwnForce : public Force {
 /// asked later, and gives its own body the difference.
 class BodyGravity : public OwnForce<btDeformableGravityForce> {
  public:
-  BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list);
+  /// isToldOfRemovals  the solver calls `reinitialize` when a body has been removed, as Bullet's does
+  BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals);
+  btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
 
   /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
@@ -88,7 +90,8 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   btDeformableLagrangianForceType getForceType() override;
   /// Called for any body: forces are told before it leaves the world.
   void removeSoftBody(btSoftBody* body) override;
-  /// Called at the beginning of each substep, and when a body has been removed.
+  /// Called at the beginning of each substep, and by Bullet's solver when a body has been removed. Wakes the body if
+  /// gravity has changed.
   void reinitialize(bool nodeUpdated) override;
   void addScaledExplicitForce(btScalar scale, TVStack& force) override;
   void addScaledHessian(btScalar scale) override;
@@ -104,6 +107,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
 
   OwnObject registered_{OwnObject::Kind::BodyGravity, static_cast<const btDeformableLagrangianForce*>(this)};
   btDeformableMultiBodyDynamicsWorld& world_;
+  bool isToldOfRemovals_;
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`
   bool inCallback_ = false;

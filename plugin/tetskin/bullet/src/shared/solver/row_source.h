@@ -25,7 +25,7 @@ struct SoftPointContact : PointContact {
 /// A constraint between a point of a soft body and a point of a rigid object, or a point in space. World space.
 struct PointJoint {
   btSoftBody* body = nullptr;
-  std::uint32_t nodeCount = 0;                          ///<
+  std::uint32_t nodeCount = 0;                          ///< number of entries in use of the next two
   std::array<int, kMaxPointNodes> nodes{};              ///< nodes of the body
   std::array<btScalar, kMaxPointNodes> weights{};       ///< sum 1; some may be below 0
   const btCollisionObject* object = nullptr;            ///< null: a point in space, which does not move

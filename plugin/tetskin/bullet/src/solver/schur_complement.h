@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: the matrix of a system's few unknowns, factored once per pass.
+// Internal to DeformableSolver: the matrix of a system's reduced unknowns, factored once per pass.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,11 +9,11 @@
 
 namespace tetskin {
 
-/// Solves (M + K) x = b for the few unknowns, of which the rigid bodies' come first. With M^-1 = F F^T for these, which
-/// may be singular since axes may be locked, and F = 1 for the others, the mass of which K contains:
+/// Solves (M + K) x = b for the reduced unknowns, of which the rigid bodies' come first. With M^-1 = F F^T for these,
+/// which may be singular since axes may be locked, and F = 1 for the others, the mass of which K contains:
 ///   x = F (E + F^T K F)^-1 F^T b,    E = 1 for rigid bodies, 0 for the others
 /// The matrix in the middle is symmetric and positive, so that Cholesky's method factors it.
-class FewMatrix {
+class SchurComplement {
  public:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/solver/few_matrix.h>
+#include <tetskin/bullet/src/solver/schur_complement.h>
 
 #include <cassert>
 
 namespace tetskin {
 
-void FewMatrix::setInverseMass(const Matrix& inverseMass) {
+void SchurComplement::setInverseMass(const Matrix& inverseMass) {
   assert(inverseMass.rows() == inverseMass.cols());
   root_.resize(inverseMass.rows(), inverseMass.cols());
   if (inverseMass.rows() == 0) return;
@@ -16,7 +16,7 @@ void FewMatrix::setInverseMass(const Matrix& inverseMass) {
   root_ = (factors.transpositionsP().transpose() * root_).eval();
 }
 
-void FewMatrix::factor(Matrix stiffness) {
+void SchurComplement::factor(Matrix stiffness) {
   const Eigen::Index rigid = root_.rows();
   assert(stiffness.rows() == stiffness.cols() && stiffness.rows() >= rigid);
   matrix_ = std::move(stiffness);
@@ -30,7 +30,7 @@ void FewMatrix::factor(Matrix stiffness) {
   if (!isPositive_) pivoted_.compute(matrix_);
 }
 
-FewMatrix::Vector FewMatrix::solve(Vector right) const {
+SchurComplement::Vector SchurComplement::solve(Vector right) const {
   const Eigen::Index rigid = root_.rows();
   assert(right.size() == matrix_.rows());
   if (rigid > 0) right.head(rigid) = (root_.transpose() * right.head(rigid)).eval();

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Soft bodies that are squashed flat by rigid ones of many times their mass, far more than they can carry.
+#include "rigid_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+using test::added;
+using test::latticeCage;
+using test::Rigid;
+using test::TetskinWorld;
+
+constexpr double kSize = 0.9, kGravity = 10.0;
+constexpr btScalar kStep = btScalar(1) / 240;
+
+/// A block of 1 kg on the floor, and a rigid box above it.
+struct Press {
+  explicit Press(double ratio) {
+    TetMesh cage = latticeCage(3, 3, 3, kSize / 3);
+    for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-kSize / 2, 0.03, -kSize / 2);
+    block = added(world, cage);
+    block->body().m_cfg.kDF = btScalar(0.5);
+    const btVector3 half(btScalar(0.8), btScalar(0.5), btScalar(0.8));
+    box = std::make_unique<Rigid>(world, std::make_unique<btBoxShape>(half), static_cast<btScalar>(ratio),
+                                  btVector3(0, btScalar(0.98 + 0.5), 0));
+    box->body->setActivationState(DISABLE_DEACTIVATION);
+    record = ForceRecord::add(world.deformable()).value();
+  }
+  void run(int steps) {
+    for (int k = 0; k < steps; ++k) world.deformable().stepSimulation(kStep, 0, kStep);
+  }
+  double fastest() const {
+    double squared = 0.0;
+    for (int n = 0; n < block->body().m_nodes.size(); ++n) {
+      squared = std::max(squared, static_cast<double>(block->body().m_nodes[n].m_v.length2()));
+    }
+    return std::sqrt(squared);
+  }
+  double height() const {
+    double highest = 0.0;
+    for (int n = 0; n < block->body().m_nodes.size(); ++n) {
+      highest = std::max(highest, static_cast<double>(block->body().m_nodes[n].m_x.y()));
+    }
+    return highest;
+  }
+
+  TetskinWorld world;
+  std::unique_ptr<DeformableBody> block;
+  std::unique_ptr<Rigid> box;
+  std::unique_ptr<ForceRecord> record;
+};
+
+/// Under 100 times its mass, some node may go on by a tenth of the size per second; without the cure all do, by sixty
+/// sizes.
+TEST(SquashedBodies, ComeToRestAndCarryTheWholeWeight) {
+  for (const double ratio : {100.0, 1000.0}) {
+    Press press(ratio);
+    press.run(720);
+    EXPECT_LT(press.height(), 0.3 * kSize) << ratio;
+    for (int k = 0; k < 60; ++k) {
+      press.run(1);
+      EXPECT_LT(press.fastest(), (ratio > 100.0 ? 0.01 : 0.2) * kSize) << ratio;
+      const double carried = static_cast<double>(press.record->forcesOn(*press.box->body).total().force.y());
+      EXPECT_NEAR(carried / (ratio * kGravity), 1.0, 0.01) << ratio;
+    }
+  }
+}
+
+TEST(SquashedBodies, ComeBackWhenTheLoadIsTakenAway) {
+  Press press(100.0);
+  press.run(240);
+  press.box.reset();
+  press.block->body().activate();
+  press.run(720);
+  EXPECT_NEAR(press.height() - test::lowest(press.block->body()), kSize, 0.1 * kSize);
+}
+
+}  // namespace
+}  // namespace tetskin
