@@ -190,5 +190,75 @@ TEST(ContactLifetimes, OtherSoftBodiesKeepBulletsPath) {
   EXPECT_NEAR(lowest(plain->body()), 0.02, 0.01);
 }
 
+/// An application's own algorithm for a pair, which is Bullet's, and counted.
+struct CountedAlgorithm : btCollisionAlgorithmCreateFunc {
+  explicit CountedAlgorithm(btCollisionAlgorithmCreateFunc& ofBullet) : bullets(ofBullet) {}
+  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                 const btCollisionObjectWrapper* first,
+                                                 const btCollisionObjectWrapper* second) override {
+    ++count;
+    return bullets.CreateCollisionAlgorithm(info, first, second);
+  }
+  btCollisionAlgorithmCreateFunc& bullets;
+  int count = 0;
+};
+
+TEST(ContactLifetimes, AlgorithmsOfTheApplicationServeBodiesWithoutSurfaceContact) {
+  TetskinWorld world;
+  const int soft = SOFTBODY_SHAPE_PROXYTYPE, box = BOX_SHAPE_PROXYTYPE;
+  CountedAlgorithm first(*world.configuration.getCollisionAlgorithmCreateFunc(soft, box)),
+      second(*world.configuration.getCollisionAlgorithmCreateFunc(box, soft));
+  world.dispatcher.registerCollisionCreateFunc(soft, box, &first);
+  world.dispatcher.registerCollisionCreateFunc(box, soft, &second);
+  const auto touching = lying(world), another = lying(world);
+  EXPECT_EQ(first.count + second.count, 0);
+  TetMesh cage = looseCage();
+  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(3, 0.53, 0);
+  const auto plain = added(world, cage);
+  step(world, 60);
+  EXPECT_EQ(first.count + second.count, 1);
+  EXPECT_GT(lowest(plain->body()), -0.01);
+  // Without its contacts, a body is as any other: at once, by the algorithm of its pair, and with each new pair.
+  touching->contact.reset();
+  step(world, 10);
+  EXPECT_EQ(first.count + second.count, 2);
+}
+
+/// A dispatcher of the application, derived from Bullet's interface alone.
+struct OtherDispatcher : btDispatcher {
+  btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
+                                      btPersistentManifold*, ebtDispatcherQueryType) override {
+    return nullptr;
+  }
+  btPersistentManifold* getNewManifold(const btCollisionObject*, const btCollisionObject*) override { return nullptr; }
+  void releaseManifold(btPersistentManifold*) override {}
+  void clearManifold(btPersistentManifold*) override {}
+  bool needsCollision(const btCollisionObject*, const btCollisionObject*) override { return false; }
+  bool needsResponse(const btCollisionObject*, const btCollisionObject*) override { return false; }
+  void dispatchAllCollisionPairs(btOverlappingPairCache*, const btDispatcherInfo&, btDispatcher*) override {}
+  int getNumManifolds() const override { return 0; }
+  btPersistentManifold* getManifoldByIndexInternal(int) override { return nullptr; }
+  btPersistentManifold** getInternalManifoldPointer() override { return nullptr; }
+  btPoolAllocator* getInternalManifoldPool() override { return nullptr; }
+  const btPoolAllocator* getInternalManifoldPool() const override { return nullptr; }
+  void* allocateCollisionAlgorithm(int) override { return nullptr; }
+  void freeCollisionAlgorithm(void*) override {}
+};
+
+TEST(ContactLifetimes, NeedsADispatcherThatAlgorithmsCanBeRegisteredWith) {
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  OtherDispatcher dispatcher;
+  btDbvtBroadphase broadphase;
+  DeformableSolver bodySolver;
+  btDeformableMultiBodyConstraintSolver solver;
+  solver.setDeformableSolver(&bodySolver);
+  btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration, &bodySolver);
+  const TriangleMesh mesh = ballMesh(6, 0.35);
+  const TetMesh cage = looseCage();
+  const auto body = DeformableBody::add(world, cage).value();
+  const auto made = SurfaceContact::add(world, body->body(), *SoftBodyBinding::create(cage, mesh).value(), mesh);
+  EXPECT_EQ(made.status().code, StatusCode::InvalidOption);
+}
+
 }  // namespace
 }  // namespace tetskin::test

@@ -7,20 +7,31 @@
 namespace tetskin::test {
 namespace {
 
-/// The positions of the contact points at rest, or where their forces act, depending on the weights.
-std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const std::vector<btScalar>& weights,
-                                      const TetMesh& cage) {
+/// The positions of the contact points at rest.
+std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const ContactPatch& patch, const TetMesh& cage) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::uint32_t p = 0; p < patch.numberCount(); ++p) {
+    const std::uint32_t i = p / (patch.divisions + 1), j = p % (patch.divisions + 1);
+    if (patch.isTriangle() && (i + j > patch.divisions || std::max(i, j) == patch.divisions || i + j == 0)) continue;
+    std::array<btScalar, kMaxCarriers> weights{};
+    patches.weightsOf(patch, p, weights.data());
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+      at += static_cast<double>(weights[n]) * cage.nodes[static_cast<std::size_t>(patches.nodes[patch.firstNode + n])];
+    }
+    points.push_back(at);
+  }
+  EXPECT_EQ(points.size(), patch.pointCount);
+  return points;
+}
+
+std::vector<Eigen::Vector3d> pointsOf(const ContactPatches& patches, const TetMesh& cage) {
   std::vector<Eigen::Vector3d> points;
   for (const ContactPatch& patch : patches.patches) {
-    for (std::uint32_t p = 0; p < patch.pointCount; ++p) {
-      Eigen::Vector3d at = Eigen::Vector3d::Zero();
-      for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
-        at += static_cast<double>(weights[patch.firstWeight + p * patch.nodeCount + n]) *
-              cage.nodes[static_cast<std::size_t>(patches.nodes[patch.firstNode + n])];
-      }
-      points.push_back(at);
-    }
+    const auto more = pointsOf(patches, patch, cage);
+    points.insert(points.end(), more.begin(), more.end());
   }
+  EXPECT_EQ(points.size(), patches.pointCount);
   return points;
 }
 
@@ -40,18 +51,30 @@ TEST(ContactPatches, HaveEachPlaceOfTheMeshOnce) {
   const std::size_t indices = mesh.vertexCount();
   const std::vector<Eigen::Vector3d> seam(mesh.positions.begin(), mesh.positions.begin() + 50);
   mesh.positions.insert(mesh.positions.end(), seam.begin(), seam.end());  // duplicates, as on the two sides of a seam
-  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.0);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, {});
   EXPECT_EQ(patches.pointCount, indices);
-  const auto points = pointsOf(patches, patches.weights, cage);
+  const auto points = pointsOf(patches, cage);
   EXPECT_LT(farthestFromAny(mesh.positions, points), 1e-6);
   EXPECT_LT(farthestFromAny(points, mesh.positions), 1e-6);
+}
+
+TEST(ContactPatches, HaveNoVerticesThatNoTriangleUses) {
+  const TetMesh cage = looseCage();
+  TriangleMesh mesh = ballMesh(10, 0.4);
+  const std::vector<Eigen::Vector3d> used = mesh.positions;
+  for (int k = 0; k < 30; ++k) mesh.positions.emplace_back(0.1 * k, 0.01 * k, 0.0);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, {});
+  EXPECT_LT(farthestFromAny(pointsOf(patches, cage), used), 1e-6);
+  EXPECT_EQ(patches.pointCount, used.size());
+  mesh.triangles.clear();  // a cloud: all points count
+  EXPECT_EQ(makeContactPatches(embed(cage, mesh).value(), mesh, {}).pointCount, mesh.vertexCount());
 }
 
 TEST(ContactPatches, SampleTrianglesNoFartherApartThanTheSpacing) {
   const TetMesh cage = looseCage();
   const TriangleMesh mesh = boxMesh(Eigen::Vector3d(0.4, 0.3, 0.35));
-  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.05);
-  const auto points = pointsOf(patches, patches.weights, cage);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, divisionsFor(mesh, 0.05));
+  const auto points = pointsOf(patches, cage);
   std::vector<Eigen::Vector3d> onSides;
   for (double u = -0.4; u <= 0.4; u += 0.04) {
     for (double v = -0.35; v <= 0.35; v += 0.035) onSides.emplace_back(u, 0.3, v);
@@ -66,8 +89,8 @@ TEST(ContactPatches, SampleTrianglesNoFartherApartThanTheSpacing) {
 TEST(ContactPatches, KeepWithinTheirSpread) {
   const TetMesh cage = looseCage();
   const TriangleMesh mesh = ballMesh(10, 0.6);
-  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, 0.1);
-  const auto points = pointsOf(patches, patches.weights, cage);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, divisionsFor(mesh, 0.1));
+  const auto points = pointsOf(patches, cage);
   std::size_t at = 0, inClusters = 0;
   for (const ContactPatch& patch : patches.patches) {
     Box3 box;

@@ -114,6 +114,36 @@ TEST(ConvexProbe, FindsTheDistanceOfAHullsFacesOnBothSides) {
   }
 }
 
+/// Triangles farther than the reach decide, too, where others are within the thickness, but behind.
+TEST(MeshProbe, APointBesideAThinMeshIsNotInsideOfItsOtherSide) {
+  const TriangleMesh ball = ballMesh(12, 0.03);
+  btTriangleMesh mesh;
+  for (const auto& t : ball.triangles) {
+    mesh.addTriangle(toBullet(ball.positions[t[0]]), toBullet(ball.positions[t[1]]), toBullet(ball.positions[t[2]]));
+  }
+  const btBvhTriangleMeshShape shape(&mesh, true);
+  MeshProbe probe;
+  probe.take(shape, btScalar(0.1));
+  constexpr btScalar kReach = btScalar(0.001);
+  int outside = 0, inside = 0;
+  for (const btVector3& point : pointsWithin(btScalar(0.05), 3000)) {
+    const ShapeDistance found = asked(probe, point, kReach);
+    const double brute = bruteDistance(ball, point);
+    if (brute < 1e-4) continue;
+    const bool within = isInside(ball, point);
+    EXPECT_EQ(found.distance < 0, within) << point.length();
+    if (within || brute < static_cast<double>(kReach)) {
+      EXPECT_NEAR(std::abs(static_cast<double>(found.distance)), brute, 1e-4);
+    } else {
+      EXPECT_GE(found.distance, kReach * btScalar(0.999));
+      EXPECT_LE(found.distance, static_cast<btScalar>(brute) + btScalar(1e-5));
+    }
+    ++(within ? inside : outside);
+  }
+  EXPECT_GT(outside, 1000);
+  EXPECT_GT(inside, 200);
+}
+
 TEST(MeshProbe, FindsTheDistanceOfAllTrianglesAndTheSide) {
   const TriangleMesh ball = ballMesh(12, 1.0);
   btTriangleMesh mesh;

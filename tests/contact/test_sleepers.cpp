@@ -8,9 +8,14 @@
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <gtest/gtest.h>
 
+#include <tetskin/bullet/deformable_world.h>
+
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tetskin::test {
@@ -232,6 +237,127 @@ TEST_P(Sleepers, FallAsleepFarFromTheOrigin) {
   }
 }
 
+// ---- what falls asleep
+
+TEST_P(Sleepers, FallAsleepAtRestAloneNotInFreeFlight) {
+  for (const btScalar gravity : {btScalar(0), btScalar(0.01)}) {
+    const btScalar speed = gravity > 0 ? btScalar(0) : btScalar(0.03);
+    const auto empty = worldWith(btVector3(0, -gravity, 0));
+    TouchingBody flying(*empty, ballMesh(12, 0.35), btVector3(0, 20, 0));
+    if (GetParam() == TouchedBy::Nodes) flying.contact.reset();
+    flying.body->body().setVelocity(btVector3(speed, 0, 0));
+    step(*empty, 300);
+    const btVector3 moved = centreOf(flying.body->body()) - btVector3(0, 20, 0);
+    EXPECT_NEAR(moved.x(), 5 * speed, 0.001);
+    EXPECT_NEAR(moved.y(), -gravity * 25 / 2, 0.002);
+    EXPECT_TRUE(flying.body->body().isActive()) << gravity;
+  }
+}
+
+TEST_P(Sleepers, AreWokenByWhatTheApplicationDoesToThem) {
+  DeformableBody& deformable = *body->body;
+  const btVector3 gravity = world.deformable().getGravity();
+  const auto changes = std::vector<std::pair<const char*, std::function<void(btSoftBody&)>>>{
+      {"setVelocity", [](btSoftBody& b) { b.setVelocity(btVector3(0, 1, 0)); }},
+      {"addVelocity", [](btSoftBody& b) { b.addVelocity(btVector3(0, 1, 0)); }},
+      {"a node's velocity", [](btSoftBody& b) { b.m_nodes[7].m_v.setY(1); }},
+      {"setLinearVelocity", [](btSoftBody& b) { b.setLinearVelocity(btVector3(0, 1, 0)); }},
+      {"translate", [](btSoftBody& b) { b.translate(btVector3(0, btScalar(0.001), 0)); }},
+      {"rotate", [](btSoftBody& b) { b.rotate(btQuaternion(btVector3(0, 1, 0), btScalar(0.01))); }},
+      {"a node's position", [](btSoftBody& b) { b.m_nodes[7].m_x.setY(b.m_nodes[7].m_x.y() + btScalar(0.01)); }},
+      {"ten times the mass", [](btSoftBody& b) { b.setTotalMass(10 * b.getTotalMass()); }},
+      {"a node's mass", [](btSoftBody& b) { b.m_nodes[7].m_im /= 2; }},
+      {"friction", [](btSoftBody& b) { b.m_cfg.kDF /= 2; }},
+      {"the platform's friction", [&](btSoftBody&) { rigid().setFriction(btScalar(0.3)); }},
+      {"gravity", [&](btSoftBody&) { world.deformable().setGravity(gravity / 2); }},
+      {"the world's gravity back", [&](btSoftBody&) { world.deformable().setGravity(gravity); }},
+      {"stiffness", [&](btSoftBody&) { (void)deformable.setYoungsModulus(deformable.youngsModulus() * 2); }}};
+  for (const auto& [name, change] : changes) {
+    SCOPED_TRACE(name);
+    soft().forceActivationState(ISLAND_SLEEPING);
+    step(world, 2);
+    ASSERT_FALSE(soft().isActive());
+    change(soft());
+    step(world, 1);
+    EXPECT_TRUE(soft().isActive());
+  }
+}
+
+TEST_P(Sleepers, MoveAsTheyAreToldTo) {
+  const btScalar before = centreOf(soft()).y();
+  soft().setVelocity(btVector3(0, 2, 0));
+  step(world, 6);
+  EXPECT_NEAR(centreOf(soft()).y() - before, 0.2 - 0.05, 0.02);
+  letSleep(world, {&soft()});
+  soft().translate(btVector3(0, 1, 0));
+  step(world, 15);
+  EXPECT_LT(centreOf(soft()).y(), before + btScalar(0.8));
+}
+
+// ---- what they weigh
+
+TEST_P(Sleepers, KeepTheForcesThatWereReadBefore) {
+  const auto forces = std::move(ForceRecord::add(world.deformable()).value());
+  soft().activate();
+  btVector3 before(0, 0, 0), contacts(0, 0, 0);
+  const auto pushed = [&] {
+    btVector3 sum(0, 0, 0);
+    for (const auto& contact : body->contact->contacts()) sum += contact.impulse;
+    return sum;
+  };
+  for (int f = 0; f < 900 && soft().isActive(); ++f) {
+    before = forces->forcesOn(soft()).total().force;
+    if (body->contact) contacts = pushed();
+    if (f == 90) soft().m_sleepingThreshold = 1;
+    step(world, 1);
+  }
+  ASSERT_FALSE(soft().isActive());
+  step(world, 20);
+  const btVector3 asleep = forces->forcesOn(soft()).total().force;
+  const btScalar weight = soft().getTotalMass() * world.deformable().getGravity().length();
+  EXPECT_LT((asleep - before).length(), btScalar(0.02) * weight);
+  if (!body->contact) return;
+  EXPECT_NEAR(pushed().y(), contacts.y(), 0.05 * contacts.y());
+  EXPECT_GT(pushed().y(), 0);
+}
+
+// ---- what carries them
+
+/// Where a sleeping body is after two seconds on a platform that is moved once per frame, or once per step.
+TEST_P(Sleepers, AreCarriedFromTheFirstFrameByWhatIsMovedOncePerFrame) {
+  const std::vector<std::pair<btVector3, btScalar>> motions = {{btVector3(0, 2, 0), btScalar(0)},
+                                                               {btVector3(0, -1, 0), btScalar(0)},
+                                                               {btVector3(btScalar(0.005), 0, 0), btScalar(0)},
+                                                               {btVector3(0, 0, 0), btScalar(0.02)},
+                                                               {btVector3(0, 0, 0), btScalar(0.5)}};
+  for (const auto& [velocity, rate] : motions) {
+    SCOPED_TRACE(velocity.y() + rate);
+    btVector3 ends[2];
+    double gaps[2] = {0, 0};
+    for (const int perFrame : {1, 4}) {
+      body.reset();
+      platform.reset();
+      rest(btVector3(0, 0, 0));
+      soft().m_cfg.kDF = 1;
+      const btVector3 from = rigid().getWorldTransform().getOrigin() + btVector3(btScalar(0.8), 0, 0);
+      moveTo(rigid(), from);
+      rigid().setInterpolationWorldTransform(rigid().getWorldTransform());
+      letSleep(world, {&soft()});
+      for (int f = 1; f <= 120; ++f) {
+        for (int k = 1; k <= perFrame; ++k) {
+          const btScalar t = btScalar(f - 1) / 60 + btScalar(k) / (60 * btScalar(perFrame));
+          rigid().setWorldTransform(placeAt(from + velocity * t, btQuaternion(btVector3(0, 1, 0), rate * t)));
+          world.deformable().stepSimulation(btScalar(1) / (60 * btScalar(perFrame)), 4, btScalar(1) / 240);
+        }
+      }
+      ends[perFrame / 4] = centreOf(soft());
+      gaps[perFrame / 4] = gap();
+    }
+    EXPECT_LT((ends[0] - ends[1]).length(), btScalar(0.04) * 2 * (velocity.length() + rate * btScalar(0.8)));
+    EXPECT_NEAR(gaps[0], gaps[1], 0.0005);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(By, Sleepers, testing::Values(TouchedBy::Nodes, TouchedBy::Surface),
                          [](const auto& by) { return by.param == TouchedBy::Nodes ? "Nodes" : "Surface"; });
 
@@ -287,6 +413,36 @@ TEST(SleepersOnSoftBodies, AreLiftedTogether) {
       step(*pile.world, 1);
     }
     EXPECT_NEAR(centreOf(pile.bodies[1]->body()).y() - before, 2 * speed, 0.02);
+  }
+}
+
+/// In whatever order bodies come to rest, they fall asleep together, and what is read of their forces stays.
+TEST(SleepersOnSoftBodies, KeepTheForcesThatWereReadBefore) {
+  for (const int substeps : {1, 4}) {
+    SoftPile pile;
+    const auto forces = std::move(ForceRecord::add(pile.world->deformable()).value());
+    btSoftBody &lower = pile.bodies[0]->body(), &upper = pile.bodies[1]->body();
+    const auto pushes = [&] {
+      btScalar sum = 0;
+      for (const SoftContact& contact : pile.contacts->contacts()) sum += contact.impulse;
+      return sum;
+    };
+    btScalar before = 0;
+    for (int f = 0; f < 1200 && lower.isActive() && upper.isActive(); ++f) {
+      before = pushes();
+      if (f == 90) lower.m_sleepingThreshold = 1;
+      if (f == 120) upper.m_sleepingThreshold = 1;
+      pile.world->deformable().stepSimulation(btScalar(1) / 60, substeps, btScalar(1) / (60 * btScalar(substeps)));
+    }
+    ASSERT_TRUE(pile.asleep()) << "both in one step";
+    for (int f = 0; f < 10; ++f) step(*pile.world, 1);
+    ASSERT_TRUE(pile.asleep());
+    const btScalar weight = lower.getTotalMass() * 10;
+    EXPECT_NEAR(forces->forcesOn(lower).total().force.y(), weight, 0.02 * weight) << substeps;
+    EXPECT_NEAR(forces->forcesOn(upper).total().force.y(), weight, 0.02 * weight) << substeps;
+    EXPECT_NEAR(-forces->forcesOn(pile.platform.body()).total().force.y(), 2 * weight, 0.03 * weight) << substeps;
+    EXPECT_GT(pushes(), 0);
+    EXPECT_NEAR(pushes(), before, 0.1 * before);
   }
 }
 

@@ -216,6 +216,16 @@ TEST(SoftContacts, ABodyMayLeaveTheWorldWhileItTouches) {
   EXPECT_TRUE(std::isfinite(centreOf(c->body()).y()));
 }
 
+TEST(SoftContacts, SaysThatABodyHasLostItsTets) {
+  const auto world = worldWith(btVector3(0, 0, 0));
+  const auto contacts = contactsIn(*world);
+  const auto a = addBall(*world, Eigen::Vector3d(0, 2, 0));
+  ASSERT_TRUE(contacts->add(a->body(), ball().shape).ok());
+  EXPECT_EQ(contacts->status(a->body()), StatusCode::Ok);
+  a->body().m_tetras.resize(0);
+  EXPECT_EQ(contacts->status(a->body()), StatusCode::TopologyChanged);
+}
+
 TEST(SoftContacts, TheSameStepsHaveTheSameBits) {
   btVector3 centre[2];
   for (int run = 0; run < 2; ++run) {

@@ -17,7 +17,7 @@ class TouchSearchTest : public ::testing::Test {
  protected:
   TouchSearchTest() {
     for (const Eigen::Vector3d& p : cage_.nodes) nodes_.push_back({toBullet(p), toBullet(p)});
-    patches_ = makeContactPatches(embed(cage_, mesh_).value(), mesh_, 0.0);
+    patches_ = makeContactPatches(embed(cage_, mesh_).value(), mesh_, {});
   }
 
   SurfaceCollider makeSearch() const { return SurfaceCollider(patches_, kMargin, kSlack); }

@@ -294,12 +294,14 @@ TEST(SurfaceContact, HoldsByFrictionWhatWouldSlideWithout) {
   }
 }
 
-TEST(SurfaceContact, OfACoarseMeshNeedsSamples) {
-  for (const bool sampled : {false, true}) {
+TEST(SurfaceContact, OfACoarseMeshHoldsByItsSamples) {
+  SurfaceContactOptions none, given;
+  none.sampleSpacing = SurfaceContactOptions::kNoSamples;
+  given.sampleSpacing = 0.03;
+  for (const SurfaceContactOptions& options : {none, given, SurfaceContactOptions{}}) {
+    const bool sampled = options.sampleSpacing != none.sampleSpacing;
     TetskinWorld world;
     Obstacle pole(world, std::make_unique<btCapsuleShapeZ>(btScalar(0.03), 2), placeAt(btVector3(0, 3, 0)));
-    SurfaceContactOptions options;
-    if (sampled) options.sampleSpacing = 0.03;
     TouchingBody body(world, boxMesh(Eigen::Vector3d(0.35, 0.35, 0.35)), btVector3(0, btScalar(3.45), 0), options);
     EXPECT_EQ(body.contact->sampleCount() > 8, sampled);
     step(world, 20);
@@ -391,7 +393,7 @@ TEST(SurfaceContact, RefusesWhatDoesNotBelongTogether) {
   body.contact.reset();
   EXPECT_EQ(codeOf(other.deformable(), body.mesh, {}), StatusCode::InvalidOption);
   EXPECT_EQ(codeOf(world.deformable(), ballMesh(9, 0.35), {}), StatusCode::SizeMismatch);
-  for (const double bad : {-1.0, HUGE_VAL, std::nan(""), 1e-9, 1e-5}) {
+  for (const double bad : {-1.0, 0.0, -HUGE_VAL, std::nan(""), 1e-9, 1e-5}) {
     SurfaceContactOptions options;
     options.sampleSpacing = bad;
     EXPECT_EQ(codeOf(world.deformable(), body.mesh, options), StatusCode::InvalidOption);

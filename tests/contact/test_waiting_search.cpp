@@ -5,6 +5,9 @@
 #include "contact_test.h"
 #include "support/shuffled_threads.h"
 
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <tetskin/threads/thread_pool.h>
+
 namespace tetskin::test {
 namespace {
 
@@ -66,6 +69,42 @@ TEST(WaitingSearch, ForgetsAnObjectThatIsRemovedBetweenSteps) {
   }
   step(balls.world, 20);
   EXPECT_LT(balls.balls[2]->height(), 0.1);
+}
+
+/// Bullet's own shape counts its queries and sets pointers in them, without a lock. How often two threads disturb each
+/// other depends on the machine: a sanitizer of threads sees it in any case.
+TEST(WaitingSearch, MayMeetOneGImpactShapeOnSeveralThreads) {
+  btTriangleMesh hills;
+  const auto at = [](int x, int z) {
+    return btVector3(btScalar(0.1) * x, btScalar(0.02) * ((3 * x + 5 * z) % 4), btScalar(0.1) * z);
+  };
+  for (int x = -8; x < 60; ++x) {
+    for (int z = -8; z < 8; ++z) {
+      hills.addTriangle(at(x, z), at(x, z + 1), at(x + 1, z));
+      hills.addTriangle(at(x + 1, z), at(x, z + 1), at(x + 1, z + 1));
+    }
+  }
+  const auto run = [&](ParallelFor* threads) {
+    TetskinWorld world;
+    world.bodySolver().setThreads(threads);
+    auto shape = std::make_unique<btGImpactMeshShape>(&hills);
+    shape->updateBound();
+    const Obstacle ground(world, std::move(shape), placeAt(btVector3(0, 1, 0)));
+    std::vector<std::unique_ptr<TouchingBody>> balls;
+    for (int k = 0; k < 8; ++k) {
+      balls.push_back(
+          std::make_unique<TouchingBody>(world, ballMesh(8, 0.35), btVector3(btScalar(0.7) * k, btScalar(1.45), 0)));
+    }
+    step(world, 12);
+    std::vector<btVector3> nodes;
+    for (const auto& ball : balls) {
+      EXPECT_FALSE(ball->contact->contacts().empty());
+      for (int n = 0; n < ball->body->body().m_nodes.size(); ++n) nodes.push_back(ball->body->body().m_nodes[n].m_x);
+    }
+    return nodes;
+  };
+  ThreadPool pool(4);
+  EXPECT_EQ(run(&pool), run(nullptr));
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ struct SoftContact {
 ///     auto contacts = SoftContacts::add(world).value();
 ///     contacts->add(body.body(), shape);
 ///
-/// Bodies may be removed from the world, and this object destroyed, in any order, as long as it is destroyed before the
-/// world.
+/// Bodies may be removed from the world, and this object and the world destroyed, in any order; once the world's solver
+/// has been destroyed, there are no contacts.
 /// Two bodies collide if groups, masks, the world's overlap filter callback, setIgnoreCollisionCheck and
 /// CF_NO_CONTACT_RESPONSE of either allow it, evaluated in each step, and the `m_cfg.collisions` of neither is 0;
 /// self-contact does not depend on group and mask.
@@ -114,7 +114,8 @@ class TETSKIN_CONTACT_API SoftContacts {
   /// lies wholly within another body, and collides with all others, but not with that one.
   StatusCode status(const btSoftBody& body) const;
 
-  /// Contact points with a force in the last step, without bodies that have left the world, or were removed, since.
+  /// Contact points with a force in the last step, and, between two bodies that sleep, in the last one in which either
+  /// was awake; without bodies that have left the world, or were removed, since.
   /// Owned by this object, valid until the next call; allocates only if there are more than ever before.
   const std::vector<SoftContact>& contacts() const;
 

@@ -7,6 +7,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,9 +19,12 @@ struct SurfaceContactOptions {
   /// Distance kept between the surface and rigid bodies, world length, 0 or more; not given: 0.2 % of the body's size
   /// (largest side of its box).
   std::optional<double> margin;
-  /// Spacing of samples, in rest units: triangles with longer edges get samples at this spacing, which collide as
-  /// vertices do. Not given: no samples. Vertices must not be farther apart than the thickness of what the body
-  /// touches. At most 10,000,000 samples.
+  /// A `sampleSpacing`: vertices alone collide, so that what is thinner than triangles are large may pass between them.
+  static constexpr double kNoSamples = std::numeric_limits<double>::infinity();
+  /// Spacing of samples, in rest units, above 0: triangles with longer edges get samples no farther from each other,
+  /// which collide as vertices do. At most 10,000,000 samples. Not given: triangles with edges longer than a quarter of
+  /// the mean edge of the tets that carry their corners get samples an eighth of it apart, or nearer, so that nothing
+  /// half as large as such a tet passes through the surface.
   std::optional<double> sampleSpacing;
 };
 
@@ -31,8 +35,8 @@ struct SurfaceContactPoint {
   btScalar distance =
       0;  ///< world length at the beginning of the substep, minus the margin; negative: closer than the margin
   const btCollisionObject* object = nullptr;  ///< the rigid body, or the link of a multibody
-  /// Impulse on the soft body in the last substep (force times seconds, world space); the object gets the opposite. 0
-  /// without a contact force, and while the body sleeps.
+  /// Impulse on the soft body in that substep (force times seconds, world space); the object gets the opposite. 0
+  /// without a contact force.
   btVector3 impulse;
 };
 
@@ -58,9 +62,11 @@ struct SurfaceContactPoint {
 ///           world with another dispatcher. This object, the body, the world, rigid bodies and their shapes may be
 ///           destroyed in any order, each as Bullet allows it, also at the end of the program, by destructors of
 ///           globals.
-/// Cost      per substep, for an obstacle whose box overlaps the body's: O(nodes); if it is near, O(vertices near it);
-///           children of a compound are found by its tree. Of the points of a tet that touch a shape four are solved
-///           for, and as many more as are 2 % of the body's size apart, up to 64
+/// Cost      per substep: O(nodes) for all obstacles whose boxes overlap the body's; for each that is near, O(vertices
+///           near it), and of the samples those where it is both near and curved: over something flat, a triangle's
+///           corners are enough. Children of a compound are found by its tree. Of the points of a tet, or the samples
+///           of a triangle, that touch a shape four are solved for, and as many more as are 2 % of the body's size
+///           apart, up to 64 and 6. Samples are not stored
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
   /// Switches contact on, from the next substep on. Sets the margin of the body's shape for the lifetime of this
@@ -85,7 +91,8 @@ class TETSKIN_CONTACT_API SurfaceContact {
   /// than ever before.
   const std::vector<SurfaceContactPoint>& contacts() const;
 
-  /// Number of vertices and samples that can collide.
+  /// Number of vertices and samples that can collide: vertices that no triangle uses do not, unless there are no
+  /// triangles.
   std::size_t sampleCount() const;
 
  private:

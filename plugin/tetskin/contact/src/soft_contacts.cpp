@@ -38,10 +38,13 @@ bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, 
 
 struct SoftContacts::Impl {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, DeformableSolver& ofSolver, const SoftContactOptions& options)
-      : world(ofWorld), solver(ofSolver), force(options) {}
+      : world(ofWorld), solver(&ofSolver), force(options) {}
+
+  /// The world's solver; null once it has been destroyed.
+  DeformableSolver* liveSolver() const { return deformableSolver(solver); }
 
   btDeformableMultiBodyDynamicsWorld& world;
-  DeformableSolver& solver;
+  btSoftBodySolver* solver;  ///< may have been destroyed
   SoftContactRows force;
   std::vector<SoftContact> contacts;  ///< as last reported
 };
@@ -49,7 +52,7 @@ struct SoftContacts::Impl {
 SoftContacts::SoftContacts(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 SoftContacts::~SoftContacts() {
-  removeFromList(*impl_->solver.getLagrangianForceArray(), &impl_->force);
+  if (DeformableSolver* solver = impl_->liveSolver()) removeFromList(*solver->getLagrangianForceArray(), &impl_->force);
 }
 
 Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDynamicsWorld& world,
@@ -66,11 +69,13 @@ Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDyn
 
 Status SoftContacts::add(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
   if (!shape) return {StatusCode::Empty, "the contact shape is null; create it with ContactShape::create"};
+  DeformableSolver* solver = impl_->liveSolver();
+  if (!solver) return invalidContact("the world of the contacts has been destroyed");
   const auto& inWorld = impl_->world.getSoftBodyArray();
   if (inWorld.findLinearSearch(&body) == inWorld.size()) {
     return invalidContact("the body is not in the world of the contacts; add it there first");
   }
-  if (isInOthers(*impl_->solver.getLagrangianForceArray(), impl_->force, body)) {
+  if (isInOthers(*solver->getLagrangianForceArray(), impl_->force, body)) {
     return invalidContact("the body is in other soft contacts of this world; remove it from them first");
   }
   const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
@@ -90,6 +95,7 @@ void SoftContacts::remove(const btSoftBody& body) {
 }
 
 StatusCode SoftContacts::status(const btSoftBody& body) const {
+  impl_->force.excludeDeleted();
   if (const contact_detail::ContactBody* solved = impl_->force.find(body)) {
     if (!solved->fits()) return StatusCode::TopologyChanged;
     return impl_->force.isWithin(*solved) ? StatusCode::Enclosed : StatusCode::Ok;
@@ -100,12 +106,15 @@ StatusCode SoftContacts::status(const btSoftBody& body) const {
 const std::vector<SoftContact>& SoftContacts::contacts() const {
   std::vector<SoftContact>& contacts = impl_->contacts;
   contacts.clear();
-  for (const SoftPointContact& from : impl_->force.lastContacts()) {
-    assert(from.body && btSoftBody::upcast(from.object));
-    const btScalar impulse = from.normal.dot(from.impulse);
-    if (!(impulse > 0)) continue;
-    contacts.push_back(
-        {from.body, btSoftBody::upcast(from.object), from.position, from.normal, from.distance, impulse});
+  impl_->force.excludeDeleted();
+  for (const auto* list : {&impl_->force.lastContacts(), &impl_->force.sleepingContacts()}) {
+    for (const SoftPointContact& from : *list) {
+      assert(from.body && btSoftBody::upcast(from.object));
+      const btScalar impulse = from.normal.dot(from.impulse);
+      if (!(impulse > 0)) continue;
+      contacts.push_back(
+          {from.body, btSoftBody::upcast(from.object), from.position, from.normal, from.distance, impulse});
+    }
   }
   return contacts;
 }

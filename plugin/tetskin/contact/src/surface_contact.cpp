@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/shared/bodies/own_objects.h>
 #include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/contact/src/rigid/contact_points.h>
 #include <tetskin/contact/src/rigid/surface_algorithm.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/core/src/shared/skin_binding.h>
 
 #include <algorithm>
 #include <cassert>
@@ -24,9 +26,6 @@ constexpr double kSearchSlack = 0.005;
 /// Largest sum of the absolute weights of a vertex outside: larger sums come from a cage that does not fit.
 constexpr btScalar kMaxSpread = btScalar(1.2);
 
-/// Largest number of samples on triangles: with some hundred bytes each, more would be a mistake in the spacing.
-constexpr double kMaxSamples = 10'000'000;
-
 Status refused(StatusCode code, const char* message) {
   return {code, message};
 }
@@ -35,8 +34,10 @@ Status checkContactOptions(const SurfaceContactOptions& options) {
   if (options.margin && !(*options.margin >= 0.0 && std::isfinite(*options.margin))) {
     return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite and not negative");
   }
-  if (options.sampleSpacing && !(*options.sampleSpacing > 0.0 && std::isfinite(*options.sampleSpacing))) {
-    return refused(StatusCode::InvalidOption, "the sample spacing of surface contact must be finite and above 0");
+  if (options.sampleSpacing && !(*options.sampleSpacing > 0.0)) {
+    return refused(StatusCode::InvalidOption,
+                   "the sample spacing of surface contact must be above 0; for no samples, give "
+                   "SurfaceContactOptions::kNoSamples");
   }
   return {};
 }
@@ -54,8 +55,8 @@ Status checkFit(const btSoftBody& body, const Embedding& embedding, const Triang
   return {};
 }
 
-Status checkSpacing(const TriangleMesh& mesh, double spacing) {
-  if (!(spacing > 0.0) || countOfSamples(mesh, spacing) <= kMaxSamples) return {};
+Status checkCount(const Divisions& divisions) {
+  if (countOfSamples(divisions) <= kMaxSamples) return {};
   return refused(StatusCode::InvalidOption,
                  "the sample spacing of surface contact is so small that the mesh would need more than 10,000,000 "
                  "samples; make it larger, in the unit of the mesh at rest");
@@ -70,6 +71,10 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
     return refused(StatusCode::InvalidOption, "the body is not in this world; add it first");
   }
   if (!deformableSolverOf(body)) return refusal("surface contact", {kUseDeformableSolver});
+  if (isKnownNotToBe<btCollisionDispatcher>(*world.getDispatcher())) {
+    return refused(StatusCode::InvalidOption,
+                   "surface contact needs a btCollisionDispatcher, or a dispatcher derived from it");
+  }
   if (contactsOf(body)) {
     return refused(StatusCode::InvalidOption, "the body already has surface contact; destroy that first");
   }
@@ -140,10 +145,13 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
        {checkContactOptions(options), checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
     if (!status.ok()) return status;
   }
-  if (Status status = checkSpacing(mesh, options.sampleSpacing.value_or(0.0)); !status.ok()) return status;
+  const Divisions divisions = options.sampleSpacing
+                                  ? divisionsFor(mesh, *options.sampleSpacing)
+                                  : defaultDivisions(binding.embedding(), mesh, dataOf(binding).restNodes);
+  if (Status status = checkCount(divisions); !status.ok()) return status;
   const double size = largestSide(body);
   const auto margin = static_cast<btScalar>(options.margin.value_or(kSurfaceMargin * size));
-  ContactPatches patches = makeContactPatches(binding.embedding(), mesh, options.sampleSpacing.value_or(0.0));
+  ContactPatches patches = makeContactPatches(binding.embedding(), mesh, divisions);
   const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
   auto impl =
       std::make_unique<Impl>(*world.getDispatcher(), body,

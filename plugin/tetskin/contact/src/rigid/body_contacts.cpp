@@ -48,6 +48,15 @@ btTransform predictedOf(const btCollisionObject& object) {
   return moves ? object.getInterpolationWorldTransform() : object.getWorldTransform();
 }
 
+/// How far a shape that turns may leave the box around both ends of its path: the height of the arc of its farthest
+/// point, at most.
+btScalar beyondBox(const btCollisionShape& shape, const ShapePath& path) {
+  btVector3 low, high;
+  shape.getAabb(btTransform::getIdentity(), low, high);
+  const btScalar turned = turnBetween(path.now.getBasis(), path.predicted.getBasis());
+  return turned > 0 ? turned * turned * (low.length() + high.length()) : btScalar(0);
+}
+
 /// The path of a shape on the object: a child of a compound has a transform within it.
 ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
@@ -76,18 +85,22 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   const Met met{&object, rigid.getCollisionShape(), pathOf(rigid)};
-  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
+  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) {
+    nodesRead_ = false;
+    return search(met);
+  }
   waiting_.push_back(met);
   body_.waitingSearch() = [this] { searchWaiting(); };
 }
 
+/// The nodes do not move between the searches of a step.
 void BodyContacts::searchWaiting() {
+  nodesRead_ = false;
   for (const Met& met : waiting_) search(met);
   waiting_.clear();
 }
 
 void BodyContacts::search(const Met& met) {
-  nodesRead_ = false;
   KnownObject& known = known_[met.object];
   ++known.step;
   collideShape(*met.shape, 0, met.path, *met.object);
@@ -105,24 +118,30 @@ void BodyContacts::readNodes() {
   search_.begin(nodes_, body_.speculation());
 }
 
-/// Tests the boxes that Bullet keeps, and, for shapes without children, the distance of the body's box.
-bool BodyContacts::isNear(const btCollisionShape& shape, const ShapePath& path) const {
-  btVector3 low, high, laterLow, laterHigh;
-  shape.getAabb(path.now, low, high);
-  shape.getAabb(path.predicted, laterLow, laterHigh);
-  low.setMin(laterLow);
-  high.setMax(laterHigh);
+/// A box around the shape at both ends of its path.
+WorldBox BodyContacts::boxAround(const btCollisionShape& shape, const ShapePath& path) const {
+  WorldBox box;
+  for (const btTransform* at : {&path.now, &path.predicted}) {
+    btVector3 low, high;
+    shape.getAabb(*at, low, high);
+    box.extend(low.m_floats, high.m_floats);
+  }
+  return box;
+}
+
+/// Tests the box that Bullet keeps.
+bool BodyContacts::isNear(const WorldBox& box) const {
   const btBroadphaseProxy* body = body_.getBroadphaseHandle();
   if (!body) return true;
-  for (int k = 0; k < 3; ++k) {
-    if (low[k] > body->m_aabbMax[k] || high[k] < body->m_aabbMin[k]) return false;
-  }
-  return true;
+  WorldBox bodys;
+  bodys.extend(body->m_aabbMin.m_floats, body->m_aabbMax.m_floats);
+  return box.collides(bodys);
 }
 
 void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                                 const btCollisionObject& object) {
-  if (!isNear(shape, path)) return;
+  const WorldBox box = boxAround(shape, path);
+  if (!isNear(box)) return;
   if (shape.isCompound()) {
     const auto& compound = static_cast<const btCompoundShape&>(shape);
     for (const int c : childrenNear(compound, path)) {
@@ -136,7 +155,9 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   ShapeProbe* probe = probeOf(shape, known);
   if (!probe) return;
   readNodes();
-  const std::vector<ContactCandidate>& touches = search_.find(*probe, path, memoryOf(known));
+  // Points count as touching a mesh up to some depth behind it, and a shape that turns leaves the box on its way.
+  const WorldBox around = box.grownBy((shape.isConcave() ? thickness_ : btScalar(0)) + beyondBox(shape, path));
+  const std::vector<ContactCandidate>& touches = search_.find(*probe, path, memoryOf(known), &around);
   for (const ContactCandidate& touch : touches) addContact(touch, object);
   if (!touches.empty() && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
 }
@@ -145,14 +166,13 @@ void BodyContacts::addContact(const ContactCandidate& touch, const btCollisionOb
   assert(touch.patch < search_.patches().patches.size());
   const ContactPatches& patches = search_.patches();
   const ContactPatch& patch = patches.patches[touch.patch];
-  assert(touch.point >= patch.firstPoint && touch.point - patch.firstPoint < patch.pointCount);
+  assert(touch.point >= patch.firstPoint && touch.point - patch.firstPoint < patch.numberCount());
   PointContact contact;
   contact.point = touch.point;
   contact.object = &object;
   contact.nodeCount = patch.nodeCount;
-  const btScalar* weights = &patches.weights[patch.firstWeight + (touch.point - patch.firstPoint) * patch.nodeCount];
   std::copy_n(&patches.nodes[patch.firstNode], patch.nodeCount, contact.nodes.begin());
-  std::copy_n(weights, patch.nodeCount, contact.weights.begin());
+  patches.weightsOf(patch, touch.point - patch.firstPoint, contact.weights.data());
   contact.position = touch.position;
   contact.normal = touch.normal;
   contact.distance = touch.distance;

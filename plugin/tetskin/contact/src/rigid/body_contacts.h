@@ -73,7 +73,8 @@ class BodyContacts {
                     const btCollisionObject& object);
   std::vector<int> childrenNear(const btCompoundShape& compound, const ShapePath& path) const;
   void addContact(const ContactCandidate& touch, const btCollisionObject& object);
-  bool isNear(const btCollisionShape& shape, const ShapePath& path) const;
+  WorldBox boxAround(const btCollisionShape& shape, const ShapePath& path) const;
+  bool isNear(const WorldBox& box) const;
   KnownShape& knownShape(const btCollisionShape& shape, std::uint64_t number, const btCollisionObject& object);
   ShapeMemory& memoryOf(KnownShape& known);
   ShapeProbe* probeOf(const btCollisionShape& shape, KnownShape& known);
@@ -85,7 +86,7 @@ class BodyContacts {
   SurfaceCollider search_;
   btScalar thickness_;
   std::vector<NodePath> nodes_;
-  bool nodesRead_ = false;    ///< since the search for an object began
+  bool nodesRead_ = false;    ///< since the search began
   std::vector<Met> waiting_;  ///< those that are yet to be searched for
   ExactProbe exact_;
   HullProbe hull_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/rigid/contact_patches.h>
-#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/core/src/shared/mesh/triangle_samples.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <array>
@@ -16,14 +17,20 @@ using Point = EmbeddedPoint<btScalar>;
 
 /// Patches per cluster: enough that skipping a cluster pays, few enough that it is small.
 constexpr int kPatchesPerCluster = 12;
+/// Triangles with longer edges have samples by default, in mean edges of tets. A sphere half an edge wide rests 0.05
+/// edges or less deep between three corners so far apart; with 0.43 it would pass.
+constexpr double kLargeInEdges = 0.25;
+/// Spacing of these samples. The edge of a box that lies between two rows of them is at most half of it deep.
+constexpr double kSpacingInEdges = 0.125;
+/// Most divisions of an edge. A triangle has more samples than are allowed long before.
+constexpr double kMaxDivisions = 1 << 14;
 
 /// The points carried by the same nodes, while patches are collected.
 struct LoosePatch {
   std::vector<int> nodes;
-  std::vector<btScalar> weights;                       ///< of the nodes, point by point
+  std::vector<btScalar> weights;                       ///< of the nodes: point by point, or corner by corner
+  std::uint32_t divisions = 0;                         ///< as in ContactPatch
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< rest space
-
-  std::size_t pointCount() const { return weights.size() / nodes.size(); }
 };
 
 void dropRepeated(std::vector<Point>& points) {
@@ -44,9 +51,11 @@ LoosePatch patchOf(std::vector<Point> points) {
   return patch;
 }
 
-/// One patch for each tet with vertices inside, and one for each tet with vertices outside.
+/// One patch for each tet with vertices inside, and one for each tet with vertices outside. What no triangle uses is no
+/// surface.
 std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const TriangleMesh& mesh) {
   std::vector<LoosePatch> patches;
+  const std::vector<char> used = usedVertices(mesh);
   const std::vector<std::uint32_t>& vertices = embedding.slotVertices();
   for (std::size_t slot = 0; slot < vertices.size();) {
     const Point first = embedding.at<btScalar>(vertices[slot]);
@@ -55,9 +64,11 @@ std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const Triangle
     for (; slot < vertices.size(); ++slot) {
       const Point point = embedding.at<btScalar>(vertices[slot]);
       if (point.tet != first.tet || point.inside != first.inside) break;
+      if (!used[vertices[slot]]) continue;
       points.push_back(point);
       sum += mesh.positions[vertices[slot]];
     }
+    if (points.empty()) continue;
     const auto count = static_cast<double>(points.size());
     patches.push_back(patchOf(std::move(points)));
     patches.back().centroid = sum / count;
@@ -65,61 +76,52 @@ std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const Triangle
   return patches;
 }
 
-/// A triangle's corners, and the nodes of all their tets.
-struct EmbeddedTriangle {
+double samplesOf(std::uint32_t divisions) {
+  const double n = divisions;
+  return divisions > 1 ? (n + 1.0) * (n + 2.0) / 2.0 - 3.0 : 0.0;
+}
+
+std::uint32_t powerOf2(double atLeast) {
+  std::uint32_t power = 1;
+  while (power < std::min(atLeast, kMaxDivisions)) power *= 2;
+  return power;
+}
+
+/// The samples on a triangle, with all nodes of the tets of its corners.
+LoosePatch trianglePatch(const Embedding& embedding, const TriangleMesh& mesh, const std::array<int, 3>& triangle,
+                         std::uint32_t divisions) {
+  LoosePatch patch;
+  patch.divisions = divisions;
   std::array<Point, 3> corners;
-  std::vector<int> nodes;
-  std::array<std::array<std::size_t, 4>, 3> indices{};  ///< by corner and node of its tet: index in `nodes`
-};
-
-EmbeddedTriangle embeddedTriangle(const Embedding& embedding, const std::array<int, 3>& vertices) {
-  EmbeddedTriangle triangle;
   for (std::size_t c = 0; c < 3; ++c) {
-    triangle.corners[c] = embedding.at<btScalar>(static_cast<std::size_t>(vertices[c]));
-    for (std::size_t k = 0; k < 4; ++k) {
-      const int node = triangle.corners[c].nodes[k];
-      const auto found = std::find(triangle.nodes.begin(), triangle.nodes.end(), node);
-      triangle.indices[c][k] = static_cast<std::size_t>(found - triangle.nodes.begin());
-      if (found == triangle.nodes.end()) triangle.nodes.push_back(node);
-    }
+    const auto vertex = static_cast<std::size_t>(triangle[c]);
+    corners[c] = embedding.at<btScalar>(vertex);
+    patch.centroid += mesh.positions[vertex] / 3.0;
+    patch.nodes.insert(patch.nodes.end(), corners[c].nodes.begin(), corners[c].nodes.end());
   }
-  return triangle;
-}
-
-/// shares  weights of the corners
-void appendSample(const EmbeddedTriangle& triangle, const std::array<btScalar, 3>& weights, LoosePatch& patch) {
-  assert(btFabs(weights[0] + weights[1] + weights[2] - 1) < btScalar(1e-5));
-  assert(!triangle.nodes.empty() && triangle.nodes.size() <= kMaxCarriers);
-  const std::size_t first = patch.weights.size();
-  patch.weights.resize(first + triangle.nodes.size(), 0);
+  std::sort(patch.nodes.begin(), patch.nodes.end());
+  patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
+  assert(patch.nodes.size() <= kMaxCarriers);
+  patch.weights.assign(3 * patch.nodes.size(), 0);
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < 4; ++k) {
-      patch.weights[first + triangle.indices[c][k]] += weights[c] * triangle.corners[c].weights[k];
+      const auto node = std::lower_bound(patch.nodes.begin(), patch.nodes.end(), corners[c].nodes[k]);
+      const auto at = static_cast<std::size_t>(node - patch.nodes.begin());
+      patch.weights[c * patch.nodes.size() + at] += corners[c].weights[k];
     }
   }
+  return patch;
 }
 
-/// Appends the corners of the small triangles into which `steps` cuts per edge divide the triangle, without its own
-/// corners.
-void appendSamples(const EmbeddedTriangle& triangle, int steps, LoosePatch& patch) {
-  const auto weight = [&](int n) { return static_cast<btScalar>(n) / static_cast<btScalar>(steps); };
-  forEachSample(steps, [&](int i, int j, int k) {
-    if (std::max({i, j, k}) < steps) appendSample(triangle, {weight(i), weight(j), weight(k)}, patch);
-  });
-}
-
-void appendTrianglePatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing,
-                           std::vector<LoosePatch>& patches) {
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = edgeDivisions(mesh, t, spacing);
-    if (!(steps > 1.0)) continue;
-    const EmbeddedTriangle triangle = embeddedTriangle(embedding, t);
-    LoosePatch patch;
-    patch.nodes = triangle.nodes;
-    for (const int v : t) patch.centroid += mesh.positions[static_cast<std::size_t>(v)] / 3.0;
-    appendSamples(triangle, static_cast<int>(steps), patch);
-    patches.push_back(std::move(patch));
+/// The mean edge of the tet that carries a vertex.
+double edgeAt(const Embedding& embedding, int vertex, const std::vector<btScalar>& restNodes) {
+  const Point point = embedding.at<btScalar>(static_cast<std::size_t>(vertex));
+  TetCorners corners;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const btScalar* at = &restNodes[4 * static_cast<std::size_t>(point.nodes[k])];
+    corners[k] = Eigen::Vector3d(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2]));
   }
+  return edgeSum(corners) / 6.0;
 }
 
 /// A hierarchy whose leaves are clusters of neighbouring patches.
@@ -142,17 +144,20 @@ btScalar spreadOf(const LoosePatch& patch) {
 }
 
 void append(const LoosePatch& loose, ContactPatches& to) {
-  assert(loose.nodes.size() <= kMaxCarriers && loose.pointCount() > 0);
+  assert(!loose.nodes.empty() && loose.nodes.size() <= kMaxCarriers && !loose.weights.empty());
   ContactPatch patch;
   patch.firstNode = static_cast<std::uint32_t>(to.nodes.size());
   patch.nodeCount = static_cast<std::uint32_t>(loose.nodes.size());
-  patch.firstPoint = static_cast<std::uint32_t>(to.pointCount);
-  patch.pointCount = static_cast<std::uint32_t>(loose.pointCount());
+  patch.divisions = loose.divisions;
+  patch.firstPoint = to.patches.empty() ? 0 : to.patches.back().firstPoint + to.patches.back().numberCount();
+  const std::size_t weighted = loose.weights.size() / loose.nodes.size();
+  patch.pointCount = patch.isTriangle() ? static_cast<std::uint32_t>(samplesOf(patch.divisions))
+                                        : static_cast<std::uint32_t>(weighted);
   patch.firstWeight = static_cast<std::uint32_t>(to.weights.size());
   patch.spread = spreadOf(loose);
   to.nodes.insert(to.nodes.end(), loose.nodes.begin(), loose.nodes.end());
   to.weights.insert(to.weights.end(), loose.weights.begin(), loose.weights.end());
-  to.pointCount += loose.pointCount();
+  to.pointCount += patch.pointCount;
   to.patches.push_back(patch);
 }
 
@@ -175,25 +180,66 @@ void closeCluster(std::size_t firstPatch, ContactPatches& to) {
 
 }  // namespace
 
-double countOfSamples(const TriangleMesh& mesh, double spacing) {
-  double count = 0.0;
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    const double steps = edgeDivisions(mesh, t, spacing);
-    if (steps > 1.0) count += (steps + 1.0) * (steps + 2.0) / 2.0;
+void ContactPatches::weightsOf(const ContactPatch& patch, std::uint32_t point, btScalar* values) const {
+  assert(point < patch.numberCount());
+  const btScalar* from = &weights[patch.firstWeight];
+  if (!patch.isTriangle()) {
+    std::copy_n(from + point * patch.nodeCount, patch.nodeCount, values);
+    return;
   }
+  const std::uint32_t i = point / (patch.divisions + 1), j = point % (patch.divisions + 1);
+  assert(i + j <= patch.divisions);
+  const btScalar scale = 1 / static_cast<btScalar>(patch.divisions);
+  const btScalar second = scale * static_cast<btScalar>(i), third = scale * static_cast<btScalar>(j);
+  for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
+    values[n] =
+        (1 - second - third) * from[n] + second * from[patch.nodeCount + n] + third * from[2 * patch.nodeCount + n];
+  }
+}
+
+Divisions divisionsFor(const TriangleMesh& mesh, double spacing) {
+  assert(spacing > 0.0);
+  Divisions divisions;
+  for (const std::array<int, 3>& t : mesh.triangles) divisions.push_back(powerOf2(edgeDivisions(mesh, t, spacing)));
+  return divisions;
+}
+
+Divisions defaultDivisions(const Embedding& embedding, const TriangleMesh& mesh,
+                           const std::vector<btScalar>& restNodes) {
+  assert(embedding.vertexCount() == mesh.vertexCount() && restNodes.size() == 4 * embedding.nodeCount());
+  Divisions divisions;
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    double edge = edgeAt(embedding, t[0], restNodes);
+    for (const int v : {t[1], t[2]}) edge = std::min(edge, edgeAt(embedding, v, restNodes));
+    const bool isLarge = edge > 0.0 && edgeDivisions(mesh, t, kLargeInEdges * edge) > 1.0;
+    divisions.push_back(isLarge ? powerOf2(edgeDivisions(mesh, t, kSpacingInEdges * edge)) : 1);
+  }
+  while (countOfSamples(divisions) > kMaxSamples) {
+    for (std::uint32_t& parts : divisions) parts = std::max(parts / 2, 1U);
+  }
+  return divisions;
+}
+
+double countOfSamples(const Divisions& divisions) {
+  double count = 0.0;
+  for (const std::uint32_t parts : divisions) count += samplesOf(parts);
   return count;
 }
 
-ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing) {
-  assert(embedding.vertexCount() == mesh.vertexCount() && spacing >= 0.0);
+ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, const Divisions& divisions) {
+  assert(embedding.vertexCount() == mesh.vertexCount());
+  assert(divisions.empty() || divisions.size() == mesh.triangleCount());
   std::vector<LoosePatch> loose = vertexPatches(embedding, mesh);
-  if (spacing > 0.0) appendTrianglePatches(embedding, mesh, spacing, loose);
-  const Bvh clusters = clustersOf(loose);
+  for (std::size_t t = 0; t < divisions.size(); ++t) {
+    if (divisions[t] > 1) loose.push_back(trianglePatch(embedding, mesh, mesh.triangles[t], divisions[t]));
+  }
   ContactPatches result;
-  for (const Bvh::Node& node : clusters.nodes()) {
+  result.tree = clustersOf(loose);
+  for (const Bvh::Node& node : result.tree.nodes()) {
+    result.clusterOf.push_back(node.isLeaf() ? static_cast<int>(result.clusters.size()) : -1);
     if (!node.isLeaf()) continue;
     assert(result.patches.size() == static_cast<std::size_t>(node.first));
-    for (int k = node.first; k < node.last; ++k) append(loose[static_cast<std::size_t>(clusters.item(k))], result);
+    for (int k = node.first; k < node.last; ++k) append(loose[static_cast<std::size_t>(result.tree.item(k))], result);
     closeCluster(static_cast<std::size_t>(node.first), result);
   }
   return result;

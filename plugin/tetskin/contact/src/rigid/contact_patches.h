@@ -7,6 +7,7 @@
 #include <LinearMath/btVector3.h>
 #include <tetskin/bullet/src/shared/bodies/point_contacts.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/shared/bvh/bvh.h>
 
 #include <cstdint>
 #include <vector>
@@ -14,13 +15,22 @@
 namespace tetskin {
 
 /// Points that are carried by the same few nodes: the vertices in a tet, or the samples on a triangle.
+///
+/// Samples are the corners of the small triangles into which the triangle's edges are cut, without its own corners,
+/// which are vertices. They are not stored: the sample at (i, j), with weight i / divisions of the second corner and
+/// j / divisions of the third, has the number firstPoint + i * (divisions + 1) + j.
 struct ContactPatch {
   std::uint32_t firstNode = 0;    ///< index in ContactPatches::nodes
   std::uint32_t nodeCount = 0;    ///< 4 for a tet, up to kMaxCarriers for a triangle
   std::uint32_t firstPoint = 0;   ///< number of its first point
-  std::uint32_t pointCount = 0;   ///<
-  std::uint32_t firstWeight = 0;  ///< index in ContactPatches::weights, which has nodeCount per point
+  std::uint32_t pointCount = 0;   ///< number of vertices or samples
+  std::uint32_t firstWeight = 0;  ///< index in ContactPatches::weights: nodeCount per vertex, or per corner
+  std::uint32_t divisions = 0;    ///< of a triangle's edges, a power of 2; 0: the points are vertices
   btScalar spread = 1;            ///< the points are within the ball around the nodes' box, scaled by this
+
+  bool isTriangle() const { return divisions > 0; }
+  /// How many numbers it uses for its points.
+  std::uint32_t numberCount() const { return isTriangle() ? (divisions + 1) * (divisions + 1) : pointCount; }
 };
 
 /// A group of neighbouring patches.
@@ -31,22 +41,44 @@ struct PatchCluster {
 };
 
 constexpr std::size_t kMaxCarriers = kMaxPointNodes;
+/// Largest number of samples of a body: their numbers must not reach those of other points. A spacing that needs more
+/// is most likely in another unit.
+constexpr double kMaxSamples = 10'000'000;
 
 struct ContactPatches {
   std::vector<ContactPatch> patches;
   std::vector<PatchCluster> clusters;
   std::vector<int> nodes, clusterNodes;
-  std::vector<btScalar> weights;  ///< of the nodes of each patch, point by point; below 0 for points outside of the tet
-  std::size_t pointCount = 0;
+  std::vector<btScalar> weights;  ///< of the nodes of each patch; below 0 for points outside of the tet
+  std::size_t pointCount = 0;     ///< number of vertices and samples
+  Bvh tree;                       ///< of the patches; its leaves, in their order, are the clusters
+  std::vector<int> clusterOf;     ///< by node of the tree: its cluster; -1: not a leaf
+
+  /// The weights of a point's nodes: nodeCount values.
+  /// point  its number less the patch's first one
+  void weightsOf(const ContactPatch& patch, std::uint32_t point, btScalar* weights) const;
 };
 
-/// The number of samples on the larger triangles for a spacing above 0. Cost O(triangles)
-double countOfSamples(const TriangleMesh& mesh, double spacing);
+/// By triangle: into how many parts its edges are cut, a power of 2; 1: it has no samples.
+using Divisions = std::vector<std::uint32_t>;
 
-/// The patches of a mesh: its vertices, each position once, and, with a spacing above 0, samples on its larger
-/// triangles, no farther than the spacing from each other. Cost O(n log n) for n points.
-/// mesh     of the embedding
-/// spacing  rest units
-ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, double spacing);
+/// Divisions with which neighbouring samples are no farther than the spacing from each other. Cost O(triangles)
+/// spacing  rest units, above 0; infinite: no samples
+Divisions divisionsFor(const TriangleMesh& mesh, double spacing);
+/// The default: triangles with edges longer than a quarter of the mean edge of the tets that carry their corners have
+/// samples no farther from each other than an eighth of it, so that things half as large as such a tet do not pass;
+/// farther apart where there would be more than kMaxSamples. Cost O(triangles)
+/// mesh       of the embedding
+/// restNodes  of the embedding, 4 values per node
+Divisions defaultDivisions(const Embedding& embedding, const TriangleMesh& mesh,
+                           const std::vector<btScalar>& restNodes);
+/// The number of samples. Cost O(triangles)
+double countOfSamples(const Divisions& divisions);
+
+/// The patches of a mesh: the vertices of its triangles (all, if there are no triangles), each position once, and the
+/// samples on its triangles. Cost O(n log n) for n vertices and triangles.
+/// mesh       of the embedding
+/// divisions  by triangle; empty: no samples
+ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, const Divisions& divisions);
 
 }  // namespace tetskin

@@ -8,9 +8,24 @@
 
 #include <algorithm>
 #include <cassert>
+#include <mutex>
 
 namespace tetskin {
 namespace {
+
+/// A btGImpactMeshShape reads its triangles by pointers that each query sets, counts and clears again.
+std::mutex& impactMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// If a ball has more triangles than this, the shape is asked again for those near a smaller ball: its tree finds them
+/// faster than a look at each.
+constexpr std::size_t kManyTriangles = 64;
+/// Cosine between normals of triangles in one plane, up to rounding.
+constexpr btScalar kParallel = btScalar(0.999999);
+/// Distance of corners from a plane that is common to triangles, as a fraction of the reach: far below the margin.
+constexpr btScalar kInPlane = btScalar(0.01);
 
 /// Collects the triangles that meet a box; Bullet's own test uses coarse boxes.
 class TriangleGatherer : public btTriangleCallback {
@@ -94,27 +109,59 @@ bool MeshProbe::enter(const Ball& ball, btScalar reach) {
   reach_ = reach;
   const btScalar side = ball.radius + std::max(reach, thickness_);
   const btVector3 half(side, side, side);
-  entered_.clear();
-  TriangleGatherer gatherer(ball.centre - half, ball.centre + half, outward_, entered_);
-  shape_->processAllTriangles(&gatherer, ball.centre - half, ball.centre + half);
+  gather(ball.centre - half, ball.centre + half, entered_);
   narrowed_ = entered_;
+  bound_ = {};
   return !entered_.empty();
 }
 
+void MeshProbe::gather(const btVector3& low, const btVector3& high, std::vector<ProbeTriangle>& out) const {
+  out.clear();
+  TriangleGatherer gatherer(low, high, outward_, out);
+  std::unique_lock<std::mutex> lock;
+  if (shape_->getShapeType() == GIMPACT_SHAPE_PROXYTYPE) lock = std::unique_lock<std::mutex>(impactMutex());
+  shape_->processAllTriangles(&gatherer, low, high);
+}
+
+/// A point that may be behind a triangle is asked for the nearest of those that it is in front of, too, beyond the
+/// reach: outside of a thin wall, it is not inside of the wall's other side.
 bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) {
   reach_ = reach;
-  const btScalar side = ball.radius + std::max(reach, thickness_);
+  const btScalar thick = std::max(reach, thickness_), side = ball.radius + thick;
   const btVector3 low = ball.centre - btVector3(side, side, side), high = ball.centre + btVector3(side, side, side);
+  const bool many = entered_.size() > kManyTriangles;
+  if (many) gather(low, high, gathered_);
   narrowed_.clear();
-  for (const ProbeTriangle& triangle : entered_) {
+  far_.clear();
+  bool mayBeBehind = false;
+  for (const ProbeTriangle& triangle : many ? gathered_ : entered_) {
     if (!boxesOverlap(triangle, low, high)) continue;
     const btScalar plane = triangle.normal.dot(triangle.corners[0]);
-    if (carriers.lowest(triangle.normal) - plane > reach || carriers.highest(triangle.normal) - plane < -thickness_) {
-      continue;
-    }
-    narrowed_.push_back(triangle);
+    const btScalar lowest = carriers.lowest(triangle.normal) - plane;
+    if (lowest > thick || carriers.highest(triangle.normal) - plane < -thickness_) continue;
+    mayBeBehind = mayBeBehind || lowest < 0;
+    (lowest > reach ? far_ : narrowed_).push_back(triangle);
   }
-  return !narrowed_.empty();
+  bound_ = {};
+  if (narrowed_.empty()) return false;
+  if (mayBeBehind) narrowed_.insert(narrowed_.end(), far_.begin(), far_.end());
+  bound_ = commonPlane();
+  return true;
+}
+
+ShapeBound MeshProbe::commonPlane() const {
+  if (narrowed_.empty()) return {};
+  const btVector3 &normal = narrowed_[0].normal, &corner = narrowed_[0].corners[0];
+  btScalar highest = 0;
+  for (const ProbeTriangle& triangle : narrowed_) {
+    if (triangle.normal.dot(normal) < kParallel) return {};
+    for (const btVector3& other : triangle.corners) {
+      const btScalar height = normal.dot(other - corner);
+      if (btFabs(height) > kInPlane * reach_) return {};
+      highest = std::max(highest, height);
+    }
+  }
+  return {normal, -normal.dot(corner) - highest};
 }
 
 /// If several triangles are equally near, at an edge or a corner, the one whose normal is most nearly along the offset
@@ -125,8 +172,8 @@ ShapeDistance MeshProbe::at(const btVector3& point) const {
   btScalar minimum = std::max(reach_, thickness_), facing = 0;
   for (const ProbeTriangle& triangle : narrowed_) {
     const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
-    if (height > std::min(minimum, reach_) || -height > std::min(minimum, thickness_)) continue;
-    if (!isBeside(triangle, point, height < 0 ? std::min(minimum, thickness_) : std::min(minimum, reach_))) continue;
+    const btScalar most = height < 0 ? std::min(minimum, thickness_) : minimum;
+    if (btFabs(height) > most || !isBeside(triangle, point, most)) continue;
     const btVector3 away = offsetFrom(triangle, point);
     const btScalar distance = away.length();
     if (distance > minimum * (1 + kSame) || (distance > minimum * (1 - kSame) && btFabs(height) <= facing)) continue;

@@ -34,20 +34,26 @@ class OutwardSide {
 };
 
 /// Points behind a triangle count as inside up to the depth `thickness`; deeper points belong to something else.
-/// Queries the shape once for each ball entered.
+/// Queries the shape once for each ball entered, and for those narrowed to where there are very many triangles.
 class MeshProbe : public ShapeProbe {
  public:
   void take(const btConcaveShape& shape, btScalar thickness);
   bool enter(const Ball& ball, btScalar reach) override;
   bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override;
-  ShapeBound bound() const override { return {}; }
+  /// Where all triangles of the last ball are in one plane, that plane; otherwise nothing is known.
+  ShapeBound bound() const override { return bound_; }
   ShapeDistance at(const btVector3& point) const override;
 
  private:
+  void gather(const btVector3& low, const btVector3& high, std::vector<ProbeTriangle>& out) const;
+  ShapeBound commonPlane() const;
+
   const btConcaveShape* shape_ = nullptr;
   OutwardSide outward_;
   btScalar thickness_ = 0, reach_ = 0;
-  std::vector<ProbeTriangle> entered_, narrowed_;
+  std::vector<ProbeTriangle> entered_, gathered_, narrowed_;
+  std::vector<ProbeTriangle> far_;  ///< beyond the reach, in front of which all points of the last ball are
+  ShapeBound bound_;
 };
 
 }  // namespace tetskin

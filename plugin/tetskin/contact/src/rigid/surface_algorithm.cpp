@@ -8,6 +8,11 @@
 #include <tetskin/contact/src/rigid/surface_algorithm.h>
 
 #include <cassert>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <tuple>
 #include <utility>
 
 namespace tetskin {
@@ -18,19 +23,14 @@ bool isRigidType(int type) {
   return btBroadphaseProxy::isConvex(type) || btBroadphaseProxy::isConcave(type) || btBroadphaseProxy::isCompound(type);
 }
 
-/// Bullet's own algorithm for the pair.
-btCollisionAlgorithm* makeBullets(btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* first,
-                                  const btCollisionObjectWrapper* second, bool closestPoints) {
-  auto& dispatcher = static_cast<btCollisionDispatcher&>(*info.m_dispatcher1);
-  btCollisionConfiguration& bullets = *dispatcher.getCollisionConfiguration();
-  const int a = first->getCollisionShape()->getShapeType(), b = second->getCollisionShape()->getShapeType();
-  btCollisionAlgorithmCreateFunc* maker =
-      closestPoints ? bullets.getClosestPointsAlgorithmCreateFunc(a, b) : bullets.getCollisionAlgorithmCreateFunc(a, b);
-  assert(maker);
-  return maker->CreateCollisionAlgorithm(info, first, second);
+/// What makes Bullet's own algorithms for the pair.
+btCollisionAlgorithmCreateFunc* bulletsMaker(const btCollisionDispatcher& dispatcher, int a, int b, bool closest) {
+  auto& bullets = const_cast<btCollisionConfiguration&>(*dispatcher.getCollisionConfiguration());
+  return closest ? bullets.getClosestPointsAlgorithmCreateFunc(a, b) : bullets.getCollisionAlgorithmCreateFunc(a, b);
 }
 
-/// The algorithm of one pair. When the body's contacts have been destroyed, it calls Bullet's.
+/// The algorithm of one pair. When the body's contacts have been destroyed, it calls the one that would be there
+/// without them.
 class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
  public:
   SurfaceAlgorithm(std::weak_ptr<BodyContacts> contacts, const btCollisionAlgorithmConstructionInfo& info,
@@ -41,24 +41,21 @@ class SurfaceAlgorithm : public btSoftRigidCollisionAlgorithm {
         softIsSecond_(softIsSecond) {}
   ~SurfaceAlgorithm() override {
     if (const auto contacts = contacts_.lock()) contacts->forget(*rigid_);
-    if (!bullets_) return;
-    bullets_->~btCollisionAlgorithm();
-    m_dispatcher->freeCollisionAlgorithm(bullets_);
+    if (!other_) return;
+    other_->~btCollisionAlgorithm();
+    m_dispatcher->freeCollisionAlgorithm(other_);
   }
   void processCollision(const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second,
                         const btDispatcherInfo& info, btManifoldResult* result) override {
     if (const auto contacts = contacts_.lock()) return contacts->collide(*(softIsSecond_ ? first : second));
-    if (!bullets_) {
-      btCollisionAlgorithmConstructionInfo construction(m_dispatcher, 0);
-      bullets_ = makeBullets(construction, first, second, false);
-    }
-    bullets_->processCollision(first, second, info, result);
+    if (!other_) other_ = m_dispatcher->findAlgorithm(first, second, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    other_->processCollision(first, second, info, result);
   }
 
  private:
   std::weak_ptr<BodyContacts> contacts_;
   const btCollisionObject* rigid_;
-  btCollisionAlgorithm* bullets_ = nullptr;
+  btCollisionAlgorithm* other_ = nullptr;
   bool softIsSecond_;
 };
 
@@ -69,12 +66,17 @@ static_assert(sizeof(SurfaceAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgor
 /// Creates the algorithms for pairs in which the soft body is the first, or the second.
 class Maker : public btCollisionAlgorithmCreateFunc {
  public:
-  Maker(bool softIsSecond, bool closestPoints) : closestPoints_(closestPoints) { m_swapped = softIsSecond; }
+  /// others  what serves bodies without surface contact, if the application has registered that; null: Bullet's own
+  Maker(btCollisionAlgorithmCreateFunc* others, bool softIsSecond, bool closestPoints)
+      : others_(others), closestPoints_(closestPoints) {
+    m_swapped = softIsSecond;
+  }
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                  const btCollisionObjectWrapper* first,
                                                  const btCollisionObjectWrapper* second) override;
 
  private:
+  btCollisionAlgorithmCreateFunc* others_;
   bool closestPoints_;
 };
 
@@ -84,8 +86,13 @@ btCollisionAlgorithm* Maker::CreateCollisionAlgorithm(btCollisionAlgorithmConstr
   assert(info.m_dispatcher1 && first && second);
   const btSoftBody* soft = btSoftBody::upcast((m_swapped ? second : first)->getCollisionObject());
   const std::shared_ptr<BodyContacts> contacts = soft ? contactsOf(*soft) : nullptr;
-  if (!contacts || contacts->dispatcher() != info.m_dispatcher1)
-    return makeBullets(info, first, second, closestPoints_);
+  if (!contacts || contacts->dispatcher() != info.m_dispatcher1) {
+    const auto& dispatcher = static_cast<const btCollisionDispatcher&>(*info.m_dispatcher1);
+    const int a = first->getCollisionShape()->getShapeType(), b = second->getCollisionShape()->getShapeType();
+    auto* others = others_ ? others_ : bulletsMaker(dispatcher, a, b, closestPoints_);
+    assert(others);
+    return others->CreateCollisionAlgorithm(info, first, second);
+  }
   if (closestPoints_) {
     // A query such as contactTest: Bullet's algorithm would add its contacts to those of the step.
     void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(btEmptyAlgorithm));
@@ -95,9 +102,23 @@ btCollisionAlgorithm* Maker::CreateCollisionAlgorithm(btCollisionAlgorithmConstr
   return new (memory) SurfaceAlgorithm(contacts, info, first, second, m_swapped);
 }
 
-struct Makers {
-  Maker softFirst{false, false}, softSecond{true, false};
-  Maker closestFirst{false, true}, closestSecond{true, true};
+/// All makers, by what they stand in for: as few as there are algorithms that applications have registered.
+class Makers {
+ public:
+  /// Null if `others` is itself one of them.
+  Maker* standInFor(btCollisionAlgorithmCreateFunc* others, bool softIsSecond, bool closestPoints) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (own_.count(others) > 0) return nullptr;
+    std::unique_ptr<Maker>& maker = makers_[{others, softIsSecond, closestPoints}];
+    if (!maker) maker = std::make_unique<Maker>(others, softIsSecond, closestPoints);
+    own_.insert(maker.get());
+    return maker.get();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::tuple<btCollisionAlgorithmCreateFunc*, bool, bool>, std::unique_ptr<Maker>> makers_;
+  std::set<const btCollisionAlgorithmCreateFunc*> own_;
 };
 
 /// Never destroyed: dispatchers in global variables may be destroyed later than any static object of this file.
@@ -106,16 +127,32 @@ Makers& makers() {
   return *all;
 }
 
+/// Gives access to members of a base class, whose names a derived class may use.
+struct DispatcherMembers : btCollisionDispatcher {
+  static btCollisionAlgorithmCreateFunc* registered(btCollisionDispatcher& dispatcher, int a, int b, bool closest) {
+    return closest ? (dispatcher.*(&DispatcherMembers::m_doubleDispatchClosestPoints))[a][b]
+                   : (dispatcher.*(&DispatcherMembers::m_doubleDispatchContactPoints))[a][b];
+  }
+};
+
+void registerFor(btCollisionDispatcher& dispatcher, int a, int b, bool closest) {
+  btCollisionAlgorithmCreateFunc* others = DispatcherMembers::registered(dispatcher, a, b, closest);
+  if (others == bulletsMaker(dispatcher, a, b, closest)) others = nullptr;
+  Maker* maker = makers().standInFor(others, b == SOFTBODY_SHAPE_PROXYTYPE, closest);
+  if (!maker) return;
+  closest ? dispatcher.registerClosestPointsCreateFunc(a, b, maker)
+          : dispatcher.registerCollisionCreateFunc(a, b, maker);
+}
+
 }  // namespace
 
 void registerSurfaceAlgorithms(btCollisionDispatcher& dispatcher) {
-  Makers& all = makers();
   for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
     if (!isRigidType(type)) continue;
-    dispatcher.registerCollisionCreateFunc(SOFTBODY_SHAPE_PROXYTYPE, type, &all.softFirst);
-    dispatcher.registerCollisionCreateFunc(type, SOFTBODY_SHAPE_PROXYTYPE, &all.softSecond);
-    dispatcher.registerClosestPointsCreateFunc(SOFTBODY_SHAPE_PROXYTYPE, type, &all.closestFirst);
-    dispatcher.registerClosestPointsCreateFunc(type, SOFTBODY_SHAPE_PROXYTYPE, &all.closestSecond);
+    for (const bool closest : {false, true}) {
+      registerFor(dispatcher, SOFTBODY_SHAPE_PROXYTYPE, type, closest);
+      registerFor(dispatcher, type, SOFTBODY_SHAPE_PROXYTYPE, closest);
+    }
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-//
-// This work is based on:
-//   John C. Hart, "Sphere Tracing", The Visual Computer 12, 1996 (steps of the distance along a straight path)
+#include <tetskin/contact/src/rigid/point_path.h>
 #include <tetskin/contact/src/rigid/surface_collider.h>
 
 #include <algorithm>
@@ -11,10 +9,6 @@
 namespace tetskin {
 namespace {
 
-/// Most steps along the path of a point. After these, it counts as touching what it has come near to.
-constexpr int kMaxSteps = 24;
-/// Distance that counts as touching, as a fraction of the margin.
-constexpr btScalar kMet = btScalar(0.05);
 /// Largest distance, in units of the slack, of a touching point of a patch from the chosen ones.
 constexpr btScalar kSpacing = 4;
 /// Cosine between normals: a patch in one tet moves as a whole, so that on a plane a few points support it.
@@ -27,36 +21,7 @@ constexpr btScalar kDepthsWorth = 3;
 /// Steps after which clear regions are searched again.
 constexpr unsigned kRemembered = 16;
 
-/// What a point touches first on its straight path, or comes nearer to than the margin.
-struct PairState {
-  ShapeDistance distance;  ///< at that position; BT_LARGE_FLOAT if it touches nothing
-  btVector3 where;
-  btScalar clear = 0;  ///< clearance where the path begins, if it touches nothing
-};
-
-PairState conservativeAdvance(const ShapeProbe& probe, const NodePath& path, btScalar margin) {
-  const btVector3 direction = path.predicted - path.now;
-  const btScalar length = direction.length();
-  btScalar gone = 0;
-  PairState met, last;
-  met.where = path.now;
-  for (int k = 0; k < kMaxSteps; ++k) {
-    const ShapeDistance here = probe.at(met.where);
-    const btScalar free = here.distance - margin;
-    if (k == 0) met.clear = btMax(free, btScalar(0));
-    if (free <= kMet * margin && (gone > 0 || free <= 0)) return {here, met.where, 0};
-    if (free >= length - gone) return met;
-    last = {here, met.where, 0};
-    gone += std::max(free, kMet * margin);
-    if (gone >= length) break;
-    met.where = path.now + (gone / length) * direction;
-  }
-  // The end of the path.
-  met.where = path.predicted;
-  const ShapeDistance there = probe.at(met.where);
-  if (there.distance < margin) met.distance = there;
-  return there.distance < margin || gone >= length ? met : last;
-}
+}  // namespace
 
 /// An upper bound of the change of a unit vector between two rotations.
 btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
@@ -64,8 +29,6 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
   for (int k = 0; k < 3; ++k) squared += (a[k] - b[k]).length2();
   return btSqrt(squared);
 }
-
-}  // namespace
 
 SurfaceCollider::SurfaceCollider(ContactPatches patches, btScalar margin, btScalar slack)
     : patches_(std::move(patches)), margin_(margin), slack_(slack) {
@@ -85,18 +48,27 @@ void SurfaceCollider::begin(const std::vector<NodePath>& nodes, btScalar specula
 void SurfaceCollider::readClusters() {
   if (clustersRead_) return;
   clustersRead_ = true;
-  clusterBalls_.clear();
-  for (const PatchCluster& cluster : patches_.clusters) {
+  clusterBalls_.resize(patches_.clusters.size());
+  std::size_t c = patches_.clusters.size();  // the tree is filled from its last leaf on
+  const auto readLeaf = [&](const Bvh::Node&) {
+    const PatchCluster& cluster = patches_.clusters[--c];
     BoxOfPaths box;
     for (std::uint32_t k = 0; k < cluster.nodeCount; ++k) {
       box.add((*nodes_)[static_cast<std::size_t>(patches_.clusterNodes[cluster.firstNode + k])]);
     }
-    clusterBalls_.push_back(box.ball(cluster.spread));
-  }
+    clusterBalls_[c] = box.ball(cluster.spread);
+    return box.box(cluster.spread);
+  };
+  const auto aroundBoth = [](WorldBox box, const WorldBox& other) {
+    box.extend(other);
+    return box;
+  };
+  patches_.tree.fill(nodeBoxes_, readLeaf, aroundBoth);
+  assert(c == 0);
 }
 
 const std::vector<ContactCandidate>& SurfaceCollider::find(ShapeProbe& probe, const ShapePath& shape,
-                                                           ShapeMemory& memory) {
+                                                           ShapeMemory& memory, const WorldBox* around) {
   assert(nodes_);
   probe_ = &probe;
   shape_ = shape;
@@ -112,17 +84,27 @@ const std::vector<ContactCandidate>& SurfaceCollider::find(ShapeProbe& probe, co
   toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
   turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
   prepare(memory);
-  bool allClear = true;
-  for (std::size_t c = 0; c < clusterBalls_.size(); ++c) {
-    const bool again = !probe.isKnownByItsBox() && (memory.steps + c) % kRemembered == 0;
-    const Ball ball = localBall(c);
-    btScalar left = again ? btScalar(0) : clearance(c, ball);
-    if (!(left > 0)) left = searchCluster(c, ball, again);
-    allClear = allClear && left > slack_ / 2;
-  }
-  if (allClear) rememberAllClear();
+  const WorldBox near = around ? around->grownBy(reach_ + slack_) : WorldBox();
+  if (!patches_.tree.empty() && searchNode(0, around ? &near : nullptr)) rememberAllClear();
   rememberTouched();
   return touches_;
+}
+
+/// Searches the clusters below a node of the tree. True if all of them are clear.
+/// near  what is outside of this box is clear; null: anything may be near
+bool SurfaceCollider::searchNode(std::size_t node, const WorldBox* near) {
+  if (near && !nodeBoxes_[node].collides(*near)) return true;
+  const int leaf = patches_.clusterOf[node];
+  if (leaf < 0) {
+    const bool firstClear = searchNode(node + 1, near);
+    return searchNode(static_cast<std::size_t>(patches_.tree.nodes()[node].right), near) && firstClear;
+  }
+  const auto c = static_cast<std::size_t>(leaf);
+  const bool again = !probe_->isKnownByItsBox() && (memory_->steps + c) % kRemembered == 0;
+  const Ball ball = localBall(c);
+  btScalar left = again ? btScalar(0) : clearance(c, ball);
+  if (!(left > 0)) left = searchCluster(c, ball, again);
+  return left > slack_ / 2;
 }
 
 void SurfaceCollider::rememberTouched() {
@@ -248,6 +230,7 @@ void SurfaceCollider::remember(std::size_t patch, btScalar clear) {
 
 /// Returns by how much all points of the patch are clear where their paths begin.
 btScalar SurfaceCollider::searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound) {
+  if (patch.isTriangle()) return searchTriangle(patch, clusterBound);
   const btScalar far = lowestHeight(patch, clusterBound) - reach_;
   if (far > slack_) return far;
   BoxOfPaths box;
@@ -295,7 +278,11 @@ btScalar SurfaceCollider::searchPoints(const ContactPatch& patch) {
 }
 
 NodePath SurfaceCollider::pathOf(const ContactPatch& patch, std::uint32_t point) const {
-  assert(point < patch.pointCount);
+  assert(point < patch.numberCount());
+  if (patch.isTriangle()) {
+    const std::uint32_t row = patch.divisions + 1;
+    return sampleAt(patch, static_cast<int>(point / row), static_cast<int>(point % row));
+  }
   const btScalar* weights = &patches_.weights[patch.firstWeight + point * patch.nodeCount];
   NodePath path{btVector3(0, 0, 0), btVector3(0, 0, 0)};
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
@@ -308,11 +295,12 @@ NodePath SurfaceCollider::pathOf(const ContactPatch& patch, std::uint32_t point)
 /// Returns the point's clearance where its path begins.
 btScalar SurfaceCollider::touch(const ContactPatch& patch, std::uint32_t point) {
   const NodePath path = pathOf(patch, point);
-  const PairState met = conservativeAdvance(*probe_, path, reach_);
+  const PathState met = firstInReach(*probe_, path, reach_);
   if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
-  const btVector3& normal = met.distance.normal;
+  const PathState state = decidingState(*probe_, path, margin_, reach_, met);
+  const btVector3& normal = state.distance.normal;
   ContactCandidate touch;
-  touch.distance = met.distance.distance - margin_ + normal.dot(path.now - met.where);
+  touch.distance = heightAbove(state, path.now) - margin_;
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
   // A point that is too near is pushed out, whatever its direction of motion.
   if (!(touch.predicted < speculation_ || touch.distance < speculation_)) return 0;
@@ -346,7 +334,8 @@ void SurfaceCollider::chooseTouches(std::size_t first) {
     return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < kCalm * slack_;
   });
   const std::size_t few = first < kManyTouches ? kMinTouches : 2;
-  const std::size_t enough = flat ? few : kMaxTouches;
+  const bool onTriangle = patches_.patches[begin->patch].isTriangle();
+  const std::size_t enough = flat ? few : (onTriangle ? kTriangleTouches : kMaxTouches);
   const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);

@@ -7,6 +7,7 @@
 #include <LinearMath/btTransform.h>
 #include <tetskin/contact/src/rigid/contact_patches.h>
 #include <tetskin/contact/src/rigid/shape_probe.h>
+#include <tetskin/core/src/shared/bvh/bvh_box.h>
 
 #include <array>
 #include <vector>
@@ -18,6 +19,9 @@ struct ShapePath {
   btTransform now, predicted;
 };
 
+/// An upper bound of the change of a unit vector between two rotations.
+btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b);
+
 /// A point of the surface that would penetrate if nothing stopped it.
 struct ContactCandidate {
   std::uint32_t patch = 0;  ///< index in ContactPatches
@@ -27,6 +31,8 @@ struct ContactCandidate {
   btScalar distance = 0;    ///< current distance along the normal, minus the margin
   btScalar predicted = 0;   ///< distance at the end of the step; one of the two is below 0, or hardly above
 };
+
+using WorldBox = BvhBox<btScalar>;
 
 class BoxOfPaths {
  public:
@@ -38,6 +44,13 @@ class BoxOfPaths {
   }
   Ball ball(btScalar spread) const {
     return {(low_ + high_) * btScalar(0.5), (high_ - low_).length() * btScalar(0.5) * spread};
+  }
+  WorldBox box(btScalar spread) const {
+    const btVector3 beyond = (high_ - low_) * (btScalar(0.5) * (spread - 1));
+    WorldBox box;
+    const btVector3 low = low_ - beyond, high = high_ + beyond;
+    box.extend(low.m_floats, high.m_floats);
+    return box;
   }
 
  private:
@@ -63,6 +76,9 @@ struct ShapeMemory {
 
 /// Bounds of the number of points per patch and shape: as many as constrain a tet, and more only where it is large.
 constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
+/// Bound for the samples on a triangle: between its corners it stays flat, so that more change nothing. Two more than a
+/// tet's, for the points of a concave shape that it will meet next.
+constexpr std::size_t kTriangleTouches = 6;
 /// If this many points touch already, patches that lie flat get at most two each.
 constexpr std::size_t kManyTouches = 64;
 
@@ -79,9 +95,11 @@ class SurfaceCollider {
   /// speculation  height above the margin up to which points still touch
   void begin(const std::vector<NodePath>& nodes, btScalar speculation);
   /// The points of the body that touch this shape, patch by patch: the deepest points of each patch, and others so far
-  /// apart that none is missed, at most kMaxTouches. Valid until the next call.
+  /// apart that none is missed, at most kMaxTouches, or kTriangleTouches. Valid until the next call.
   /// memory  of the same shape, or an empty one
-  const std::vector<ContactCandidate>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory);
+  /// around  a box around the shape on its path, world space; null: it may be anywhere
+  const std::vector<ContactCandidate>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
+                                            const WorldBox* around = nullptr);
 
  private:
   void readClusters();
@@ -90,6 +108,7 @@ class SurfaceCollider {
   void rememberAllClear();
   Ball localBall(std::size_t cluster) const;
   btScalar clearance(std::size_t cluster, const Ball& ball) const;
+  bool searchNode(std::size_t node, const WorldBox* near);
   btScalar searchCluster(std::size_t cluster, const Ball& ball, bool again);
   void readCluster(const PatchCluster& cluster);
   void readPatch(const ContactPatch& patch);
@@ -98,6 +117,12 @@ class SurfaceCollider {
   btScalar lowestHeight(const ContactPatch& patch, const ShapeBound& bound);
   btScalar searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound);
   btScalar searchPoints(const ContactPatch& patch);
+  struct TrianglePart;
+  btScalar searchTriangle(const ContactPatch& patch, const ShapeBound& clusterBound);
+  btScalar searchPart(const ContactPatch& patch, const TrianglePart& part, const ShapeBound& around);
+  btScalar touchCorners(const ContactPatch& patch, const TrianglePart& part);
+  bool isFlat(const CarrierPaths& corners, const ShapeBound& bound) const;
+  NodePath sampleAt(const ContactPatch& patch, int i, int j) const;
   NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
   btScalar touch(const ContactPatch& patch, std::uint32_t point);
   void chooseTouches(std::size_t first);
@@ -109,7 +134,8 @@ class SurfaceCollider {
   btScalar spread_ = 1;                   ///< the largest spread of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
   bool clustersRead_ = false;
-  std::vector<Ball> clusterBalls_;  ///< world space, around the paths of all their points
+  std::vector<Ball> clusterBalls_;   ///< world space, around the paths of all their points
+  std::vector<WorldBox> nodeBoxes_;  ///< by node of the patches' tree: around the same paths
   // State of one call of `find`.
   ShapeProbe* probe_ = nullptr;
   ShapeMemory* memory_ = nullptr;
@@ -119,6 +145,7 @@ class SurfaceCollider {
   std::vector<btScalar> apart_;                    ///< by touching point of a patch: distance from the chosen ones
   std::vector<NodePath> local_;                    ///< by node of the cluster; shape space
   std::array<NodePath, kMaxCarriers> carriers_;    ///< of the patch
+  std::array<NodePath, 3> corners_;                ///< of the triangle
   std::array<btScalar, kMaxCarriers> heights_[2];  ///< of the carriers above the bound, current and predicted
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/shared/bodies/body_trees.h>
 #include <tetskin/contact/src/soft/contact_body.h>
 
 #include <algorithm>
@@ -24,11 +25,17 @@ void DeformedTet::setPlanes(const btScalar minimum[4]) {
   }
 }
 
+ContactBody::ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
+    : body(&solved), shape(std::move(ofShape)), self(meetsItself), id(number) {
+  const BodyWithTrees* own = bodyWithTrees(solved);
+  if (!own) return;
+  watched_ = true;
+  life_ = own->lifetime();
+}
+
 bool ContactBody::fits() const {
-  const auto tets = static_cast<std::size_t>(body->m_tetras.size());
-  // While a step is solved, the elastic force hides the tets from Bullet.
-  const bool hasTets = tets == data().tets.size() || tets == 0;
-  return static_cast<std::size_t>(body->m_nodes.size()) == data().nodes.size() && hasTets;
+  return static_cast<std::size_t>(body->m_nodes.size()) == data().nodes.size() &&
+         static_cast<std::size_t>(body->m_tetras.size()) == data().tets.size();
 }
 
 void ContactBody::read() {
@@ -61,7 +68,7 @@ void ContactBody::read() {
   centroid = sum / static_cast<btScalar>(positions.size());
 }
 
-ContactBox ContactBody::partBox(const Tet& n, const FilledComponent& part) const {
+ContactBox ContactBody::regionBox(const Tet& n, const TetSubregion& part) const {
   const auto at = [&](std::size_t k) { return fourOf(positions[static_cast<std::size_t>(n[k])]); };
   const Four corners[4] = {at(0), at(1), at(2), at(3)};
   Four base = corners[0] * four(part.minimum[0]);
@@ -93,7 +100,7 @@ void ContactBody::place() {
 void ContactBody::placeGroup(const TetGroup& group, GroupBoxes& boxes) const {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const auto tet = static_cast<std::size_t>(group[lane]);
-    const ContactBox around = group[lane] < 0 ? ContactBox{} : partBox(data().tets[tet], data().filled[tet]);
+    const ContactBox around = group[lane] < 0 ? ContactBox{} : regionBox(data().tets[tet], data().filled[tet]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       boxes.low[axis][static_cast<int>(lane)] = around.low[axis];
       boxes.high[axis][static_cast<int>(lane)] = around.high[axis];

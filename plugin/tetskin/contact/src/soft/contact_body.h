@@ -88,10 +88,11 @@ class OncePerStep {
 /// Several threads may search in a body at once, after one has read it.
 class ContactBody {
  public:
-  ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
-      : body(&solved), shape(std::move(ofShape)), self(meetsItself), id(number) {}
+  ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number);
 
   const ShapeData& data() const { return dataOf(*shape); }
+  /// False if the body is known to have been deleted; of bodies of the application, this is not known.
+  bool lives() const { return !watched_ || !life_.expired(); }
   /// True if the body has the nodes and tets that the shape was made for.
   bool fits() const;
 
@@ -106,7 +107,7 @@ class ContactBody {
   ContactBox runBox(int run) const {
     assert(run >= 0 && static_cast<std::size_t>(run) < data().runs.size());
     const auto r = static_cast<std::size_t>(run);
-    return partBox(data().tets[static_cast<std::size_t>(data().runs[r].tet)], data().runParts[r]);
+    return regionBox(data().tets[static_cast<std::size_t>(data().runs[r].tet)], data().runRegions[r]);
   }
   DeformedTet deformed(int tet) const;
   /// The velocity of a point of a tet.
@@ -130,10 +131,12 @@ class ContactBody {
 
  private:
   void measure(DeformedTet& tet, int t) const;
-  ContactBox partBox(const Tet& n, const FilledComponent& part) const;
+  ContactBox regionBox(const Tet& n, const TetSubregion& part) const;
   void placeGroup(const TetGroup& group, GroupBoxes& boxes) const;
   void fitTrees();
 
+  bool watched_ = false;
+  std::weak_ptr<const void> life_;  ///< of a watched body
   OncePerStep placed_, fitted_;
 };
 

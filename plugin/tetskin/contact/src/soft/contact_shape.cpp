@@ -5,6 +5,7 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/shared/mesh/mesh_checks.h>
 #include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <cassert>
@@ -41,7 +42,7 @@ Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShape
   if (Status status = validate(mesh); !status.ok()) return status;
   if (mesh.triangles.empty()) return {StatusCode::Empty, "the mesh has no triangles; contact needs a surface"};
   if (Status status = validate(cage.mesh); !status.ok()) return status;
-  if (Status status = checkKnowledge(cage); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
   if (!cage.vertexTets.empty() && cage.vertexTets.size() != mesh.vertexCount()) {
     return {StatusCode::SizeMismatch, "the cage was built for a mesh of " + std::to_string(cage.vertexTets.size()) +
                                           " vertices, not of " + std::to_string(mesh.vertexCount())};
@@ -50,11 +51,11 @@ Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShape
 }
 
 /// True if the normals point inwards, by the sign of the enclosed volume; the volume is taken relative to the first
-/// vertex.
+/// triangle's first corner.
 bool facesInwards(const TriangleMesh& mesh) {
-  assert(!mesh.positions.empty());
+  assert(!mesh.triangles.empty());
   double volume = 0.0;
-  const Eigen::Vector3d& origin = mesh.positions[0];
+  const Eigen::Vector3d& origin = mesh.positions[static_cast<std::size_t>(mesh.triangles[0][0])];
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto from = [&](int v) -> Eigen::Vector3d { return mesh.positions[static_cast<std::size_t>(v)] - origin; };
     volume += from(a).dot(from(b).cross(from(c)));
@@ -64,7 +65,7 @@ bool facesInwards(const TriangleMesh& mesh) {
 
 /// Triangles with at least one corner, or the centroid, outside of the solid that all triangles bound.
 std::vector<int> visibleTriangles(const TriangleMesh& mesh, const WindingTree& solid) {
-  const double over = kOverTriangle * boundingBox(mesh.positions).sizes().maxCoeff();
+  const double over = kOverTriangle * surfaceBox(mesh).sizes().maxCoeff();
   std::vector<int> visible;
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -148,13 +149,13 @@ ContactBox restBox(const ShapeData& data, int tet) {
 }
 
 /// Computed from points of the tet that are so close to each other that the distance can hardly change between them.
-FilledComponent filledComponent(const ShapeData& data, const Tet& nodes, btScalar size) {
+TetSubregion filledSubregion(const ShapeData& data, const Tet& nodes, btScalar size) {
   assert(data.grid.spacing() > 0 && size >= 0);
   const int along = 2 + static_cast<int>(size / data.grid.spacing());
   const btScalar step = 1 / static_cast<btScalar>(along);
   const btScalar reach = kReachCubes * data.grid.spacing() + size * step;
-  FilledComponent component;
-  std::fill(component.minimum, component.minimum + 4, btScalar(1));
+  TetSubregion region;
+  std::fill(region.minimum, region.minimum + 4, btScalar(1));
   for (int i = 0; i <= along; ++i) {
     for (int j = 0; i + j <= along; ++j) {
       for (int k = 0; i + j + k <= along; ++k) {
@@ -163,13 +164,12 @@ FilledComponent filledComponent(const ShapeData& data, const Tet& nodes, btScala
         for (std::size_t n = 0; n < 4; ++n) p += w[n] * data.nodes[static_cast<std::size_t>(nodes[n])];
         GridDistance known;
         if (data.grid.at(p, known) && known.distance > reach) continue;
-        for (int n = 0; n < 4; ++n)
-          component.minimum[n] = std::min(component.minimum[n], std::max(w[n] - step, btScalar(0)));
+        for (int n = 0; n < 4; ++n) region.minimum[n] = std::min(region.minimum[n], std::max(w[n] - step, btScalar(0)));
       }
     }
   }
-  component.left = 1 - component.minimum[0] - component.minimum[1] - component.minimum[2] - component.minimum[3];
-  return component;
+  region.left = 1 - region.minimum[0] - region.minimum[1] - region.minimum[2] - region.minimum[3];
+  return region;
 }
 
 void makeTrees(const TetMesh& cage, ShapeData& data) {
@@ -181,7 +181,7 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
     const Tet& n = data.tets[t];
     data.centroids.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
     const TetCorners corners = cornersOf(cage, cage.tets[t]);
-    data.filled.push_back(filledComponent(data, n, static_cast<btScalar>(tetSize(corners))));
+    data.filled.push_back(filledSubregion(data, n, static_cast<btScalar>(tetSize(corners))));
     if (!isFlat(corners) && data.filled.back().left > 0) filled.push_back(static_cast<int>(t));
   }
   for (const SampleRun& run : data.runs) runBoxes.push_back(tetBoxes[static_cast<std::size_t>(run.tet)]);
@@ -202,14 +202,14 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
 /// By run: the least weights of its samples.
 void boundRuns(ShapeData& data) {
   for (const SampleRun& run : data.runs) {
-    FilledComponent part;
+    TetSubregion part;
     part.left = 1;
     for (std::size_t k = 0; k < 4; ++k) {
       const auto first = data.weights[k].begin();
       part.minimum[k] = *std::min_element(first + run.first, first + run.last) - kWeightMargin;
       part.left -= part.minimum[k];
     }
-    data.runParts.push_back(part);
+    data.runRegions.push_back(part);
     data.largestSpread = std::max(data.largestSpread, part.spread());
   }
 }

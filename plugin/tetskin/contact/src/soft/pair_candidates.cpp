@@ -27,7 +27,7 @@ void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt
 /// Returns false if the candidates may not be complete any more.
 bool PairCandidates::follow(const ContactBody& first, const ContactBody& second) {
   if (first.reads != reads_[0] + 1 || second.reads != reads_[1] + 1) return false;
-  if (!life_.lasts(first, second)) return false;
+  if (!validity_.lasts(first, second)) return false;
   const btScalar all = first.data().largestSpread * first.moved + second.moved;
   if (all <= kStillCubes * second.data().grid.spacing()) {
     for (Run& run : runs_) run.path += all;
@@ -41,7 +41,9 @@ bool PairCandidates::follow(const ContactBody& first, const ContactBody& second)
 }
 
 /// Calls use(run, bound) for each run, with a bound of what the run's samples and the tets near them approach each
-/// other by, while nodes go from one position to another. from, to  btVector3(std::size_t node), of either body
+/// other by, while nodes go from one position to another.
+/// from, to            btVector3(std::size_t node), of the first body
+/// fromOther, toOther  of the second one
 template <class From, class To, class FromOther, class ToOther, class Use>
 void PairCandidates::measure(const ContactBody& first, const From& from, const To& to, const FromOther& fromOther,
                              const ToOther& toOther, Use&& use) {
@@ -64,7 +66,7 @@ void PairCandidates::measure(const ContactBody& first, const From& from, const T
     for (const int n : shape.tets[static_cast<std::size_t>(shape.runs[r].tet)]) {
       own = std::max(own, nodeMotion_[static_cast<std::size_t>(n)]);
     }
-    use(run, shape.runParts[r].spread() * btSqrt(own) + second);
+    use(run, shape.runRegions[r].spread() * btSqrt(own) + second);
   }
 }
 
@@ -88,14 +90,15 @@ void PairCandidates::setReach(const ContactBody& first, const ContactBody& secon
 void PairCandidates::find(ContactBody& first, ContactBody& second) {
   first.fit();
   second.fit();
-  life_.begin(first, second);
+  validity_.begin(first, second);
   runs_.clear();
   links_.clear();
   lanes_.clear();
   const SearchTree &runs = first.data().runTree, &tets = second.data().tetTree;
   if (runs.tree.empty() || tets.tree.empty()) return;
-  const Pair pair{&first, &second, first.runTreeBoxes[0].grownBy(life_.slack()).intersection(second.tetTreeBoxes[0])};
-  const ContactBox near = pair.overlap.grownBy(life_.slack());
+  const Pair pair{&first, &second,
+                  first.runTreeBoxes[0].grownBy(validity_.slack()).intersection(second.tetTreeBoxes[0])};
+  const ContactBox near = pair.overlap.grownBy(validity_.slack());
   runs.visitLeaves([&](std::size_t node) { return first.runTreeBoxes[node].collides(near); },
                    [&](std::size_t node) { findInLeaf(pair, node); });
   std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.run < b.run; });
@@ -112,7 +115,7 @@ void PairCandidates::find(ContactBody& first, ContactBody& second) {
 /// Finds the groups near to all runs of a leaf, and then those near to each.
 void PairCandidates::findInLeaf(const Pair& pair, std::size_t leaf) {
   const SearchTree &runs = pair.first->data().runTree, &tets = pair.second->data().tetTree;
-  const ContactBox around = pair.first->runTreeBoxes[leaf].grownBy(life_.slack()).intersection(pair.overlap);
+  const ContactBox around = pair.first->runTreeBoxes[leaf].grownBy(validity_.slack()).intersection(pair.overlap);
   groups_.clear();
   tets.visitLeaves([&](std::size_t node) { return pair.second->tetTreeBoxes[node].collides(around); },
                    [&](std::size_t node) { groups_.push_back(static_cast<std::size_t>(tets.leafOf[node])); });
@@ -123,7 +126,7 @@ void PairCandidates::findInLeaf(const Pair& pair, std::size_t leaf) {
 
 void PairCandidates::findForRun(const Pair& pair, int run) {
   const ContactBox around = pair.first->runBox(run);
-  if (!around.grownBy(life_.slack()).collides(pair.overlap)) return;
+  if (!around.grownBy(validity_.slack()).collides(pair.overlap)) return;
   static const std::vector<NearGroup> kNone;
   const bool same = pair.first == pair.second;
   const std::vector<NearGroup>& near = same ? pair.first->data().nearGroups[static_cast<std::size_t>(run)] : kNone;
@@ -135,14 +138,14 @@ void PairCandidates::findForRun(const Pair& pair, int run) {
   for (const std::size_t group : groups_) {
     const GroupBoxes& tets = pair.second->groupBoxes[group];
     btScalar gap = least(gapsBetween(boxes, tets));
-    if (gap > life_.slack()) continue;
+    if (gap > validity_.slack()) continue;
     Link link;
     link.group = static_cast<int>(group);
     while (next != near.end() && next->group < link.group) ++next;
     if (next != near.end() && next->group == link.group) {
       for (unsigned k = 0; k < kLanes; ++k) link.neighbours |= next->near[k] ? 1U << k : 0U;
       gap = least(gapsOf(link.neighbours, tets, boxes));
-      if (gap > life_.slack()) continue;
+      if (gap > validity_.slack()) continue;
     }
     link.until = {gap, kForever};
     found.until.outside = links_.size() == found.first ? gap : std::min(found.until.outside, gap);

@@ -4,7 +4,7 @@
 // Internal to SoftContacts: finds which samples of one body may be in which tets of another.
 #pragma once
 
-#include <tetskin/contact/src/soft/candidate_life.h>
+#include <tetskin/contact/src/soft/candidate_validity.h>
 
 #include <algorithm>
 #include <cassert>
@@ -61,7 +61,7 @@ class PairCandidates {
   template <class Begin, class Test, class End>
   void visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
-  int age() const { return life_.age(); }  ///< number of steps since the candidates were found
+  int age() const { return validity_.age(); }  ///< number of steps since the candidates were found
 
  private:
   /// A group of tets that may contain samples of a run.
@@ -105,7 +105,7 @@ class PairCandidates {
   }
 
   int reads_[2] = {-1, -1};  ///< by body: `reads` when last updated
-  CandidateLife life_;
+  CandidateValidity validity_;
   std::vector<int> nodes_[2];  ///< of the runs' tets, and of the tets of all links
   std::vector<Run> runs_;
   std::vector<Link> links_;               ///< by run

@@ -14,17 +14,22 @@ constexpr btScalar kOnePlace = btScalar(0.3);
 /// For contacts of a body with itself, in cubes of the grid: a sample whose rest position, as a tet maps it, differs
 /// from its own by less than this is where it belongs, and does not touch there.
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
-/// In cubes of the grid: how much deeper another sample of a node must be than one that touched before.
+/// In cubes of the grid: how much deeper another sample of a node must be than one that touched before. Without it, a
+/// resting body is supported by other samples in each step, and jitters.
 constexpr btScalar kKeptCubes = btScalar(0.1);
-/// In mean edges: two samples of a node that are this far apart may both be contacts.
+/// In mean edges: two samples of a node that are this far apart may both be contacts. At 2, which leaves one, light
+/// parts swing between the two: in `tetskin_contact` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
+/// per second, where 0.005 is promised).
 constexpr btScalar kBesideEdges = btScalar(0.2);
-/// Cosine between normals from which on two contacts of a node count as one.
+/// Cosine between normals from which on two contacts of a node count as one: a node in a fold is pushed several ways.
+/// The soft scenes of `tetskin_contact`, which have no folds, hold with -1, too.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
 /// face.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
 /// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
-/// the other one, unless the normals agree by this cosine.
+/// the other one, unless the normals agree by this cosine. The overlaps of `tetskin_contact` hold with 0.95 and with
+/// -1, too.
 constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
 /// A side that is farther away at rest than this many mean edges belongs to another part.
 constexpr btScalar kOneSide = 1;
@@ -158,7 +163,7 @@ void PairSearch::touchRun() {
   own_ = now_.first->deformed(run_.tet);
   for (std::size_t k = 0; k < heads_.size(); ++k) {
     for (int p = heads_[k]; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
-      touch(static_cast<int>(k), positions_[static_cast<std::size_t>(p)]);
+      makeTouch(static_cast<int>(k), positions_[static_cast<std::size_t>(p)]);
     }
   }
 }
@@ -217,7 +222,7 @@ Clearance PairSearch::testTet(int tet) {
 Clearance PairSearch::testSample(int tet, int k) {
   SampleClearance& known = visited_.samples[k];
   if (known.tet == tet && visited_.path + visited_.reach < known.until) return away(known.until - visited_.path);
-  const Clearance found = offer(tet, run_.first + k, k);
+  const Clearance found = addPosition(tet, run_.first + k, k);
   if (found.distance > 0 && found.outside == kForever) known = {tet, visited_.path + found.distance};
   return found;
 }
@@ -234,7 +239,7 @@ bool PairSearch::isCarried(int tet, const btVector3& at) {
 }
 
 /// Skips positions that are already known from a neighbouring tet.
-Clearance PairSearch::offer(int tet, int sample, int k) {
+Clearance PairSearch::addPosition(int tet, int sample, int k) {
   assert(k >= 0 && static_cast<std::size_t>(k) < heads_.size());
   const ShapeData& data = now_.second->data();
   const DeformedTet& in = deformed(tet);
@@ -293,7 +298,7 @@ btVector3 PairSearch::ownNormal(int sample) const {
 /// normals oppose each other: a surface that slides along another one does not catch on its edges by the sides of its
 /// own. All deep samples leave in one direction, since pushing each to its nearest surface would tear the body; less
 /// deep samples beside them do not hold it back.
-bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
+bool PairSearch::chooseNormal(const btVector3& own, bool onFace, Touch& touch) const {
   const bool overlaps = !now_.apart.isZero();
   // Where bodies coincide, their surfaces do, too.
   if (overlaps && own.dot(touch.normal) > kAgreeing) touch.distance = std::min(touch.distance, -2 * now_.deep);
@@ -307,7 +312,7 @@ bool PairSearch::direct(const btVector3& own, bool onFace, Touch& touch) const {
   return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
 }
 
-void PairSearch::count(const btVector3& own, const Touch& touch) {
+void PairSearch::accumulateOverlap(const btVector3& own, const Touch& touch) {
   overlap_.agreeing += own.dot(touch.normal) > kAgreeing ? 1 : 0;
   if (!(touch.distance < 0)) return;
   overlap_.deepest = std::min(overlap_.deepest, touch.distance);
@@ -315,7 +320,7 @@ void PairSearch::count(const btVector3& own, const Touch& touch) {
   ++overlap_.inside;
 }
 
-void PairSearch::touch(int k, const SamplePosition& position) {
+void PairSearch::makeTouch(int k, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const int sample = run_.first + k;
   const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
@@ -338,9 +343,9 @@ void PairSearch::touch(int k, const SamplePosition& position) {
   std::copy(position.weights, position.weights + 4, made.weights);
   made.normal = normal / length;
   const btVector3 own = ownNormal(sample);
-  count(own, made);
+  accumulateOverlap(own, made);
   const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
-  if (!direct(own, onFace, made)) return;
+  if (!chooseNormal(own, onFace, made)) return;
   keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
 }
 

@@ -86,13 +86,13 @@ class PairSearch {
   btScalar findDepths(const DeformedTet& tet);
   Clearance testSample(int tet, int k);
   bool isCarried(int tet, const btVector3& at);
-  Clearance offer(int tet, int sample, int k);
+  Clearance addPosition(int tet, int sample, int k);
   void touchRun();
-  void touch(int k, const SamplePosition& position);
-  void count(const btVector3& own, const Touch& touch);
+  void makeTouch(int k, const SamplePosition& position);
+  void accumulateOverlap(const btVector3& own, const Touch& touch);
   btVector3 restMotion(int sample, const SamplePosition& position);
   btVector3 ownNormal(int sample) const;
-  bool direct(const btVector3& own, bool onFace, Touch& touch) const;
+  bool chooseNormal(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
   bool staysBeside(const Touch& touch, const Touch& deepest) const;
   void replace(int index, const Touch& by);

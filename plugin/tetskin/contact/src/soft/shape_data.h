@@ -40,7 +40,7 @@ constexpr btScalar kNearCubes = btScalar(0.1);
 
 /// The part of a tet that may hold something inside, or near it: where each weight is at least this. It has the shape
 /// of the tet, so that it deforms with it.
-struct FilledComponent {
+struct TetSubregion {
   btScalar minimum[4] = {};
   btScalar left = 1;  ///< 1 minus their sum
 
@@ -100,8 +100,8 @@ struct ShapeData {
   std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
   std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; some more at the end
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
-  std::vector<FilledComponent> filled;             ///< by tet
-  std::vector<FilledComponent> runParts;           ///< by run: the part of the tet that holds its samples
+  std::vector<TetSubregion> filled;                ///< by tet
+  std::vector<TetSubregion> runRegions;            ///< by run: the part of the tet that holds its samples
   btScalar largestSpread = 1;                      ///< of the runs' parts
   std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
   SearchTree runTree;                              ///< over all runs

@@ -7,13 +7,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 namespace tetskin::contact_detail {
 namespace {
 
-/// A body that moves faster than this, in body lengths per second, wakes what sleeps where it touches. It is Bullet's
-/// own threshold of sleep.
-constexpr btScalar kWakingSpeed = btScalar(0.04);
 /// Depth, in sizes of the smaller body, from which on two bodies overlap.
 constexpr btScalar kDeep = btScalar(0.03);
 /// Least length of the mean normal of the samples inside that has a direction: a body that lies wholly within another
@@ -26,6 +24,8 @@ constexpr double kInOnePlace = 0.3;
 constexpr std::size_t kMaxTasks = 64;
 /// Numbers of points begin here, so that they differ from those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
+/// Those of the other body's points, where a contact is told by the body that it meets.
+constexpr std::uint32_t kFirstTurned = 0xC0000000U;
 
 btVector3 velocityOf(const SoftPointContact& contact) {
   btVector3 v(0, 0, 0);
@@ -39,7 +39,7 @@ btVector3 velocityOf(const SoftPointContact& contact) {
 }
 
 /// The same contact as one of the other body: a sleeping body has no rows of its own.
-SoftPointContact turned(const SoftPointContact& from) {
+SoftPointContact swapRoles(const SoftPointContact& from) {
   assert(from.nodeCount == 4 && btSoftBody::upcast(from.object));
   SoftPointContact contact = from;
   contact.body = const_cast<btSoftBody*>(btSoftBody::upcast(from.object));
@@ -49,7 +49,17 @@ SoftPointContact turned(const SoftPointContact& from) {
   std::copy_n(from.nodes.begin(), 4, contact.objectNodes.begin());
   std::copy_n(from.weights.begin(), 4, contact.objectWeights.begin());
   contact.normal = -from.normal;
+  contact.point = from.point - kFirstPoint + kFirstTurned;
   return contact;
+}
+
+bool sleeps(const SoftPointContact& contact) {
+  return !contact.body->isActive() && !contact.object->isActive();
+}
+
+/// True unless the body waits to fall asleep.
+bool moves(const btSoftBody& body) {
+  return body.isActive() && !(body.getDeactivationTime() > 0);
 }
 
 bool liesWithin(const ContactBody& body, const Overlap& overlap) {
@@ -62,6 +72,7 @@ bool isMostlyWithin(const ContactBody& body, const Overlap& overlap) {
 
 /// A direction for each body, spread over the sphere by the golden angle.
 btVector3 directionOf(int id) {
+  // In radians; and the golden section.
   constexpr double kGoldenAngle = 2.39996322972865332, kGoldenPart = 0.61803398874989485;
   const double y = 2.0 * std::fmod(kGoldenPart * id, 1.0) - 1.0, angle = kGoldenAngle * id;
   const double radius = std::sqrt(1.0 - y * y);
@@ -99,13 +110,20 @@ void SoftContactRows::exclude(const btSoftBody& body) {
   if (!solved) return;
   // Nothing stored in the step before may refer to the body.
   const int id = solved->id;
-  contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(),
-                                 [&](const auto& contact) { return contact.body == &body || contact.object == &body; }),
-                  contacts_.end());
+  for (auto* contacts : {&contacts_, &sleeping_}) {
+    const auto isOf = [&](const auto& contact) { return contact.body == &body || contact.object == &body; };
+    contacts->erase(std::remove_if(contacts->begin(), contacts->end(), isOf), contacts->end());
+  }
   for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
     kept = kept->first.first == id || kept->first.second == id ? pairStates_.erase(kept) : std::next(kept);
   }
   bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; }));
+}
+
+void SoftContactRows::excludeDeleted() {
+  for (std::size_t k = bodies_.size(); k-- > 0;) {
+    if (!bodies_[k]->lives()) exclude(*bodies_[k]->body);
+  }
 }
 
 void SoftContactRows::removeSoftBody(btSoftBody* body) {
@@ -116,7 +134,7 @@ void SoftContactRows::removeSoftBody(btSoftBody* body) {
 
 std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
   assert(seconds > 0);
-  contacts_.clear();
+  keepSleeping();
   runTasks(threads, bodies_.size(), [&](std::size_t k) {
     bodies_[k]->readable = false;
     if (bodies_[k]->fits()) bodies_[k]->read();
@@ -132,6 +150,14 @@ std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds, Paral
     for (const Touch& touch : state->touches[1]) addContact(*second, *first, touch, seconds);
   }
   return &contacts_;
+}
+
+/// Contacts between bodies that sleep stay as they are.
+void SoftContactRows::keepSleeping() {
+  const auto last = std::remove_if(sleeping_.begin(), sleeping_.end(), [](const auto& c) { return !sleeps(c); });
+  sleeping_.erase(last, sleeping_.end());
+  std::copy_if(contacts_.begin(), contacts_.end(), std::back_inserter(sleeping_), sleeps);
+  contacts_.clear();
 }
 
 /// The pairs that may collide. Other pairs are forgotten: their relative position is a different one when they may
@@ -231,11 +257,11 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
   const btScalar near = kNearCubes * second.data().grid.spacing();
   // Also if it leaves now: within a step, a stiff body may throw a light node back by as much as it came.
   if (touch.distance - seconds * std::abs(velocity.dot(touch.normal)) > near) return;
-  if (first.awake != second.awake && velocity.length2() > kWakingSpeed * kWakingSpeed) {
+  if (first.awake != second.awake && (moves(*first.body) || moves(*second.body))) {
     first.body->activate();
     second.body->activate();
   }
-  contacts_.push_back(first.awake ? contact : turned(contact));
+  contacts_.push_back(first.awake ? contact : swapRoles(contact));
 }
 
 }  // namespace tetskin::contact_detail

@@ -20,12 +20,15 @@ class SoftContactRows : public RowSource {
 
   void include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self);
   void exclude(const btSoftBody& body);
+  /// Excludes bodies that were deleted after their world, which cannot tell any more that they go.
+  void excludeDeleted();
   ContactBody* find(const btSoftBody& body) const;
   bool isGone(const btSoftBody& body) const;
   /// True if the body lay wholly within another one in the last step.
   bool isWithin(const ContactBody& body) const;
-  /// The contacts of the last step.
+  /// The contacts of the last step, and those between bodies that sleep, as they were when these fell asleep.
   const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
+  const std::vector<SoftPointContact>& sleepingContacts() const { return sleeping_; }
 
   std::vector<SoftPointContact>* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
@@ -45,6 +48,7 @@ class SoftContactRows : public RowSource {
     PairState* state;
   };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
+  void keepSleeping();
   BodyPairs overlappingPairs();
   void forgetAllBut(const BodyPairs& near);
   void findInPairs(const std::vector<SearchedPair>& pairs, btScalar seconds, ParallelFor* threads);
@@ -58,7 +62,7 @@ class SoftContactRows : public RowSource {
   int nextId_ = 0;
   std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids
-  std::vector<SoftPointContact> contacts_;
+  std::vector<SoftPointContact> contacts_, sleeping_;
 };
 
 }  // namespace tetskin::contact_detail

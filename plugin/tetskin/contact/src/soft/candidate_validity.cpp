@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/contact/src/soft/candidate_life.h>
+#include <tetskin/contact/src/soft/candidate_validity.h>
 #include <tetskin/contact/src/soft/rigid_motion.h>
 
 #include <algorithm>
@@ -23,16 +23,16 @@ btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
 /// By node: the least gap between a box of the tree, in which one of its tets is, and another box, at least `slack`.
 /// tetOf  int(int item): the tet of an item of the tree
 template <class TetOf>
-void findRooms(const ContactBody& body, const SearchTree& tree, const std::vector<ContactBox>& boxes,
-               const ContactBox& other, btScalar slack, const TetOf& tetOf, std::vector<btScalar>& rooms) {
-  rooms.assign(body.positions.size(), std::numeric_limits<btScalar>::infinity());
+void findClearances(const ContactBody& body, const SearchTree& tree, const std::vector<ContactBox>& boxes,
+                    const ContactBox& other, btScalar slack, const TetOf& tetOf, std::vector<btScalar>& clearances) {
+  clearances.assign(body.positions.size(), std::numeric_limits<btScalar>::infinity());
   const std::vector<Bvh::Node>& nodes = tree.tree.nodes();
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (!nodes[k].isLeaf()) continue;
     const btScalar room = std::max(slack, gapBetween(boxes[k], other));
     for (int item = nodes[k].first; item < nodes[k].last; ++item) {
       for (const int n : body.data().tets[static_cast<std::size_t>(tetOf(tree.tree.item(item)))]) {
-        btScalar& least = rooms[static_cast<std::size_t>(n)];
+        btScalar& least = clearances[static_cast<std::size_t>(n)];
         least = std::min(least, room);
       }
     }
@@ -41,7 +41,7 @@ void findRooms(const ContactBody& body, const SearchTree& tree, const std::vecto
 
 }  // namespace
 
-void CandidateLife::begin(const ContactBody& first, const ContactBody& second) {
+void CandidateValidity::begin(const ContactBody& first, const ContactBody& second) {
   const btScalar cube = second.data().grid.spacing();
   const btScalar growth = age_ > 0 ? drift_ / static_cast<btScalar>(age_) : 0;
   slack_ = std::min(std::max(kSlackCubes * cube, kSlackSteps * growth), kMaxSlackCubes * cube);
@@ -52,17 +52,17 @@ void CandidateLife::begin(const ContactBody& first, const ContactBody& second) {
   near_.clear();
   const SearchTree &runs = first.data().runTree, &tets = second.data().tetTree;
   if (runs.tree.empty() || tets.tree.empty()) return;
-  findRooms(
+  findClearances(
       first, runs, first.runTreeBoxes, second.tetTreeBoxes[0], slack_,
       [&](int run) { return first.data().runs[static_cast<std::size_t>(run)].tet; }, rooms_[0]);
-  findRooms(
+  findClearances(
       second, tets, second.tetTreeBoxes, first.runTreeBoxes[0], slack_, [](int tet) { return tet; }, rooms_[1]);
   for (std::size_t n = 0; n < rooms_[1].size(); ++n) {
     if (!(rooms_[1][n] > slack_)) near_.push_back(static_cast<int>(n));
   }
 }
 
-bool CandidateLife::lasts(const ContactBody& first, const ContactBody& second) {
+bool CandidateValidity::lasts(const ContactBody& first, const ContactBody& second) {
   assert(began_[0].size() == first.positions.size() && began_[1].size() == second.positions.size());
   ++age_;
   const btScalar spread = first.data().largestSpread;
@@ -80,7 +80,7 @@ bool CandidateLife::lasts(const ContactBody& first, const ContactBody& second) {
   return moved_ <= slack_;
 }
 
-CandidateLife::Deviation CandidateLife::deviate(int k, const ContactBody& body, const RigidMotion& motion) {
+CandidateValidity::Deviation CandidateValidity::deviate(int k, const ContactBody& body, const RigidMotion& motion) {
   Deviation largest;
   deviations_[k].resize(body.positions.size());
   for (std::size_t n = 0; n < body.positions.size(); ++n) {
@@ -95,7 +95,7 @@ CandidateLife::Deviation CandidateLife::deviate(int k, const ContactBody& body, 
 
 /// What the nodes that were far from the other body have used up of the slack.
 /// other  what the other body deviates by
-btScalar CandidateLife::usedUp(int k, btScalar spread, btScalar other) const {
+btScalar CandidateValidity::usedUp(int k, btScalar spread, btScalar other) const {
   btScalar used = 0;
   for (std::size_t n = 0; n < rooms_[k].size(); ++n) {
     if (!(rooms_[k][n] > slack_)) continue;

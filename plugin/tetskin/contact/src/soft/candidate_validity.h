@@ -15,7 +15,7 @@ class RigidMotion;
 /// Candidates are all samples and tets whose boxes were nearer to each other than a slack. Others have not met while no
 /// two of their nodes have approached each other by more than that; far from the other body, by more than the distance
 /// from all of it. What both bodies move by in the same way, as by one rigid motion, does not count.
-class CandidateLife {
+class CandidateValidity {
  public:
   /// Begins at the current positions, with a slack by how fast the one before was used up. Both bodies are fitted.
   /// Cost  O(runs and tets)
