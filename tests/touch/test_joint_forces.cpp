@@ -56,6 +56,32 @@ TEST(JointForces, OfAWeldHoldABodyAndItsTurn) {
   expectNear(onBox.joints.torque, btVector3(0, 0, 0), 0.01 * kWeight * 0.05);
 }
 
+/// A body hangs on a hook by a spring, and a box on the body by a weld.
+TEST(JointForces, StayAsTheyAreWhenAllFallAsleep) {
+  auto world = deformableWorld(kWeight);
+  TouchedBody body(*world, TouchModel(0.38, 3.0));
+  const SurfacePoint top = body.vertex(body.furthest(Vector3d::UnitY()));
+  const SurfacePoint low = body.vertex(body.furthest(-Vector3d::UnitY()));
+  RigidBox hook(*world, 0, *top.position());
+  RigidBox box(*world, 0.5, *low.position() + btVector3(0, btScalar(-0.1), 0));
+  body.body().forceActivationState(ACTIVE_TAG);
+  const auto spring = SurfaceSpring::add(world->deformable(), top, *hook, btVector3(0, 0, 0)).value();
+  const auto weld = SurfaceWeld::add(world->deformable(), low, *box).value();
+  btVector3 pull(0, 0, 0), hold(0, 0, 0);
+  for (int f = 0; f < 1800 && body.body().isActive(); ++f) {
+    if (f == 600) body.body().m_sleepingThreshold = 1;
+    pull = spring->force();
+    hold = weld->force();
+    step(*world, 1);
+  }
+  ASSERT_FALSE(body.body().isActive());
+  ASSERT_FALSE(box->isActive()) << "in the same step";
+  step(*world, 20);
+  EXPECT_NEAR(pull.y(), 1.5 * kWeight, 0.03 * kWeight);
+  expectNear(spring->force(), pull, 0.03 * kWeight);
+  expectNear(weld->force(), hold, 0.03 * kWeight);
+}
+
 TEST(JointForces, OfAPushAreOnTheBodyAlone) {
   auto world = deformableWorld();
   TouchedBody body(*world, TouchModel(0.38, 3.0));

@@ -81,7 +81,7 @@ class TETSKIN_TOUCH_API SurfaceSpring {
   /// Status of the surface point, see `SurfacePoint::status`; NotInWorld once the body has been removed from the world,
   /// which is final.
   StatusCode status() const;
-  /// Force on the soft body in the last step, world space.
+  /// Force on the soft body in the last step in which it was awake, world space.
   btVector3 force() const;
   /// Current distance between point and target, world length; 0 unless the status is Ok.
   btScalar stretch() const;
@@ -115,9 +115,9 @@ class TETSKIN_TOUCH_API SurfaceWeld {
   /// Status of the surface point, see `SurfacePoint::status`; NotInWorld once the body has been removed from the world,
   /// which is final.
   StatusCode status() const;
-  /// Force on the soft body in the last step, world space.
+  /// Force on the soft body in the last step in which it was awake, world space.
   btVector3 force() const;
-  /// Torque on the soft body in the last step, about the point, world space.
+  /// Torque on the soft body in that step, about the point, world space.
   btVector3 torque() const;
   /// Current positional error of the weld, world length; 0 unless the status is Ok.
   btScalar separation() const;

@@ -173,11 +173,12 @@ class TETSKIN_TOUCH_API SurfaceTree {
   /// SizeMismatch for a body of another cage; Empty if the tree was moved from.
   Result<SurfacePoint> pointAt(btSoftBody& body, const SurfaceHit& hit) const;
   /// The surface point at a vertex of the mesh; its axes are those of the largest triangle around it, its normal that
-  /// at rest. Cost O(triangles).
+  /// at rest. Cost O(1).
   /// Errors: IndexOutOfRange, also for a vertex without triangles; SizeMismatch for a body of another cage; Empty if
   /// the tree was moved from.
   Result<SurfacePoint> pointAtVertex(btSoftBody& body, int vertex) const;
-  /// The point of the rest surface nearest to a position in rest space. Cost O(triangles).
+  /// The point of the rest surface nearest to a position in rest space; of several, that on the triangle of the lowest
+  /// number. Cost about O(log n) for n triangles; O(n) in the first call.
   /// Errors: NonFinite; SizeMismatch for a body of another cage; Empty if the tree was moved from.
   Result<SurfacePoint> pointAtRest(btSoftBody& body, const Eigen::Vector3d& rest) const;
 

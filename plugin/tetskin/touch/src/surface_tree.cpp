@@ -38,6 +38,7 @@ struct SurfaceTree::Impl {
   std::vector<Eigen::Vector3d> normals;  ///< by vertex, at rest
   std::vector<double> areas;             ///< by vertex: its share of the surface at rest
   touch_detail::SurfaceRayCaster rays;
+  touch_detail::RestTriangles rest;
 
   Status checkBody(const btSoftBody& body) const {
     if (!status.ok()) return status;
@@ -84,6 +85,7 @@ Result<SurfaceTree> SurfaceTree::create(std::shared_ptr<const SoftBodyBinding> b
   impl->areas = touch_detail::vertexAreas(mesh);
   assert(impl->normals.size() == mesh.vertexCount() && impl->areas.size() == mesh.vertexCount());
   impl->rays = touch_detail::SurfaceRayCaster(impl->binding, mesh);
+  impl->rest = touch_detail::RestTriangles(mesh);
   return SurfaceTree(std::move(impl));
 }
 
@@ -93,7 +95,7 @@ SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
 
 /// The parts of this tree; those of an empty tree if it was moved from.
 SurfaceTree::Impl& SurfaceTree::impl() const {
-  static Impl movedFrom{{StatusCode::Empty, "the surface tree has been moved from"}, {}, {}, {}, {}, {}};
+  static Impl movedFrom{{StatusCode::Empty, "the surface tree has been moved from"}, {}, {}, {}, {}, {}, {}};
   return impl_ ? *impl_ : movedFrom;
 }
 
@@ -128,7 +130,7 @@ Result<SurfacePoint> SurfaceTree::pointAt(btSoftBody& body, const SurfaceHit& hi
 
 Result<SurfacePoint> SurfaceTree::pointAtVertex(btSoftBody& body, int vertex) const {
   if (Status status = impl().checkBody(body); !status.ok()) return status;
-  const touch_detail::NearestTriangle found = touch_detail::largestAround(impl().mesh, vertex);
+  const touch_detail::NearestTriangle found = impl().rest.largestAround(vertex);
   if (found.triangle < 0) {
     return Status{StatusCode::IndexOutOfRange, "no triangle of the mesh uses vertex " + std::to_string(vertex)};
   }
@@ -139,7 +141,7 @@ Result<SurfacePoint> SurfaceTree::pointAtRest(btSoftBody& body, const Eigen::Vec
   if (Status status = impl().checkBody(body); !status.ok()) return status;
   if (!std::isfinite(rest.squaredNorm()))
     return Status{StatusCode::NonFinite, "the rest position is not finite, or too far away"};
-  const touch_detail::NearestTriangle found = touch_detail::nearestTriangle(impl().mesh, rest);
+  const touch_detail::NearestTriangle found = impl().rest.nearest(impl().mesh, impl().rays.tree(), rest);
   const auto& w = found.weights;
   return impl().pointOf(body, static_cast<std::size_t>(found.triangle),
                         {static_cast<btScalar>(w[0]), static_cast<btScalar>(w[1]), static_cast<btScalar>(w[2])}, 0);

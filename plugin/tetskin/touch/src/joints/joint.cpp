@@ -16,10 +16,6 @@ namespace {
 constexpr double kUnitRate = 240.0;
 /// Upper bound of stiffness and damping, which either precision can represent.
 constexpr double kStiffest = 1e9;
-/// A body that moves faster than this, in body lengths per second, wakes what sleeps at the other end. It is Bullet's
-/// own threshold of sleep.
-constexpr btScalar kWakingSpeed = btScalar(0.04);
-
 /// Mean over all nodes that can move: the force needed to carry a body does not depend on how light the nodes at the
 /// point are.
 double meanNodeMass(const btSoftBody& body) {
@@ -91,11 +87,11 @@ Joint::Carried Joint::pointBeside(const btVector3& at) const {
   const auto c =
       static_cast<std::size_t>(std::max_element(data.weights.begin(), data.weights.end()) - data.weights.begin());
   const Tet& nodes = data.corners[c].nodes;
-  const auto toPosition = [&](std::size_t k) -> const btVector3& { return point_.body()->m_nodes[nodes[k]].m_x; };
-  const btVector3 a = toPosition(0) - toPosition(3), b = toPosition(1) - toPosition(3),
-                  d = toPosition(2) - toPosition(3);
+  const auto nodePosition = [&](std::size_t k) -> const btVector3& { return point_.body()->m_nodes[nodes[k]].m_x; };
+  const btVector3 a = nodePosition(0) - nodePosition(3), b = nodePosition(1) - nodePosition(3),
+                  d = nodePosition(2) - nodePosition(3);
   const btScalar volume = a.dot(b.cross(d));
-  const btVector3 r = at - toPosition(3);
+  const btVector3 r = at - nodePosition(3);
   Carried carried;
   carried.nodeCount = 4;
   std::copy(nodes.begin(), nodes.end(), carried.nodes.begin());
@@ -145,16 +141,8 @@ btScalar Joint::turn() const {
   return turned.getAngleShortestPath();
 }
 
-btVector3 Joint::velocityOfPoint() const {
-  btVector3 sum(0, 0, 0);
-  for (std::uint32_t k = 0; k < carried_.nodeCount; ++k) {
-    sum += carried_.weights[k] * point_.body()->m_nodes[carried_.nodes[k]].m_v;
-  }
-  return sum;
-}
-
-/// What has come to rest keeps resting. A neighbour that hangs on the body would fall if the body slept first, so that
-/// the body waits until the neighbour would sleep too.
+/// What has come to rest keeps resting, and what moves wakes the other end. The solver lets the two fall asleep
+/// together.
 void Joint::wake() {
   const btTransform anchor = anchor_.inWorld();
   const bool moved = !(anchor == anchorBefore_);
@@ -166,12 +154,9 @@ void Joint::wake() {
     if (moved) own.activate();
     return;
   }
-  if (other->isActive()) {
-    if (!own.isActive()) own.activate();
-    if (other->getActivationState() != WANTS_DEACTIVATION) own.setDeactivationTime(0);
-  } else if (own.isActive() && velocityOfPoint().length() > kWakingSpeed) {
-    other->activate();
-  }
+  if (other->isActive() && !own.isActive()) own.activate();
+  const bool moves = own.isActive() && !(own.getDeactivationTime() > 0);
+  if (moves && !other->isActive()) other->activate();
 }
 
 PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
@@ -200,7 +185,9 @@ void Joint::makeSpring(btScalar seconds, PointJoint& row) const {
 
 void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
   added_ = 0;
+  slept_ = false;
   if (spent() || point_.status() != StatusCode::Ok) return;
+  slept_ = !point_.body()->isActive();
   wake();
   const btTransform anchor = anchor_.inWorld();
   joints.push_back(rowOf(carried_, anchor.getOrigin()));
@@ -216,6 +203,7 @@ void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
 
 void Joint::finish(btScalar seconds, const PointJoint* joints) {
   assert(seconds > 0 && (added_ == 0 || joints));
+  if (slept_) return;
   force_.setZero();
   torque_.setZero();
   for (int k = 0; k < added_; ++k) {

@@ -41,7 +41,7 @@ class Joint : public ActiveJoint {
   const JointAnchor& anchor() const { return anchor_; }
   JointSettings& settings() { return settings_; }
   bool dropped() const { return dropped_; }
-  /// The force of the last step on the point.
+  /// The force of the last step on the point in which the body was awake.
   const btVector3& force() const { return force_; }
   const btVector3& torque() const { return torque_; }
   /// The current offset from the anchor to the point. The point's status must be Ok.
@@ -65,7 +65,6 @@ class Joint : public ActiveJoint {
   Carried carriedPoint() const;
   Carried pointBeside(const btVector3& at) const;
   btVector3 positionOf(const Carried& point) const;
-  btVector3 velocityOfPoint() const;
   void weld();
   void wake();
   PointJoint rowOf(const Carried& point, const btVector3& anchor) const;
@@ -82,6 +81,7 @@ class Joint : public ActiveJoint {
   Carried beside_[2];         ///< of a weld: the other two points
   btTransform anchorBefore_;  ///< in world space, when last read
   int added_ = 0;             ///< rows added in this step
+  bool slept_ = false;        ///< the body slept when this step began: its forces stay as they are
   btVector3 force_{0, 0, 0}, torque_{0, 0, 0};
 };
 

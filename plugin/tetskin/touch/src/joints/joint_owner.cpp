@@ -40,8 +40,7 @@ StatusCode JointOwner::status() const {
 
 void JointOwner::release() {
   released_ = true;
-  const btSoftBody* body = joint_->body();
-  if (body && body->getBroadphaseHandle()) force_->remove(*joint_);
+  force_->remove(*joint_);
   joint_->drop();
 }
 

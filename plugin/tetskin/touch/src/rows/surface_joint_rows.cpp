@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/bullet/src/shared/solver/required_solver.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <algorithm>
@@ -10,13 +11,7 @@
 namespace tetskin::touch_detail {
 
 SurfaceJointRows::~SurfaceJointRows() {
-  // The forces left here act on bodies that still exist; whether one of these is in the world tells whether the list of
-  // forces still exists.
-  const bool inWorld = std::any_of(active_.begin(), active_.end(), [&](const auto& joint) {
-    const btSoftBody* body = joint->body();
-    return body && body->getBroadphaseHandle() && body->getSoftBodySolver() == &solver_;
-  });
-  if (inWorld) leave();
+  leave();
 }
 
 std::shared_ptr<SurfaceJointRows> SurfaceJointRows::instanceOf(DeformableSolver& solver) {
@@ -45,9 +40,9 @@ void SurfaceJointRows::remove(const ActiveJoint& joint) {
   if (active_.empty()) leave();
 }
 
-/// Bullet may be iterating over the list.
+/// Bullet may be iterating over the list, which goes with the solver.
 void SurfaceJointRows::leave() {
-  if (listed_) replaceByNothing(*solver_.getLagrangianForceArray(), this);
+  if (listed_ && deformableSolver(&solver_)) replaceByNothing(*solver_.getLagrangianForceArray(), this);
   listed_ = false;
 }
 

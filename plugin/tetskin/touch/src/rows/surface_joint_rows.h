@@ -46,7 +46,7 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
 
   /// It acts from the next step on, and stays in the list while any entry does.
   void add(std::shared_ptr<ActiveJoint> joint);
-  /// The world must exist. Ignores entries that were dropped.
+  /// Ignores entries that were dropped.
   void remove(const ActiveJoint& joint);
 
   std::vector<PointJoint>* joints(btScalar seconds) override;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SurfaceTree: searches for triangles of the rest surface that visit all of them.
+// Internal to SurfaceTree: triangles of the rest surface, to which points are attached.
 #pragma once
 
 #include <tetskin/core/mesh.h>
+#include <tetskin/core/src/shared/bvh/bvh.h>
+
+#include <vector>
 
 namespace tetskin::touch_detail {
 
@@ -14,12 +17,23 @@ struct NearestTriangle {
   int firstCorner = 0;                     ///< which of its corners is the vertex that was asked for
 };
 
-/// The triangle nearest to a point. It tests all triangles: it is called once per point that is attached, and a
-/// hierarchy at rest would be kept for that purpose alone.
-/// mesh  with triangles. Cost O(triangles)
-NearestTriangle nearestTriangle(const TriangleMesh& mesh, const Eigen::Vector3d& to);
+class RestTriangles {
+ public:
+  RestTriangles() = default;
+  /// mesh  indices in range, coordinates finite. Cost O(triangles)
+  explicit RestTriangles(const TriangleMesh& mesh);
 
-/// The triangle with the largest area around a vertex.
-NearestTriangle largestAround(const TriangleMesh& mesh, int vertex);
+  /// The triangle with the largest area around a vertex; of several, that of the lowest number.
+  NearestTriangle largestAround(int vertex) const;
+  /// The triangle nearest to a point; of several at the same distance, that of the lowest number.
+  /// mesh  with triangles, the same as before
+  /// tree  of all its triangles
+  /// Cost  about O(log n) for n triangles; the first call fits the tree to the mesh at rest, O(n)
+  NearestTriangle nearest(const TriangleMesh& mesh, const Bvh& tree, const Eigen::Vector3d& to);
+
+ private:
+  std::vector<int> largest_;           ///< by vertex: 3 * triangle + corner; -1: no triangle uses it
+  std::vector<BvhBox<double>> boxes_;  ///< by node of the tree, at rest; empty before the first search
+};
 
 }  // namespace tetskin::touch_detail

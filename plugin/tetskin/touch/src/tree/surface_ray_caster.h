@@ -26,6 +26,9 @@ class SurfaceRayCaster {
   /// two at the same distance, the one of lower number. The hit's body is not set.
   SurfaceHit cast(const btVector3& from, const btVector3& to, const TriangleFilter& filter) const;
 
+  /// Of the mesh's triangles, whatever the body does.
+  const Bvh& tree() const { return bvh_; }
+
  private:
   TriangleCorners cornersAt(int index) const;
   RayHit nearestHit(Ray ray, const TriangleFilter& filter) const;
