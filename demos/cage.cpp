@@ -39,6 +39,7 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
   json["max_dihedral_deg"] = report.maxDihedralDegrees;
   json["components"] = report.components;
   json["mesh_components"] = report.meshComponents;
+  json["loose_vertices"] = report.looseVertices;
   json["copies"] = report.duplicateTets;
   json["fused_parts"] = report.fusedComponents;
   json["stiffness_factor"] = calibration.stiffnessFactor;
@@ -50,7 +51,7 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
 }
 
 int run(CageCommand command) {
-  const Surface surface = loadSurface(command.model);
+  Surface surface = loadSurface(command.model);
   CageReport report;
   CageOptions options = cageOptionsOf(command.model);
   options.fit = !command.loose;
@@ -60,6 +61,7 @@ int run(CageCommand command) {
   if (command.model.calibrate) calibration = calibrated(cage, surface.name);
   require(saveCage(cage, command.output));
 
+  gatherLooseVertices(surface, cage, true);  // the report has told of them
   // Counted as an application would see it, not as the builder reports it.
   EmbedReport fit;
   const auto embedded = embed(cage, surface.mesh, {}, &fit);

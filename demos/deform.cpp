@@ -179,6 +179,7 @@ int run(const DeformCommand& command) {
   Result<ObjLayout> layout = objLayoutFor(command.model.mesh, model.mesh);
   require(layout.status());
   model.cage = loadCage(command.model.cage, model);
+  gatherLooseVertices(model, model.cage, command.quiet);
   TetMesh deformed = loadDeformed(command, command.deformed.front(), model.cage.mesh);
 
   EmbedReport fit;

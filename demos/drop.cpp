@@ -99,10 +99,10 @@ class Drop {
   const TriangleMesh& mesh() const { return player_.model().mesh; }
   TriangleMesh obstacles() {
     TriangleMesh mesh = player_.scene().world().obstacles();
-    player_.place().toModel(mesh.positions);
+    player_.placement().toModel(mesh.positions);
     return mesh;
   }
-  double floorY() { return player_.place().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
+  double floorY() { return player_.placement().toModel(Eigen::Vector3d(0.0, player_.scene().floorY, 0.0)).y(); }
   const Totals& totals() const { return totals_; }
 
   /// Records the run that follows.
@@ -116,7 +116,7 @@ class Drop {
  private:
   Box3 bounds() const {
     const Box3& box = surface_.skin.bounds();
-    return {player_.place().toModel(box.min()), player_.place().toModel(box.max())};
+    return {player_.placement().toModel(box.min()), player_.placement().toModel(box.max())};
   }
   void measure() {
     totals_.extentMax = std::max(totals_.extentMax, bounds().sizes().maxCoeff() / restExtent_);
@@ -128,7 +128,7 @@ class Drop {
     TetMesh cage;
     if (options_.writeCage) {
       cage = readTetMesh(player_.scene().body());
-      player_.place().toModel(cage.nodes);
+      player_.placement().toModel(cage.nodes);
     }
     writer.write(frame, surface_.surface, bounds(), surface_.skin.normals(), options_.writeCage ? &cage : nullptr);
   }
@@ -155,7 +155,7 @@ Recording& Drop::record(const std::string& view) {
 }
 
 nlohmann::ordered_json Drop::summarise(const Playback& run) {
-  const double scale = player_.place().scale, margin = player_.scene().margin() / scale;
+  const double scale = player_.placement().scale, margin = player_.scene().margin() / scale;
   nlohmann::ordered_json json = summaryOf(player_.model(), player_.fit());
   json["body"] = options_.body;
   if (const ReductionReport* reduction = player_.scene().world().reduction()) {

@@ -6,6 +6,7 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/threads/thread_pool.h>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <set>
 
 #include "scenes/command_line.h"
@@ -47,6 +49,7 @@ struct PileOptions {
   std::string scene = "column";  ///< one body above the other, over poles; or "heap": layers of four
   int bodies = 10;
   int depthEvery = kFramesPerSecond;  ///< frames between two measurements of the deepest vertex
+  int seed = 1;                       ///< of the bodies' rotations before they fall
   int threads = 1;                    ///< threads of the solver and of the skins, including the calling one
   ModelOptions model;                 ///< if it has no mesh: the options common to all of kModels
   Contact contact = Contact::Surface;
@@ -115,8 +118,19 @@ Vector3d placeInHeap(int k) {
   return {k % 2 ? half : -half, kFloorY + kSize + kApart * (k / 4), k / 2 % 2 ? half : -half};
 }
 
-Cage placedAt(const Vector3d& at, int k, Cage cage) {
-  const Eigen::AngleAxisd turn(1.1 * k, Vector3d(0.3, 1.0, 0.2).normalized());
+/// Rotation of the k-th body before it falls. Piles are chaotic: what holds in one need not hold in another.
+Eigen::Quaterniond turnOf(int seed, int k) {
+  if (seed == 1) return Eigen::Quaterniond(Eigen::AngleAxisd(1.1 * k, Vector3d(0.3, 1.0, 0.2).normalized()));
+  std::seed_seq numbers{seed, k};
+  std::mt19937 random(numbers);
+  Eigen::Vector4d turn;
+  do {
+    for (double& part : turn) part = 2.0 * static_cast<double>(random()) / std::mt19937::max() - 1.0;
+  } while (turn.norm() < 0.1 || turn.norm() > 1.0);  // uniform among all rotations
+  return Eigen::Quaterniond(turn.normalized());
+}
+
+Cage placedAt(const Vector3d& at, const Eigen::Quaterniond& turn, Cage cage) {
   for (Vector3d& p : cage.mesh.nodes) p = turn * p + at;
   return cage;
 }
@@ -178,7 +192,7 @@ class Pile {
 
 void Pile::add(const PileModel& model, int k, const PileOptions& options) {
   const Vector3d at = options.isHeap() ? placeInHeap(k) : placeInColumn(k);
-  btSoftBody& body = world_.add(placedAt(at, k, model.model.cage), oneKilogram());
+  btSoftBody& body = world_.add(placedAt(at, turnOf(options.seed, k), model.model.cage), oneKilogram());
   if (options.contact == Contact::Surface) world_.touchBySurface(body, *model.binding, model.model.mesh);
   world_.touchEachOther(body, model.shape, options.touchThemselves());
   bodies_.push_back(&body);
@@ -395,6 +409,7 @@ nlohmann::ordered_json summarise(const PileOptions& options, const Pile& pile, c
   json["tets"] = pile.tetCount();
   json["contact"] = options.contact == Contact::Surface ? "surface" : "cage";
   json["self_contact"] = options.touchThemselves() ? "on" : "off";
+  json["seed"] = options.seed;
   json["threads"] = options.threads;
   json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
   json["processor_ms_per_frame"] = measured.meanTime().processor;
@@ -524,6 +539,7 @@ int main(int argc, char** argv) {
   line.addCount("--tets", options.model.tets, "each", 20000);
   line.addFlag("--calibrate", options.model.calibrate);
   line.addCount("--bodies", options.bodies, "", 100);
+  line.addCount("--seed", options.seed, "Of the bodies' rotations before they fall; 1: fixed ones", 1000000);
   line.addCount("--threads", options.threads, "Threads of the solver and of the surfaces; they change no result",
                 kMaxThreads);
   line.addContactOption(options.contact);

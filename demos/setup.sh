@@ -19,7 +19,7 @@ require_packages() {
     for tool in cmake c++; do
       if ! command -v "$tool" >/dev/null; then
         echo "This system has no apt. Install with its own package manager: CMake 3.21, a C++17 compiler, Bullet, Eigen," \
-          "assimp, tinygltf (for GLB), CLI11, nlohmann-json, three.js (for pages) and, for the tests, GoogleTest and Google Benchmark; then run this again. Missing: $tool" >&2
+          "assimp, tinygltf (for glTF), CLI11, nlohmann-json, three.js (for pages) and, for the tests, GoogleTest and Google Benchmark; then run this again. Missing: $tool" >&2
         exit 1
       fi
     done

@@ -120,7 +120,7 @@ double nodesOffTwist(Player& player, int frame) {
   double squared = 0.0;
   for (std::size_t n = 0; n < rest.size(); ++n) {
     const btVector3& node = player.scene().body().m_nodes[static_cast<int>(n)].m_x;
-    squared += (player.place().toModel(toEigen(node)) - twist.point(rest[n])).squaredNorm();
+    squared += (player.placement().toModel(toEigen(node)) - twist.point(rest[n])).squaredNorm();
   }
   return std::sqrt(squared / static_cast<double>(rest.size()));
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <random>
 #include <utility>
@@ -119,6 +120,16 @@ TriangleMesh gridBox(const Vector3i& cubes) {
   return mesh;
 }
 
+/// The surface of a box about the origin.
+/// divisions  of its longest edge
+TriangleMesh boxOfGrids(const Vector3d& halfExtents, int divisions) {
+  const double edge = 2.0 * halfExtents.maxCoeff() / divisions;
+  const Vector3i cubes = (2.0 / edge * halfExtents).array().round().cast<int>();
+  TriangleMesh mesh = gridBox(cubes);
+  for (Vector3d& p : mesh.positions) p = edge * p - halfExtents;
+  return mesh;
+}
+
 TetMesh latticeTets(const Vector3i& cubes, double edge) {
   static const std::array<std::array<int, 3>, 6> kPaths = {
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
@@ -164,11 +175,23 @@ ModelPtr makeBall(std::size_t tets, int level, Copies copies) {
 }
 
 ModelPtr makeBox(const Vector3d& halfExtents, int divisions, Copies copies) {
-  const double edge = 2.0 * halfExtents.maxCoeff() / divisions;
-  const Vector3i cubes = (2.0 / edge * halfExtents).array().round().cast<int>();
-  TriangleMesh mesh = gridBox(cubes);
-  for (Vector3d& p : mesh.positions) p = edge * p - halfExtents;
-  return inBuiltCage(std::move(mesh), 1000, copies);
+  return inBuiltCage(boxOfGrids(halfExtents, divisions), 1000, copies);
+}
+
+ModelPtr makeWavyBox(const Vector3d& halfExtents, int divisions, double wave) {
+  TriangleMesh mesh = boxOfGrids(halfExtents, divisions);
+  const double turn = 0.5 * EIGEN_PI * divisions / (2.0 * halfExtents.maxCoeff());
+  const double top = boundingBox(mesh.positions).max().y();
+  for (Vector3d& p : mesh.positions) {
+    if (p.y() == top) p.y() += 0.5 * wave * (std::cos(turn * p.x()) * std::cos(turn * p.z()) - 1.0);
+  }
+  return inBuiltCage(std::move(mesh), 1000, {});
+}
+
+ModelPtr makeCoarseBox(const Vector3d& halfExtents, std::size_t tets) {
+  TriangleMesh mesh = gridBox(Vector3i::Ones());
+  for (Vector3d& p : mesh.positions) p = 2.0 * halfExtents.cwiseProduct(p - Vector3d::Constant(0.5));
+  return inBuiltCage(std::move(mesh), tets, {});
 }
 
 ModelPtr makeLattice(const Vector3i& cubes, double edge) {

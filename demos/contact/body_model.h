@@ -39,6 +39,13 @@ ModelPtr makeBall(std::size_t tets = 1000, int level = 4, Copies copies = {});
 /// divisions  of its longest edge
 ModelPtr makeBox(const Eigen::Vector3d& halfExtents, int divisions = 16, Copies copies = {});
 
+/// The same with waves on its upper side, two divisions apart from crest to trough.
+/// wave  from trough to crest, metres
+ModelPtr makeWavyBox(const Eigen::Vector3d& halfExtents, int divisions, double wave);
+
+/// A box of twelve triangles in a built cage.
+ModelPtr makeCoarseBox(const Eigen::Vector3d& halfExtents, std::size_t tets = 500);
+
 /// A box of this many cubes of six tets each, with a surface grid four times as fine as the cubes.
 ModelPtr makeLattice(const Eigen::Vector3i& cubes, double edge);
 

@@ -22,10 +22,6 @@ using Eigen::Vector3d;
 
 constexpr double kPoisson = 0.3;
 
-btTransform at(const Vector3d& centre) {
-  return btTransform(btQuaternion::getIdentity(), toBullet(centre));
-}
-
 Cage moved(Cage cage, const Isometry3d& to) {
   for (Vector3d& node : cage.mesh.nodes) node = to * node;
   return cage;
@@ -50,6 +46,10 @@ SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, 
 }
 
 }  // namespace
+
+btTransform at(const Vector3d& centre) {
+  return btTransform(btQuaternion::getIdentity(), toBullet(centre));
+}
 
 SoftObject::SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
                        std::vector<double> stiffnessScale)
@@ -128,6 +128,7 @@ SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, co
   if (bySurface) {
     SurfaceContactOptions contact;
     contact.margin = kMargin * model->size;
+    if (options.sampleSpacing > 0.0) contact.sampleSpacing = options.sampleSpacing;
     auto touching = SurfaceContact::add(bullet(), body, *model->binding, model->mesh, contact);
     scenes::require(touching.status());
     contacts_.push_back(std::move(touching).value());

@@ -31,6 +31,9 @@ constexpr double kStep = 1.0 / 240;
 /// The distance kept between a surface and what it touches, over the body's size: the exact gap at rest.
 constexpr double kMargin = 0.002;
 
+/// The transform of an object that is moved, not turned.
+btTransform at(const Eigen::Vector3d& centre);
+
 /// The distance of a point in world space from an obstacle.
 using Distance = std::function<double(const Eigen::Vector3d&)>;
 
@@ -43,6 +46,7 @@ struct BodyOptions {
   double tolerance = 5e-3;     ///< tolerance of the library's solver
   bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever kind the run has
   bool sleeps = false;         ///< it may fall asleep
+  double sampleSpacing = 0.0;  ///< of contact at the surface; 0: the default
   std::function<bool(const Eigen::Vector3d&)> pinned;  ///< chooses pinned nodes by rest position, in the model's space
 };
 
@@ -118,13 +122,15 @@ class ContactWorld {
   /// Makes a body kinematic: the scene moves it by setting its world transform before each step.
   static btRigidBody& makeKinematic(btRigidBody& body);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
-  /// Adds a multibody that is complete. link  the link that collides; -1: the base
+  /// Adds a multibody that is complete.
+  /// link  the link that collides; -1: the base
   btMultiBody& addMultiBody(std::unique_ptr<btMultiBody> body, int link, std::unique_ptr<btCollisionShape> shape);
 
   btDeformableMultiBodyDynamicsWorld& bullet();
   void setGravity(const Eigen::Vector3d& gravity);
   void step(double seconds = kStep);
-  /// Makes steps of equal length. after  called after each step
+  /// Makes steps of equal length.
+  /// after  called after each step
   void simulate(double seconds, const std::function<void()>& after = {}, double step = kStep);
 
   /// The momentum of everything that can move.

@@ -16,8 +16,11 @@ const ContactScenes& contactScenes() {
     addEnergyScenes(scenes);
     addMovedScenes(scenes);
     addRestScenes(scenes);
+    addCoarseScenes(scenes);
+    addSleepScenes(scenes);
     addSoftScenes(scenes);
     addSlabScenes(scenes);
+    addSlidingScenes(scenes);
     addJointScenes(scenes);
     addCostScenes(scenes);
     return scenes;

@@ -27,6 +27,7 @@ using ContactScenes = std::vector<ContactScene>;
 void addHitScenes(ContactScenes& scenes);
 void addApplicationScenes(ContactScenes& scenes);
 void addRestScenes(ContactScenes& scenes);
+void addCoarseScenes(ContactScenes& scenes);
 void addSoftScenes(ContactScenes& scenes);
 void addSlabScenes(ContactScenes& scenes);
 void addJointScenes(ContactScenes& scenes);
@@ -35,6 +36,8 @@ void addLoadScenes(ContactScenes& scenes);
 void addFrictionScenes(ContactScenes& scenes);
 void addEnergyScenes(ContactScenes& scenes);
 void addMovedScenes(ContactScenes& scenes);
+void addSlidingScenes(ContactScenes& scenes);
+void addSleepScenes(ContactScenes& scenes);
 
 const ContactScenes& contactScenes();
 

@@ -27,7 +27,8 @@ BodyOptions bodyOf(double stiffness) {
   return options;
 }
 
-/// A stack of boxes at rest on a floor. stiffnesses  from below
+/// A stack of boxes at rest on a floor.
+/// stiffnesses  from below
 void stack(Run& run, const std::vector<double>& stiffnesses) {
   constexpr double kHeight = 0.5, kSize = 1.0;
   const ModelPtr model = makeBox({0.5, 0.5 * kHeight, 0.5});

@@ -9,8 +9,9 @@
 
 namespace tetskin::report {
 
-/// A mesh as ASCII PLY, each vertex coloured by a value: from dark blue for 0 over green to yellow for `most` and
-/// above. positions, values  vertexCount each
+/// A mesh as ASCII PLY, each vertex coloured by a value: from dark blue for 0 over green to yellow for `maximum` and
+/// above.
+/// positions, values  vertexCount each
 std::string colouredPly(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& positions,
                         const std::vector<float>& values, double maximum);
 

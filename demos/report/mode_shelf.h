@@ -14,7 +14,7 @@ namespace tetskin::report {
 /// The vibration modes of the reference, which the reduced bodies of one scene share.
 class ModeShelf {
  public:
-  /// most  the largest number of modes that any body uses
+  /// maximum  the largest number of modes that any body uses
   explicit ModeShelf(int maximum) : max_(maximum) {}
 
   /// The reduction for the bodies of a cage. Throws InputError.

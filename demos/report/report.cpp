@@ -18,6 +18,8 @@ namespace {
 
 ReportModel loadReportModel(const ReportOptions& options) {
   scenes::Surface surface = scenes::loadSurface(options.model);
+  Cage none;
+  scenes::gatherLooseVertices(surface, none, options.quiet);
   ReportModel model;
   model.name = std::move(surface.name);
   model.modelDiagonal = boundingBox(surface.mesh.positions).diagonal().norm();

@@ -75,7 +75,8 @@ class CommandLine {
                 const std::string& preset = "");
   /// Files to be read, in this order: as many as follow the option.
   void addInputs(const std::string& name, std::vector<std::string>& values, const std::string& text, Need need);
-  /// A file to be written. extensions  permitted ones, with their dots; empty: any
+  /// A file to be written.
+  /// extensions  permitted ones, with their dots; empty: any
   void addOutput(const std::string& name, std::string& value, const std::string& text = "", Need need = Need::Optional,
                  const std::vector<std::string>& extensions = {}, const std::string& preset = "");
   /// A folder in which files with certain names are written.

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/model.h"
 
+#include <tetskin/core/src/shared/mesh/used_vertices.h>
 #include <tetskin/io/files.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "scenes/bar.h"
@@ -39,6 +41,11 @@ const Maker& makerOf(BuiltIn model) {
   return makers[static_cast<std::size_t>(model)];
 }
 
+/// Tells what of a file was not read as it stands there.
+void warn(const std::string& path, const std::string& what) {
+  if (!what.empty()) std::fprintf(stderr, "%s: %s\n", path.c_str(), what.c_str());
+}
+
 }  // namespace
 
 const std::vector<BuiltIn>& builtInModels() {
@@ -58,14 +65,18 @@ std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets) {
 
 Surface loadSurface(const ModelOptions& options) {
   if (options.mesh.empty()) return {nameOf(options.builtIn), makerOf(options.builtIn).surface(options.triangles)};
-  Result<TriangleMesh> mesh = loadMesh(options.mesh);
+  MeshFileReport report;
+  Result<TriangleMesh> mesh = loadMesh(options.mesh, &report);
   require(mesh.status());
+  warn(options.mesh, report.describe());
   return {options.mesh, std::move(mesh).value()};
 }
 
 Cage loadCage(const std::string& path) {
-  Result<Cage> loaded = tetskin::loadCage(path);
+  TetFileReport report;
+  Result<Cage> loaded = tetskin::loadCage(path, &report);
   require(loaded.status());
+  if (report.cornersOnly > 0) warn(path, report.describe());  // most files hold surfaces, too, which need no word
   Cage cage = std::move(loaded).value();
   if (const Status status = validate(cage.mesh); !status.ok()) {
     throw InputError(path + ": " + status.message);
@@ -90,6 +101,23 @@ Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* rep
   Result<Cage> cage = createCage(surface.mesh, options, report);
   if (!cage.ok()) throw InputError(surface.name + ": " + cage.status().message);
   return std::move(cage).value();
+}
+
+void gatherLooseVertices(Surface& surface, Cage& cage, bool quiet) {
+  const std::vector<char> used = usedVertices(surface.mesh);
+  const auto loose = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+  if (loose == 0) return;
+  if (!quiet) {
+    std::printf("%s: no triangle uses %zu of its %zu vertices; they shape no cage\n", surface.name.c_str(), loose,
+                used.size());
+  }
+  const auto corner = static_cast<std::size_t>(surface.mesh.triangles[0][0]);
+  cage.meshHash.reset();
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) continue;
+    surface.mesh.positions[v] = surface.mesh.positions[corner];
+    if (!cage.vertexTets.empty()) cage.vertexTets[v] = cage.vertexTets[corner];
+  }
 }
 
 CageOptions cageOptionsOf(const ModelOptions& options) {
@@ -124,6 +152,7 @@ Model loadModel(const ModelOptions& options) {
   if (options.loaded) options.loaded(model.mesh, model.layout);
   if (options.cage.empty()) announceCage(options.tets, options);
   model.cage = options.cage.empty() ? cageFor(model, cageOptionsOf(options)) : loadCage(options.cage, model);
+  gatherLooseVertices(model, model.cage, options.quiet);
   // The refined tets of a tet whose orientation is reversed come in a different order.
   if (repairTetMesh(model.cage.mesh).negativeVolume.count > 0) model.cage.fineVolumeFraction.clear();
   if (options.calibrate) (void)calibrated(model.cage, options.cage.empty() ? model.name : options.cage);

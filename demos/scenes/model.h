@@ -59,6 +59,10 @@ Cage loadCage(const std::string& path);
 Cage loadCage(const std::string& path, const Surface& surface);
 Cage cageFor(const Surface& surface, const CageOptions& options, CageReport* report = nullptr);
 CageOptions cageOptionsOf(const ModelOptions& options);
+/// Moves vertices that no triangle uses to the mesh's first corner, whose tet then carries them; prints how many,
+/// unless quiet. They are nowhere drawn, but would count where a program places the body or measures it.
+/// cage  its map, if it has one, is of this mesh
+void gatherLooseVertices(Surface& surface, Cage& cage, bool quiet);
 /// Prints that a cage of this many tets is about to be built, unless the options are quiet.
 void announceCage(std::size_t tets, const ModelOptions& options);
 /// Calibrates a cage; errors name it by `name`.

@@ -39,7 +39,7 @@ class Player {
 
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
-  const Placement& place() const { return position_; }
+  const Placement& placement() const { return position_; }
   const EmbedReport& fit() const { return fit_; }
 
   /// Simulates the frames that the options request, and prints the progress.

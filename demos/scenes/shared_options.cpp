@@ -9,7 +9,7 @@ namespace tetskin::scenes {
 
 const std::vector<SharedOption>& sharedOptions() {
   static const std::vector<SharedOption> options = {
-      {"--mesh", "Model", "Render mesh, in any format that assimp reads"},
+      {"--mesh", "Model", "Render mesh, as OBJ, PLY, STL, OFF, glTF, or in any format that assimp reads"},
       {"--model", "Model", "Built-in model"},
       {"--triangles", "Model", "Triangles of a built-in model"},
       {"--cage", "Model", "Tet mesh to use as the cage: .vtk, .ele/.node or .msh"},

@@ -108,12 +108,14 @@ class World {
                       double mass = 0.0);
   /// A box that `moveTo` moves, and that is not drawn as an obstacle.
   btRigidBody& addMovingBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents);
-  /// A capsule along z. halfLength  without its round ends
+  /// A capsule along z.
+  /// halfLength  without its round ends
   void addPole(const Eigen::Vector3d& centre, double radius, double halfLength);
   void addSphere(const Eigen::Vector3d& centre, double radius);
   /// Draws the last obstacle added with another material: see scenes/materials.h.
   void paint(const std::string& material);
-  /// Adds any other body, which is not drawn as an obstacle. mass  0: fixed
+  /// Adds any other body, which is not drawn as an obstacle.
+  /// mass  0: fixed
   btRigidBody& addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& where, double mass);
   /// Deletes a body. May be called between steps, or from an action.
   void remove(btRigidBody& body);

@@ -56,7 +56,7 @@ Offsets offsetsOf(const char* scene, const scenes::ModelOptions& model, int fram
   paletteOptions.gradients = true;
   auto gradients = BonePalette<btScalar>::create(skin.binding(), paletteOptions).value();
   TriangleMesh mesh = player.model().mesh;
-  scenes::Placement atRest = player.place();
+  scenes::Placement atRest = player.placement();
   atRest.offset.setZero();
   atRest.toWorld(mesh.positions);
   const double size = boundingBox(mesh.positions).sizes().maxCoeff();
@@ -65,7 +65,7 @@ Offsets offsetsOf(const char* scene, const scenes::ModelOptions& model, int fram
   const auto measure = [&](int frame) {
     if (frame % 10 != 0) return;
     std::vector<Eigen::Vector3d> nodes = player.nodes();
-    player.place().toWorld(nodes);
+    player.placement().toWorld(nodes);
     const auto bones = test::bonesFor(palette, nodes), turning = test::bonesFor(gradients, nodes);
     const auto drawn = test::drawnBy(bones, skinned, mesh.positions);
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {

@@ -81,6 +81,16 @@ TEST_F(CageCommand, AWholeCageIsOfUseToOtherMeshesInIt) {
   EXPECT_EQ(fits.status, 0) << fits.err;
 }
 
+TEST_F(CageCommand, TellsInOneLineWhatOfAMeshWasNotRead) {
+  folder.write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 2\nf 2/7 3/7 4/7\nf 3 1 4\n");
+  const CommandResult result = cage({"--mesh", "box.obj", "--tets", "100", "-o", "c.vtk", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(
+      result.err,
+      "box.obj: 1 face of fewer than 3 corners left out (first in line 7), 1 face read without texture coordinates "
+      "or normals that do not exist (first in line 8)\n");
+}
+
 TEST_F(CageCommand, WritesEveryTetFormat) {
   for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
     ASSERT_EQ(cage({"--triangles", "2000", "--tets", "300", "--no-duplicate-elements", "-o", name, "--quiet"}).status,
@@ -113,6 +123,16 @@ TEST_F(CageCommand, FlatSheetGetsAThinCage) {
   ASSERT_EQ(result.status, 0);
   EXPECT_EQ(folder.json("c.json")["vertices_outside"], 0);
   EXPECT_NE(result.out.find("\n1 component of the mesh, 1 of the cage"), std::string::npos) << result.out;
+}
+
+TEST_F(CageCommand, TellsOfVerticesThatNoTriangleUses) {
+  folder.write("cut.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nv 0 0 50\nf 1 2 3 4\n");
+  const CommandResult result = cage({"--mesh", "cut.obj", "--tets", "300", "-o", "c.vtk", "--json", "c.json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(folder.json("c.json")["loose_vertices"], 2);
+  EXPECT_EQ(folder.json("c.json")["components"], 1);
+  EXPECT_EQ(folder.json("c.json")["vertices_outside"], 0);
+  EXPECT_NE(result.out.find("\n2 vertices shape no cage"), std::string::npos) << result.out;
 }
 
 TEST_F(CageCommand, RefusesBadInput) {

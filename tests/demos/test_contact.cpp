@@ -69,6 +69,31 @@ TEST(Contact, HoldsWhatIsPromisedOfSoftBodiesAmongThemselves) {
   }
 }
 
+/// What slides comes near to edges from aside: those of tiles, and its own on a soft slab.
+TEST(Contact, LetsThingsSlideAsFarAsCoulombSays) {
+  const CommandFolder folder;
+  for (const char* scene :
+       {"slide over tiles/along", "slide over two height fields/along", "slide on slab/box/pinned"}) {
+    const CommandResult result = folder.run(TETSKIN_CONTACT, {"--only", scene, "--json", "c.json"});
+    ASSERT_EQ(result.status, 0) << result.out << result.err;
+    const auto figures = figuresOf(folder.json("c.json")[0]);
+    EXPECT_NEAR(figures.at("distance over v^2 / (2 mu g)")["value"].get<double>(), 1.0, 0.03) << scene;
+    EXPECT_LT(figures.at("jump, S")["value"].get<double>(), 0.002) << scene;
+  }
+}
+
+/// With contact at nodes nothing is promised, but they take the same side of an edge.
+TEST(Contact, LetsNodesSlideOverSeams) {
+  const CommandFolder folder;
+  for (const char* scene : {"slide over tiles/along", "slide over mesh of 20000/along"}) {
+    const CommandResult result =
+        folder.run(TETSKIN_CONTACT, {"--only", scene, "--contact", "cage", "--json", "c.json"});
+    ASSERT_EQ(result.status, 0) << result.out << result.err;
+    const auto figures = figuresOf(folder.json("c.json")[0]);
+    EXPECT_NEAR(figures.at("distance over v^2 / (2 mu g)")["value"].get<double>(), 1.0, 0.1) << scene;
+  }
+}
+
 /// A box glides along a slab that it touches only in some steps; without contact, the scene would prove nothing.
 TEST(Contact, TouchesTheSlabThatItGlidesAlong) {
   const CommandFolder folder;

@@ -33,6 +33,41 @@ double deformation(const std::vector<std::array<double, 3>>& rest, const std::ve
   return std::sqrt((moved - b).colwise().squaredNorm().mean()) / size;
 }
 
+/// A half sphere, and the vertices of the other half, as some modellers leave them when they cut.
+std::string cutSphereObj() {
+  constexpr int kRings = 10, kAround = 24;
+  std::string text = "v 0 1 0\n";
+  for (int r = 1; r < 2 * kRings; ++r) {
+    const double theta = std::acos(-1.0) * r / (2 * kRings);
+    for (int s = 0; s < kAround; ++s) {
+      const double phi = 2.0 * std::acos(-1.0) * s / kAround;
+      text += "v " + std::to_string(std::sin(theta) * std::cos(phi)) + " " + std::to_string(std::cos(theta)) + " " +
+              std::to_string(std::sin(theta) * std::sin(phi)) + "\n";
+    }
+  }
+  const auto at = [](int r, int s) { return std::to_string(2 + (r - 1) * kAround + s % kAround); };
+  for (int s = 0; s < kAround; ++s) text += "f 1 " + at(1, s + 1) + " " + at(1, s) + "\n";
+  for (int r = 1; r < kRings; ++r) {
+    for (int s = 0; s < kAround; ++s) {
+      text += "f " + at(r, s) + " " + at(r, s + 1) + " " + at(r + 1, s + 1) + " " + at(r + 1, s) + "\n";
+    }
+  }
+  return text;
+}
+
+TEST_F(Drop, AHalfSphereWithTheVerticesOfTheOtherHalfStaysInOnePiece) {
+  folder.write("half.obj", cutSphereObj());
+  const CommandResult result = drop({"--mesh", "half.obj", "--tets", "500", "--every", "60"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("half.obj: no triangle uses 216 of its 457 vertices; they shape no cage\n"),
+            std::string::npos)
+      << result.out;
+  const auto json = folder.json("out/drop/summary.json");
+  EXPECT_EQ(json["outside"], 0);
+  EXPECT_LT(json["extent_max"], 1.3);
+  EXPECT_TRUE(json["at_rest"]) << json["rest_speed"];
+}
+
 TEST_F(Drop, SerpentFallsDeformsStaysAboveTheFloorAndRests) {
   const CommandResult result = drop({"--triangles", "8000", "--tets", "1000", "--every", "30"});
   ASSERT_EQ(result.status, 0) << result.err;
