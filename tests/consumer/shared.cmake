@@ -39,7 +39,7 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
   endif()
   # A class that bullet derives from: its type information is repeated there.
   if(library STREQUAL bullet)
-    string(REGEX REPLACE "[^\n]* (vtable|typeinfo|typeinfo name) for tetskin::elastic_detail::ConjugateGradient<(float|double)>::Addition" ""
+    string(REGEX REPLACE "[^\n]* (vtable|typeinfo|typeinfo name) for tetskin::elastic_detail::ConjugateGradient<(float|double)>::CouplingOperator" ""
       names "${names}")
   endif()
   if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
