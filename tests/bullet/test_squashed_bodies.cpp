@@ -55,8 +55,7 @@ struct Press {
   std::unique_ptr<ForceRecord> record;
 };
 
-/// Under 100 times its mass, some node may go on by a tenth of the size per second; without the cure all do, by sixty
-/// sizes.
+/// Without the cure nodes go on by sixty sizes per second, for ever.
 TEST(SquashedBodies, ComeToRestAndCarryTheWholeWeight) {
   for (const double ratio : {100.0, 1000.0}) {
     Press press(ratio);
@@ -64,7 +63,7 @@ TEST(SquashedBodies, ComeToRestAndCarryTheWholeWeight) {
     EXPECT_LT(press.height(), 0.3 * kSize) << ratio;
     for (int k = 0; k < 60; ++k) {
       press.run(1);
-      EXPECT_LT(press.fastest(), (ratio > 100.0 ? 0.01 : 0.2) * kSize) << ratio;
+      EXPECT_LT(press.fastest(), 0.01 * kSize) << ratio;
       const double carried = static_cast<double>(press.record->forcesOn(*press.box->body).total().force.y());
       EXPECT_NEAR(carried / (ratio * kGravity), 1.0, 0.01) << ratio;
     }

@@ -227,6 +227,7 @@ void DeformableSolver::Impl::useOwnSettings() {
 
 void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
   Dynamics& dynamics = *body.dynamics;
+  dynamics.setPressed(body.hadRows);
   dynamics.predict(static_cast<double>(dt()), inner);
   dynamics.matrix().free();
   if (body.deferSolve) return dynamics.startLater(static_cast<double>(dt()));

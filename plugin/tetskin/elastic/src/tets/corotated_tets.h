@@ -53,8 +53,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double maxTurn() const;
   /// The corners for BlockMatrix::assemble, with the current rotations.
   /// flatAlpha  if larger than `alpha`: its value for tets that were flat or inverted in the last `forces`, whose
-  /// points
-  ///            must still be there
+  ///            points must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
 
  private:

@@ -32,10 +32,10 @@ constexpr double kStiff = 1e3;
 /// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
 
-/// alpha over dt^2 of flat and inverted tets, at least: their forces change faster with a node's position than the
-/// matrix knows. Without, nodes of a body that is squashed flat jump by two positions for ever, at one of its sizes per
-/// second.
-constexpr double kFlatAlpha = 25.0;
+/// alpha over dt^2 of flat and inverted tets of a pressed body, at least: their forces change faster with a node's
+/// position than the matrix knows. Without, nodes of a body that is squashed flat jump between two positions for ever,
+/// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
+constexpr double kFlatAlpha = 200.0;
 
 /// Sums side by side, none of which waits for the one before.
 struct LaneSums {
@@ -126,7 +126,7 @@ void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, Para
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
   if (!changed_ && alpha == alpha_ && !turned) return;
-  const auto flatAlpha = static_cast<S>(kFlatAlpha * seconds * seconds);
+  const auto flatAlpha = static_cast<S>(pressed_ ? kFlatAlpha * seconds * seconds : 0.0);
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
   alpha_ = alpha;
   changed_ = false;

@@ -51,6 +51,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Takes effect at the next `prepare`. By tet; `damping` in seconds.
   void setMaterial(const std::vector<Lame>& lame);
   void setDamping(double damping) { damping_ = damping; }
+  /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
+  void setPressed(bool pressed) { pressed_ = pressed; }
   /// mass  0: the node is pinned
   void setMass(std::size_t node, S mass);
 
@@ -151,7 +153,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
   double damping_ = 0.0, alpha_ = 0.0;
-  bool stiff_ = false;
+  bool stiff_ = false, pressed_ = false;
   double stiffnessNumber_ = 0.0;
   bool changed_ = true;                   ///< masses or material have changed since the last assembly
   std::size_t pinned_;                    ///< number of pinned nodes
