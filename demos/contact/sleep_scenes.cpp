@@ -140,6 +140,12 @@ struct SleeperOnPlate {
   SoftObject& body = world.addSoftOn(0.0, cube(), sleepingBody(), 1.0);
 };
 
+/// How far a body stays behind until friction has given it the speed of what carries it.
+double takenUp(double speed) {
+  constexpr double kFriction = 0.5;
+  return speed * speed / (2 * kFriction * scenes::kEarth);
+}
+
 /// The plate is moved once per frame, for two seconds.
 void lift(Run& run, const Vector3d& velocity) {
   SleeperOnPlate sleeper(run);
@@ -153,8 +159,10 @@ void lift(Run& run, const Vector3d& velocity) {
     if (f > 30) raise(change, std::abs(sleeper.gap() - before));
   }
   run.report("gap's change, S", change);
+  const Vector3d moved = sleeper.body.motion().centroid - from;
+  const bool isLevel = velocity.y() == 0.0;
   run.report("way over the plate's",
-             (sleeper.body.motion().centroid - from).dot(velocity) / (2 * velocity.dot(velocity)));
+             moved.dot(velocity.normalized()) / (2 * velocity.norm() - (isLevel ? takenUp(velocity.norm()) : 0.0)));
 }
 
 void turn(Run& run, double rate) {
@@ -166,7 +174,8 @@ void turn(Run& run, double rate) {
     frame(sleeper.world);
   }
   const Vector3d to = sleeper.body.motion().centroid;
-  run.report("way over the plate's", (std::atan2(-to.z(), to.x()) - std::atan2(-from.z(), from.x())) / (2 * rate));
+  const double angle = std::atan2(-to.z(), to.x()) - std::atan2(-from.z(), from.x());
+  run.report("way over the plate's", angle / (2 * rate - takenUp(rate)));
 }
 
 void wake(Run& run, const std::function<void(ContactWorld&, btSoftBody&)>& change) {

@@ -260,6 +260,7 @@ void addSlabSlides(ContactScenes& scenes) {
   add(0, {"free", 96, false}, slide);
   add(0, {"coarse", 16}, slide);
   add(0, {"wavy", 96, true, 0.004}, slide);
+  add(0, {"wavelets", 96, true, 0.001}, {3.0, 0.3});
 }
 
 }  // namespace

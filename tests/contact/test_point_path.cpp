@@ -64,6 +64,18 @@ TEST_F(PointPathTest, AnEdgeThatAPathCrossesOnTheLevelIsNotInItsWay) {
   }
 }
 
+/// On a wavy surface, a point rises ahead of what slides over it, and goes by below it.
+TEST_F(PointPathTest, APathThatGoesByBeyondTheMarginTouchesNothing) {
+  constexpr btScalar kNarrow = btScalar(1.1) * kKept;
+  const auto reach = static_cast<double>(kNarrow);
+  for (const double rise : {1e-5, 2e-5, 1e-4}) {
+    const NodePath path{overTile(1.0005, reach - 5e-5), overTile(0.9925, reach + rise)};
+    const PathState met = firstInReach(tile_, path, kNarrow);
+    EXPECT_GT(violation(met, path), 1e-4);
+    EXPECT_EQ(decidingState(tile_, path, kKept, kNarrow, met).distance.distance, btScalar(BT_LARGE_FLOAT));
+  }
+}
+
 /// A path that ends before the edge, on the level of the upper side: its plane is inclined by a little, and in the way
 /// by a thousandth of the margin.
 TEST_F(PointPathTest, AnEdgeThatAPathApproachesOnTheLevelIsHardlyInItsWay) {

@@ -6,6 +6,7 @@
 #include <tetskin/contact/src/rigid/point_path.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace tetskin {
 namespace {
@@ -20,16 +21,16 @@ constexpr btScalar kSameDirection = btScalar(0.125);
 constexpr int kMaxHalvings = 4;
 
 /// The nearest point of a path between two of its states: it approaches the shape at the first, and not at the second.
-/// Returns  the second, brought so near to it that where the path begins is above its plane; or `met`, if the path
-///          leads inside
-PathState turningState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
-                       const PathState& met, PathState near, PathState far) {
+/// Returns  the second, brought so near to it that where the path begins is above its plane; nothing if the path leads
+///          inside
+std::optional<PathState> turningState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
+                                      PathState near, PathState far) {
   const btVector3 direction = path.predicted - path.now;
   const auto isFar = [&] { return far.distance.distance >= reach; };
   for (int k = 0; k < kMaxHalvings && (isFar() || heightAbove(far, path.now) < margin); ++k) {
     const btVector3 where = (near.where + far.where) * btScalar(0.5);
     const PathState middle{probe.at(where), where, 0};
-    if (!(middle.distance.distance > 0)) return met;
+    if (!(middle.distance.distance > 0)) return std::nullopt;
     const bool approaches = middle.distance.distance < reach && middle.distance.normal.dot(direction) < 0;
     (approaches ? near : far) = middle;
   }
@@ -37,9 +38,9 @@ PathState turningState(const ShapeProbe& probe, const NodePath& path, btScalar m
 }
 
 /// The nearest point of the path that goes on from where the point comes near to the shape and ends outside of it.
-/// Returns  `met` if the path leads inside, or nowhere nearer
-PathState passingState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
-                       const PathState& met, const PathState& end) {
+/// Returns  nothing if the path leads inside, or comes nearer all its way
+std::optional<PathState> passingState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
+                                      const PathState& met, const PathState& end) {
   const btVector3 rest = path.predicted - met.where;
   const btScalar length = rest.length();
   PathState last = met;
@@ -48,14 +49,14 @@ PathState passingState(const ShapeProbe& probe, const NodePath& path, btScalar m
     gone += std::max(last.distance.distance, kMet * margin);
     const btVector3 where = met.where + (gone / length) * rest;
     const PathState here = gone < length ? PathState{probe.at(where), where, 0} : end;
-    if (!(here.distance.distance > 0)) return met;
+    if (!(here.distance.distance > 0)) return std::nullopt;
     if (here.distance.distance >= reach || !(here.distance.normal.dot(rest) < 0)) {
-      return turningState(probe, path, margin, reach, met, last, here);
+      return turningState(probe, path, margin, reach, last, here);
     }
-    if (!(gone < length)) return met;
+    if (!(gone < length)) return std::nullopt;
     last = here;
   }
-  return met;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -94,9 +95,12 @@ PathState decidingState(const ShapeProbe& probe, const NodePath& path, btScalar 
   if (!(end.distance.distance > 0)) return met;
   const btScalar level = kMet * margin;
   const bool isLast = end.distance.distance < reach && end.distance.normal.dot(rest) <= level;
-  const PathState nearest = isLast ? end : passingState(probe, path, margin, reach, met, end);
+  const std::optional<PathState> nearest = isLast ? end : passingState(probe, path, margin, reach, met, end);
   const btVector3 foot = met.where - met.distance.distance * met.distance.normal;
-  return heightAbove(nearest, foot) <= level ? nearest : met;
+  if (!nearest || heightAbove(*nearest, foot) > level) return met;
+  // Its plane would be in the way of a path that goes by at more than the margin and leaves the reach.
+  const bool passes = !(end.distance.distance < reach) && !(nearest->distance.distance < margin);
+  return passes && heightAbove(*nearest, path.predicted) < margin ? PathState{{}, path.now, 0} : *nearest;
 }
 
 }  // namespace tetskin

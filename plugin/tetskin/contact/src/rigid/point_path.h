@@ -26,7 +26,8 @@ PathState firstInReach(const ShapeProbe& probe, const NodePath& path, btScalar r
 /// The state whose plane decides for a point that comes within reach. On its way along a seam, past an edge, or below
 /// the edge of what slides on it, a point first comes near to the edge, from aside: a plane there would stop it,
 /// although nothing is in its way. Unless the path leads inside, its nearest point decides: the plane there is not in
-/// the way, and has behind it what was met first.
+/// the way, and has behind it what was met first. Nothing decides, and the distance is BT_LARGE_FLOAT, for a path that
+/// goes by at more than the margin and leaves the reach: on a wavy surface, points rise ahead of what slides over them.
 /// met  where the path first comes within reach
 PathState decidingState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
                         const PathState& met);

@@ -298,6 +298,7 @@ btScalar SurfaceCollider::touch(const ContactPatch& patch, std::uint32_t point) 
   const PathState met = firstInReach(*probe_, path, reach_);
   if (!(met.distance.distance < BT_LARGE_FLOAT)) return met.clear;
   const PathState state = decidingState(*probe_, path, margin_, reach_, met);
+  if (!(state.distance.distance < BT_LARGE_FLOAT)) return state.clear;
   const btVector3& normal = state.distance.normal;
   ContactCandidate touch;
   touch.distance = heightAbove(state, path.now) - margin_;
