@@ -165,25 +165,32 @@ ShapeBound MeshProbe::commonPlane() const {
 }
 
 /// If several triangles are equally near, at an edge or a corner, the one whose normal is most nearly along the offset
-/// determines the side.
+/// determines the side. What is in front beyond the reach matters only to a point that would be inside.
 ShapeDistance MeshProbe::at(const btVector3& point) const {
   constexpr btScalar kSame = btScalar(1e-4);  // relative to the distance
   ShapeDistance found{reach_, btVector3(0, 1, 0)};
   btScalar minimum = std::max(reach_, thickness_), facing = 0;
-  for (const ProbeTriangle& triangle : narrowed_) {
-    const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
-    const btScalar most = height < 0 ? std::min(minimum, thickness_) : minimum;
-    if (btFabs(height) > most || !isBeside(triangle, point, most)) continue;
+  const auto look = [&](const ProbeTriangle& triangle, btScalar height, btScalar most) {
+    if (btFabs(height) > most || !isBeside(triangle, point, most)) return;
     const btVector3 away = offsetFrom(triangle, point);
     const btScalar distance = away.length();
-    if (distance > minimum * (1 + kSame) || (distance > minimum * (1 - kSame) && btFabs(height) <= facing)) continue;
+    if (distance > minimum * (1 + kSame) || (distance > minimum * (1 - kSame) && btFabs(height) <= facing)) return;
     minimum = std::min(minimum, distance);
     facing = btFabs(height);
     // For a point on the triangle itself, the offset has no direction, and the normal is used.
     const bool on = !(distance > SIMD_EPSILON);
     found = {height < 0 ? -distance : distance, on ? triangle.normal : (height < 0 ? -away : away) / distance};
+  };
+  for (const ProbeTriangle& triangle : narrowed_) {
+    const btScalar height = triangle.normal.dot(point - triangle.corners[0]);
+    look(triangle, height, std::min(minimum, height < 0 ? thickness_ : reach_));
   }
-  return found.distance < -thickness_ ? ShapeDistance{reach_, btVector3(0, 1, 0)} : found;
+  for (std::size_t k = 0; k < narrowed_.size() && found.distance < 0; ++k) {
+    const btScalar height = narrowed_[k].normal.dot(point - narrowed_[k].corners[0]);
+    if (!(height < 0)) look(narrowed_[k], height, minimum);
+  }
+  const bool isNear = found.distance < reach_ && !(found.distance < -thickness_);
+  return isNear ? found : ShapeDistance{reach_, btVector3(0, 1, 0)};
 }
 
 }  // namespace tetskin
