@@ -11,13 +11,14 @@ namespace world_detail {
 /// True while Bullet detects contacts: it then goes through pairs and trees that adding or removing an object changes.
 class Detection {
  public:
-  explicit Detection(bool& runs) : runs_(runs) { runs_ = true; }
-  ~Detection() { runs_ = false; }
+  explicit Detection(bool& runs) : runs_(runs), before_(runs) { runs_ = true; }
+  ~Detection() { runs_ = before_; }
   Detection(const Detection&) = delete;
   Detection& operator=(const Detection&) = delete;
 
  private:
   bool& runs_;
+  const bool before_;  ///< it may run within another one
 };
 
 class WatchedDispatcher : public btCollisionDispatcher {
@@ -41,11 +42,18 @@ class WatchedBroadphase : public btDbvtBroadphase {
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int type, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override {
     assert(!detects_ && "nothing may be added in a filter, near or contact callback: do it in a tick callback");
+    const Detection detection(detects_);
     return btDbvtBroadphase::createProxy(low, high, type, object, group, mask, dispatcher);
   }
   void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
     assert(!detects_ && "nothing may be removed in a filter, near or contact callback: do it in a tick callback");
     btDbvtBroadphase::destroyProxy(proxy, dispatcher);
+  }
+  /// Looks for new pairs, and asks the filters.
+  void setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high,
+               btDispatcher* dispatcher) override {
+    const Detection detection(detects_);
+    btDbvtBroadphase::setAabb(proxy, low, high, dispatcher);
   }
   void calculateOverlappingPairs(btDispatcher* dispatcher) override {
     const Detection detection(detects_);
