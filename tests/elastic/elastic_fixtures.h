@@ -12,12 +12,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <limits>
 #include <random>
 #include <utility>
 #include <vector>
+
+#include "dense_reference.h"
 
 namespace tetskin::test {
 
@@ -104,23 +104,35 @@ inline std::vector<Lame> variedMaterial(std::size_t tets) {
   return material;
 }
 
-/// A deformed body with its matrix, as the library assembles it.
+/// A deformed body, and its matrix computed in a way of its own.
+struct DeformedBody {
+  DeformedBody(const TetMesh& rest, double amount, double alphaOfMatrix);
+
+  void hold(std::size_t node) { masses[node] = 0.0; }
+
+  /// M + alpha K, with three rows per node, by polar decompositions.
+  Eigen::MatrixXd dense() const;
+
+  TetMesh cage;
+  Points nodes;
+  std::vector<Lame> material;
+  std::vector<double> masses;
+  double alpha;
+
+ private:
+  void addTet(std::size_t t, Eigen::MatrixXd& a) const;
+};
+
+/// With the matrix as the library assembles it.
 template <class S>
-struct AssembledBody {
+struct AssembledBody : DeformedBody {
   explicit AssembledBody(const TetMesh& rest, double amount = 0.1, double alphaOfMatrix = 0.3)
-      : cage(rest),
-        nodes(scattered(mapped(rest.nodes, turnBy(75.0, {1, -2, 0.5}), {0.3, 0.2, -0.7}), amount, 32)),
-        material(variedMaterial(rest.tetCount())),
-        alpha(alphaOfMatrix),
+      : DeformedBody(rest, amount, alphaOfMatrix),
         matrix(rest.nodeCount(), rest.tets, CorotatedTets<S>::noTet(rest.tetCount())),
         tets(elastic_detail::restTets(rest), matrix.pattern().slotOf, matrix.slotCount()) {
-    Random random(33);
-    for (std::size_t n = 0; n < rest.nodeCount(); ++n) masses.push_back(1.5 + random());
     for (std::size_t t = 0; t < material.size(); ++t) tets.setMaterial(t, material[t]);
     assemble();
   }
-
-  void hold(std::size_t node) { masses[node] = 0.0; }
 
   void assemble(ParallelFor* threads = nullptr) {
     const std::size_t slots = matrix.slotCount();
@@ -133,17 +145,6 @@ struct AssembledBody {
     // This is repeated because each call advances the rotations by only a few iterations.
     for (int k = 0; k < 3; ++k) tets.forces(points.data(), forces.data(), threads);
     matrix.assemble(tets.cornersForMatrix(static_cast<S>(alpha), threads), threads);
-  }
-
-  /// M + alpha K, with three rows per node, by polar decompositions.
-  Eigen::MatrixXd dense() const {
-    const auto size = static_cast<Eigen::Index>(3 * nodes.size());
-    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      a.diagonal().segment<3>(static_cast<Eigen::Index>(3 * n)).setConstant(masses[n]);
-    }
-    for (std::size_t t = 0; t < cage.tetCount(); ++t) addTet(t, a);
-    return a;
   }
 
   Eigen::VectorXd fromWide(const S* wide) const {
@@ -172,40 +173,11 @@ struct AssembledBody {
     return fromWide(wide.data());
   }
 
-  TetMesh cage;
-  Points nodes;
-  std::vector<Lame> material;
-  std::vector<double> masses;
-  double alpha;
   BlockMatrix<S> matrix;
   CorotatedTets<S> tets;
 
  private:
   std::size_t wideIndex(std::size_t i) const { return matrix.wideOf(i / 3) + i % 3 * kernels::kGroup; }
-
-  void addTet(std::size_t t, Eigen::MatrixXd& a) const {
-    Eigen::Matrix3d rest, now;
-    for (int k = 0; k < 3; ++k) {
-      rest.col(k) = cage.nodes[cage.tets[t][k + 1]] - cage.nodes[cage.tets[t][0]];
-      now.col(k) = nodes[cage.tets[t][k + 1]] - nodes[cage.tets[t][0]];
-    }
-    const Eigen::Matrix3d gradients = rest.inverse();  // rows: gradients of the weights of nodes 1, 2 and 3
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(now * gradients, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
-    ASSERT_GT(turn.determinant(), 0.0) << "the reference is for tets that are not inside out";
-    Eigen::Matrix<double, 3, 4> h;
-    h.rightCols<3>() = turn * gradients.transpose();
-    h.col(0) = -h.rightCols<3>().rowwise().sum();
-    const double volume = std::abs(rest.determinant()) / 6.0, mu = material[t].mu, lambda = material[t].lambda;
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        a.block<3, 3>(3 * cage.tets[t][i], 3 * cage.tets[t][j]) +=
-            alpha * volume *
-            (lambda * h.col(i) * h.col(j).transpose() + mu * h.col(j) * h.col(i).transpose() +
-             mu * h.col(i).dot(h.col(j)) * Eigen::Matrix3d::Identity());
-      }
-    }
-  }
 };
 
 }  // namespace tetskin::test

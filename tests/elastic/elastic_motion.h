@@ -57,6 +57,27 @@ inline std::vector<double> lumped(const TetMesh& cage) {
   return masses;
 }
 
+/// Quantities that a motion conserves.
+struct Motion {
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  double kinetic = 0.0, elastic = 0.0;
+
+  double energy() const { return kinetic + elastic; }
+};
+
+template <class S>
+Motion motionOf(ElasticBody<S>& body, const std::vector<double>& masses) {
+  const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
+  Motion motion;
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    motion.momentum += masses[n] * velocities[n];
+    motion.angular += masses[n] * positions[n].cross(velocities[n]);
+    motion.kinetic += 0.5 * masses[n] * velocities[n].squaredNorm();
+  }
+  motion.elastic = body.energy();
+  return motion;
+}
+
 /// The least ratio of a tet's volume to its volume at rest; below 0 if a tet is inside out.
 inline double smallestVolume(const TetMesh& cage, const Points& nodes) {
   const TetMesh now{nodes, cage.tets};

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 using elastic_detail::BlockRows;
 using elastic_detail::Fields;
 
-constexpr double kPoisson = 0.3;
+constexpr double kPoissonOfRows = 0.3;
 
 TetMesh jitteredBox() {
   return test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
@@ -32,7 +32,7 @@ MatrixXd denseStiffness(const TetMesh& mesh, const std::vector<double>& scale) {
   MatrixXd matrix = MatrixXd::Zero(size, size);
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
     const Tet& tet = mesh.tets[t];
-    const MatrixXd stiffness = scale[t] * elastic_detail::tetStiffness(cornersOf(mesh, tet), kPoisson);
+    const MatrixXd stiffness = scale[t] * elastic_detail::tetStiffness(cornersOf(mesh, tet), kPoissonOfRows);
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) matrix.block<3, 3>(3 * tet[a], 3 * tet[b]) += stiffness.block<3, 3>(3 * a, 3 * b);
     }
@@ -42,11 +42,12 @@ MatrixXd denseStiffness(const TetMesh& mesh, const std::vector<double>& scale) {
 
 TEST(BlockRows, EnergyOfAnEvenStrainIsExact) {
   const TetMesh mesh = jitteredBox();
-  const BlockRows stiffness(mesh, kPoisson, std::vector<double>(mesh.tetCount(), 1.0));
+  const BlockRows stiffness(mesh, kPoissonOfRows, std::vector<double>(mesh.tetCount(), 1.0));
   Matrix3d gradient;
   gradient << 0.1, 0.3, -0.2, 0.0, -0.4, 0.1, 0.5, 0.2, 0.3;
   const Matrix3d strain = 0.5 * (gradient + gradient.transpose());
-  const double mu = 1.0 / (2.0 * (1.0 + kPoisson)), lambda = kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
+  const double mu = 1.0 / (2.0 * (1.0 + kPoissonOfRows)),
+               lambda = kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
   const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
   VectorXd u(3 * mesh.nodeCount());
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
@@ -58,7 +59,7 @@ TEST(BlockRows, EnergyOfAnEvenStrainIsExact) {
 TEST(BlockRows, AreTheSumOfTheTets) {
   const TetMesh mesh = jitteredBox();
   const std::vector<double> scale = variedScale(mesh);
-  const BlockRows rows(mesh, kPoisson, scale);
+  const BlockRows rows(mesh, kPoissonOfRows, scale);
   const MatrixXd dense = denseStiffness(mesh, scale);
   EXPECT_LT((MatrixXd(rows.sparse()) - dense).norm(), 1e-13 * dense.norm());
   EXPECT_LT((rows.diagonal() - dense.diagonal()).norm(), 1e-13 * dense.norm());
@@ -71,7 +72,7 @@ TEST(BlockRows, AreTheSumOfTheTets) {
 TEST(BlockRows, MultiplyAnyNumberOfFields) {
   const TetMesh mesh = jitteredBox();
   const std::vector<double> scale = variedScale(mesh);
-  const BlockRows rows(mesh, kPoisson, scale);
+  const BlockRows rows(mesh, kPoissonOfRows, scale);
   const MatrixXd dense = denseStiffness(mesh, scale);
   for (const int count : {1, 3, 6, 13}) {  // alone, and together in registers
     const Fields fields = Fields::Random(dense.rows(), count);

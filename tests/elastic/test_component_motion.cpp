@@ -166,7 +166,7 @@ TEST(ComponentMotion, OfWhatIsHeldByMoreGoesWhereItIsLed) {
 /// The change in velocity at a point, in a direction, for a unit impulse there, by sums over all nodes.
 double freeCompliance(const Component& part, const Vector3d& point, const Vector3d& direction) {
   const Eigen::Matrix<double, 6, 1> push = test::rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
-  return push.dot(test::rigidMass(part.nodes, part.masses, {0, 0, 0}).fullPivLu().solve(push));
+  return push.dot(test::solved(test::rigidMass(part.nodes, part.masses, {0, 0, 0}), push));
 }
 
 Matrix3d inertiaAbout(const Component& part, const Vector3d& about) {

@@ -4,8 +4,6 @@
 // The conjugate gradient method with nodes that are pinned, fixed or resisted.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <utility>
 #include <vector>
 
@@ -31,7 +29,7 @@ using test::Solver;
 /// The solution of a x = b in the span of `basisOfTheFree`; all other components stay as they are at the start.
 VectorXd solveWithin(const MatrixXd& a, const VectorXd& b, const VectorXd& start, const MatrixXd& basisOfTheFree) {
   const MatrixXd& z = basisOfTheFree;
-  return start + z * (z.transpose() * a * z).ldlt().solve(z.transpose() * (b - a * start));
+  return start + z * test::solved(z.transpose() * a * z, z.transpose() * (b - a * start));
 }
 
 /// A basis of what is left free, in columns, from the fixed directions by node.
@@ -42,8 +40,8 @@ MatrixXd freeBasis(std::size_t nodes, const std::vector<std::pair<std::size_t, V
     const auto at = static_cast<Eigen::Index>(3 * node);
     projection.block<3, 3>(at, at) -= n * n.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> split(projection);
-  return split.eigenvectors().rightCols(size - static_cast<Eigen::Index>(fixed.size()));
+  return test::spectrumOf(projection, VectorXd::Ones(size))
+      .vectors.rightCols(size - static_cast<Eigen::Index>(fixed.size()));
 }
 
 TEST(ConjugateGradient, HeldNodesStayAsTheyWereAtTheStart) {
@@ -115,7 +113,7 @@ TEST(ConjugateGradient, ResistanceIsPartOfTheMatrix) {
     Solver solver;
     solver.start({&body.matrix}, closely(), nullptr, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
-    EXPECT_LT(apart(solutionOf(body), a.ldlt().solve(b)), kClose);
+    EXPECT_LT(apart(solutionOf(body), test::solved(a, b)), kClose);
   });
 }
 

@@ -20,6 +20,8 @@ using test::fill;
 using test::kInfinity;
 using test::lumped;
 using test::made;
+using test::Motion;
+using test::motionOf;
 using test::onEachInstructionSet;
 using test::Points;
 using test::pointsOf;
@@ -177,27 +179,6 @@ TYPED_TEST(ElasticBodyOf, FallsFreely) {
     EXPECT_LT(velocity, 200.0 * this->kEpsilon);
     EXPECT_LT(position, 20.0 * this->kEpsilon);
   });
-}
-
-/// Quantities that a motion conserves.
-struct Motion {
-  Vector3d momentum = Vector3d::Zero(), angular = Vector3d::Zero();
-  double kinetic = 0.0, elastic = 0.0;
-
-  double energy() const { return kinetic + elastic; }
-};
-
-template <class S>
-Motion motionOf(ElasticBody<S>& body, const std::vector<double>& masses) {
-  const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
-  Motion motion;
-  for (std::size_t n = 0; n < masses.size(); ++n) {
-    motion.momentum += masses[n] * velocities[n];
-    motion.angular += masses[n] * positions[n].cross(velocities[n]);
-    motion.kinetic += 0.5 * masses[n] * velocities[n].squaredNorm();
-  }
-  motion.elastic = body.energy();
-  return motion;
 }
 
 TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {

@@ -22,7 +22,7 @@ using kernels::kGroup;
 using test::AssembledBody;
 using test::onEachInstructionSet;
 
-TetMesh smallCage() {
+TetMesh flatCage() {
   return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
 }
 
@@ -73,7 +73,7 @@ Matrix3d inverseInUse(BlockMatrix<S>& matrix, std::size_t node) {
 
 TYPED_TEST(FixedNodesOf, KnowsTheInversesOfItsDiagonal) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(flatCage());
     body.hold(2);
     body.assemble();
     const Eigen::MatrixXd dense = body.dense();
@@ -93,7 +93,7 @@ TYPED_TEST(FixedNodesOf, KnowsTheInversesOfItsDiagonal) {
 
 TYPED_TEST(FixedNodesOf, AFixedNodeMovesOnlyWhereItMay) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(flatCage());
     BlockMatrix<TypeParam>& matrix = body.matrix;
     const Vector3d n = Vector3d(1, -2, 2) / 3.0;
     const TypeParam normal[3] = {static_cast<TypeParam>(n[0]), static_cast<TypeParam>(n[1]),
@@ -138,7 +138,7 @@ std::array<S, 6> across(const Vector3d& n, double factor) {
 
 TYPED_TEST(FixedNodesOf, ResistsAcrossANormalUntilItIsFree) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(flatCage());
     BlockMatrix<TypeParam>& matrix = body.matrix;
     const Vector3d n = Vector3d(2, 3, -6) / 7.0;
     const TypeParam normal[3] = {static_cast<TypeParam>(n[0]), static_cast<TypeParam>(n[1]),
@@ -169,7 +169,7 @@ TYPED_TEST(FixedNodesOf, ResistsAcrossANormalUntilItIsFree) {
 
 TYPED_TEST(FixedNodesOf, AHeldNodeStaysHeld) {
   onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(smallCage());
+    AssembledBody<TypeParam> body(flatCage());
     body.hold(5);
     body.assemble();
     BlockMatrix<TypeParam>& matrix = body.matrix;

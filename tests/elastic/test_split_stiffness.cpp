@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kPoisson = 0.3;
+constexpr double kPoissonOfSplits = 0.3;
 /// Squared frequency, relative to the same body with fused elements, below which there must be a hinge; a hinge has 0.
 constexpr double kHinge = 1e-4;
 
@@ -23,7 +23,7 @@ double softest(const Cage& cage) {
   const std::vector<double> ones(cage.mesh.tetCount(), 1.0), known = cage.stiffnessScale();
   VectorXd masses = elastic_detail::lumpedVolumes(cage.mesh, ones);
   for (std::size_t n = 0; n < cage.masses.size(); ++n) masses.segment<3>(3 * n).setConstant(cage.masses[n]);
-  const elastic_detail::RestBody body(cage.mesh, kPoisson, known.empty() ? ones : known, masses);
+  const elastic_detail::RestBody body(cage.mesh, kPoissonOfSplits, known.empty() ? ones : known, masses);
   const elastic_detail::DirectSolver solver(body);
   EXPECT_TRUE(solver.ok());
   const VectorXd mode = elastic_detail::softestModes(body, solver, 1).col(0);
