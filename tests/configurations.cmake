@@ -1,15 +1,23 @@
-# Tests that configure and build: other configurations of the project, projects that use it, and its style.
+# Tests that configure and build: other configurations of the project, projects that use it, and its style. Those with
+# the label `full` are left out by tests/run --change, and those with the label `change` by tests/run --all: they test
+# only what has changed, see tiers/selection.py.
+set(changes ${PROJECT_BINARY_DIR}/changes)
 set(nested_options --build-generator ${CMAKE_GENERATOR} --build-noclean)
 set(nested_parallel 2)
 
 # Builds the project in another folder with these options, and runs its tests.
+#   FOLDER    below configurations/, if not the name
+#   LABELS    besides `config`
 #   TARGET    build only this target
 #   TESTS     run only the tests that match this
 #   LEAVE_OUT do not run those that match this
 #   PARALLEL  number of tests at once, if not the number of processors
 #   OPTIONS   options of the configuration
 function(tetskin_test_configuration name)
-  cmake_parse_arguments(arg "" "TARGET;TESTS;LEAVE_OUT;PARALLEL" "OPTIONS" ${ARGN})
+  cmake_parse_arguments(arg "" "FOLDER;TARGET;TESTS;LEAVE_OUT;PARALLEL" "LABELS;OPTIONS" ${ARGN})
+  if(NOT arg_FOLDER)
+    set(arg_FOLDER ${name})
+  endif()
   set(target_option)
   if(arg_TARGET)
     set(target_option --build-target ${arg_TARGET})
@@ -25,12 +33,13 @@ function(tetskin_test_configuration name)
     set(arg_PARALLEL ${nested_parallel})
   endif()
   add_test(NAME configuration.${name}
-    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/configurations/${arg_FOLDER}
       ${nested_options} ${target_option}
       --build-options ${arg_OPTIONS} -DTETSKIN_TEST_CONFIGURATIONS=OFF -DTETSKIN_WARNINGS_AS_ERRORS=ON
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error --parallel ${arg_PARALLEL}
       -R ${arg_TESTS} ${leave_out})
-  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel} LABELS config)
+  set_tests_properties(configuration.${name} PROPERTIES TIMEOUT 3600 PROCESSORS ${nested_parallel}
+    LABELS "config;${arg_LABELS}")
 endfunction()
 
 # The fuzzers and the sanitized tests are compiled by clang if it is installed with its runtime: it takes two thirds of
@@ -63,11 +72,16 @@ endif()
 #   and Bullet is not instrumented. BulletsReduction also applies to double precision, and is run.
 # SortedOrderIs...ToTheLastBit holds with GCC: clang fuses multiplications and additions in some lanes and not in
 # others.
-tetskin_test_configuration(sanitized_in_double TARGET unit_tests
-  TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced)"
-  LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertex|NeverTearWhatHangsTogether|BruteForceInALattice|BruteForceInAGradedCage|BruteForceJustOutsideALattice|AreStableAtAny|LongitudinalFrequencies|Timoshenkos|AreLiftedTogether|FallAsleepFarFromTheOrigin|BodiesThatOverlapLeaveEachOther|AStackStands|GivesACoarseBeam|FinerCagesNeedLess|RefinesNoMoreThanItMay|StartsFromScratch|SplitCagesHaveNoHinges|SurvivesWhatHangsLoosely/[23]|OfABodyOnAnotherAreItsWeight|FineCageOfThinPartsLandsAndRests|SquashedSurfaces|UpdatesHaveTheSameBitsOnAnyNumberOfThreads|[.]Bullets(Binding|Faces|FaceTree|Updates|Contact|SoftContact)|SortedOrderIsTheMeshsPermuted"
-  OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
-  -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF)
+function(tetskin_test_sanitized name label folders_from)
+  tetskin_test_configuration(${name} FOLDER sanitized_in_double LABELS ${label} TARGET unit_tests
+    TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced)"
+    LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertex|NeverTearWhatHangsTogether|BruteForceInALattice|BruteForceInAGradedCage|BruteForceJustOutsideALattice|AreStableAtAny|LongitudinalFrequencies|Timoshenkos|AreLiftedTogether|FallAsleepFarFromTheOrigin|BodiesThatOverlapLeaveEachOther|AStackStands|GivesACoarseBeam|FinerCagesNeedLess|RefinesNoMoreThanItMay|StartsFromScratch|SplitCagesHaveNoHinges|SurvivesWhatHangsLoosely/[23]|OfABodyOnAnotherAreItsWeight|FineCageOfThinPartsLandsAndRests|SquashedSurfaces|UpdatesHaveTheSameBitsOnAnyNumberOfThreads|[.]Bullets(Binding|Faces|FaceTree|Updates|Contact|SoftContact)|SortedOrderIsTheMeshsPermuted"
+    OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
+    -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF
+    -DTETSKIN_TEST_FOLDERS_FROM=${folders_from})
+endfunction()
+tetskin_test_sanitized(sanitized_in_double full "")
+tetskin_test_sanitized(sanitized_changes change ${changes}/tests)
 # The tests that start threads, including those beside Bullet's worlds.
 tetskin_test_configuration(thread_sanitized TARGET test_threads TESTS ^threads OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=thread -DTETSKIN_DEMOS=OFF
@@ -83,16 +97,17 @@ tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 4 OPTIONS 
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
   -DTETSKIN_FUZZ_SECONDS=90 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF
   -DTETSKIN_DEMOS=OFF)
-set_tests_properties(configuration.fuzzed PROPERTIES LABELS fuzz)
+set_tests_properties(configuration.fuzzed PROPERTIES LABELS "fuzz;full")
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
+set(labels_full "config;full")
 function(tetskin_test_consumer name)
   add_test(NAME consumer.${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumer
       ${PROJECT_BINARY_DIR}/consumers/${name} ${nested_options}
       --build-options -DCMAKE_BUILD_TYPE=Release -DSOURCE=${PROJECT_SOURCE_DIR} ${ARGN}
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
-  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600 LABELS config)
+  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600 LABELS "${labels_full}")
 endfunction()
 
 if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
@@ -100,7 +115,7 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   set(prefix ${PROJECT_BINARY_DIR}/consumers/prefix)
   add_test(NAME consumer.readme COMMAND ${PYTHON_IN_PATH} -B ${CMAKE_CURRENT_SOURCE_DIR}/consumer/readme.py
     --folder ${PROJECT_BINARY_DIR}/consumers/readme --prefix ${prefix} --generator ${CMAKE_GENERATOR})
-  set_tests_properties(consumer.readme PROPERTIES FIXTURES_SETUP installed_package LABELS config TIMEOUT 1800
+  set_tests_properties(consumer.readme PROPERTIES FIXTURES_SETUP installed_package LABELS "${labels_full}" TIMEOUT 1800
     PROCESSORS ${nested_parallel})
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
   tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
@@ -115,7 +130,7 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
       COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DPREFIX=${prefix} -DCOMPILER=${CMAKE_CXX_COMPILER}
         -DPKG_CONFIG=${PKG_CONFIG} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/pkg_config
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/pkg_config.cmake)
-    set_tests_properties(consumer.pkg_config PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
+    set_tests_properties(consumer.pkg_config PROPERTIES FIXTURES_REQUIRED installed_package LABELS "${labels_full}")
   endif()
   # A project that enables only C is told what it lacks.
   set(c_project ${PROJECT_BINARY_DIR}/consumers/c_project)
@@ -124,7 +139,7 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   add_test(NAME consumer.of_c_alone COMMAND ${CMAKE_COMMAND} -S ${c_project} -B ${c_project}/build
     -DCMAKE_PREFIX_PATH=${prefix})
   set_tests_properties(consumer.of_c_alone PROPERTIES PASS_REGULAR_EXPRESSION "tetskin[^A-Za-z]+is[^A-Za-z]+a[^A-Za-z]+C[+][+]"
-    FIXTURES_REQUIRED installed_package LABELS config)
+    FIXTURES_REQUIRED installed_package LABELS "${labels_full}")
   # The README's first program with compiler flags that the library was not compiled with: a change of layout or
   # allocation of a type by these flags must not matter.
   set(package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=program -DCMAKE_BUILD_TYPE=None)
@@ -134,12 +149,12 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
     "-DCMAKE_CXX_FLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all")
   set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.installed_headers
     consumer.flags_avx2 consumer.flags_native consumer.flags_sanitized
-    PROPERTIES FIXTURES_REQUIRED installed_package LABELS config)
+    PROPERTIES FIXTURES_REQUIRED installed_package LABELS "${labels_full}")
   # Forms in which Bullet comes, made of Debian's. The programs link the installed libraries.
   if(UNIX AND NOT TETSKIN_DOUBLE_PRECISION)
     foreach(name vcpkg_like conan_like homebrew_like existing_targets application_flags no_avx)
       add_test(NAME platform.${name} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/platforms/${name})
-      set_tests_properties(platform.${name} PROPERTIES FIXTURES_REQUIRED installed_package LABELS config
+      set_tests_properties(platform.${name} PROPERTIES FIXTURES_REQUIRED installed_package LABELS "${labels_full}"
         ENVIRONMENT TETSKIN_PREFIX=${prefix} SKIP_RETURN_CODE 77)
     endforeach()
   endif()
@@ -151,6 +166,14 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
     set_tests_properties(consumer.flags_avx2 PROPERTIES DISABLED ON)
   endif()
 endif()
+# The one consumer of tests/run --change: the package as this build installs it.
+if(TETSKIN_INSTALL)
+  set(own_prefix ${PROJECT_BINARY_DIR}/consumers/own_prefix)
+  add_test(NAME consumer.own_install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${own_prefix})
+  set_tests_properties(consumer.own_install PROPERTIES FIXTURES_SETUP own_install LABELS "config;change")
+  tetskin_test_consumer(own_package -DCMAKE_PREFIX_PATH=${own_prefix} -DCONSUME=package)
+  set_tests_properties(consumer.own_package PROPERTIES FIXTURES_REQUIRED own_install LABELS "config;change")
+endif()
 # Shared libraries: their names, their exported symbols, and that a program runs with them.
 add_test(NAME consumer.shared
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/shared
@@ -161,7 +184,7 @@ add_test(NAME consumer.after_demos_run
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFOLDER=${PROJECT_BINARY_DIR}/consumers/after_demos_run
     -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
 set_tests_properties(consumer.shared consumer.after_demos_run
-  PROPERTIES TIMEOUT 1200 PROCESSORS ${nested_parallel} LABELS config)
+  PROPERTIES TIMEOUT 1200 PROCESSORS ${nested_parallel} LABELS "${labels_full}")
 tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON)
 
 # Configurations that must stop with a message that gives the reason.
@@ -200,13 +223,20 @@ tetskin_test_refusal(demos_without_their_parts "The demos need every part" -DTET
 tetskin_test_refusal(tests_of_shared_libraries "tests need static libraries" -DBUILD_SHARED_LIBS=ON -DTETSKIN_TESTS=ON)
 
 # Style.
+#   first argument after the name, if it is `full` or `change`: a label, besides `style`
 function(tetskin_test_style name)
+  set(labels style)
+  if(ARGV1 MATCHES "^(full|change)$")
+    list(POP_FRONT ARGN label)
+    list(APPEND labels ${label})
+  endif()
   add_test(NAME style.${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(style.${name} PROPERTIES LABELS style TIMEOUT 1800)
+  set_tests_properties(style.${name} PROPERTIES LABELS "${labels}" TIMEOUT 1800)
 endfunction()
 tetskin_test_style(readme ${CMAKE_COMMAND} -P tests/style/readme.cmake)
 if(PYTHON_OF_SYSTEM)
   tetskin_test_style(comments ${PYTHON_OF_SYSTEM} -B tests/style/comments.py)
+  tetskin_test_style(tiers ${PYTHON_OF_SYSTEM} -B tests/tiers/test_tiers.py)
 endif()
 if(python_with_matplotlib)
   tetskin_test_style(links ${python_with_matplotlib} -B tests/style/links.py)
@@ -217,20 +247,27 @@ tetskin_test_style(portable ${CMAKE_COMMAND} -P tests/style/portable.cmake)
 if(TARGET docs)
   tetskin_test_style(docs ${DOXYGEN_EXECUTABLE} ${PROJECT_BINARY_DIR}/plugin/Doxyfile.docs)
 endif()
-# Uses the compile commands of a configuration without unity builds, which is made here and not built.
+# Use the compile commands of a configuration without unity builds, which is made here and not built.
+set(alone ${PROJECT_BINARY_DIR}/configurations/alone)
 if(PYTHON_OF_SYSTEM AND CMAKE_GENERATOR MATCHES "Ninja|Makefiles")
-  set(alone ${PROJECT_BINARY_DIR}/configurations/alone)
   tetskin_test_style(alone_configured ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${alone} -G ${CMAKE_GENERATOR}
     -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=OFF
     -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTETSKIN_TESTS=OFF -DTETSKIN_DEMOS=OFF)
-  tetskin_test_style(alone ${PYTHON_OF_SYSTEM} -B tests/style/alone.py ${alone})
   set_tests_properties(style.alone_configured PROPERTIES FIXTURES_SETUP compile_commands)
-  set_tests_properties(style.alone PROPERTIES FIXTURES_REQUIRED compile_commands PROCESSORS ${nested_parallel})
+  tetskin_test_style(alone full ${PYTHON_OF_SYSTEM} -B tests/style/alone.py ${alone})
+  tetskin_test_style(alone_changes change ${PYTHON_OF_SYSTEM} -B tests/style/alone.py ${alone} --files ${changes}/sources)
+  set_tests_properties(style.alone style.alone_changes PROPERTIES FIXTURES_REQUIRED compile_commands
+    PROCESSORS ${nested_parallel})
+  if(CLANG_TIDY)
+    tetskin_test_style(tidy_changes change ${PYTHON_OF_SYSTEM} -B tests/style/tidy.py ${CLANG_TIDY} ${alone}
+      --files ${changes}/sources)
+    set_tests_properties(style.tidy_changes PROPERTIES FIXTURES_REQUIRED compile_commands PROCESSORS ${nested_parallel})
+  endif()
 endif()
 if(CLANG_FORMAT)
   tetskin_test_style(format ${CMAKE_CURRENT_SOURCE_DIR}/style/format ${CLANG_FORMAT})
 endif()
-if(CLANG_TIDY AND CMAKE_EXPORT_COMPILE_COMMANDS)
-  tetskin_test_style(tidy ${CMAKE_CURRENT_SOURCE_DIR}/style/tidy ${CLANG_TIDY} ${PROJECT_BINARY_DIR})
+if(PYTHON_OF_SYSTEM AND CLANG_TIDY AND CMAKE_EXPORT_COMPILE_COMMANDS)
+  tetskin_test_style(tidy full ${PYTHON_OF_SYSTEM} -B tests/style/tidy.py ${CLANG_TIDY} ${PROJECT_BINARY_DIR})
   set_tests_properties(style.tidy PROPERTIES PROCESSORS ${nested_parallel})
 endif()

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""alone.py BUILD_FOLDER [FILE...]: checks that each source and each header of the library compiles by itself, not only
-after the files that a unity build puts before it. Uses the compile commands of a build without unity; checks only
-FILE... if any are named.
+"""alone.py BUILD_FOLDER [FILE... | --files LIST]: checks that each source and each header of the library compiles by
+itself, not only after the files that a unity build puts before it. Uses the compile commands of a build without unity;
+checks only FILE..., or those named in LIST, one per line, if any are named.
 
 Eigen is precompiled, except for public headers: it takes most of the time, and everything includes it through core's
 types."""
@@ -55,7 +55,12 @@ def compile_alone(options, file):
 
 def main():
     build = pathlib.Path(sys.argv[1])
-    wanted = {pathlib.Path(name).resolve() for name in sys.argv[2:]}
+    names = sys.argv[2:]
+    if len(names) == 2 and names[0] == "--files":
+        names = pathlib.Path(names[1]).read_text(encoding="utf-8").split()
+        if not names:
+            sys.exit(f"{sys.argv[3]} names no file")
+    wanted = {pathlib.Path(name).resolve() for name in names}
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     options = {pathlib.Path(e["file"]): options_of(e) for e in entries if LIBRARY in pathlib.Path(e["file"]).parents}
     plain = {}  # by library: the options with which its headers are compiled
@@ -73,6 +78,9 @@ def main():
     def check(file):
         return compile_alone(options[file] + ([] if is_public(file) else eigen), file)
 
+    unknown = sorted(str(file) for file in wanted if file not in options)
+    if unknown:
+        sys.exit(f"{build} does not compile {', '.join(unknown)}")
     files = sorted(wanted or options)
     with_source = {file.with_suffix(".h") for file in files if file.suffix == ".cpp"}
     files = [file for file in files if is_public(file) or file not in with_source]

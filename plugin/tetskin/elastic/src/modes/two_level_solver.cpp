@@ -11,7 +11,6 @@
 #include <tetskin/elastic/src/modes/two_level_solver.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cassert>
 
 namespace tetskin::elastic_detail {
@@ -36,6 +35,33 @@ constexpr double kGroupShift = 1e-10;
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+using Motions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
+/// Makes the columns orthonormal, largest first, and returns how many there are: those that have hardly anything which
+/// the others have not are dropped. By Gram and Schmidt's method, twice, which is enough for all digits: the compiler
+/// takes five seconds for Eigen's singular values of such a matrix, and none for this.
+Eigen::Index makeOrthonormal(Motions& motions) {
+  Eigen::Index rank = 0;
+  double largest = 0.0;
+  for (; rank < motions.cols(); ++rank) {
+    Eigen::Index longest = 0;
+    const double length = motions.rightCols(motions.cols() - rank).colwise().norm().maxCoeff(&longest);
+    if (rank == 0) largest = length;
+    if (!(length > kNoMotion * largest)) break;
+    motions.col(rank).swap(motions.col(rank + longest));
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Eigen::Index c = 0; c < rank; ++c) {
+        motions.col(rank) -= motions.col(c).dot(motions.col(rank)) * motions.col(c);
+      }
+      motions.col(rank).normalize();
+    }
+    for (Eigen::Index c = rank + 1; c < motions.cols(); ++c) {
+      motions.col(c) -= motions.col(rank).dot(motions.col(c)) * motions.col(rank);
+    }
+  }
+  return rank;
+}
+
 /// Orthonormal bases of the rigid motions of each group's free nodes.
 SparseRows motionsOf(const Aggregates& groups, const std::vector<Eigen::Vector3d>& nodes,
                      const std::vector<char>& free) {
@@ -55,18 +81,17 @@ SparseRows motionsOf(const Aggregates& groups, const std::vector<Eigen::Vector3d
     for (Eigen::Index k = 0; k < count; ++k) centre += nodes[member[k]] / static_cast<double>(count);
     double radius = 0.0;
     for (Eigen::Index k = 0; k < count; ++k) radius = std::max(radius, (nodes[member[k]] - centre).norm());
-    Eigen::Matrix<double, Eigen::Dynamic, 6> motions(3 * count, 6);
+    Motions motions(3 * count, 6);
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::Vector3d arm = (nodes[member[k]] - centre) / (radius > 0.0 ? radius : 1.0);
       motions.block<3, 3>(3 * k, 0).setIdentity();
       motions.block<3, 3>(3 * k, 3) << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
     }
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(motions, Eigen::ComputeThinU);
-    for (Eigen::Index c = 0; c < svd.singularValues().size(); ++c) {
-      if (svd.singularValues()[c] <= kNoMotion * svd.singularValues()[0]) break;
+    const Eigen::Index rank = makeOrthonormal(motions);
+    for (Eigen::Index c = 0; c < rank; ++c) {
       for (Eigen::Index k = 0; k < count; ++k) {
         for (int i = 0; i < 3; ++i) {
-          entries.emplace_back(3 * static_cast<int>(member[k]) + i, columns, svd.matrixU()(3 * k + i, c));
+          entries.emplace_back(3 * static_cast<int>(member[k]) + i, columns, motions(3 * k + i, c));
         }
       }
       ++columns;

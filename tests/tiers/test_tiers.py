@@ -1,0 +1,331 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""Tests of tests/run --change and of selection.py, in a small project of this one's layout: two libraries of which one
+uses the other, and their tests, with CMake's own graph of them."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+SCRIPTS = ("tests/run", "tests/tiers/selection.py", "demos/setup.sh")
+FILES = {
+    "CMakeLists.txt": "cmake_minimum_required(VERSION 3.21)\nproject(small LANGUAGES CXX)\n"
+                      "add_subdirectory(plugin/tetskin/core)\nadd_subdirectory(plugin/tetskin/contact)\n"
+                      "add_subdirectory(plugin/tetskin/threads)\nadd_subdirectory(plugin/tetskin/io)\n"
+                      "add_subdirectory(tests)\nadd_subdirectory(demos)\n",
+    "plugin/tetskin/core/CMakeLists.txt": "add_library(tetskin_core STATIC core.h core.cpp)\n",
+    "plugin/tetskin/core/core.h": "", "plugin/tetskin/core/core.cpp": "", "plugin/tetskin/core/listed_nowhere.h": "",
+    "plugin/tetskin/contact/CMakeLists.txt": "add_library(tetskin_contact STATIC contact.cpp)\n"
+                                             "target_link_libraries(tetskin_contact PUBLIC tetskin_core)\n",
+    "plugin/tetskin/contact/contact.cpp": "",
+    "plugin/tetskin/threads/CMakeLists.txt": "add_library(tetskin_threads STATIC threads.cpp)\n"
+                                             "target_link_libraries(tetskin_threads PUBLIC tetskin_core)\n",
+    "plugin/tetskin/threads/threads.cpp": "",
+    "plugin/tetskin/io/CMakeLists.txt": "add_library(tetskin_io STATIC io.cpp)\n"
+                                        "target_link_libraries(tetskin_io PUBLIC tetskin_core)\n",
+    "plugin/tetskin/io/io.cpp": "", "plugin/README.md": "", "plugin/tetskin/tetskin.h": "",
+    "tests/CMakeLists.txt": "add_library(support STATIC support/support.cpp)\n"
+                            "add_subdirectory(core)\nadd_subdirectory(contact)\nadd_subdirectory(threads)\n"
+                            "add_subdirectory(io)\n",
+    "tests/support/support.cpp": "", "tests/support/more.h": "", "tests/style/layers.cmake": "",
+    "tests/pages/commands.txt": "",
+    "demos/CMakeLists.txt": "add_executable(demo_drop drop.cpp)\ntarget_link_libraries(demo_drop tetskin_core)\n",
+    "demos/drop.cpp": "int main() {}\n",
+    "README.md": "",
+}
+for folder in ("core", "contact", "io"):
+    FILES[f"tests/{folder}/CMakeLists.txt"] = (f"add_executable(test_{folder} test.cpp)\n"
+                                               f"target_link_libraries(test_{folder} support tetskin_{folder})\n")
+    FILES[f"tests/{folder}/test.cpp"] = "int main() {}\n"
+FILES["tests/threads/CMakeLists.txt"] = ("add_executable(test_threads test.cpp)\n"
+                                         "target_link_libraries(test_threads support tetskin_threads tetskin_contact)\n")
+FILES["tests/threads/test.cpp"] = "int main() {}\n"
+
+
+def run(command, folder, **more):
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, **more)
+
+
+class InASmallProject(unittest.TestCase):
+    """Each test changes a copy of the project, of which one commit is said to have passed."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name).resolve() / "project"
+        for name, text in FILES.items():
+            (cls.root / name).parent.mkdir(parents=True, exist_ok=True)
+            (cls.root / name).write_text(text, encoding="utf-8")
+        for name in SCRIPTS:
+            (cls.root / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(REPOSITORY / name, cls.root / name)
+        (cls.root / ".gitignore").write_text("/build/\n", encoding="utf-8")
+        query = cls.root / "build/.cmake/api/v1/query"
+        query.mkdir(parents=True)
+        (query / "codemodel-v2").touch()
+        done = run(["cmake", "-S", ".", "-B", "build"], cls.root)
+        assert done.returncode == 0, done.stderr
+        cls.git("init", "-q")
+        cls.commit("all")
+        cls.first = cls.git("rev-parse", "HEAD").strip()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def git(cls, *arguments):
+        identity = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org", "-c", "commit.gpgsign=false"]
+        done = run(["git", *identity, *arguments], cls.root)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    @classmethod
+    def commit(cls, message):
+        cls.git("add", "-A")
+        cls.git("commit", "-q", "-m", message)
+
+    def setUp(self):
+        self.git("checkout", "-q", "--force", "-B", "main", self.first)
+        self.git("clean", "-q", "-f", "-d")
+        shutil.rmtree(self.root / "build/changes", ignore_errors=True)
+        self.note(self.first)
+
+    def note(self, commit):
+        (self.root / "tests/last_full_run").write_text(f"# note\ncommit   {commit}\nminutes  1\n", encoding="utf-8")
+
+    def write(self, name, text="// changed\n"):
+        (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / name).write_text(text, encoding="utf-8")
+
+    def select(self):
+        return run([sys.executable, "-B", "tests/tiers/selection.py", "select", "build"], self.root)
+
+    def result(self):
+        """Test folders, sources, and why everything counts as changed."""
+        done = self.select()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.root / "build/changes"
+        why = (out / "everything").read_text(encoding="utf-8") if (out / "everything").exists() else ""
+        return (out / "tests").read_text(encoding="utf-8"), (out / "sources").read_text(encoding="utf-8").split(), why
+
+
+class Selection(InASmallProject):
+    def test_without_changes_nothing_is_selected(self):
+        self.assertEqual(self.result(), ("", [], ""))
+        self.assertIn("None of them is compiled", self.select().stdout)
+
+    def test_a_source_selects_its_library_and_what_uses_it(self):
+        self.write("plugin/tetskin/contact/contact.cpp")
+        self.assertEqual(self.result(), ("contact;threads", ["plugin/tetskin/contact/contact.cpp"], ""))
+
+    def test_what_all_use_selects_all(self):
+        self.write("plugin/tetskin/core/core.h")
+        self.assertEqual(self.result()[0], "contact;core;io;threads")
+
+    def test_a_header_that_no_target_lists_belongs_to_its_folder(self):
+        self.write("plugin/tetskin/core/listed_nowhere.h")
+        self.assertEqual(self.result()[0], "contact;core;io;threads")
+
+    def test_what_tests_share_selects_all_tests(self):
+        self.write("tests/support/more.h")
+        self.assertEqual(self.result(), ("contact;core;io;threads", [], ""))
+
+    def test_a_test_selects_itself(self):
+        self.write("tests/io/test.cpp", "int main() { return 0; }\n")
+        self.assertEqual(self.result(), ("io", [], ""))
+
+    def test_demos_have_no_tests_with_sanitizers(self):
+        self.write("demos/drop.cpp", "int main() { return 0; }\n")
+        self.assertEqual(self.result(), ("", [], ""))
+
+    def test_committed_new_deleted_and_renamed_files_count(self):
+        self.write("plugin/tetskin/io/io.cpp")
+        self.commit("io")
+        self.assertEqual(self.result()[0], "io")
+        self.write("plugin/tetskin/contact/new.h")  # not added to the repository
+        self.assertEqual(self.result()[0], "contact;io;threads")
+        (self.root / "plugin/tetskin/contact/new.h").unlink()
+        self.git("mv", "plugin/tetskin/threads/threads.cpp", "plugin/tetskin/threads/other.cpp")
+        tests, sources, _ = self.result()
+        self.assertEqual(tests, "io;threads")
+        self.assertEqual(sources, ["plugin/tetskin/io/io.cpp", "plugin/tetskin/threads/other.cpp"])
+
+    def test_a_librarys_list_of_files_counts_as_the_library(self):
+        with open(self.root / "plugin/tetskin/io/CMakeLists.txt", "a", encoding="utf-8") as file:
+            file.write("# more\n")
+        self.assertEqual(self.result()[0], "io")
+
+    def test_what_is_only_read_selects_nothing(self):
+        for name in ("README.md", "plugin/README.md", "tests/pages/commands.txt"):
+            self.write(name)
+        self.assertEqual(self.result(), ("", [], ""))
+
+    def test_the_machinery_of_the_tests_selects_everything(self):
+        for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/style/layers.cmake", "tests/run", "demos/setup.sh",
+                     "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed"):
+            with self.subTest(name):
+                self.setUp()
+                before = (self.root / name).read_text(encoding="utf-8") if (self.root / name).exists() else ""
+                self.write(name, before + "# more\n")
+                self.assertIn(name, self.result()[2])
+
+    def test_a_file_of_no_target_selects_everything(self):
+        for name in ("plugin/tetskin/tetskin.h", "new.cpp"):
+            with self.subTest(name):
+                self.setUp()
+                self.write(name)
+                self.assertIn(f"{name} has changed, which belongs to no target", self.result()[2])
+
+    def test_a_commit_that_is_unknown_or_elsewhere_selects_everything(self):
+        self.note("0" * 40)
+        self.assertIn("not in the history", self.result()[2])
+        self.write("plugin/tetskin/io/io.cpp")
+        self.commit("elsewhere")
+        elsewhere = self.git("rev-parse", "HEAD").strip()
+        self.setUp()
+        self.note(elsewhere)
+        self.assertIn("not in the history", self.result()[2])
+
+    def test_without_the_note_everything_is_selected(self):
+        (self.root / "tests/last_full_run").unlink()
+        self.assertIn("there is no tests/last_full_run", self.result()[2])
+
+    def test_a_damaged_note_is_an_error(self):
+        self.write("tests/last_full_run", "commit   soon\n")
+        done = self.select()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("tests/last_full_run: no line 'commit'", done.stderr)
+
+    def test_outside_a_repository_says_so(self):
+        hidden = self.root.parent / "hidden"
+        shutil.move(self.root / ".git", hidden)
+        try:
+            done = self.select()
+        finally:
+            shutil.move(hidden, self.root / ".git")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("tests/run --all does not", done.stderr)
+
+    def test_a_build_without_the_graph_says_so(self):
+        reply = self.root / "build/.cmake/api/v1/reply"
+        shutil.move(reply, self.root.parent / "reply")
+        try:
+            done = self.select()
+        finally:
+            shutil.move(self.root.parent / "reply", reply)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("configure", done.stderr)
+
+    def test_a_pass_is_noted_on_a_clean_tree_only(self):
+        def record(commit):
+            return run([sys.executable, "-B", "tests/tiers/selection.py", "record", commit, "24", "without avx512"],
+                       self.root)
+
+        self.write("plugin/tetskin/io/io.cpp")
+        self.assertIn("not committed: plugin/tetskin/io/io.cpp", record(self.first).stdout)
+        self.assertIn(self.first, (self.root / "tests/last_full_run").read_text(encoding="utf-8"))
+        self.commit("io")
+        self.assertEqual(self.result()[0], "io")
+        self.assertIn("another commit", record(self.first).stdout)
+        self.assertIn("commit it", record(self.git("rev-parse", "HEAD").strip()).stdout)
+        noted = (self.root / "tests/last_full_run").read_text(encoding="utf-8")
+        self.assertIn("without avx512", noted)
+        self.assertIn("minutes  24", noted)
+        self.assertEqual(self.result(), ("", [], ""))
+
+
+class Script(InASmallProject):
+    """tests/run itself, with stand-ins for apt, cmake and ctest that note how they were called."""
+
+    def run_script(self, *arguments, without=()):
+        tools = self.root.parent / "tools"
+        shutil.rmtree(tools, ignore_errors=True)
+        tools.mkdir()
+        calls = self.root.parent / "calls"
+        calls.unlink(missing_ok=True)
+        for name, body in {"dpkg-query": "echo installed", "apt-get": "", "apt-cache": "", "cmake": "",
+                           "ctest": "case \"$*\" in *show-only*) echo '  Test   #1: consumer.shared' ;; esac"}.items():
+            (tools / name).write_text(f"#!/bin/bash\necho {name} \"$@\" >>{calls}\n{body}\n", encoding="utf-8")
+            (tools / name).chmod(0o755)
+        for name in ("bash", "sh", "env", "git", "dirname", "cat", "mkdir", "touch", "nproc", "awk", "sed", "sort", "tee",
+                     "tail", "head", "grep", "paste", "id", "python3", "uname"):
+            found = sys.executable if name == "python3" else shutil.which(name)
+            if name not in without and found:
+                os.symlink(found, tools / name)
+        done = run([shutil.which("bash"), "tests/run", *arguments], self.root, env={"PATH": str(tools), "HOME": "/tmp"})
+        return done, calls.read_text(encoding="utf-8") if calls.exists() else ""
+
+    def ctest_call(self, calls):
+        found = [line for line in calls.splitlines() if line.startswith("ctest") and "show-only" not in line]
+        self.assertEqual(len(found), 1, calls)
+        return found[0]
+
+    def test_change_runs_what_the_change_needs_and_prints_the_rest(self):
+        self.write("plugin/tetskin/contact/contact.cpp")
+        done, calls = self.run_script("--change")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("--label-exclude ^full$ --exclude-regex ^()$", self.ctest_call(calls))
+        self.assertIn("not run, since", done.stdout)
+        self.assertIn("consumer.shared", done.stdout)
+
+    def test_change_leaves_out_what_nothing_has_changed_for_and_says_why(self):
+        self.write("plugin/tetskin/io/io.cpp")
+        done, calls = self.run_script("--change")
+        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized)$", self.ctest_call(calls))
+        self.assertIn("configuration.thread_sanitized: nothing has changed that is tested on several threads", done.stdout)
+        self.setUp()
+        self.write("README.md")
+        done, calls = self.run_script("--change")
+        self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
+                      "style[.]alone_changes)$", self.ctest_call(calls))
+        self.assertIn("configuration.sanitized_changes: no library has changed", done.stdout)
+
+    def test_change_is_all_where_everything_counts_as_changed(self):
+        self.note("0" * 40)
+        done, calls = self.run_script("--change")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("Everything counts as changed", done.stdout)
+        self.assertIn("--label-exclude ^change$", self.ctest_call(calls))
+
+    def test_all_notes_that_it_has_passed(self):
+        done, calls = self.run_script("--all")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("--label-exclude ^change$", self.ctest_call(calls))
+        self.assertIn("Noted in tests/last_full_run", done.stdout)
+        self.setUp()
+        done, _ = self.run_script("--all", "-R", "Weld")
+        self.assertNotIn("Noted", done.stdout, "a part has passed, not all")
+
+    def test_change_takes_no_arguments(self):
+        done, calls = self.run_script("--change", "-R", "Weld")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("takes no arguments", done.stderr)
+        self.assertNotIn("ctest", calls)
+
+    def test_a_missing_tool_stops_the_script(self):
+        for tool in ("python3", "git"):
+            with self.subTest(tool):
+                self.setUp()
+                done, calls = self.run_script("--change", without=[tool])
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn(tool, done.stderr)
+                self.assertNotIn("ctest", calls)
+
+    def test_a_test_that_fails_fails_the_script(self):
+        self.write("README.md")
+        done, _ = self.run_script("--change")
+        self.assertEqual(done.returncode, 0)
+        (self.root.parent / "tools/ctest").write_text("#!/bin/bash\nexit 8\n", encoding="utf-8")
+        done = run([shutil.which("bash"), "tests/run", "--change"], self.root,
+                   env={"PATH": str(self.root.parent / "tools"), "HOME": "/tmp"})
+        self.assertEqual(done.returncode, 8, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
