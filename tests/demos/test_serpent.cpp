@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kSmall = 6000;  ///< triangles that are enough to resolve every detail
+constexpr std::size_t kDetailed = 6000;  ///< triangles that are enough to resolve every detail
 
 /// By vertex: the first vertex at the same position.
 std::vector<int> welded(const TriangleMesh& mesh) {
@@ -73,7 +73,7 @@ TEST(Serpent, ClampsWishesThatItCannotFulfil) {
 }
 
 TEST(Serpent, IsClosedAndConsistentlyOrientedWhenWelded) {
-  for (std::size_t triangles : {kMinSerpentTriangles, kSmall, std::size_t{60000}}) {
+  for (std::size_t triangles : {kMinSerpentTriangles, kDetailed, std::size_t{60000}}) {
     const TriangleMesh mesh = makeSerpent({triangles});
     const std::vector<int> weld = welded(mesh);
     const auto edges = directedEdges(mesh, weld);
@@ -90,7 +90,7 @@ TEST(Serpent, IsClosedAndConsistentlyOrientedWhenWelded) {
 }
 
 TEST(Serpent, EnclosesVolumeInEveryGroup) {
-  const TriangleMesh mesh = makeSerpent({kSmall});
+  const TriangleMesh mesh = makeSerpent({kDetailed});
   const auto volumeOf = [&](std::size_t first, std::size_t count) {
     double volume = 0.0;
     for (std::size_t t = first; t < first + count; ++t) {
@@ -108,7 +108,7 @@ TEST(Serpent, EnclosesVolumeInEveryGroup) {
 }
 
 TEST(Serpent, RepeatsVerticesAtTheTextureSeamBitForBit) {
-  const TriangleMesh mesh = makeSerpent({kSmall});
+  const TriangleMesh mesh = makeSerpent({kDetailed});
   ASSERT_EQ(mesh.texcoords.size(), mesh.vertexCount());
   const std::vector<int> weld = welded(mesh);
   for (std::size_t v = 0; v < weld.size(); ++v) {
@@ -122,7 +122,7 @@ TEST(Serpent, RepeatsVerticesAtTheTextureSeamBitForBit) {
 }
 
 TEST(Serpent, HasTexcoordsInTheUnitSquareAndUnitNormals) {
-  const TriangleMesh mesh = makeSerpent({kSmall});
+  const TriangleMesh mesh = makeSerpent({kDetailed});
   ASSERT_EQ(mesh.normals.size(), mesh.vertexCount());
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     EXPECT_GE(mesh.texcoords[v].minCoeff(), 0.0f);
@@ -132,7 +132,7 @@ TEST(Serpent, HasTexcoordsInTheUnitSquareAndUnitNormals) {
 }
 
 TEST(Serpent, HasGroupsThatCoverAllTriangles) {
-  const TriangleMesh mesh = makeSerpent({kSmall});
+  const TriangleMesh mesh = makeSerpent({kDetailed});
   std::size_t next = 0;
   for (const TriangleGroup& group : mesh.groups) {
     EXPECT_EQ(group.firstTriangle, next) << group.name;
@@ -144,7 +144,7 @@ TEST(Serpent, HasGroupsThatCoverAllTriangles) {
 }
 
 TEST(Serpent, IsTwoUnitsWideAndStandsAtTheOrigin) {
-  const Box3 box = boundingBox(makeSerpent({kSmall}).positions);
+  const Box3 box = boundingBox(makeSerpent({kDetailed}).positions);
   EXPECT_NEAR(box.sizes().maxCoeff(), 2.0, 0.1);
   EXPECT_NEAR(box.center().x(), 0.0, 0.05);
   EXPECT_NEAR(box.center().z(), 0.0, 0.05);
@@ -190,7 +190,7 @@ TEST(Serpent, HasStrandsThatComeCloseButDoNotTouch) {
 }
 
 TEST(Serpent, IsTheSameEveryTime) {
-  const TriangleMesh a = makeSerpent({kSmall}), b = makeSerpent({kSmall});
+  const TriangleMesh a = makeSerpent({kDetailed}), b = makeSerpent({kDetailed});
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.normals, b.normals);

@@ -10,13 +10,14 @@
 
 #include <string>
 
+#include "loaded_texts.h"
 #include "temp_folder.h"
 
 namespace tetskin::test {
 
 /// A cage of two tets with every field filled in, in numbers of one or two digits.
 inline Cage smallCage() {
-  Cage cage(TetMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}});
+  Cage cage(twoTets());
   cage.vertexTets = {1, 0, 1};
   cage.volumeFraction = {0.5, 1};
   cage.stiffnessFactor = {2, 0.25};
@@ -34,7 +35,7 @@ inline std::string textOf(const Cage& cage) {
   return TempFolder::read(folder.path("c.vtk"));
 }
 
-inline Result<Cage> loadText(const std::string& text, TetFileReport* report = nullptr) {
+inline Result<Cage> loadCageText(const std::string& text, TetFileReport* report = nullptr) {
   const TempFolder folder;
   return loadCage(folder.write("c.vtk", text), report);
 }

@@ -4,8 +4,8 @@
 // Makes glTF files, piece by piece.
 #pragma once
 
+#include "loaded_texts.h"
 #include "raw_bytes.h"
-#include "temp_folder.h"
 
 #include <tetskin/io/files.h>
 
@@ -19,11 +19,6 @@ namespace gltf_types {
 constexpr int kSignedByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsigned = 5125,
               kFloat = 5126;
 }  // namespace gltf_types
-
-inline Result<TriangleMesh> loadText(const std::string& name, const std::string& text) {
-  const TempFolder folder;
-  return loadMesh(folder.write(name, text));
-}
 
 /// A document of one buffer, made piece by piece.
 struct Document {
@@ -71,10 +66,10 @@ struct Document {
   }
   Result<TriangleMesh> load(const std::string& rest, const std::string& uri = embedded,
                             const std::string& nodes = R"({"mesh":0})") const {
-    return loadText("m.gltf", json(rest, uri, nodes));
+    return loadMeshText("m.gltf", json(rest, uri, nodes));
   }
   Result<TriangleMesh> loadGlb(const std::string& rest, const std::string& after) const {
-    return loadText("m.glb", glb(rest, after));
+    return loadMeshText("m.glb", glb(rest, after));
   }
   inline static const std::string embedded = "(in the document)", inChunk = "(in a chunk)";
 };

@@ -15,7 +15,7 @@ namespace {
 
 using test::expectError;
 using test::kTwoTets;
-using test::loadText;
+using test::loadCageText;
 using test::platesOfCopies;
 using test::smallCage;
 using test::TempFolder;
@@ -35,7 +35,7 @@ void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.meshHash, b.meshHash);
 }
 
-void expectRoundTrip(const Cage& cage) {
+void expectCageReadsBack(const Cage& cage) {
   const TempFolder folder;
   const Status saved = saveCage(cage, folder.path("c.vtk"));
   ASSERT_TRUE(saved.ok()) << saved.message;
@@ -59,20 +59,20 @@ const std::vector<std::function<void(Cage&)>>& forgetOne() {
 }
 
 TEST(CageFiles, AllThatIsKnownReadsBackExactly) {
-  expectRoundTrip(platesOfCopies().cage);
-  expectRoundTrip(platesOfCopies(1.0).cage);
-  expectRoundTrip(smallCage());
+  expectCageReadsBack(platesOfCopies().cage);
+  expectCageReadsBack(platesOfCopies(1.0).cage);
+  expectCageReadsBack(smallCage());
 }
 
 TEST(CageFiles, WhatIsNotKnownIsLeftOut) {
   for (const auto& forget : forgetOne()) {
     Cage cage = smallCage(), nothingElse(TetMesh{cage.mesh.nodes, cage.mesh.tets});
     forget(cage);
-    expectRoundTrip(cage);
+    expectCageReadsBack(cage);
     for (const auto& other : forgetOne()) {
       if (&other != &forget) other(cage);
     }
-    expectRoundTrip(cage);
+    expectCageReadsBack(cage);
     expectSame(cage, nothingElse);
   }
 }
@@ -83,7 +83,7 @@ TEST(CageFiles, EachArrayAlone) {
     for (std::size_t k = 0; k < forgetOne().size(); ++k) {
       if (k != kept) forgetOne()[k](cage);
     }
-    expectRoundTrip(cage);
+    expectCageReadsBack(cage);
   }
 }
 
@@ -95,7 +95,7 @@ TEST(CageFiles, ExtremeNumbersReadBackExactly) {
   cage.component = {0, std::numeric_limits<int>::max()};
   for (const std::uint64_t hash : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 32}) {
     cage.meshHash = hash;
-    expectRoundTrip(cage);
+    expectCageReadsBack(cage);
   }
 }
 
@@ -148,7 +148,7 @@ TEST(CageFiles, OnlyVtkKeepsTheMapOfCopies) {
 }
 
 TEST(CageFiles, ReadsOverDataOfEveryOtherKind) {
-  const Result<Cage> cage = loadText(
+  const Result<Cage> cage = loadCageText(
       kTwoTets +
       "FIELD FieldData 3\nTIME 1 1 double\n0.5\nNAMES 1 2 string\nfill\n\nfill 1 2 double\n1 1\n"
       "CELL_DATA 2\nSCALARS mass int 1\nLOOKUP_TABLE default\n1 2\nSCALARS loose float\n1 2\nSCALARS rgb float 3\n"
@@ -168,7 +168,7 @@ TEST(CageFiles, ReadsOverDataOfEveryOtherKind) {
 
 TEST(CageFiles, ReadsFieldsInFrontOfThePointsAsVtkWritesThem) {
   const std::string field = "FIELD FieldData 2\nmesh_hash 2 1 unsigned_int\n0 9\nvertex_tets 1 3 vtktypeint64\n0 1 1\n";
-  const Result<Cage> cage = loadText(with(kTwoTets, "POINTS", field + "POINTS"));
+  const Result<Cage> cage = loadCageText(with(kTwoTets, "POINTS", field + "POINTS"));
   ASSERT_TRUE(cage.ok()) << cage.status().message;
   EXPECT_EQ(cage.value().vertexTets, (std::vector<int>{0, 1, 1}));
   EXPECT_EQ(cage.value().meshHash, 9u);
@@ -176,7 +176,7 @@ TEST(CageFiles, ReadsFieldsInFrontOfThePointsAsVtkWritesThem) {
 
 TEST(CageFiles, ValuesOfCellsThatAreNoTetsAreDropped) {
   TetFileReport report;
-  const Result<Cage> cage = loadText(
+  const Result<Cage> cage = loadCageText(
       "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
       "0.1 1 1\nCELLS 4 17\n3 0 1 2\n4 0 1 2 3\n2 0 1\n4 1 2 3 4\nCELL_TYPES 4\n5\n10\n3\n10\nFIELD F 1\n"
       "vertex_tets 1 2 int\n0 1\nCELL_DATA 4\nSCALARS fill float\nLOOKUP_TABLE default\n7 0.25 7 0.75\n"
@@ -193,7 +193,7 @@ TEST(CageFiles, ValuesOfCellsThatAreNoTetsAreDropped) {
 
 TEST(CageFiles, AMeshThatIsNotTheCagesIsKnown) {
   const auto plates = platesOfCopies();
-  const Cage cage = loadText(textOf(plates.cage)).value();
+  const Cage cage = loadCageText(textOf(plates.cage)).value();
   EXPECT_TRUE(cage.checkMesh(plates.mesh).ok());
   TriangleMesh other = plates.mesh;
   std::swap(other.positions[3], other.positions[4]);

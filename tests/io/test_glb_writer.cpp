@@ -66,7 +66,7 @@ double farthest(const Points& a, const Points& b) {
   return most;
 }
 
-GlbWriter writerOf(const std::string& path) {
+GlbWriter glbWriterOf(const std::string& path) {
   Result<GlbWriter> writer = GlbWriter::create(path, 60.0);
   EXPECT_TRUE(writer.ok()) << writer.status().message;
   return std::move(writer).value();
@@ -76,7 +76,7 @@ GlbWriter writerOf(const std::string& path) {
 std::string written(const TempFolder& folder, const CagedBar& bar, Interpolation interpolation,
                     const std::vector<Points>& frames) {
   const std::string path = folder.path("a.glb");
-  GlbWriter writer = writerOf(path);
+  GlbWriter writer = glbWriterOf(path);
   writer.setMaterials({{"red", {1.0f, 0.0f, 0.0f}, 1.0f, 0.5f}, {"blue", {0.0f, 0.0f, 0.5f}, 0.25f, 1.0f}});
   const auto model = writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, interpolation);
   EXPECT_TRUE(model.ok()) << model.status().message;
@@ -217,7 +217,7 @@ TEST(GlbWriter, BodiesShareAMeshAndObjectsMoveOrStay) {
   const TempFolder folder;
   const CagedBar bar;
   const std::string path = folder.path("a.glb");
-  GlbWriter writer = writerOf(path);
+  GlbWriter writer = glbWriterOf(path);
   const std::size_t model = writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).value();
   writer.addBody(model, "bar");
   writer.addBody(model, "bar");
@@ -282,7 +282,7 @@ TEST(GlbWriter, AnyNameIsText) {
 TEST(GlbWriter, RefusesWhatItCannotHold) {
   const TempFolder folder;
   const CagedBar bar;
-  GlbWriter writer = writerOf(folder.path("a.glb"));
+  GlbWriter writer = glbWriterOf(folder.path("a.glb"));
   TriangleMesh points = bar.mesh;
   points.triangles.clear();
   points.groups.clear();
@@ -305,7 +305,7 @@ TEST(GlbWriter, RefusesWhatItCannotHold) {
 TEST(GlbWriter, CallsAfterItsEndAreErrors) {
   const TempFolder folder;
   const CagedBar bar;
-  GlbWriter writer = writerOf(folder.path("a.glb"));
+  GlbWriter writer = glbWriterOf(folder.path("a.glb"));
   const std::size_t model = writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).value();
   writer.addBody(model, "bar");
   ASSERT_TRUE(writer.addFrame({viewOf(bar.cage.mesh.nodes)}).ok());
@@ -334,7 +334,7 @@ TEST(GlbWriter, LeavesTheOldFileUntilTheNewOneIsComplete) {
   const CagedBar bar;
   const std::string path = folder.write("a.glb", "old");
   const auto begun = [&] {
-    GlbWriter writer = writerOf(path);
+    GlbWriter writer = glbWriterOf(path);
     writer.addBody(writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).value(), "bar");
     EXPECT_TRUE(writer.addFrame({viewOf(bar.cage.mesh.nodes)}).ok());
     return writer;

@@ -16,7 +16,7 @@ namespace {
 using test::base64;
 using test::Document;
 using test::expectError;
-using test::loadText;
+using test::loadMeshText;
 using test::meshOf;
 using test::primitive;
 using test::raw;
@@ -46,7 +46,7 @@ std::string gltf(const std::string& nodes) {
 }
 
 TEST(LoadGltf, AppliesTheTransformsOfAllNodes) {
-  const Result<TriangleMesh> loaded = loadText(
+  const Result<TriangleMesh> loaded = loadMeshText(
       "m.gltf", gltf(R"({"children":[1,2],"translation":[10,0,0]},{"mesh":0,"scale":[3,1,1]},{"children":[3]},)"
                      R"({"mesh":0,"rotation":[0,0,0.70710678118,0.70710678118]})"));
   ASSERT_TRUE(loaded.ok()) << loaded.status().message;
@@ -65,7 +65,7 @@ TEST(LoadGltf, AppliesTheTransformsOfAllNodes) {
 
 TEST(LoadGltf, NamesGroupsAfterMeshesAndMaterials) {
   const TriangleMesh mesh =
-      loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":1,"translation":[0,0,1]})")).value();
+      loadMeshText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":1,"translation":[0,0,1]})")).value();
   ASSERT_EQ(mesh.groups.size(), 2u);
   EXPECT_EQ(mesh.groups[0].name, "lit");
   EXPECT_EQ(mesh.groups[0].material, "skin");
@@ -77,7 +77,7 @@ TEST(LoadGltf, NamesGroupsAfterMeshesAndMaterials) {
 }
 
 TEST(LoadGltf, AMirroredMeshStaysTheRightWayOut) {
-  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"mesh":0,"scale":[1,1,-1]})")).value();
+  const TriangleMesh mesh = loadMeshText("m.gltf", gltf(R"({"mesh":0,"scale":[1,1,-1]})")).value();
   ASSERT_EQ(mesh.triangleCount(), 1u);
   const Triangle& t = mesh.triangles[0];
   const Eigen::Vector3d a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
@@ -87,13 +87,13 @@ TEST(LoadGltf, AMirroredMeshStaysTheRightWayOut) {
 }
 
 TEST(LoadGltf, FillsWhatOnlySomeMeshesHave) {
-  const TriangleMesh mesh = loadText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":1},{"mesh":0})")).value();
+  const TriangleMesh mesh = loadMeshText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":1},{"mesh":0})")).value();
   ASSERT_EQ(mesh.normals.size(), 6u);
   EXPECT_EQ(mesh.normals[0], Eigen::Vector3f(0, 0, 1));
   EXPECT_LT((mesh.normals[3] - Eigen::Vector3f(0.6f, 0, 0.8f)).norm(), 1e-6f);
   ASSERT_EQ(mesh.texcoords.size(), 6u);
   EXPECT_EQ(mesh.texcoords[1], Eigen::Vector2f(0, 0));
-  const TriangleMesh plain = loadText("m.gltf", gltf(R"({"mesh":1})")).value();
+  const TriangleMesh plain = loadMeshText("m.gltf", gltf(R"({"mesh":1})")).value();
   EXPECT_EQ(plain.triangleCount(), 1u);
   EXPECT_TRUE(plain.normals.empty());
   EXPECT_TRUE(plain.texcoords.empty());
@@ -205,9 +205,9 @@ TEST(LoadGltf, ReadsStripsFansAndInterleavedViews) {
 
 TEST(LoadGltf, ANodesMatrixIsByColumns) {
   const TriangleMesh mesh =
-      loadText("m.gltf", gltf(R"({"mesh":0,"matrix":[0,2,0,0,-2,0,0,0,0,0,2,0,7,8,9,1]})")).value();
+      loadMeshText("m.gltf", gltf(R"({"mesh":0,"matrix":[0,2,0,0,-2,0,0,0,0,0,2,0,7,8,9,1]})")).value();
   EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(7, 12, 11));
-  expectError(loadText("m.gltf", gltf(R"({"mesh":0,"scale":[1,2]})")).status(), StatusCode::Malformed, {"node 0"});
+  expectError(loadMeshText("m.gltf", gltf(R"({"mesh":0,"scale":[1,2]})")).status(), StatusCode::Malformed, {"node 0"});
 }
 
 TEST(LoadGltf, ReadsGlbAsWellAsText) {
@@ -324,12 +324,12 @@ TEST(LoadGltf, HugeCountsAndIndicesAreErrors) {
       {R"("nodes":[{"mesh":0}])", R"("nodes":[{"mesh":0,"children":[5]}])"},
       {R"("nodes":[0])", R"("nodes":[-1])"}};
   const std::string sound = triangle().json(meshOf(primitive(0, -1)));
-  ASSERT_TRUE(loadText("m.gltf", sound).ok()) << loadText("m.gltf", sound).status().message;
+  ASSERT_TRUE(loadMeshText("m.gltf", sound).ok()) << loadMeshText("m.gltf", sound).status().message;
   for (const auto& [what, instead] : faults) {
     std::string text = sound;
     ASSERT_NE(text.find(what), text.npos) << what;
     text.replace(text.find(what), what.size(), instead);
-    const Status status = loadText("m.gltf", text).status();
+    const Status status = loadMeshText("m.gltf", text).status();
     EXPECT_TRUE(status.code == StatusCode::Malformed || status.code == StatusCode::IndexOutOfRange)
         << instead << ": " << status.message;
     EXPECT_NE(status.message.find("m.gltf: "), std::string::npos);
@@ -345,22 +345,22 @@ TEST(LoadGltf, ValuesInsideValuesAreBounded) {
     const auto levels = static_cast<std::size_t>(depth);
     std::string text = sound;
     text.replace(text.find('@'), 1, std::string(levels, '[') + "1" + std::string(levels, ']'));
-    EXPECT_EQ(loadText("m.gltf", text).ok(), good) << depth;
+    EXPECT_EQ(loadMeshText("m.gltf", text).ok(), good) << depth;
   }
 }
 
 TEST(LoadGltf, NamesWhatIsNoGltf) {
   for (const char* text : {"", "{ broken", "[]", "{}", "solid", "\"", "{\"meshes"}) {
-    const Status status = loadText("m.gltf", text).status();
+    const Status status = loadMeshText("m.gltf", text).status();
     EXPECT_FALSE(status.ok()) << text;
     EXPECT_NE(status.message.find("m.gltf: "), std::string::npos) << status.message;
   }
   const auto glb = [](std::uint32_t scene) { return "glTF" + raw<std::uint32_t>({2, 24, scene}) + "JSON" + "{}  "; };
-  expectError(loadText("m.glb", glb(2000000000)).status(), StatusCode::Malformed,
+  expectError(loadMeshText("m.glb", glb(2000000000)).status(), StatusCode::Malformed,
               {"m.glb: states a chunk of 2000000000 bytes", "contains 4", "complete"});
-  expectError(loadText("m.glb", glb(5)).status(), StatusCode::Malformed, {"m.glb: states a chunk of 5 bytes"});
-  expectError(loadText("m.glb", glb(4)).status(), StatusCode::Empty, {"m.glb: has no triangles"});
-  expectError(loadText("m.glb", "glTF").status(), StatusCode::Malformed, {"m.glb: ends within the header"});
+  expectError(loadMeshText("m.glb", glb(5)).status(), StatusCode::Malformed, {"m.glb: states a chunk of 5 bytes"});
+  expectError(loadMeshText("m.glb", glb(4)).status(), StatusCode::Empty, {"m.glb: has no triangles"});
+  expectError(loadMeshText("m.glb", "glTF").status(), StatusCode::Malformed, {"m.glb: ends within the header"});
 }
 
 TEST(LoadGltf, SurvivesDamage) {

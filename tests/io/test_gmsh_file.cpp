@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "loaded_texts.h"
 #include "raw_bytes.h"
-#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
@@ -12,12 +12,12 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
+using test::expectTwoTets;
+using test::loadTetMeshText;
 using test::raw;
-using test::TempFolder;
 
-Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
-  const TempFolder folder;
-  return loadTetMesh(folder.write("c.msh", text), report);
+Result<TetMesh> loadGmsh(const std::string& text, TetFileReport* report = nullptr) {
+  return loadTetMeshText("c.msh", text, report);
 }
 
 const std::string kHead2 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
@@ -33,28 +33,21 @@ const std::string kNodes4 =
 const std::string kElements4 =
     "$Elements\n2 3 1 3\n2 1 2 1\n1 10 20 15\n3 1 4 2\n2 10 20 15 40\n3 20 15 40 1000000\n$EndElements\n";
 
-void expectTwoTets(const Result<TetMesh>& mesh) {
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  const std::vector<Eigen::Vector3d> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}};
-  EXPECT_EQ(mesh.value().nodes, nodes);
-  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {1, 2, 3, 4}}));
-}
-
 TEST(LoadGmsh, ReadsVersion2) {
   TetFileReport report;
-  expectTwoTets(loadText(kHead2 + kNodes2 + kElements2, &report));
+  expectTwoTets(loadGmsh(kHead2 + kNodes2 + kElements2, &report));
   EXPECT_EQ(report.skippedCells, 2u);
   EXPECT_EQ(report.cornersOnly, 0u);
 }
 
 TEST(LoadGmsh, ReadsVersion4WithParametricNodes) {
   TetFileReport report;
-  expectTwoTets(loadText(kHead4 + kNodes4 + kElements4, &report));
+  expectTwoTets(loadGmsh(kHead4 + kNodes4 + kElements4, &report));
   EXPECT_EQ(report.skippedCells, 1u);
 }
 
 TEST(LoadGmsh, ReadsOverOtherSections) {
-  expectTwoTets(loadText("$Comments\nany text, 5 numbers\n$EndComments\n" + kHead4 +
+  expectTwoTets(loadGmsh("$Comments\nany text, 5 numbers\n$EndComments\n" + kHead4 +
                          "$PhysicalNames\n1\n3 1 \"the $body\"\n$EndPhysicalNames\n$Entities\n0 0 0 0\n$EndEntities\n" +
                          kNodes4 + kElements4 + "$NodeData\n1\n\"T\"\n$EndNodeData\n"));
 }
@@ -62,19 +55,19 @@ TEST(LoadGmsh, ReadsOverOtherSections) {
 TEST(LoadGmsh, ReadsTheLineEndsOfOldMacs) {
   for (std::string text : {kHead2 + kNodes2 + kElements2, kHead4 + kNodes4 + kElements4}) {
     std::replace(text.begin(), text.end(), '\n', '\r');
-    expectTwoTets(loadText(text));
+    expectTwoTets(loadGmsh(text));
   }
 }
 
 TEST(LoadGmsh, NamesTheLineOfACoordinateThatIsTooFar) {
   std::string text = kHead2 + kNodes2 + kElements2;
   text.replace(text.find("0.1 1 1"), 3, "2e18");
-  expectError(loadText(text).status(), StatusCode::NonFinite,
+  expectError(loadGmsh(text).status(), StatusCode::NonFinite,
               {"c.msh:10:", "node 1000000", "beyond 1e18", "Correct it"});
 }
 
 TEST(LoadGmsh, SectionsMayComeInAnyOrder) {
-  expectTwoTets(loadText(kHead2 + kElements2 + kNodes2));
+  expectTwoTets(loadGmsh(kHead2 + kElements2 + kNodes2));
 }
 
 TEST(LoadGmsh, ReadsTetsOfSecondOrderByTheirCorners) {
@@ -83,7 +76,7 @@ TEST(LoadGmsh, ReadsTetsOfSecondOrderByTheirCorners) {
       ".5 "
       ".5\n7 9 9 9\n$EndNodes\n";
   TetFileReport report;
-  const Result<TetMesh> mesh = loadText(
+  const Result<TetMesh> mesh = loadGmsh(
       kHead2 + nodes + "$Elements\n2\n1 11 2 0 1 1 2 3 4 15 16 17 18 19 20\n2 15 2 0 1 7\n$EndElements\n", &report);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
@@ -98,13 +91,13 @@ TEST(LoadGmsh, ReadsTetsOfSecondOrderByTheirCorners) {
 
 TEST(LoadGmsh, ReadsVersion40) {
   expectTwoTets(
-      loadText("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n$Nodes\n3 5\n1 2 0 3\n10 0 0 0\n20 1 0 0\n15 0 1 0\n"
+      loadGmsh("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n$Nodes\n3 5\n1 2 0 3\n10 0 0 0\n20 1 0 0\n15 0 1 0\n"
                "2 2 1 1\n40 0 0 1 0.5 0.25\n1 3 0 1\n1000000 0.1 1 1\n$EndNodes\n"
                "$Elements\n2 3\n1 2 2 1\n1 10 20 15\n1 3 4 2\n2 10 20 15 40\n3 20 15 40 1000000\n$EndElements\n"));
 }
 
 /// A binary file of either version: two tets and a triangle.
-std::string binaryText(int version) {
+std::string binaryGmsh(int version) {
   using I = std::int32_t;
   using L = std::int64_t;
   const std::vector<I> tags = {10, 20, 15, 40, 13};  // 13: a carriage return
@@ -129,7 +122,7 @@ std::string binaryText(int version) {
 TEST(LoadGmsh, ReadsBinaryOfBothVersions) {
   for (const int version : {2, 4}) {
     TetFileReport report;
-    expectTwoTets(loadText(binaryText(version), &report));
+    expectTwoTets(loadGmsh(binaryGmsh(version), &report));
     EXPECT_EQ(report.skippedCells, 1u);
   }
 }
@@ -141,7 +134,7 @@ TEST(LoadGmsh, ReadsBinaryOfSecondOrder) {
   text += "\n$EndNodes\n$Elements\n1\n" + raw<std::int32_t>({11, 1, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) +
           "\n$EndElements\n";
   TetFileReport report;
-  const Result<TetMesh> mesh = loadText(text, &report);
+  const Result<TetMesh> mesh = loadGmsh(text, &report);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().nodeCount(), 4u);
   EXPECT_EQ(report.droppedNodes, 6u);
@@ -149,14 +142,14 @@ TEST(LoadGmsh, ReadsBinaryOfSecondOrder) {
 
 TEST(LoadGmsh, BinaryFilesThatAreCutShortOrDamagedAreErrors) {
   for (const int version : {2, 4}) {
-    const std::string sound = binaryText(version);
+    const std::string sound = binaryGmsh(version);
     const std::size_t last = sound.find("$EndElements");
     for (std::size_t length = 0; length < last; ++length)
-      EXPECT_FALSE(loadText(sound.substr(0, length)).ok()) << length;
+      EXPECT_FALSE(loadGmsh(sound.substr(0, length)).ok()) << length;
     for (std::size_t at = 30; at + 4 < last; ++at) {
       std::string damaged = sound;
       damaged.replace(at, 4, "\xFF\xFF\xFF\x7F");
-      const Result<TetMesh> mesh = loadText(damaged);
+      const Result<TetMesh> mesh = loadGmsh(damaged);
       EXPECT_TRUE(mesh.ok() ? checkTetMesh(mesh.value()).indexOutOfRange.count == 0 : !mesh.status().message.empty());
     }
   }
@@ -164,52 +157,52 @@ TEST(LoadGmsh, BinaryFilesThatAreCutShortOrDamagedAreErrors) {
 
 TEST(LoadGmsh, RefusesOtherVersions) {
   const StatusCode code = StatusCode::UnsupportedFormat;
-  expectError(loadText("$MeshFormat\n4.0 1 8\n").status(), code, {"c.msh:2:", "'4.0', binary", "2.2 or 4.1"});
-  expectError(loadText("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'1.0'"});
-  std::string text = binaryText(2);
+  expectError(loadGmsh("$MeshFormat\n4.0 1 8\n").status(), code, {"c.msh:2:", "'4.0', binary", "2.2 or 4.1"});
+  expectError(loadGmsh("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").status(), code, {"c.msh:2:", "'1.0'"});
+  std::string text = binaryGmsh(2);
   text.replace(text.find("$Elements\n3\n") + 12, 4, raw<std::int32_t>({99}));
-  expectError(loadText(text).status(), code, {"c.msh: ", "type 99", "ASCII"});
+  expectError(loadGmsh(text).status(), code, {"c.msh: ", "type 99", "ASCII"});
 }
 
 TEST(LoadGmsh, RefusesWhatIsNoGmshFile) {
   const StatusCode code = StatusCode::Malformed;
-  expectError(loadText("").status(), code, {"c.msh:1:", "$MeshFormat"});
-  expectError(loadText("(0 \"fluent\")\n").status(), code, {"c.msh:1:", "is it a Gmsh file?"});
-  expectError(loadText(kNodes2).status(), code, {"c.msh:1:", "no $MeshFormat before"});
+  expectError(loadGmsh("").status(), code, {"c.msh:1:", "$MeshFormat"});
+  expectError(loadGmsh("(0 \"fluent\")\n").status(), code, {"c.msh:1:", "is it a Gmsh file?"});
+  expectError(loadGmsh(kNodes2).status(), code, {"c.msh:1:", "no $MeshFormat before"});
 }
 
 TEST(LoadGmsh, NamesTheLineOfANodeThatDoesNotExist) {
-  expectError(loadText(kHead2 + kNodes2 + "$Elements\n1\n7 4 2 0 1 10 20 15 16\n$EndElements\n").status(),
+  expectError(loadGmsh(kHead2 + kNodes2 + "$Elements\n1\n7 4 2 0 1 10 20 15 16\n$EndElements\n").status(),
               StatusCode::IndexOutOfRange, {"c.msh:14:", "tet 7", "node 16"});
-  expectError(loadText(kHead4 + kNodes4 + "$Elements\n1 1 1 1\n3 1 4 1\n7 10 20 15 -1\n$EndElements\n").status(),
+  expectError(loadGmsh(kHead4 + kNodes4 + "$Elements\n1 1 1 1\n3 1 4 1\n7 10 20 15 -1\n$EndElements\n").status(),
               StatusCode::IndexOutOfRange, {"tet 7", "node -1"});
 }
 
 TEST(LoadGmsh, NamesTheLineOfMalformedText) {
   const StatusCode code = StatusCode::Malformed;
-  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n2 0 x 0\n$EndNodes\n").status(), code, {"c.msh:7:", "number"});
-  expectError(loadText(kHead2 + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n").status(), code, {"c.msh:7:", "$EndNodes"});
-  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n").status(), code, {"c.msh:", "complete"});
-  expectError(loadText(kHead2 + kNodes2 + "$Elements\n1\n1 4 2 0 1 10 20\n$EndElements\n").status(), code,
+  expectError(loadGmsh(kHead2 + "$Nodes\n2\n1 0 0 0\n2 0 x 0\n$EndNodes\n").status(), code, {"c.msh:7:", "number"});
+  expectError(loadGmsh(kHead2 + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n").status(), code, {"c.msh:7:", "$EndNodes"});
+  expectError(loadGmsh(kHead2 + "$Nodes\n2\n1 0 0 0\n").status(), code, {"c.msh:", "complete"});
+  expectError(loadGmsh(kHead2 + kNodes2 + "$Elements\n1\n1 4 2 0 1 10 20\n$EndElements\n").status(), code,
               {"c.msh:", "number"});
-  expectError(loadText(kHead2 + kNodes2 + kElements2 + "$Comments\n").status(), code, {"c.msh:", "$EndComments"});
-  expectError(loadText(kHead2 + "$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n").status(), code,
+  expectError(loadGmsh(kHead2 + kNodes2 + kElements2 + "$Comments\n").status(), code, {"c.msh:", "$EndComments"});
+  expectError(loadGmsh(kHead2 + "$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n").status(), code,
               {"c.msh: ", "node 1 twice"});
 }
 
 TEST(LoadGmsh, RefusesCountsThatDoNotFit) {
   const StatusCode code = StatusCode::Malformed;
   for (const char* count : {"2000000000", "18446744073709551615", "99999999999999999999", "-1"}) {
-    expectError(loadText(kHead2 + "$Nodes\n" + count + "\n1 0 0 0\n").status(), code, {"c.msh:5:"});
-    expectError(loadText(kHead2 + kNodes2 + "$Elements\n" + count + "\n").status(), code, {"c.msh:13:"});
-    expectError(loadText(kHead4 + "$Nodes\n1 1 1 1\n3 1 0 " + count + "\n").status(), code, {"c.msh:6:"});
+    expectError(loadGmsh(kHead2 + "$Nodes\n" + count + "\n1 0 0 0\n").status(), code, {"c.msh:5:"});
+    expectError(loadGmsh(kHead2 + kNodes2 + "$Elements\n" + count + "\n").status(), code, {"c.msh:13:"});
+    expectError(loadGmsh(kHead4 + "$Nodes\n1 1 1 1\n3 1 0 " + count + "\n").status(), code, {"c.msh:6:"});
   }
 }
 
 TEST(LoadGmsh, NamesTheLineOfACoordinateThatIsNotFinite) {
-  expectError(loadText(kHead2 + "$Nodes\n1\n7 0 0 nan\n$EndNodes\n").status(), StatusCode::NonFinite,
+  expectError(loadGmsh(kHead2 + "$Nodes\n1\n7 0 0 nan\n$EndNodes\n").status(), StatusCode::NonFinite,
               {"c.msh:6:", "node 7"});
-  expectError(loadText(kHead4 + "$Nodes\n1 1 7 7\n3 1 0 1\n7\n0 inf 0\n$EndNodes\n").status(), StatusCode::NonFinite,
+  expectError(loadGmsh(kHead4 + "$Nodes\n1 1 7 7\n3 1 0 1\n7\n0 inf 0\n$EndNodes\n").status(), StatusCode::NonFinite,
               {"c.msh:8:", "node 7"});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "temp_folder.h"
+#include "loaded_texts.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
@@ -9,34 +9,27 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
-using test::TempFolder;
+using test::expectTwoTets;
+using test::loadTetMeshText;
 
-Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
-  const TempFolder folder;
-  return loadTetMesh(folder.write("c.mesh", text), report);
+Result<TetMesh> loadMedit(const std::string& text, TetFileReport* report = nullptr) {
+  return loadTetMeshText("c.mesh", text, report);
 }
 
-const std::string kHead = "MeshVersionFormatted 2\nDimension 3\n";
-const std::string kNodes = "Vertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 0\n.1 1 1 0\n";
-const std::string kTets = "Tetrahedra\n2\n1 2 3 4 7\n2 3 4 5 7\n";
-
-void expectTwoTets(const Result<TetMesh>& mesh) {
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  const std::vector<Eigen::Vector3d> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}};
-  EXPECT_EQ(mesh.value().nodes, nodes);
-  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {1, 2, 3, 4}}));
-}
+const std::string kMeditHead = "MeshVersionFormatted 2\nDimension 3\n";
+const std::string kVertices = "Vertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 0\n.1 1 1 0\n";
+const std::string kTetrahedra = "Tetrahedra\n2\n1 2 3 4 7\n2 3 4 5 7\n";
 
 TEST(LoadMedit, ReadsVerticesAndTets) {
-  expectTwoTets(loadText(kHead + kNodes + kTets + "End\n"));
-  expectTwoTets(loadText("MeshVersionFormatted 1\n# any\nDimension\n3\n" + kTets + kNodes));
+  expectTwoTets(loadMedit(kMeditHead + kVertices + kTetrahedra + "End\n"));
+  expectTwoTets(loadMedit("MeshVersionFormatted 1\n# any\nDimension\n3\n" + kTetrahedra + kVertices));
 }
 
 TEST(LoadMedit, ReadsOverOtherSections) {
   TetFileReport report;
-  expectTwoTets(loadText(kHead + kNodes + "Triangles 1\n1 2 3 0\nCorners 2\n1\n2\nRequiredVertices\n0\n" + kTets +
-                             "Normals\n1\n0 0 1\nEdges\n1\n1 2 0\nEnd\nanything",
-                         &report));
+  expectTwoTets(loadMedit(kMeditHead + kVertices + "Triangles 1\n1 2 3 0\nCorners 2\n1\n2\nRequiredVertices\n0\n" +
+                              kTetrahedra + "Normals\n1\n0 0 1\nEdges\n1\n1 2 0\nEnd\nanything",
+                          &report));
   EXPECT_EQ(report.skippedCells, 2u);
 }
 
@@ -45,7 +38,7 @@ TEST(LoadMedit, ReadsTetsOfSecondOrderByTheirCorners) {
   const std::string middle =
       "Vertices\n10\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 0\n.5 0 0 0\n.5 .5 0 0\n0 .5 0 0\n0 0 .5 0\n"
       ".5 0 .5 0\n0 .5 .5 0\n";
-  const Result<TetMesh> mesh = loadText(kHead + middle + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 0\n", &report);
+  const Result<TetMesh> mesh = loadMedit(kMeditHead + middle + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 0\n", &report);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().nodeCount(), 4u);
   EXPECT_EQ(report.cornersOnly, 1u);
@@ -53,18 +46,19 @@ TEST(LoadMedit, ReadsTetsOfSecondOrderByTheirCorners) {
 }
 
 TEST(LoadMedit, NamesTheLineOfAFault) {
-  expectError(loadText("$MeshFormat\n").status(), StatusCode::Malformed, {"c.mesh:1:", "Medit"});
-  expectError(loadText("MeshVersionFormatted 1\nDimension 2\n").status(), StatusCode::UnsupportedFormat,
+  expectError(loadMedit("$MeshFormat\n").status(), StatusCode::Malformed, {"c.mesh:1:", "Medit"});
+  expectError(loadMedit("MeshVersionFormatted 1\nDimension 2\n").status(), StatusCode::UnsupportedFormat,
               {"c.mesh:2:", "dimension 2"});
-  expectError(loadText(kHead + "Vertices\n2000000000\n0 0 0 1\n").status(), StatusCode::Malformed,
+  expectError(loadMedit(kMeditHead + "Vertices\n2000000000\n0 0 0 1\n").status(), StatusCode::Malformed,
               {"c.mesh:4:", "too short"});
-  expectError(loadText(kHead + "Vertices\n2\n0 0 0 1\n0 x 0 1\n").status(), StatusCode::Malformed, {"c.mesh:6:"});
-  expectError(loadText(kHead + "Vertices\n1\n0 inf 0 1\n").status(), StatusCode::NonFinite, {"c.mesh:5:", "node 1"});
+  expectError(loadMedit(kMeditHead + "Vertices\n2\n0 0 0 1\n0 x 0 1\n").status(), StatusCode::Malformed, {"c.mesh:6:"});
+  expectError(loadMedit(kMeditHead + "Vertices\n1\n0 inf 0 1\n").status(), StatusCode::NonFinite,
+              {"c.mesh:5:", "node 1"});
   for (const char* tet : {"0 1 2 3", "1 2 3 6", "1 2 3 -5"}) {
-    expectError(loadText(kHead + kNodes + "Tetrahedra\n1\n" + tet + " 0\n").status(), StatusCode::IndexOutOfRange,
-                {"c.mesh:12:", "tet 1"});
+    expectError(loadMedit(kMeditHead + kVertices + "Tetrahedra\n1\n" + tet + " 0\n").status(),
+                StatusCode::IndexOutOfRange, {"c.mesh:12:", "tet 1"});
   }
-  expectError(loadText(kHead + kNodes).status(), StatusCode::Empty, {"c.mesh: ", "no tets"});
+  expectError(loadMedit(kMeditHead + kVertices).status(), StatusCode::Empty, {"c.mesh: ", "no tets"});
 }
 
 }  // namespace

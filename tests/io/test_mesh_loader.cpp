@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "loaded_texts.h"
 #include "raw_bytes.h"
 #include "temp_folder.h"
 
@@ -11,21 +12,17 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
+using test::loadMeshText;
 using test::raw;
 using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
-Result<TriangleMesh> loadText(const std::string& name, const std::string& text) {
-  const TempFolder folder;
-  return loadMesh(folder.write(name, text));
-}
-
 TEST(LoadMesh, KeepsTheThreeVerticesOfEveryStlTriangle) {
   const TriangleMesh mesh =
-      loadText("m.STL",
-               "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 "
-               "0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 "
-               "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid plate\n")
+      loadMeshText("m.STL",
+                   "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 "
+                   "0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 "
+                   "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid plate\n")
           .value();
   EXPECT_EQ(mesh.vertexCount(), 6u);
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {3, 4, 5}}));
@@ -35,18 +32,18 @@ TEST(LoadMesh, KeepsTheThreeVerticesOfEveryStlTriangle) {
 
 TEST(LoadMesh, ASolidWithoutTrianglesDoesNoHarm) {
   const Result<TriangleMesh> mesh =
-      loadText("m.stl",
-               "solid empty\nendsolid empty\nsolid plate\nfacet normal 0 0 1\nouter "
-               "loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid "
-               "plate\n");
+      loadMeshText("m.stl",
+                   "solid empty\nendsolid empty\nsolid plate\nfacet normal 0 0 1\nouter "
+                   "loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid "
+                   "plate\n");
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().triangleCount(), 1u);
 }
 
 TEST(LoadMesh, LeavesOutLinesAndPoints) {
-  const Result<TriangleMesh> mesh =
-      loadText("m.dae",
-               R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  const Result<TriangleMesh> mesh = loadMeshText(
+      "m.dae",
+      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g" name="part"><mesh>
 <source id="p"><float_array id="a" count="12">0 0 0 1 0 0 1 1 0 9 9 9</float_array><technique_common>
 <accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
@@ -70,18 +67,18 @@ TEST(LoadMesh, RefusesCountsThatTheFileCannotHold) {
   // In 32-bit arithmetic, 2147483649 triangles take as many bytes as one.
   for (const std::uint32_t count : {2u, 2000000000u, 2147483649u, 4294967295u}) {
     for (const char* mark : {"", "solid"}) {
-      expectError(loadText("m.stl", stl(count, mark)).status(), StatusCode::Malformed,
+      expectError(loadMeshText("m.stl", stl(count, mark)).status(), StatusCode::Malformed,
                   {"m.stl: states " + std::to_string(count) + " triangles", "contains 134 bytes", "complete"});
     }
   }
-  EXPECT_EQ(loadText("m.stl", stl(1, "solid")).value().triangleCount(), 1u);
+  EXPECT_EQ(loadMeshText("m.stl", stl(1, "solid")).value().triangleCount(), 1u);
 }
 
 TEST(LoadMesh, ReadsStlTextThatBeginsWithABlank) {
   const std::string facet =
       "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid part\n";
   for (const char* begin : {"solid part\n", " solid part\n", "\t solid part\n"}) {
-    EXPECT_EQ(loadText("m.stl", begin + facet).value().triangleCount(), 1u) << begin;
+    EXPECT_EQ(loadMeshText("m.stl", begin + facet).value().triangleCount(), 1u) << begin;
   }
 }
 
@@ -139,7 +136,7 @@ TEST(LoadMesh, Reads3mfWithAThumbnailAsSlicersSaveIt) {
     for (const bool thumbnail : {false, true}) {
       files.resize(3);
       if (thumbnail) files.insert(files.begin() + 1, {"Metadata/thumbnail.png", std::string("\x89PNG\r\n\x1A\n\0", 9)});
-      const Result<TriangleMesh> mesh = loadText("m.3mf", zip(files, wide));
+      const Result<TriangleMesh> mesh = loadMeshText("m.3mf", zip(files, wide));
       ASSERT_TRUE(mesh.ok()) << mesh.status().message << wide << thumbnail;
       ASSERT_EQ(mesh.value().triangleCount(), 1u);
       EXPECT_EQ(mesh.value().positions[1], Eigen::Vector3d(3, 0, 0));
@@ -151,14 +148,14 @@ TEST(LoadMesh, Reads3mfWithAThumbnailAsSlicersSaveIt) {
 TEST(LoadMesh, RefusesA3mfOfSeveralModels) {
   auto files = package3mf();
   files.push_back({"3D/Objects/other.model", files[2].second});
-  expectError(loadText("m.3mf", zip(files)).status(), StatusCode::UnsupportedFormat,
+  expectError(loadMeshText("m.3mf", zip(files)).status(), StatusCode::UnsupportedFormat,
               {"m.3mf: ", "2 models", "production extension", "save it"});
 }
 
 TEST(LoadMesh, A3mfThatIsCutShortOrDamagedIsAnError) {
   const std::string sound = zip(package3mf());
   for (std::size_t length = 0; length < sound.size(); length += 7) {
-    EXPECT_FALSE(loadText("m.3mf", sound.substr(0, length)).ok()) << length;
+    EXPECT_FALSE(loadMeshText("m.3mf", sound.substr(0, length)).ok()) << length;
   }
   // Every number of the list of contents, one after the other, as large as can be.
   std::size_t refused = 0;
@@ -181,34 +178,36 @@ TEST(LoadMesh, NamesAMissingFileAndAFolder) {
 }
 
 TEST(LoadMesh, NamesFormatsThatAreNotRead) {
-  expectError(loadText("m.xyzzy", "text").status(), StatusCode::UnsupportedFormat, {"m.xyzzy", "'.xyzzy'", "convert"});
-  expectError(loadText("mesh", "text").status(), StatusCode::UnsupportedFormat, {"mesh: ", "no file name extension"});
+  expectError(loadMeshText("m.xyzzy", "text").status(), StatusCode::UnsupportedFormat,
+              {"m.xyzzy", "'.xyzzy'", "convert"});
+  expectError(loadMeshText("mesh", "text").status(), StatusCode::UnsupportedFormat,
+              {"mesh: ", "no file name extension"});
 }
 
 #ifndef TETSKIN_TEST_GLTF
 TEST(LoadMesh, RefusesGltfByNameWithoutTinygltf) {
   for (const char* name : {"m.gltf", "m.GLB", "m.vrm"}) {
-    expectError(loadText(name, "{}").status(), StatusCode::UnsupportedFormat, {name, "tinygltf", "install"});
+    expectError(loadMeshText(name, "{}").status(), StatusCode::UnsupportedFormat, {name, "tinygltf", "install"});
   }
 }
 #endif
 
 TEST(LoadMesh, PassesOnWhatAssimpSaysOfABrokenFile) {
-  expectError(loadText("m.dae", "{ broken").status(), StatusCode::Malformed, {"m.dae: cannot be read: ", "export"});
-  expectError(loadText("m.stl", "").status(), StatusCode::Malformed, {"m.stl: cannot be read: "});
+  expectError(loadMeshText("m.dae", "{ broken").status(), StatusCode::Malformed, {"m.dae: cannot be read: ", "export"});
+  expectError(loadMeshText("m.stl", "").status(), StatusCode::Malformed, {"m.stl: cannot be read: "});
 }
 
 TEST(LoadMesh, NamesAVertexThatIsTooFar) {
-  expectError(loadText("m.stl",
-                       "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e31 "
-                       "0\nendloop\nendfacet\nendsolid plate\n")
+  expectError(loadMeshText("m.stl",
+                           "solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e31 "
+                           "0\nendloop\nendfacet\nendsolid plate\n")
                   .status(),
               StatusCode::NonFinite, {"m.stl: vertex 2", "beyond 1e18", "orrect"});
 }
 
 TEST(LoadMesh, NamesAFaceWithAnIndexOutOfRange) {
-  expectError(loadText("m.x3d",
-                       R"(<?xml version="1.0"?><X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1 0 1 9 -1">
+  expectError(loadMeshText("m.x3d",
+                           R"(<?xml version="1.0"?><X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1 0 1 9 -1">
 <Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)")
                   .status(),
               StatusCode::IndexOutOfRange, {"m.x3d: ", "face 1", "vertex 9"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "temp_folder.h"
+#include "loaded_texts.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
@@ -14,18 +14,18 @@ namespace tetskin {
 namespace {
 
 using test::expectError;
+using test::loadMeshText;
 using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
-Result<TriangleMesh> loadText(const std::string& text) {
-  const TempFolder folder;
-  return loadMesh(folder.write("m.obj", text));
+Result<TriangleMesh> loadObj(const std::string& text) {
+  return loadMeshText("m.obj", text);
 }
 
 const char* const kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(LoadObj, KeepsVertexOrderAndUnusedVertices) {
-  const Result<TriangleMesh> mesh = loadText("v 9 9 9\nv 0 1 0\nv 0 0 0\nv 8 8 8\nv 1 0 0\nf 3 5 2\nv 7 7 7\n");
+  const Result<TriangleMesh> mesh = loadObj("v 9 9 9\nv 0 1 0\nv 0 0 0\nv 8 8 8\nv 1 0 0\nf 3 5 2\nv 7 7 7\n");
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   const std::vector<Eigen::Vector3d> expected = {{9, 9, 9}, {0, 1, 0}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {7, 7, 7}};
   EXPECT_EQ(mesh.value().positions, expected);
@@ -36,23 +36,23 @@ TEST(LoadObj, KeepsVertexOrderAndUnusedVertices) {
 TEST(LoadObj, ReadsTheLineEndsOfOldMacs) {
   for (const char* text :
        {"# a comment\rv 0 0 0\rv 1 0 0\r\rv 0 1 0\rf 1 \\\r2 3\r", "v 0 0 0\rv 1 0 0\rv 0 1 0\nf 1 2 3"}) {
-    const Result<TriangleMesh> mesh = loadText(text);
+    const Result<TriangleMesh> mesh = loadObj(text);
     ASSERT_TRUE(mesh.ok()) << mesh.status().message;
     EXPECT_EQ(mesh.value().positions, (std::vector<Eigen::Vector3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}}));
   }
-  expectError(loadText("v 0 0 0\rv 1 0 0\rv 0 x 0\r").status(), StatusCode::Malformed, {"m.obj:3:"});
-  expectError(loadText("v 0 0 0\r\r\nv 1 0 0\r\nv 0 x 0\r\n").status(), StatusCode::Malformed, {"m.obj:3:"});
+  expectError(loadObj("v 0 0 0\rv 1 0 0\rv 0 x 0\r").status(), StatusCode::Malformed, {"m.obj:3:"});
+  expectError(loadObj("v 0 0 0\r\r\nv 1 0 0\r\nv 0 x 0\r\n").status(), StatusCode::Malformed, {"m.obj:3:"});
 }
 
 TEST(LoadObj, NamesTheLineOfACoordinateThatIsTooFar) {
-  expectError(loadText("v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n").status(), StatusCode::NonFinite,
+  expectError(loadObj("v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n").status(), StatusCode::NonFinite,
               {"m.obj:3:", "vertex 2", "beyond 1e18", "Correct it"});
-  EXPECT_TRUE(loadText("v 0 0 0\nv 1e18 0 0\nv 0 -1e18 0\nf 1 2 3\n").ok());
+  EXPECT_TRUE(loadObj("v 0 0 0\nv 1e18 0 0\nv 0 -1e18 0\nf 1 2 3\n").ok());
 }
 
 TEST(LoadObj, ReadsPositionsExactlyInDouble) {
-  const TriangleMesh mesh = loadText("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n").value();
+  const TriangleMesh mesh = loadObj("v 0.1 +1.0 -2.5e-3\nv 1234567.890123456 1E2 .5\nv 0 1 0\nf 1 2 3\n").value();
   ASSERT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.positions[0], Eigen::Vector3d(0.1, 1.0, -2.5e-3));
   EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1234567.890123456, 100, 0.5));
@@ -61,42 +61,42 @@ TEST(LoadObj, ReadsPositionsExactlyInDouble) {
 TEST(LoadObj, ReadsEveryFormOfCorner) {
   const std::string head = std::string(kThree) + "vt 0 0\nvn 0 0 1\n";
   for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f 1/1/1 2/1/1 3/1/1", "f 1/ 2/1/ 3"}) {
-    const Result<TriangleMesh> mesh = loadText(head + face);
+    const Result<TriangleMesh> mesh = loadObj(head + face);
     ASSERT_TRUE(mesh.ok()) << mesh.status().message;
     EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}})) << face;
   }
 }
 
 TEST(LoadObj, NegativeIndicesCountBackFromTheLastVertex) {
-  const TriangleMesh mesh = loadText(std::string(kThree) + "f -3 -2 -1\nv 5 5 5\nf -4 -2 -1\n").value();
+  const TriangleMesh mesh = loadObj(std::string(kThree) + "f -3 -2 -1\nv 5 5 5\nf -4 -2 -1\n").value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(LoadObj, FacesMayNameVerticesDefinedLater) {
-  const TriangleMesh mesh = loadText(std::string("f 1 2 3\n") + kThree).value();
+  const TriangleMesh mesh = loadObj(std::string("f 1 2 3\n") + kThree).value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
 }
 
 TEST(LoadObj, AcceptsDosLineBreaksTabsAndBlanks) {
-  const TriangleMesh mesh = loadText("\r\n\tv\t0  0\t0\r\n  v 1 0 0 \r\nv 0 1 0\r\n f  1\t2 3 \r\n").value();
+  const TriangleMesh mesh = loadObj("\r\n\tv\t0  0\t0\r\n  v 1 0 0 \r\nv 0 1 0\r\n f  1\t2 3 \r\n").value();
   EXPECT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
 }
 
 TEST(LoadObj, JoinsContinuedLines) {
-  const TriangleMesh mesh = loadText("v 0 \\\n0 0\nv \\\r\n1 0 0\nv 0 1\\\n 0\nf 1 2 \\\n  3").value();
+  const TriangleMesh mesh = loadObj("v 0 \\\n0 0\nv \\\r\n1 0 0\nv 0 1\\\n 0\nf 1 2 \\\n  3").value();
   ASSERT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.positions[2], Eigen::Vector3d(0, 1, 0));
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}}));
 }
 
 TEST(LoadObj, CountsTheLinesOfContinuedStatements) {
-  const Result<TriangleMesh> mesh = loadText("v 0 \\\n0 0\n# c\nv 1 0 x\n");
+  const Result<TriangleMesh> mesh = loadObj("v 0 \\\n0 0\n# c\nv 1 0 x\n");
   expectError(mesh.status(), StatusCode::Malformed, {"m.obj:4:"});
 }
 
 TEST(LoadObj, ABackslashDoesNotContinueAComment) {
-  const TriangleMesh mesh = loadText("# C:\\models\\\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # 4 5\n").value();
+  const TriangleMesh mesh = loadObj("# C:\\models\\\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # 4 5\n").value();
   EXPECT_EQ(mesh.vertexCount(), 3u);
   EXPECT_EQ(mesh.triangleCount(), 1u);
 }
@@ -109,7 +109,7 @@ TEST(LoadObj, AcceptsAByteOrderMarkAndAnExtensionInCapitals) {
 
 TEST(LoadObj, ReadsOverWeightsColoursLinesAndCurves) {
   const TriangleMesh mesh =
-      loadText("v 0 0 0 1\nv 1 0 0 0.5 0.25 1\nv 0 1 0\nl 1 2\np 3\nvp 0.5\ncurv 0 1 1 2\nf 1 2 3").value();
+      loadObj("v 0 0 0 1\nv 1 0 0 0.5 0.25 1\nv 0 1 0\nl 1 2\np 3\nvp 0.5\ncurv 0 1 1 2\nf 1 2 3").value();
   EXPECT_EQ(mesh.positions[1], Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(mesh.triangleCount(), 1u);
 }
@@ -124,14 +124,14 @@ double area(const TriangleMesh& mesh) {
 }
 
 TEST(LoadObj, FansAConvexPolygonFromItsFirstCorner) {
-  const TriangleMesh mesh = loadText("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
+  const TriangleMesh mesh = loadObj("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
 }
 
 TEST(LoadObj, ConcaveQuadsAreNotFoldedWhereverTheyBegin) {
   const std::string points = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";  // the vertex numbered 3 is the reflex one
   for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
-    const TriangleMesh mesh = loadText(points + face).value();
+    const TriangleMesh mesh = loadObj(points + face).value();
     ASSERT_EQ(mesh.triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(area(mesh), 4.0) << face;
   }
@@ -144,7 +144,7 @@ TEST(LoadObj, APolygonThatCrossesItselfNamesAllItsCorners) {
     text += "v " + std::to_string(random() % 1000) + " " + std::to_string(random() % 1000) + " 0\n";
     face += " " + std::to_string(v);
   }
-  const Result<TriangleMesh> mesh = loadText(text + face);
+  const Result<TriangleMesh> mesh = loadObj(text + face);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().triangleCount(), 198u);
   std::set<int> named;
@@ -153,12 +153,12 @@ TEST(LoadObj, APolygonThatCrossesItselfNamesAllItsCorners) {
 }
 
 TEST(LoadObj, ConcavePolygonsAreNotFolded) {
-  const TriangleMesh mesh = loadText("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
+  const TriangleMesh mesh = loadObj("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   ASSERT_EQ(mesh.triangleCount(), 3u);
   EXPECT_DOUBLE_EQ(area(mesh), 5.5);
   // A comb, of which no single corner sees everything.
   const TriangleMesh comb =
-      loadText(
+      loadObj(
           "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
           "f 4 5 6 7 8 9 10 11 12 1 2 3\n")
           .value();
@@ -168,9 +168,9 @@ TEST(LoadObj, ConcavePolygonsAreNotFolded) {
 
 TEST(LoadObj, GroupsAreRunsOfOneNameAndMaterial) {
   const TriangleMesh mesh =
-      loadText(std::string(kThree) +
-               "f 1 2 3\no Left wing \nusemtl skin\nf 1 2 3\nf 1 2 3 1\nusemtl claw\ng toe # comment\n"
-               "usemtl skin\ng claws\nf 1 2 3\n")
+      loadObj(std::string(kThree) +
+              "f 1 2 3\no Left wing \nusemtl skin\nf 1 2 3\nf 1 2 3 1\nusemtl claw\ng toe # comment\n"
+              "usemtl skin\ng claws\nf 1 2 3\n")
           .value();
   ASSERT_EQ(mesh.groups.size(), 3u);
   EXPECT_EQ(mesh.groups[0].name, "");
@@ -186,24 +186,24 @@ TEST(LoadObj, GroupsAreRunsOfOneNameAndMaterial) {
 
 TEST(LoadObj, TexcoordsAreGivenIfEveryVertexHasOneValue) {
   const std::string head = std::string(kThree) + "v 5 5 5\nvt 0 0\nvt 1 0\nvt 0 0.5\nvt 1 0\nvt 0.25 0.25\n";
-  const TriangleMesh one = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/4 3/3\n").value();
+  const TriangleMesh one = loadObj(head + "f 1/1 2/2 3/3\nf 1/1 2/4 3/3\n").value();
   const std::vector<Eigen::Vector2f> expected = {{0, 0}, {1, 0}, {0, 0.5f}, {0, 0}};
   EXPECT_EQ(one.texcoords, expected);
-  const TriangleMesh seam = loadText(head + "f 1/1 2/2 3/3\nf 1/1 2/5 3/3\n").value();
+  const TriangleMesh seam = loadObj(head + "f 1/1 2/2 3/3\nf 1/1 2/5 3/3\n").value();
   EXPECT_EQ(seam.triangleCount(), 2u);
   EXPECT_TRUE(seam.texcoords.empty());
-  const TriangleMesh partly = loadText(head + "f 1/1 2/2 3/3\nf 1 2 3\n").value();
+  const TriangleMesh partly = loadObj(head + "f 1/1 2/2 3/3\nf 1 2 3\n").value();
   EXPECT_EQ(partly.triangleCount(), 2u);
   EXPECT_TRUE(partly.texcoords.empty());
 }
 
 TEST(LoadObj, NormalsAreMadeUnitAndHardEdgesLeaveNone) {
   const std::string head = std::string(kThree) + "vn 0 0 2\nvn 0 3 4\nvn nan 0 0\n";
-  const TriangleMesh mesh = loadText(head + "f 1//1 2//2 3//3\n").value();
+  const TriangleMesh mesh = loadObj(head + "f 1//1 2//2 3//3\n").value();
   const std::vector<Eigen::Vector3f> expected = {{0, 0, 1}, {0, 0.6f, 0.8f}, {0, 0, 0}};
   EXPECT_EQ(mesh.normals, expected);
   EXPECT_TRUE(mesh.texcoords.empty());
-  EXPECT_TRUE(loadText(head + "f 1//1 2//2 3//3\nf 1//2 2//2 3//3\n").value().normals.empty());
+  EXPECT_TRUE(loadObj(head + "f 1//1 2//2 3//3\nf 1//2 2//2 3//3\n").value().normals.empty());
 }
 
 TEST(LoadObj, NamesAMissingFileAndAFolder) {
@@ -216,10 +216,10 @@ TEST(LoadObj, NamesAMissingFileAndAFolder) {
 TEST(LoadObj, NamesTheLineOfAnIndexOutOfRange) {
   const std::string three = kThree;
   const StatusCode code = StatusCode::IndexOutOfRange;
-  expectError(loadText(three + "f 1 2 4\n").status(), code, {"m.obj:4:", "number 4 of the vertices", "has 3"});
-  expectError(loadText(three + "\nf 1 2 0\n").status(), code, {"m.obj:5:", "counts from 1"});
-  expectError(loadText(three + "f 1 2 -4\n").status(), code, {"m.obj:4:", "vertex -4"});
-  expectError(loadText(three + "f 1 2 99999999999\n").status(), code, {"m.obj:4:", "99999999999"});
+  expectError(loadObj(three + "f 1 2 4\n").status(), code, {"m.obj:4:", "number 4 of the vertices", "has 3"});
+  expectError(loadObj(three + "\nf 1 2 0\n").status(), code, {"m.obj:5:", "counts from 1"});
+  expectError(loadObj(three + "f 1 2 -4\n").status(), code, {"m.obj:4:", "vertex -4"});
+  expectError(loadObj(three + "f 1 2 99999999999\n").status(), code, {"m.obj:4:", "99999999999"});
 }
 
 TEST(LoadObj, FacesThatNameWhatTheFileLacksAreReadWithoutIt) {
@@ -258,35 +258,35 @@ TEST(LoadObj, FacesOfFewerThanThreeCornersAreLeftOut) {
   EXPECT_EQ(report.describe(),
             "3 faces of fewer than 3 corners left out (first in line 5), 1 face read without texture coordinates or "
             "normals that do not exist (first in line 9)");
-  expectError(loadText(std::string(kThree) + "f 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
+  expectError(loadObj(std::string(kThree) + "f 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
 }
 
 TEST(LoadObj, NamesTheLineOfMalformedText) {
   const std::string three = kThree;
   const StatusCode code = StatusCode::Malformed;
-  expectError(loadText(three + "v 1 2,5 3\n").status(), code, {"m.obj:4:", "'2,5' is not a number"});
-  expectError(loadText(three + "v 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "needs 3 numbers and has 2"});
-  expectError(loadText(three + "vn 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vn' needs 3"});
-  expectError(loadText(three + "vt\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vt' needs 1"});
-  expectError(loadText(three + "f 1/x 2 3\n").status(), code, {"m.obj:4:", "'x'", "texture coordinate"});
-  expectError(loadText(three + "f 1 2 3x\n").status(), code, {"m.obj:4:", "'3x'"});
-  expectError(loadText(three + "vt 0 0\nvn 0 0 1\nf 1/1/1/1 2 3\n").status(), code, {"m.obj:6:", "'1/1/1/1'"});
+  expectError(loadObj(three + "v 1 2,5 3\n").status(), code, {"m.obj:4:", "'2,5' is not a number"});
+  expectError(loadObj(three + "v 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "needs 3 numbers and has 2"});
+  expectError(loadObj(three + "vn 1 2\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vn' needs 3"});
+  expectError(loadObj(three + "vt\nf 1 2 3\n").status(), code, {"m.obj:4:", "'vt' needs 1"});
+  expectError(loadObj(three + "f 1/x 2 3\n").status(), code, {"m.obj:4:", "'x'", "texture coordinate"});
+  expectError(loadObj(three + "f 1 2 3x\n").status(), code, {"m.obj:4:", "'3x'"});
+  expectError(loadObj(three + "vt 0 0\nvn 0 0 1\nf 1/1/1/1 2 3\n").status(), code, {"m.obj:6:", "'1/1/1/1'"});
 }
 
 TEST(LoadObj, NamesTheLineOfACoordinateThatIsNotFinite) {
-  expectError(loadText("v 0 0 0\nv 1 nan 0\n").status(), StatusCode::NonFinite, {"m.obj:2:", "vertex 1"});
-  expectError(loadText("v 0 0 -inf\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
-  expectError(loadText("v 0 0 1e999\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
+  expectError(loadObj("v 0 0 0\nv 1 nan 0\n").status(), StatusCode::NonFinite, {"m.obj:2:", "vertex 1"});
+  expectError(loadObj("v 0 0 -inf\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
+  expectError(loadObj("v 0 0 1e999\n").status(), StatusCode::NonFinite, {"m.obj:1:", "vertex 0"});
 }
 
 TEST(LoadObj, RefusesFilesWithoutVerticesOrFaces) {
-  expectError(loadText("").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
-  expectError(loadText("# nothing\nvt 0 0\n").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
-  expectError(loadText(std::string(kThree) + "l 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
+  expectError(loadObj("").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
+  expectError(loadObj("# nothing\nvt 0 0\n").status(), StatusCode::Empty, {"m.obj: ", "no vertices"});
+  expectError(loadObj(std::string(kThree) + "l 1 2\n").status(), StatusCode::Empty, {"m.obj: ", "no faces"});
 }
 
 TEST(LoadObj, RefusesBinaryFiles) {
-  expectError(loadText(std::string("v 0 0 0\n\0\1", 10)).status(), StatusCode::Malformed, {"m.obj: ", "is binary"});
+  expectError(loadObj(std::string("v 0 0 0\n\0\1", 10)).status(), StatusCode::Malformed, {"m.obj: ", "is binary"});
 }
 
 TEST(LoadObj, SurvivesDamagedFiles) {
@@ -299,11 +299,11 @@ TEST(LoadObj, SurvivesDamagedFiles) {
     EXPECT_TRUE(!mesh.ok() || validate(mesh.value()).ok());
     ++(mesh.ok() ? read : refused);
   };
-  for (std::size_t length = 0; length <= text.size(); ++length) count(loadText(text.substr(0, length)));
+  for (std::size_t length = 0; length <= text.size(); ++length) count(loadObj(text.substr(0, length)));
   for (int i = 0; i < 600; ++i) {
     std::string mutated = text;
     for (int k = 0; k < 3; ++k) mutated[random() % mutated.size()] = static_cast<char>(random() % 256);
-    count(loadText(mutated));
+    count(loadObj(mutated));
   }
   EXPECT_GT(read, 20u);
   EXPECT_GT(refused, 100u);

@@ -30,14 +30,14 @@ ObjSequenceWriter makeWriter(const TempFolder& folder, const std::string& baseNa
   return std::move(writer).value();
 }
 
-const std::vector<Eigen::Vector3d> kDoubles = {
+const std::vector<Eigen::Vector3d> kAwkwardPositions = {
     {0.1, 1.0 / 3.0, -1e-300}, {1e18, 2, 3}, {-0.0, 5e-324, 7}, {123456.789, 8, 9.9999999999999987e17}};
 
 TEST(ObjSequenceWriter, NumbersFramesWithFourDigitsOrMore) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder, "dragon.");
-  ASSERT_TRUE(writer.write(0, viewOf(kDoubles)).ok());
-  ASSERT_TRUE(writer.write(12345, viewOf(kDoubles)).ok());
+  ASSERT_TRUE(writer.write(0, viewOf(kAwkwardPositions)).ok());
+  ASSERT_TRUE(writer.write(12345, viewOf(kAwkwardPositions)).ok());
   EXPECT_TRUE(std::filesystem::exists(folder.path("out/frames/dragon.0000.obj")));
   EXPECT_TRUE(std::filesystem::exists(folder.path("out/frames/dragon.12345.obj")));
   EXPECT_EQ(writer.framePath(7), folder.path("out/frames/dragon.0007.obj"));
@@ -49,10 +49,10 @@ TEST(ObjSequenceWriter, NumbersFramesWithFourDigitsOrMore) {
 TEST(ObjSequenceWriter, DoublePositionsReadBackExactly) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);
-  ASSERT_TRUE(writer.write(1, viewOf(kDoubles)).ok());
+  ASSERT_TRUE(writer.write(1, viewOf(kAwkwardPositions)).ok());
   const Result<TriangleMesh> back = loadMesh(writer.framePath(1));
   ASSERT_TRUE(back.ok()) << back.status().message;
-  EXPECT_EQ(back.value().positions, kDoubles);
+  EXPECT_EQ(back.value().positions, kAwkwardPositions);
   EXPECT_TRUE(std::signbit(back.value().positions[2][0]));
 }
 
@@ -99,7 +99,7 @@ TEST(ObjSequenceWriter, NamesMaterialLibrariesFromItsFolder) {
   ASSERT_TRUE(layout.ok());
   Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(folder.path("a/b"), std::move(layout).value());
   ASSERT_TRUE(writer.ok());
-  ASSERT_TRUE(writer.value().write(0, viewOf(kDoubles)).ok());
+  ASSERT_TRUE(writer.value().write(0, viewOf(kAwkwardPositions)).ok());
   EXPECT_EQ(TempFolder::read(writer.value().framePath(0)).substr(0, 22), "mtllib ../../skin.mtl\n");
 }
 
@@ -110,13 +110,14 @@ TEST(ObjSequenceWriter, WritesCurrentNormals) {
   Result<ObjSequenceWriter> writer = ObjSequenceWriter::create(folder.path("out"), layout.value().withNormals());
   ASSERT_TRUE(writer.ok());
   const std::vector<Eigen::Vector3f> normals(4, Eigen::Vector3f(0.6f, 0, -0.8f));
-  ASSERT_TRUE(writer.value().write(0, viewOf(kDoubles), viewOf(normals)).ok());
+  ASSERT_TRUE(writer.value().write(0, viewOf(kAwkwardPositions), viewOf(normals)).ok());
   const TriangleMesh frame = loadMesh(writer.value().framePath(0)).value();
-  EXPECT_EQ(frame.positions, kDoubles);
+  EXPECT_EQ(frame.positions, kAwkwardPositions);
   EXPECT_EQ(frame.texcoords.size(), 4u);
   ASSERT_EQ(frame.normals.size(), 4u);
   for (const Eigen::Vector3f& n : frame.normals) EXPECT_TRUE(n.isApprox(normals[0], 1e-6f));
-  expectError(writer.value().write(1, viewOf(kDoubles)), StatusCode::SizeMismatch, {"frame_0001.obj", "0 normals"});
+  expectError(writer.value().write(1, viewOf(kAwkwardPositions)), StatusCode::SizeMismatch,
+              {"frame_0001.obj", "0 normals"});
 }
 
 TEST(ObjSequenceWriter, RefusesAnotherNumberOfPositions) {
@@ -151,7 +152,8 @@ TEST(ObjSequenceWriter, ReportsAFolderThatVanishes) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);
   std::filesystem::remove_all(folder.path("out"));
-  expectError(writer.write(0, viewOf(kDoubles)), StatusCode::FileNotWritable, {writer.framePath(0), "folder exists"});
+  expectError(writer.write(0, viewOf(kAwkwardPositions)), StatusCode::FileNotWritable,
+              {writer.framePath(0), "folder exists"});
 }
 
 }  // namespace

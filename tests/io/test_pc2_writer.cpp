@@ -20,7 +20,7 @@ using test::TempFolder;
 const std::vector<Eigen::Vector3f> kFloats = {{0.1f, -2.0f, 3.5f}, {1e18f, 1e-45f, -0.0f}};
 const std::vector<Eigen::Vector3d> kDoubles = {{1.0 / 3.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
 
-Pc2Writer writerOf(const std::string& path) {
+Pc2Writer pc2WriterOf(const std::string& path) {
   Result<Pc2Writer> writer = Pc2Writer::create(path, 2, 1.0f, 10.0f);
   EXPECT_TRUE(writer.ok()) << writer.status().message;
   return std::move(writer).value();
@@ -36,7 +36,7 @@ Number numberAt(const std::string& bytes, std::size_t offset) {
 TEST(Pc2Writer, WritesAHeaderOf32BytesAndAllPositionsAsFloats) {
   const TempFolder folder;
   const std::string path = folder.path("a.pc2");
-  Pc2Writer writer = writerOf(path);
+  Pc2Writer writer = pc2WriterOf(path);
   ASSERT_TRUE(writer.addFrame(viewOf(kFloats)).ok());
   ASSERT_TRUE(writer.addFrame(viewOf(kDoubles)).ok());
   EXPECT_FALSE(std::filesystem::exists(path)) << "it has its name when it is complete";
@@ -64,11 +64,11 @@ TEST(Pc2Writer, LeavesTheOldFileUntilTheNewOneIsComplete) {
   const TempFolder folder;
   const std::string path = folder.write("a.pc2", "old");
   {
-    Pc2Writer abandoned = writerOf(path);
+    Pc2Writer abandoned = pc2WriterOf(path);
     ASSERT_TRUE(abandoned.addFrame(viewOf(kFloats)).ok());
   }
   EXPECT_EQ(TempFolder::read(path), "old");
-  Pc2Writer writer = writerOf(path);
+  Pc2Writer writer = pc2WriterOf(path);
   // A limit on the size of files stands in for a full disk.
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
@@ -86,7 +86,7 @@ TEST(Pc2Writer, LeavesTheOldFileUntilTheNewOneIsComplete) {
 
 TEST(Pc2Writer, RefusesWhatItCannotHold) {
   const TempFolder folder;
-  Pc2Writer writer = writerOf(folder.path("a.pc2"));
+  Pc2Writer writer = pc2WriterOf(folder.path("a.pc2"));
   std::vector<Eigen::Vector3f> bad = kFloats;
   bad.pop_back();
   expectError(writer.addFrame(viewOf(std::as_const(bad))), StatusCode::SizeMismatch, {"1 positions", "2 vertices"});
@@ -101,14 +101,14 @@ TEST(Pc2Writer, RefusesWhatItCannotHold) {
 
 TEST(Pc2Writer, CallsAfterItsEndAreErrors) {
   const TempFolder folder;
-  Pc2Writer writer = writerOf(folder.path("a.pc2"));
+  Pc2Writer writer = pc2WriterOf(folder.path("a.pc2"));
   ASSERT_TRUE(writer.addFrame(viewOf(kFloats)).ok());
   ASSERT_TRUE(writer.finish().ok());
   const std::string written = TempFolder::read(folder.path("a.pc2"));
   expectError(writer.addFrame(viewOf(kFloats)), StatusCode::FileNotWritable, {"finished", "another writer"});
   expectError(writer.finish(), StatusCode::FileNotWritable, {"finished"});
   EXPECT_EQ(TempFolder::read(folder.path("a.pc2")), written);
-  Pc2Writer first = writerOf(folder.path("b.pc2"));
+  Pc2Writer first = pc2WriterOf(folder.path("b.pc2"));
   Pc2Writer second = std::move(first);
   expectError(first.finish(), StatusCode::FileNotWritable, {"finished"});
   EXPECT_TRUE(second.addFrame(viewOf(kFloats)).ok());

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "temp_folder.h"
+#include "loaded_texts.h"
+#include "raw_bytes.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <random>
 
 namespace tetskin {
 namespace {
 
+using test::bytesOf;
+using test::bytesOfAll;
 using test::expectError;
+using test::kQuadCorners;
+using test::loadMeshText;
 using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
-Result<TriangleMesh> loadText(const std::string& text) {
-  const TempFolder folder;
-  return loadMesh(folder.write("m.ply", text));
+Result<TriangleMesh> loadPly(const std::string& text) {
+  return loadMeshText("m.ply", text);
 }
 
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -35,10 +38,9 @@ std::string ascii(const std::string& vertices, const std::string& faces) {
   return header("ascii", vertices, faces);
 }
 
-const std::string kHead = ascii("4\n" + kXyz, "2\n" + kList);
-const std::string kCorners = "0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n";
+const std::string kPlyHead = ascii("4\n" + kXyz, "2\n" + kList);
 
-void expectPlate(const Result<TriangleMesh>& mesh) {
+void expectQuadAndTriangle(const Result<TriangleMesh>& mesh) {
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   ASSERT_EQ(mesh.value().vertexCount(), 4u);
   EXPECT_EQ(mesh.value().positions[2], Eigen::Vector3d(1, 1, 0));
@@ -47,102 +49,86 @@ void expectPlate(const Result<TriangleMesh>& mesh) {
 }
 
 TEST(LoadPly, ReadsTextAndCutsPolygons) {
-  const Result<TriangleMesh> mesh = loadText(kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n");
-  expectPlate(mesh);
+  const Result<TriangleMesh> mesh = loadPly(kPlyHead + kQuadCorners + "4 0 1 2 3\n3 0 2 1\n");
+  expectQuadAndTriangle(mesh);
   EXPECT_EQ(mesh.value().positions[3].z(), 0.1);  // as a double, whatever type its property declares
   EXPECT_TRUE(mesh.value().normals.empty());
   EXPECT_TRUE(mesh.value().texcoords.empty());
 }
 
 TEST(LoadPly, LineBreaksOfTheBodyMeanNothing) {
-  expectPlate(loadText(kHead + "0 0 0 1 0 0\n\n1 1 0\t0 1\n.1 4 0 1 2 3 3 0 2 1"));
+  expectQuadAndTriangle(loadPly(kPlyHead + "0 0 0 1 0 0\n\n1 1 0\t0 1\n.1 4 0 1 2 3 3 0 2 1"));
 }
 
 TEST(LoadPly, IgnoresWhatStandsBehindAnElementInItsLine) {
-  expectPlate(loadText(kHead + "0 0 0 255 0\n1 0 0 7\n1 1 0 red\n0 1 .1\n4 0 1 2 3 6 0 0 1 0 1 1\n3 0 2 1 9 1 1 1\n"));
+  expectQuadAndTriangle(
+      loadPly(kPlyHead + "0 0 0 255 0\n1 0 0 7\n1 1 0 red\n0 1 .1\n4 0 1 2 3 6 0 0 1 0 1 1\n3 0 2 1 9 1 1 1\n"));
 }
 
 TEST(LoadPly, ReadsOverALineOfAnOldBlenderInTheHeader) {
-  std::string text = kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n";
+  std::string text = kPlyHead + kQuadCorners + "4 0 1 2 3\n3 0 2 1\n";
   text.replace(text.find("comment any"), 11, "Created by Blender3D 247 - www.blender.org, source file: ");
-  expectPlate(loadText(text));
+  expectQuadAndTriangle(loadPly(text));
 }
 
 TEST(LoadPly, ReadsTheLineEndsOfWindowsAndOldMacs) {
-  const std::string text = kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n";
+  const std::string text = kPlyHead + kQuadCorners + "4 0 1 2 3\n3 0 2 1\n";
   std::string windows, mac = text;
   for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   std::replace(mac.begin(), mac.end(), '\n', '\r');
-  expectPlate(loadText(windows));
-  expectPlate(loadText(mac));
+  expectQuadAndTriangle(loadPly(windows));
+  expectQuadAndTriangle(loadPly(mac));
   mac.replace(mac.find("1 1 0"), 5, "1 x 0");
-  expectError(loadText(mac).status(), StatusCode::Malformed, {"m.ply:13:", "vertex 2"});
+  expectError(loadPly(mac).status(), StatusCode::Malformed, {"m.ply:13:", "vertex 2"});
 }
 
-/// Bytes of a number in an order that may differ from the machine's.
-template <class Number>
-std::string bytes(Number value, bool big) {
-  std::string result(sizeof(value), '\0');
-  std::memcpy(&result[0], &value, sizeof(value));
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
-  if ((first == 0) != big) std::reverse(result.begin(), result.end());
-  return result;
-}
-
-template <class Number>
-std::string all(std::initializer_list<double> values, bool big) {
-  std::string result;
-  for (const double value : values) result += bytes(static_cast<Number>(value), big);
-  return result;
-}
-
-std::string binaryText(bool big, const std::string& lineEnd = "\n") {
+std::string binaryPly(bool big, const std::string& lineEnd = "\n") {
   std::string text = header(big ? "binary_big_endian" : "binary_little_endian", "4\nproperty uchar red\n" + kXyz,
                             "2\nproperty short material\nproperty list ushort uint vertex_index\n");
   for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + lineEnd.size())) {
     text.replace(at, 1, lineEnd);
   }
   for (const auto& p : {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1}}) {
-    text += '\n' + all<float>({p.x(), p.y(), p.z()}, big);
+    text += '\n' + bytesOfAll<float>({p.x(), p.y(), p.z()}, big);
   }
-  text += bytes(std::int16_t(-1), big) + bytes(std::uint16_t(4), big) + all<std::uint32_t>({0, 1, 2, 3}, big);
-  return text + bytes(std::int16_t(7), big) + bytes(std::uint16_t(3), big) + all<std::uint32_t>({0, 2, 1}, big);
+  text +=
+      bytesOf(std::int16_t(-1), big) + bytesOf(std::uint16_t(4), big) + bytesOfAll<std::uint32_t>({0, 1, 2, 3}, big);
+  return text + bytesOf(std::int16_t(7), big) + bytesOf(std::uint16_t(3), big) +
+         bytesOfAll<std::uint32_t>({0, 2, 1}, big);
 }
 
 TEST(LoadPly, ReadsBinaryOfEitherByteOrder) {
   for (const bool big : {false, true}) {
     for (const char* lineEnd : {"\n", "\r\n", "\r"}) {
-      const Result<TriangleMesh> mesh = loadText(binaryText(big, lineEnd));
-      expectPlate(mesh);
+      const Result<TriangleMesh> mesh = loadPly(binaryPly(big, lineEnd));
+      expectQuadAndTriangle(mesh);
       EXPECT_EQ(mesh.value().positions[3].z(), static_cast<double>(0.1f));
     }
   }
 }
 
 TEST(LoadPly, ReadsEveryTypeOfNumber) {
-  const std::pair<const char*, std::string> types[] = {{"char", bytes(std::int8_t(-2), false)},
-                                                       {"int8", bytes(std::int8_t(-2), false)},
-                                                       {"uchar", bytes(std::uint8_t(254), false)},
-                                                       {"uint8", bytes(std::uint8_t(254), false)},
-                                                       {"short", bytes(std::int16_t(-2), false)},
-                                                       {"int16", bytes(std::int16_t(-2), false)},
-                                                       {"ushort", bytes(std::uint16_t(254), false)},
-                                                       {"uint16", bytes(std::uint16_t(254), false)},
-                                                       {"int", bytes(std::int32_t(-2), false)},
-                                                       {"int32", bytes(std::int32_t(-2), false)},
-                                                       {"uint", bytes(std::uint32_t(254), false)},
-                                                       {"uint32", bytes(std::uint32_t(254), false)},
-                                                       {"float", bytes(-2.0f, false)},
-                                                       {"float32", bytes(-2.0f, false)},
-                                                       {"double", bytes(-2.0, false)},
-                                                       {"float64", bytes(-2.0, false)}};
+  const std::pair<const char*, std::string> types[] = {{"char", bytesOf(std::int8_t(-2), false)},
+                                                       {"int8", bytesOf(std::int8_t(-2), false)},
+                                                       {"uchar", bytesOf(std::uint8_t(254), false)},
+                                                       {"uint8", bytesOf(std::uint8_t(254), false)},
+                                                       {"short", bytesOf(std::int16_t(-2), false)},
+                                                       {"int16", bytesOf(std::int16_t(-2), false)},
+                                                       {"ushort", bytesOf(std::uint16_t(254), false)},
+                                                       {"uint16", bytesOf(std::uint16_t(254), false)},
+                                                       {"int", bytesOf(std::int32_t(-2), false)},
+                                                       {"int32", bytesOf(std::int32_t(-2), false)},
+                                                       {"uint", bytesOf(std::uint32_t(254), false)},
+                                                       {"uint32", bytesOf(std::uint32_t(254), false)},
+                                                       {"float", bytesOf(-2.0f, false)},
+                                                       {"float32", bytesOf(-2.0f, false)},
+                                                       {"double", bytesOf(-2.0, false)},
+                                                       {"float64", bytesOf(-2.0, false)}};
   for (const auto& [name, number] : types) {
     const std::string xyz = std::string("property ") + name + " x\nproperty int y\nproperty int z\n";
     const std::string yz(8, '\0'), face = '\3' + std::string(12, '\0');
     const Result<TriangleMesh> mesh =
-        loadText(header("binary_little_endian", "1\n" + xyz, "1\n" + kList) + number + yz + face);
+        loadPly(header("binary_little_endian", "1\n" + xyz, "1\n" + kList) + number + yz + face);
     ASSERT_TRUE(mesh.ok()) << name << ": " << mesh.status().message;
     EXPECT_EQ(mesh.value().positions[0].x(), name[0] == 'u' ? 254 : -2) << name;
   }
@@ -153,26 +139,26 @@ TEST(LoadPly, ReadsNormalsAndTextureCoordinatesOfVertices) {
       "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n";
   const std::string text =
       ascii("3\n" + kXyz + more, "1\n" + kList) + "0 0 0 0 0 3 0 0\n1 0 0 0 0 0 1 0\n0 1 0 nan 0 1 0.5 1\n3 0 1 2";
-  const Result<TriangleMesh> mesh = loadText(text);
+  const Result<TriangleMesh> mesh = loadPly(text);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().normals, (std::vector<Eigen::Vector3f>{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}));
   EXPECT_EQ(mesh.value().texcoords, (std::vector<Eigen::Vector2f>{{0, 0}, {1, 0}, {0.5f, 1}}));
 }
 
 TEST(LoadPly, KeepsTextureCoordinatesOfCornersIfEveryVertexHasOneOfItsOwn) {
-  const std::string head = ascii("4\n" + kXyz, "2\n" + kList + "property list uchar float texcoord\n") + kCorners;
+  const std::string head = ascii("4\n" + kXyz, "2\n" + kList + "property list uchar float texcoord\n") + kQuadCorners;
   const std::string first = "3 0 1 2 6 0 0 1 0 1 1\n";
-  EXPECT_EQ(loadText(head + first + "3 0 2 3 6 0 0 1 1 0 1\n").value().texcoords,
+  EXPECT_EQ(loadPly(head + first + "3 0 2 3 6 0 0 1 1 0 1\n").value().texcoords,
             (std::vector<Eigen::Vector2f>{{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
-  EXPECT_TRUE(loadText(head + first + "3 0 2 3 6 0 0 0.5 1 0 1\n").value().texcoords.empty());
-  EXPECT_TRUE(loadText(head + first + "3 0 2 3 0\n").value().texcoords.empty());
+  EXPECT_TRUE(loadPly(head + first + "3 0 2 3 6 0 0 0.5 1 0 1\n").value().texcoords.empty());
+  EXPECT_TRUE(loadPly(head + first + "3 0 2 3 0\n").value().texcoords.empty());
 }
 
 TEST(LoadPly, CutsStripsIntoTriangles) {
   const std::string text = "ply\nformat ascii 1.0\nobj_info any\nelement vertex 4\n" + kXyz +
-                           "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + kCorners +
+                           "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + kQuadCorners +
                            "8 0 1 2 3 -1 3 2 1\n";
-  const Result<TriangleMesh> mesh = loadText(text);
+  const Result<TriangleMesh> mesh = loadPly(text);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().triangles, std::vector<Triangle>({{0, 1, 2}, {2, 1, 3}, {3, 2, 1}}));
 }
@@ -182,85 +168,89 @@ TEST(LoadPly, ReadsOverOtherElementsAndSmallFaces) {
       "ply\nformat ascii 1.0\nelement camera 2\nproperty list uchar float view\nproperty int id\n"
       "element nothing 4000000000\nelement vertex 4\n" +
       kXyz + "element face 5\n" + kList +
-      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n2 0.5 0.5 1\n0 2\n" + kCorners +
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n2 0.5 0.5 1\n0 2\n" + kQuadCorners +
       "4 0 1 2 3\n0\n2 0 1\n1 3\n3 0 2 1\n0 1\n";
-  expectPlate(loadText(text));
+  expectQuadAndTriangle(loadPly(text));
 }
 
 TEST(LoadPly, RefusesCountsThatTheFileCannotHold) {
   const std::string list4 = "property list uint int vertex_indices\n";
-  const std::string body = all<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false) + '\3' + all<std::int32_t>({0, 1, 2}, false);
+  const std::string body =
+      bytesOfAll<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false) + '\3' + bytesOfAll<std::int32_t>({0, 1, 2}, false);
   const std::string text = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   const std::string few = "3\n" + kXyz, one = "1\n" + kList;
   for (const char* count : {"2000000000", "60000000", "4294967295", "4294967299", "18446744073709551615"}) {
     const std::string vertices = std::string(count) + "\n" + kXyz, faces = std::string(count) + "\n" + kList;
     for (const std::string format : {"binary_little_endian", "binary_big_endian"}) {
-      expectError(loadText(header(format, vertices, one) + body).status(), StatusCode::Malformed,
+      expectError(loadPly(header(format, vertices, one) + body).status(), StatusCode::Malformed,
                   {"m.ply:4:", std::string("states ") + count + " of element 'vertex', at least 12 bytes each",
                    "only 49 bytes are left", "complete"});
-      expectError(loadText(header(format, few, faces) + body).status(), StatusCode::Malformed,
+      expectError(loadPly(header(format, few, faces) + body).status(), StatusCode::Malformed,
                   {"m.ply:8:", "element 'face', at least 1 bytes each", "only 13 bytes are left"});
     }
-    expectError(loadText(ascii(vertices, one) + text).status(), StatusCode::Malformed,
+    expectError(loadPly(ascii(vertices, one) + text).status(), StatusCode::Malformed,
                 {"m.ply:4:", "at least 6 bytes each", "only 26 bytes are left"});
-    expectError(loadText(ascii(few, faces) + text).status(), StatusCode::Malformed, {"m.ply:8:", "element 'face'"});
+    expectError(loadPly(ascii(few, faces) + text).status(), StatusCode::Malformed, {"m.ply:8:", "element 'face'"});
   }
-  const std::string corners = all<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false);
+  const std::string corners = bytesOfAll<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, false);
   for (const double count : {2e9, 6e7, 4.0}) {
-    const std::string face = bytes(static_cast<std::uint32_t>(count), false) + all<std::int32_t>({0, 1, 2}, false);
-    expectError(loadText(header("binary_little_endian", few, "1\n" + list4) + corners + face).status(),
+    const std::string face =
+        bytesOf(static_cast<std::uint32_t>(count), false) + bytesOfAll<std::int32_t>({0, 1, 2}, false);
+    expectError(loadPly(header("binary_little_endian", few, "1\n" + list4) + corners + face).status(),
                 StatusCode::Malformed, {"m.ply: face 0 of 1", "'vertex_indices'", "complete"});
   }
-  expectError(loadText(ascii(few, "1\n" + list4) + "0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n").status(),
+  expectError(loadPly(ascii(few, "1\n" + list4) + "0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n").status(),
               StatusCode::Malformed, {"m.ply:14:", "face 0 of 1", "'vertex_indices'"});
-  expectError(loadText(ascii("99999999999999999999\n" + kXyz, one)).status(), StatusCode::Malformed,
+  expectError(loadPly(ascii("99999999999999999999\n" + kXyz, one)).status(), StatusCode::Malformed,
               {"m.ply:4:", "'99999999999999999999'", "correct"});
 }
 
 TEST(LoadPly, RefusesBadHeaders) {
   const StatusCode code = StatusCode::Malformed;
-  expectError(loadText("").status(), code, {"m.ply:1:", "'ply'"});
-  expectError(loadText("plyer\n").status(), code, {"m.ply:1:", "'ply'"});
-  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\n").status(), code,
+  expectError(loadPly("").status(), code, {"m.ply:1:", "'ply'"});
+  expectError(loadPly("plyer\n").status(), code, {"m.ply:1:", "'ply'"});
+  expectError(loadPly("ply\nformat ascii 1.0\nelement vertex 1\n").status(), code,
               {"m.ply:", "end_header", "complete"});
-  expectError(loadText("ply\nelement vertex 0\nend_header\n").status(), code, {"m.ply:", "no 'format'"});
-  expectError(loadText("ply\nformat ascii 1.0\nproperty int x\nend_header\n").status(), code, {"m.ply:3:", "before"});
-  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\nsolid\n").status(), code, {"m.ply:4:", "'solid'"});
-  expectError(loadText("ply\nformat xml 1.0\n").status(), StatusCode::UnsupportedFormat, {"m.ply:2:", "'xml'"});
-  expectError(loadText("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n").status(),
+  expectError(loadPly("ply\nelement vertex 0\nend_header\n").status(), code, {"m.ply:", "no 'format'"});
+  expectError(loadPly("ply\nformat ascii 1.0\nproperty int x\nend_header\n").status(), code, {"m.ply:3:", "before"});
+  expectError(loadPly("ply\nformat ascii 1.0\nelement vertex 1\nsolid\n").status(), code, {"m.ply:4:", "'solid'"});
+  expectError(loadPly("ply\nformat xml 1.0\n").status(), StatusCode::UnsupportedFormat, {"m.ply:2:", "'xml'"});
+  expectError(loadPly("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n").status(),
               StatusCode::UnsupportedFormat, {"m.ply:4:", "'half'"});
-  expectError(loadText(ascii("1\nproperty float x\nproperty float y\n", "0\n") + "0 0\n").status(), code,
+  expectError(loadPly(ascii("1\nproperty float x\nproperty float y\n", "0\n") + "0 0\n").status(), code,
               {"m.ply:4:", "x, y or z"});
 }
 
 TEST(LoadPly, RefusesBadBodies) {
   const std::string faces = "3 0 1 2\n3 0 1 2\n";
-  expectError(loadText(kHead + "0 0 0\n1 x 0\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::Malformed,
+  expectError(loadPly(kPlyHead + "0 0 0\n1 x 0\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::Malformed,
               {"m.ply:12:", "vertex 1 of 4", "'y'"});
-  expectError(loadText(kHead + "0 0 0\n1 0 inf\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
+  expectError(loadPly(kPlyHead + "0 0 0\n1 0 inf\n1 1 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
               {"m.ply:12:", "vertex 1", "not finite"});
-  expectError(loadText(kHead + "0 0 0\n1 0 0\n1 1e19 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
+  expectError(loadPly(kPlyHead + "0 0 0\n1 0 0\n1 1e19 0\n0 1 0\n" + faces).status(), StatusCode::NonFinite,
               {"m.ply:13:", "vertex 2", "beyond 1e18"});
   for (const char* bad : {"3 0 1 4", "3 0 1 -1", "3 0 1 0.5", "3 0 1 nan", "3 0 1 1e300"}) {
-    expectError(loadText(kHead + kCorners + "3 0 1 2\n" + bad).status(), StatusCode::IndexOutOfRange,
+    expectError(loadPly(kPlyHead + kQuadCorners + "3 0 1 2\n" + bad).status(), StatusCode::IndexOutOfRange,
                 {"m.ply:16:", "face 1 refers to vertex ", "there are 4"});
   }
-  expectError(loadText(kHead + kCorners + "3 0 1 2\n-3 0 1 2").status(), StatusCode::Malformed,
+  expectError(loadPly(kPlyHead + kQuadCorners + "3 0 1 2\n-3 0 1 2").status(), StatusCode::Malformed,
               {"m.ply:16:", "face 1"});
-  expectError(loadText(kHead + kCorners + "3 0 1 2\n3 0 1").status(), StatusCode::Malformed, {"m.ply:16:", "face 1"});
-  expectError(loadText(ascii("4\n" + kXyz, "0\n" + kList) + kCorners).status(), StatusCode::Empty,
+  expectError(loadPly(kPlyHead + kQuadCorners + "3 0 1 2\n3 0 1").status(), StatusCode::Malformed,
+              {"m.ply:16:", "face 1"});
+  expectError(loadPly(ascii("4\n" + kXyz, "0\n" + kList) + kQuadCorners).status(), StatusCode::Empty,
               {"m.ply: ", "no triangles", "export"});
-  expectError(loadText("ply\nformat ascii 1.0\nend_header\n").status(), StatusCode::Empty, {"m.ply: ", "no vertices"});
-  std::string nan = binaryText(false);
-  nan.replace(nan.find("end_header\n") + 11 + 13 + 1, 4, bytes(std::numeric_limits<float>::quiet_NaN(), false));
-  expectError(loadText(nan).status(), StatusCode::NonFinite, {"m.ply: vertex 1"});
+  expectError(loadPly("ply\nformat ascii 1.0\nend_header\n").status(), StatusCode::Empty, {"m.ply: ", "no vertices"});
+  std::string nan = binaryPly(false);
+  nan.replace(nan.find("end_header\n") + 11 + 13 + 1, 4, bytesOf(std::numeric_limits<float>::quiet_NaN(), false));
+  expectError(loadPly(nan).status(), StatusCode::NonFinite, {"m.ply: vertex 1"});
 }
 
 TEST(LoadPly, SurvivesDamage) {
   std::mt19937 random(3);
   const TempFolder folder;
   std::size_t refused = 0;
-  for (const std::string& sound : {kHead + kCorners + "4 0 1 2 3\n3 0 2 1\n", binaryText(false), binaryText(true)}) {
+  for (const std::string& sound :
+       {kPlyHead + kQuadCorners + "4 0 1 2 3\n3 0 2 1\n", binaryPly(false), binaryPly(true)}) {
     for (std::size_t length = 0; length < sound.size(); ++length) {
       refused += !loadMesh(folder.write("m.ply", sound.substr(0, length))).ok();
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "loaded_texts.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -13,10 +14,7 @@ namespace {
 
 using test::expectError;
 using test::TempFolder;
-
-TetMesh twoTets() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}};
-}
+using test::twoTets;
 
 TEST(LoadTetMesh, TellsTheFormatByTheExtensionInAnyCase) {
   const TempFolder folder;

@@ -27,7 +27,7 @@ TetMesh awkwardMesh() {
   return mesh;
 }
 
-void expectRoundTrip(const std::string& saved, const std::string& loaded) {
+void expectAwkwardMeshReadsBack(const std::string& saved, const std::string& loaded) {
   const TempFolder folder;
   const TetMesh mesh = awkwardMesh();
   const Status status = saveTetMesh(mesh, folder.path(saved));
@@ -39,16 +39,16 @@ void expectRoundTrip(const std::string& saved, const std::string& loaded) {
 }
 
 TEST(SaveTetMesh, VtkReadsBackExactly) {
-  expectRoundTrip("c.vtk", "c.vtk");
+  expectAwkwardMeshReadsBack("c.vtk", "c.vtk");
 }
 
 TEST(SaveTetMesh, GmshReadsBackExactly) {
-  expectRoundTrip("c.msh", "c.msh");
+  expectAwkwardMeshReadsBack("c.msh", "c.msh");
 }
 
 TEST(SaveTetMesh, TetgenReadsBackExactlyWhicheverFileIsNamed) {
-  expectRoundTrip("c.node", "c.ele");
-  expectRoundTrip("c.1.ele", "c.1.node");
+  expectAwkwardMeshReadsBack("c.node", "c.ele");
+  expectAwkwardMeshReadsBack("c.1.ele", "c.1.node");
 }
 
 TEST(SaveTetMesh, VtkHasTheLinesThatBulletExpects) {

@@ -1,89 +1,86 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "temp_folder.h"
+#include "loaded_texts.h"
+#include "raw_bytes.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cstdint>
+#include <limits>
 
 namespace tetskin {
 namespace {
 
+using test::big;
+using test::bigAll;
 using test::expectError;
-using test::TempFolder;
+using test::expectTwoTets;
+using test::loadTetMeshText;
 
-Result<TetMesh> loadText(const std::string& text, TetFileReport* report = nullptr) {
-  const TempFolder folder;
-  return loadTetMesh(folder.write("c.vtk", text), report);
+Result<TetMesh> loadVtk(const std::string& text, TetFileReport* report = nullptr) {
+  return loadTetMeshText("c.vtk", text, report);
 }
 
-const std::string kHead = "# vtk DataFile Version 2.0\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+const std::string kVtkHead = "# vtk DataFile Version 2.0\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\n";
 const std::string kPoints = "POINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0.1 1 1e0\n";
 const std::string kCells = "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\n";
 const std::string kTypes = "CELL_TYPES 2\n10\n10\n";
 
-void expectTwoTets(const Result<TetMesh>& mesh) {
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  const std::vector<Eigen::Vector3d> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 1, 1}};
-  EXPECT_EQ(mesh.value().nodes, nodes);
-  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {1, 2, 3, 4}}));
-}
-
 TEST(LoadVtk, ReadsCountedCells) {
-  expectTwoTets(loadText(kHead + kPoints + kCells + kTypes));
+  expectTwoTets(loadVtk(kVtkHead + kPoints + kCells + kTypes));
 }
 
 TEST(LoadVtk, LineBreaksMeanNothing) {
   expectTwoTets(
-      loadText("# vtk DataFile Version 3.0\r\n\r\nascii\r\nDATASET unstructured_grid\r\npoints 5 float 0 0 0 1 0 0\r\n"
-               "0 1\t0 0 0\r\n1 0.1 1 1\r\n\r\nCells 2 10 4 0 1 2 3 4 1 2 3 4\r\ncell_types 2\r\n10 10"));
+      loadVtk("# vtk DataFile Version 3.0\r\n\r\nascii\r\nDATASET unstructured_grid\r\npoints 5 float 0 0 0 1 0 0\r\n"
+              "0 1\t0 0 0\r\n1 0.1 1 1\r\n\r\nCells 2 10 4 0 1 2 3 4 1 2 3 4\r\ncell_types 2\r\n10 10"));
 }
 
 TEST(LoadVtk, ReadsOffsetsAndConnectivity) {
   const std::string head = "# vtk DataFile Version 5.1\nvtk output\nASCII\nDATASET UNSTRUCTURED_GRID\n";
-  expectTwoTets(loadText(head + kPoints +
-                         "METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1\n\n"
-                         "CELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4\n" +
-                         kTypes));
+  expectTwoTets(loadVtk(head + kPoints +
+                        "METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1\n\n"
+                        "CELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4\n" +
+                        kTypes));
 }
 
 TEST(LoadVtk, WithoutCellTypesAllCellsAreTets) {
-  expectTwoTets(loadText(kHead + kPoints + kCells));
+  expectTwoTets(loadVtk(kVtkHead + kPoints + kCells));
   const std::string wedge = "CELLS 2 12\n4 0 1 2 3\n6 0 1 2 3 4 0\n";
-  expectError(loadText(kHead + kPoints + wedge).status(), StatusCode::Malformed, {"c.vtk:13:", "cell 1", "6 nodes"});
+  expectError(loadVtk(kVtkHead + kPoints + wedge).status(), StatusCode::Malformed, {"c.vtk:13:", "cell 1", "6 nodes"});
 }
 
 // The following tests have files in the form that Bullet's btSoftBodyHelpers::CreateFromVtkFile reads, and that Bullet
 // ships.
 
 TEST(LoadVtk, TheMarkNeedsNoBlank) {
-  const std::string rest = kHead.substr(kHead.find("vtk"));
-  for (const char* mark : {"#", "#  ", "#\t"}) expectTwoTets(loadText(mark + rest + kPoints + kCells + kTypes));
-  expectError(loadText("#vtkDataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
-  expectError(loadText("## vtk DataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
+  const std::string rest = kVtkHead.substr(kVtkHead.find("vtk"));
+  for (const char* mark : {"#", "#  ", "#\t"}) expectTwoTets(loadVtk(mark + rest + kPoints + kCells + kTypes));
+  expectError(loadVtk("#vtkDataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
+  expectError(loadVtk("## vtk DataFile Version 2.0\n").status(), StatusCode::Malformed, {"c.vtk:1:"});
 }
 
 TEST(LoadVtk, TheStatedSizeOfCellsOfTextMeansNothing) {
   for (const char* size : {"1", "2", "8", "2000000000"}) {
-    expectTwoTets(loadText(kHead + kPoints + "CELLS 2 " + size + "\n4 0 1 2 3\n4 1 2 3 4\n\n" + kTypes));
+    expectTwoTets(loadVtk(kVtkHead + kPoints + "CELLS 2 " + size + "\n4 0 1 2 3\n4 1 2 3 4\n\n" + kTypes));
   }
 }
 
 TEST(LoadVtk, ALoneTypeOfTetsStandsForAllCells) {
-  expectTwoTets(loadText(kHead + kPoints + kCells + "CELL_TYPES 10\n"));
-  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 12\n").status(), StatusCode::Malformed, {"too short"});
-  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 10\n10\n").status(), StatusCode::Malformed,
+  expectTwoTets(loadVtk(kVtkHead + kPoints + kCells + "CELL_TYPES 10\n"));
+  expectError(loadVtk(kVtkHead + kPoints + kCells + "CELL_TYPES 12\n").status(), StatusCode::Malformed, {"too short"});
+  expectError(loadVtk(kVtkHead + kPoints + kCells + "CELL_TYPES 10\n10\n").status(), StatusCode::Malformed,
               {"c.vtk:14:"});
   const std::string wedge = "CELLS 1 7\n6 0 1 2 3 4 0\n";
-  expectError(loadText(kHead + kPoints + wedge + "CELL_TYPES 10\n").status(), StatusCode::Malformed, {"6 nodes"});
+  expectError(loadVtk(kVtkHead + kPoints + wedge + "CELL_TYPES 10\n").status(), StatusCode::Malformed, {"6 nodes"});
 }
 
 TEST(LoadVtk, SkipsAndCountsWhatIsNoTet) {
   TetFileReport report;
   expectTwoTets(
-      loadText(kHead + kPoints + "CELLS 3 14\n3 0 1 2\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5\n10\n10\n", &report));
+      loadVtk(kVtkHead + kPoints + "CELLS 3 14\n3 0 1 2\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5\n10\n10\n", &report));
   EXPECT_EQ(report.skippedCells, 1u);
   EXPECT_EQ(report.cornersOnly, 0u);
   EXPECT_EQ(report.describe(), "1 cells that are no tets were skipped");
@@ -95,7 +92,7 @@ TEST(LoadVtk, ReadsTetsOfSecondOrderByTheirCorners) {
   for (const char* type : {"24", "71", "79"}) {
     TetFileReport report;
     const Result<TetMesh> mesh =
-        loadText(kHead + points + "CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n" + type + "\n", &report);
+        loadVtk(kVtkHead + points + "CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n" + type + "\n", &report);
     ASSERT_TRUE(mesh.ok()) << mesh.status().message;
     EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
     ASSERT_EQ(mesh.value().nodeCount(), 5u) << "a node that no cell names stays";
@@ -109,10 +106,10 @@ TEST(LoadVtk, ANodeThatIsACornerElsewhereStays) {
   TetFileReport report;
   const std::string points = "POINTS 10 float\n0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\n";
   const Result<TetMesh> mesh =
-      loadText(kHead + points +
-                   "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 6 7\nCELL_TYPES 2\n24 10\nPOINT_DATA 10\nSCALARS x "
-                   "float\nLOOKUP_TABLE default\n0 0 0 0 0 0 0 0 0 0\n",
-               &report);
+      loadVtk(kVtkHead + points +
+                  "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 6 7\nCELL_TYPES 2\n24 10\nPOINT_DATA 10\nSCALARS x "
+                  "float\nLOOKUP_TABLE default\n0 0 0 0 0 0 0 0 0 0\n",
+              &report);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {0, 4, 5, 6}}));
   EXPECT_EQ(mesh.value().nodes[5], Eigen::Vector3d(0, 0.5, 0));
@@ -120,30 +117,12 @@ TEST(LoadVtk, ANodeThatIsACornerElsewhereStays) {
 }
 
 TEST(LoadVtk, ReadsOverFieldsAndData) {
-  expectTwoTets(loadText(
-      kHead + "FIELD FieldData 3\nTIME 1 1 double\n0.5\nNAMES 1 2 string\nPOINTS\n\nEMPTY 0 0 int\n" + kPoints +
+  expectTwoTets(loadVtk(
+      kVtkHead + "FIELD FieldData 3\nTIME 1 1 double\n0.5\nNAMES 1 2 string\nPOINTS\n\nEMPTY 0 0 int\n" + kPoints +
       kCells + kTypes + "CELL_DATA 2\nSCALARS m int 1\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 5\nnonsense"));
 }
 
-/// Big-endian bytes of a number.
-template <class Number>
-std::string big(Number value) {
-  std::string bytes(sizeof(value), '\0');
-  std::memcpy(&bytes[0], &value, sizeof(value));
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
-  return first == 1 ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
-}
-
-template <class Number>
-std::string bigAll(std::initializer_list<double> values) {
-  std::string bytes;
-  for (const double value : values) bytes += big(static_cast<Number>(value));
-  return bytes;
-}
-
-std::string binaryText() {
+std::string binaryTwoTets() {
   return "# vtk DataFile Version 4.2\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\nTIME 1 1 double\n" +
          big(0.5) + "\nPOINTS 5 double\n" + bigAll<double>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.1, 1, 1}) +
          "\nCELLS 3 14\n" + bigAll<std::int32_t>({4, 0, 1, 2, 3, 3, 0, 1, 2, 4, 1, 2, 3, 4}) + "\nCELL_TYPES 3\n" +
@@ -152,111 +131,111 @@ std::string binaryText() {
 
 TEST(LoadVtk, ReadsBinaryCountedCells) {
   TetFileReport report;
-  expectTwoTets(loadText(binaryText(), &report));
+  expectTwoTets(loadVtk(binaryTwoTets(), &report));
   EXPECT_EQ(report.skippedCells, 1u);
 }
 
 TEST(LoadVtk, ReadsBinaryOffsetsAndFloats) {
   const Result<TetMesh> mesh =
-      loadText("# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
-               bigAll<float>({0, 0, 0, 0.1, 0, 0, 0, 1, 0, 0, 0, 1}) +
-               "\nMETADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n" + bigAll<std::int64_t>({0, 4}) +
-               "\nCONNECTIVITY vtktypeint64\n" + bigAll<std::int64_t>({3, 1, 2, 0}) + "\nCELL_TYPES 1\n" +
-               bigAll<std::int32_t>({10}) + "\n");
+      loadVtk("# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+              bigAll<float>({0, 0, 0, 0.1, 0, 0, 0, 1, 0, 0, 0, 1}) +
+              "\nMETADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n" + bigAll<std::int64_t>({0, 4}) +
+              "\nCONNECTIVITY vtktypeint64\n" + bigAll<std::int64_t>({3, 1, 2, 0}) + "\nCELL_TYPES 1\n" +
+              bigAll<std::int32_t>({10}) + "\n");
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().nodes[1], Eigen::Vector3d(0.1f, 0, 0));
   EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{3, 1, 2, 0}}));
 }
 
 TEST(LoadVtk, RefusesBinaryFilesThatAreDamaged) {
-  const std::string text = binaryText();
-  expectError(loadText(text.substr(0, text.find("CELLS") - 8)).status(), StatusCode::Malformed,
-              {"c.vtk:", "too short"});
+  const std::string text = binaryTwoTets();
+  expectError(loadVtk(text.substr(0, text.find("CELLS") - 8)).status(), StatusCode::Malformed, {"c.vtk:", "too short"});
   std::string nan = text;
   nan.replace(nan.find("POINTS 5 double\n") + 16 + 24, 8, big(std::numeric_limits<double>::quiet_NaN()));
-  expectError(loadText(nan).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1"});
+  expectError(loadVtk(nan).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1"});
   std::string index = text;
   index.replace(index.find("CELLS 3 14\n") + 11 + 4, 4, big(std::int32_t(-2)));
-  expectError(loadText(index).status(), StatusCode::IndexOutOfRange, {"c.vtk: ", "cell 0", "node -2"});
+  expectError(loadVtk(index).status(), StatusCode::IndexOutOfRange, {"c.vtk: ", "cell 0", "node -2"});
   std::string type = text;
   type.replace(type.find("POINTS 5 double") + 9, 6, "string");
-  expectError(loadText(type).status(), StatusCode::UnsupportedFormat, {"c.vtk:", "'string'", "save it as ASCII"});
+  expectError(loadVtk(type).status(), StatusCode::UnsupportedFormat, {"c.vtk:", "'string'", "save it as ASCII"});
 }
 
 TEST(LoadVtk, RefusesOtherKindsOfFiles) {
-  expectError(loadText("solid x\n").status(), StatusCode::Malformed, {"c.vtk:1:", "legacy VTK"});
-  expectError(loadText("").status(), StatusCode::Malformed, {"c.vtk:1:"});
-  expectError(loadText("<?xml version=\"1.0\"?>\n").status(), StatusCode::UnsupportedFormat, {"c.vtk:", "XML"});
-  expectError(loadText("# vtk DataFile Version 2.0\nt\nASCII\nDATASET POLYDATA\n").status(),
+  expectError(loadVtk("solid x\n").status(), StatusCode::Malformed, {"c.vtk:1:", "legacy VTK"});
+  expectError(loadVtk("").status(), StatusCode::Malformed, {"c.vtk:1:"});
+  expectError(loadVtk("<?xml version=\"1.0\"?>\n").status(), StatusCode::UnsupportedFormat, {"c.vtk:", "XML"});
+  expectError(loadVtk("# vtk DataFile Version 2.0\nt\nASCII\nDATASET POLYDATA\n").status(),
               StatusCode::UnsupportedFormat, {"c.vtk:4:", "'polydata'", "UNSTRUCTURED_GRID"});
-  expectError(loadText("# vtk DataFile Version 2.0\nt\nBASE64\n").status(), StatusCode::Malformed,
+  expectError(loadVtk("# vtk DataFile Version 2.0\nt\nBASE64\n").status(), StatusCode::Malformed,
               {"c.vtk:3:", "'base64'"});
 }
 
 TEST(LoadVtk, NamesTheLineOfAnIndexOutOfRange) {
-  expectError(loadText(kHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 5\n" + kTypes).status(),
+  expectError(loadVtk(kVtkHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 5\n" + kTypes).status(),
               StatusCode::IndexOutOfRange, {"c.vtk:13:", "cell 1", "node 5", "there are 5"});
-  expectError(
-      loadText(kHead + kPoints + "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1\n-1 3\nCELL_TYPES 1\n10").status(),
-      StatusCode::IndexOutOfRange, {"c.vtk:16:", "cell 0", "node -1"});
+  expectError(loadVtk(kVtkHead + kPoints + "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1\n-1 3\nCELL_TYPES 1\n10")
+                  .status(),
+              StatusCode::IndexOutOfRange, {"c.vtk:16:", "cell 0", "node -1"});
 }
 
 TEST(LoadVtk, RefusesBinaryCellsThatBelieTheirSize) {
-  const std::string text = binaryText();
+  const std::string text = binaryTwoTets();
   std::string longer = text;
   longer.replace(text.find("CELLS 3 14\n") + 11, 4, big(std::int32_t(9)));
-  expectError(loadText(longer).status(), StatusCode::Malformed, {"c.vtk: ", "cell 2 of 3", "counts"});
+  expectError(loadVtk(longer).status(), StatusCode::Malformed, {"c.vtk: ", "cell 2 of 3", "counts"});
   std::string fewer = text;
   fewer.replace(text.find("CELLS 3"), 7, "CELLS 2");
-  expectError(loadText(fewer).status(), StatusCode::Malformed, {"c.vtk:", "after the last of its 2 cells"});
+  expectError(loadVtk(fewer).status(), StatusCode::Malformed, {"c.vtk:", "after the last of its 2 cells"});
 }
 
 TEST(LoadVtk, NamesTheLineOfACoordinateThatIsNotFinite) {
-  expectError(loadText(kHead + "POINTS 2 float\n0 0 0\n0 nan 0\n").status(), StatusCode::NonFinite,
+  expectError(loadVtk(kVtkHead + "POINTS 2 float\n0 0 0\n0 nan 0\n").status(), StatusCode::NonFinite,
               {"c.vtk:7:", "node 1"});
-  expectError(loadText(kHead + "POINTS 2 float\n0 0 0\n0 -1e19 0\n").status(), StatusCode::NonFinite,
+  expectError(loadVtk(kVtkHead + "POINTS 2 float\n0 0 0\n0 -1e19 0\n").status(), StatusCode::NonFinite,
               {"c.vtk:7:", "node 1", "beyond 1e18", "Correct it"});
-  std::string far = binaryText();
+  std::string far = binaryTwoTets();
   far.replace(far.find("POINTS 5 double\n") + 16 + 24, 8, big(1e19));
-  expectError(loadText(far).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1", "beyond 1e18"});
+  expectError(loadVtk(far).status(), StatusCode::NonFinite, {"c.vtk: ", "node 1", "beyond 1e18"});
 }
 
 TEST(LoadVtk, ReadsTheLineEndsOfOldMacs) {
-  std::string text = kHead + "METADATA\n\n" + kPoints + kCells + kTypes;
+  std::string text = kVtkHead + "METADATA\n\n" + kPoints + kCells + kTypes;
   std::replace(text.begin(), text.end(), '\n', '\r');
-  expectTwoTets(loadText(text));
+  expectTwoTets(loadVtk(text));
 }
 
 TEST(LoadVtk, KeepsCarriageReturnsInBinaryData) {
-  std::string text = binaryText();
+  std::string text = binaryTwoTets();
   text.replace(text.find("POINTS 5 double\n") + 16, 8, big(-0.0).replace(7, 1, "\r"));
-  const Result<TetMesh> mesh = loadText(text);
+  const Result<TetMesh> mesh = loadVtk(text);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   EXPECT_EQ(mesh.value().nodes[0].x(), -13 * 4.9406564584124654e-324);
 }
 
 TEST(LoadVtk, RefusesCountsThatDoNotFit) {
   const StatusCode code = StatusCode::Malformed;
-  expectError(loadText(kHead + "POINTS 2000000000 float\n0 0 0\n").status(), code, {"c.vtk:5:", "too short"});
-  expectError(loadText(kHead + "POINTS 99999999999999999999 float\n").status(), code, {"c.vtk:5:"});
-  expectError(loadText(kHead + "POINTS 18446744073709551615 float\n").status(), code, {"c.vtk:5:"});
-  expectError(loadText(kHead + "POINTS 4 float\n0 0 0 1\n0 0 0 1 0 x 0 1\n").status(), code, {"c.vtk:7:", "number"});
-  expectError(loadText(kHead + kPoints + "CELLS 9 10\n4 0 1 2 3\n4 1 2 3 4\n" + kTypes).status(), code,
+  expectError(loadVtk(kVtkHead + "POINTS 2000000000 float\n0 0 0\n").status(), code, {"c.vtk:5:", "too short"});
+  expectError(loadVtk(kVtkHead + "POINTS 99999999999999999999 float\n").status(), code, {"c.vtk:5:"});
+  expectError(loadVtk(kVtkHead + "POINTS 18446744073709551615 float\n").status(), code, {"c.vtk:5:"});
+  expectError(loadVtk(kVtkHead + "POINTS 4 float\n0 0 0 1\n0 0 0 1 0 x 0 1\n").status(), code, {"c.vtk:7:", "number"});
+  expectError(loadVtk(kVtkHead + kPoints + "CELLS 9 10\n4 0 1 2 3\n4 1 2 3 4\n" + kTypes).status(), code,
               {"c.vtk:14:", "cell 2 of 9", "counts"});
-  expectError(loadText(kHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n5 1 2 3 4\n" + kTypes).status(), code,
+  expectError(loadVtk(kVtkHead + kPoints + "CELLS 2 10\n4 0 1 2 3\n5 1 2 3 4\n" + kTypes).status(), code,
               {"c.vtk:13:", "cell 1"});
-  expectError(loadText(kHead + kPoints + "CELLS 1 10\n4 0 1 2 3\n4 1 2 3 4\n").status(), code,
+  expectError(loadVtk(kVtkHead + kPoints + "CELLS 1 10\n4 0 1 2 3\n4 1 2 3 4\n").status(), code,
               {"c.vtk:13:", "'4'", "section"});
-  expectError(loadText(kHead + kPoints + kCells + "CELL_TYPES 1\n10\n").status(), code, {"1 cell types for 2 cells"});
-  expectError(loadText(kHead + "POINTS 1 float\n0 0 0\n1 1 1\n").status(), code, {"c.vtk:7:", "'1'", "section"});
-  expectError(loadText(kHead + kPoints).status(), code, {"ends before CELLS"});
-  expectError(loadText(kHead + kPoints + "CELLS 3 8\nOFFSETS int\n0 4 9\nCONNECTIVITY int\n0 1 2 3 1 2 3 4\n").status(),
-              code, {"cell 1", "offsets"});
+  expectError(loadVtk(kVtkHead + kPoints + kCells + "CELL_TYPES 1\n10\n").status(), code, {"1 cell types for 2 cells"});
+  expectError(loadVtk(kVtkHead + "POINTS 1 float\n0 0 0\n1 1 1\n").status(), code, {"c.vtk:7:", "'1'", "section"});
+  expectError(loadVtk(kVtkHead + kPoints).status(), code, {"ends before CELLS"});
+  expectError(
+      loadVtk(kVtkHead + kPoints + "CELLS 3 8\nOFFSETS int\n0 4 9\nCONNECTIVITY int\n0 1 2 3 1 2 3 4\n").status(), code,
+      {"cell 1", "offsets"});
 }
 
 TEST(LoadVtk, RefusesAMeshWithoutTets) {
   TetFileReport report;
-  const Result<TetMesh> mesh = loadText(kHead + kPoints + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", &report);
+  const Result<TetMesh> mesh = loadVtk(kVtkHead + kPoints + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", &report);
   expectError(mesh.status(), StatusCode::Empty, {"c.vtk: ", "no tets", "1 cells"});
   EXPECT_EQ(report.skippedCells, 1u);
 }
