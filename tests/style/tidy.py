@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""tidy.py CLANG_TIDY BUILD_FOLDER [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time: on
-what was compiled, that is on many files at once where the build joins them by including them; or only on the files that
-are named in LIST, one per line, with the commands of a build that does not join them. A header is checked with the source
-of its name, or by itself if it has none.
+"""tidy.py CLANG_TIDY BUILD_FOLDER [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time:
+on what was compiled, that is on many files at once where the build joins them by including them; or only on the files
+named in LIST, one per line, with the commands of a build that does not join them. A header is checked as part of a
+source that includes it.
 
 The build folder's compile commands are GCC's: its default C++ is 17, clang's is not, and it has warnings of its own."""
 import concurrent.futures
@@ -16,8 +16,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 LIBRARY = REPOSITORY / "plugin"
 OPTIONS = ["--quiet", "--checks=-bugprone-suspicious-include", "--extra-arg=-std=c++17",
-           "--extra-arg=-Wno-unknown-warning-option", "--extra-arg=-Wno-unused-command-line-argument",
-           "--extra-arg=-Wno-pragma-once-outside-header"]
+           "--extra-arg=-Wno-unknown-warning-option", "--extra-arg=-Wno-unused-command-line-argument"]
 
 
 def compiled(build):
@@ -26,17 +25,28 @@ def compiled(build):
     return sorted({Path(entry["file"]) for entry in entries if "plugin" in Path(entry["file"]).parts})
 
 
+def source_with(header, known):
+    """A source that includes this header, directly or by other headers, that of its own name first; itself, if none."""
+    left, seen = [header], set()
+    while left:
+        now = left.pop(0)
+        if now.with_suffix(".cpp") in known:
+            return now.with_suffix(".cpp")
+        line = f"#include <{now.relative_to(LIBRARY)}>"
+        users = [file for file in sorted(LIBRARY.rglob("*.h")) + sorted(known)
+                 if file not in seen and line in file.read_text(encoding="utf-8")]
+        source = next((file for file in users if file in known), None)
+        if source:
+            return source
+        seen.update(users)
+        left += users
+    return header
+
+
 def to_check(names, known):
-    """What to run on: sources that are compiled, and headers without a source of their name."""
-    found = set()
-    for name in names:
-        file = REPOSITORY / name
-        source = file.with_suffix(".cpp")
-        if source in known or (file.suffix == ".cpp" and file in known):
-            found.add(source)
-        elif file.suffix == ".h":
-            found.add(file)
-    return sorted(found)
+    files = {REPOSITORY / name for name in names}
+    return sorted({source_with(file, known) if file.suffix == ".h" else file for file in files
+                   if file.suffix == ".h" or file in known})
 
 
 def main():
