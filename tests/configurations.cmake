@@ -82,6 +82,9 @@ function(tetskin_test_sanitized name label folders_from)
 endfunction()
 tetskin_test_sanitized(sanitized_in_double full "")
 tetskin_test_sanitized(sanitized_changes change ${changes}/tests)
+set_tests_properties(configuration.sanitized_in_double configuration.sanitized_changes PROPERTIES
+  RESOURCE_LOCK sanitized_folder)
+
 # The tests that start threads, including those beside Bullet's worlds.
 tetskin_test_configuration(thread_sanitized TARGET test_threads TESTS ^threads OPTIONS
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=thread -DTETSKIN_DEMOS=OFF
@@ -115,6 +118,10 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   set(prefix ${PROJECT_BINARY_DIR}/consumers/prefix)
   add_test(NAME consumer.readme COMMAND ${PYTHON_IN_PATH} -B ${CMAKE_CURRENT_SOURCE_DIR}/consumer/readme.py
     --folder ${PROJECT_BINARY_DIR}/consumers/readme --prefix ${prefix} --generator ${CMAKE_GENERATOR})
+  add_test(NAME consumer.readme_changes COMMAND ${PYTHON_IN_PATH} -B ${CMAKE_CURRENT_SOURCE_DIR}/consumer/readme.py
+    --folder ${PROJECT_BINARY_DIR}/consumers/readme_changes --prefix ${PROJECT_BINARY_DIR}/consumers/readme_prefix
+    --generator ${CMAKE_GENERATOR})
+  set_tests_properties(consumer.readme_changes PROPERTIES LABELS "config;change" TIMEOUT 1800 PROCESSORS ${nested_parallel})
   set_tests_properties(consumer.readme PROPERTIES FIXTURES_SETUP installed_package LABELS "${labels_full}" TIMEOUT 1800
     PROCESSORS ${nested_parallel})
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
@@ -169,8 +176,10 @@ endif()
 # The one consumer of tests/run --change: the package as this build installs it.
 if(TETSKIN_INSTALL)
   set(own_prefix ${PROJECT_BINARY_DIR}/consumers/own_prefix)
+  add_test(NAME consumer.no_install COMMAND ${CMAKE_COMMAND} -E rm -rf ${own_prefix})
   add_test(NAME consumer.own_install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${own_prefix})
-  set_tests_properties(consumer.own_install PROPERTIES FIXTURES_SETUP own_install LABELS "config;change")
+  set_tests_properties(consumer.no_install consumer.own_install PROPERTIES FIXTURES_SETUP own_install LABELS "config;change")
+  set_tests_properties(consumer.own_install PROPERTIES DEPENDS consumer.no_install)
   tetskin_test_consumer(own_package -DCMAKE_PREFIX_PATH=${own_prefix} -DCONSUME=package)
   set_tests_properties(consumer.own_package PROPERTIES FIXTURES_REQUIRED own_install LABELS "config;change")
 endif()

@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """alone.py BUILD_FOLDER [FILE... | --files LIST]: checks that each source and each header of the library compiles by
 itself, not only after the files that a unity build puts before it. Uses the compile commands of a build without unity;
-checks only FILE..., or those named in LIST, one per line, if any are named.
+checks only FILE..., or those named in LIST, one per line, and those that include them, if any are named.
 
 Eigen is precompiled, except for public headers: it takes most of the time, and everything includes it through core's
 types."""
@@ -53,13 +53,21 @@ def compile_alone(options, file):
     return done.stderr if done.returncode else ""
 
 
+def including(names):
+    """The library's files that include one of these headers: what they need may have come from it."""
+    lines = [f"#include <{pathlib.Path(name).relative_to('plugin')}>" for name in names if name.endswith(".h")]
+    files = [*LIBRARY.rglob("*.h"), *LIBRARY.rglob("*.cpp")]
+    return [str(file) for file in files if any(line in file.read_text(encoding="utf-8") for line in lines)]
+
+
 def main():
     build = pathlib.Path(sys.argv[1])
     names = sys.argv[2:]
     if len(names) == 2 and names[0] == "--files":
-        names = pathlib.Path(names[1]).read_text(encoding="utf-8").split()
+        names = pathlib.Path(names[1]).read_text(encoding="utf-8").splitlines()
         if not names:
             sys.exit(f"{sys.argv[3]} names no file")
+        names += including(names)
     wanted = {pathlib.Path(name).resolve() for name in names}
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     options = {pathlib.Path(e["file"]): options_of(e) for e in entries if LIBRARY in pathlib.Path(e["file"]).parents}

@@ -55,7 +55,7 @@ def main():
     if not files:
         sys.exit(f"{build}: no compile commands of the library: look for them elsewhere")
     if len(sys.argv) == 5 and sys.argv[3] == "--files":
-        files = to_check(Path(sys.argv[4]).read_text(encoding="utf-8").split(), set(files))
+        files = to_check(Path(sys.argv[4]).read_text(encoding="utf-8").splitlines(), set(files))
         if not files:
             sys.exit(f"{sys.argv[4]} names no file of the library that is compiled here")
     elif len(sys.argv) != 3:

@@ -5,16 +5,16 @@
 last passed, and what uses it.
 
 selection.py select BUILD              writes BUILD/changes/ and prints it in words
-selection.py record COMMIT MINUTES [MORE]
-                                       notes that everything passed, in tests/last_full_run: the commit, which must
-                                       still be what is checked out, the day, the machine, the minutes, and MORE, such
-                                       as the instruction sets that were not tested
+selection.py start BUILD               before tests/run --all: what is tested, and whether it is a commit
+selection.py record BUILD MINUTES LOG  after it has passed: notes in tests/last_full_run the commit, the day, the machine,
+                                       the compiler, the minutes, and which tests ctest's LOG says were skipped
 
 BUILD is configured with an (empty) file BUILD/.cmake/api/v1/query/codemodel-v2: which file belongs to which target, and
 which target uses which, is then what CMake says. In BUILD/changes:
   everything   only if all counts as changed: why
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
-  sources      the library's files that have changed, one per line
+  sources      the library's files that have changed, one per line; those that were removed are not among them
+  page         only if the first page has changed, whose commands and programs are followed
 """
 import datetime
 import json
@@ -29,11 +29,14 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 LAST = "tests/last_full_run"
 # Files that are not compiled, and that --change tests in full, as it does pages, style and plots.
-READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css|py)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$")
-# What makes the tests that --change runs in part or not at all: if it has changed, anything may have.
-MACHINERY = re.compile(r"^([.]ci|tests/(tiers|fuzz|consumer|platforms))/|^demos/(setup[.]sh|run)$|^tests/run$|"
-                       r"^tests/style/(tidy|alone)[.]py$|[.]cmake([.]in)?$|"
+READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$|"
+                  r"^demos/plots/.*[.]py$")
+# What makes the tests: if it has changed, anything may have. Of tests/, all but sources and the lists of those.
+ORDINARY_TEST = re.compile(r"^tests/[^/]+/([^/]+[.](cpp|h|js|md)|CMakeLists[.]txt)$|^tests/README[.]md$|^tests/pages/.*[.]txt$")
+MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|platforms))/|^demos/(setup[.]sh|run)$|"
+                       r"[.]cmake([.]in)?$|"
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")
+PAGE = "README.md"
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
@@ -42,22 +45,29 @@ def fail(message):
     sys.exit(2)
 
 
+def run_git(*arguments):
+    return subprocess.run(["git", "-c", "core.fileMode=true", *arguments], cwd=REPOSITORY, capture_output=True, text=True,
+                          check=False)
+
+
 def git(*arguments):
     """The output of a command of git. Exits where there is no git, or this is no repository."""
-    try:
-        done = subprocess.run(["git", *arguments], cwd=REPOSITORY, capture_output=True, text=True, check=False)
-    except FileNotFoundError:
+    if not shutil.which("git"):
         fail("tests/run --change compares with an earlier commit, and needs git: install it, or run tests/run --all")
+    done = run_git(*arguments)
     if done.returncode != 0:
         fail(f"git {' '.join(arguments)}: {done.stderr.strip()}\n"
-                 "tests/run --change compares with an earlier commit of the repository; tests/run --all does not")
+             "tests/run --change compares with an earlier commit of the repository; tests/run --all does not")
     return done.stdout
 
 
-def in_history(commit):
-    """Whether HEAD came from this commit."""
-    return subprocess.run(["git", "merge-base", "--is-ancestor", commit, "HEAD"], cwd=REPOSITORY, capture_output=True,
-                          check=False).returncode == 0
+def differing(commit):
+    """Paths that differ between the commit and the files as they are now: new ones, too, also those that git ignores by
+    a user's settings, but may be compiled."""
+    names = git("diff", "--name-only", "--no-renames", "-z", commit)
+    names += git("ls-files", "--others", "--exclude-standard", "-z")
+    names += git("ls-files", "--others", "-z", "--", "plugin", "demos", "tests")
+    return sorted(name for name in set(filter(None, names.split("\0"))) if name != LAST and "__pycache__/" not in name)
 
 
 def last_full_run():
@@ -70,16 +80,11 @@ def last_full_run():
         fail(f"{LAST}: no line 'commit' with 40 hexadecimal digits; run tests/run --all, which writes this file, or "
                  f"delete it: then everything is tested")
     git("rev-parse", "HEAD")
-    if not in_history(found[1]):
-        return None, f"commit {found[1][:12]}, at which tests/run --all last passed, is not in the history of this one"
+    if run_git("merge-base", "--is-ancestor", found[1], "HEAD").returncode != 0:
+        shallow = git("rev-parse", "--is-shallow-repository").strip() == "true"
+        return None, (f"commit {found[1][:12]}, at which tests/run --all last passed, is not in the history of this one" +
+                      (", of which this clone has only a part" if shallow else ""))
     return found[1], ""
-
-
-def changed_since(commit):
-    """Paths that differ between the commit and the files as they are now, new ones included."""
-    names = git("diff", "--name-only", "--no-renames", "-z", commit)
-    names += git("ls-files", "--others", "--exclude-standard", "-z")
-    return sorted(set(filter(None, names.split("\0"))) - {LAST})
 
 
 class Graph:
@@ -111,7 +116,13 @@ class Graph:
                 self.users.setdefault(by_id[used["id"]], set()).add(name)
 
     def targets_of(self, file):
-        """The targets that compile a file; if none lists it, those of the nearest folder that has any."""
+        """The targets that compile a file; if none lists it, those of the nearest folder that has any. A header of tests
+        also belongs to the tests that include it, in whatever folder: these do not always list it."""
+        if file.startswith("tests/") and file.endswith(".h"):
+            return set().union(self.own_targets_of(file), *map(self.own_targets_of, tests_with(file)))
+        return self.own_targets_of(file)
+
+    def own_targets_of(self, file):
         if file in self.owners:
             return self.owners[file]
         folder = os.path.dirname(file)
@@ -139,11 +150,23 @@ class Graph:
         return sorted(tests & libraries)
 
 
+def tests_with(header):
+    """The sources and headers of tests that include a header of this name, directly or by others."""
+    texts = {path: path.read_text(encoding="utf-8") for path in (REPOSITORY / "tests").glob("*/*") if path.suffix in (".h", ".cpp")}
+    found, left = set(), [Path(header).name]
+    while left:
+        include = re.compile(r'^#include ["<](.*/)?' + re.escape(left.pop()) + '[">]', re.M)
+        users = {path for path, text in texts.items() if path not in found and include.search(text)}
+        found |= users
+        left += [path.name for path in users if path.suffix == ".h"]
+    return {str(path.relative_to(REPOSITORY)) for path in found}
+
+
 def selected(graph, files):
     """The targets that changed, by file; or why everything counts as changed."""
     changed = {}
     for file in files:
-        if MACHINERY.search(file):
+        if MACHINERY.search(file) or (file.startswith("tests/") and not ORDINARY_TEST.search(file)):
             return {}, f"{file} has changed, on which all tests depend"
         if READ.search(file) and file not in graph.owners:
             continue
@@ -157,12 +180,13 @@ def is_library_source(file):
     return file.startswith("plugin/tetskin/") and file.endswith((".h", ".cpp")) and (REPOSITORY / file).exists()
 
 
-def write(build, everything, folders, sources):
+def write(build, everything, folders, sources, page=False):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
-    (out / "everything").unlink(missing_ok=True)
-    if everything:
-        (out / "everything").write_text(everything + "\n", encoding="utf-8")
+    for name, text in (("everything", everything), ("page", PAGE if page else "")):
+        (out / name).unlink(missing_ok=True)
+        if text:
+            (out / name).write_text(text + "\n", encoding="utf-8")
     (out / "tests").write_text(";".join(folders), encoding="utf-8")
     (out / "sources").write_text("".join(f"{file}\n" for file in sources), encoding="utf-8")
 
@@ -173,7 +197,7 @@ def select(build):
         write(build, why, [], [])
         print(f"Everything counts as changed: {why}.")
         return
-    graph, files = Graph(build), changed_since(commit)
+    graph, files = Graph(build), differing(commit)
     changed, why = selected(graph, files)
     if why:
         write(build, why, [], [])
@@ -183,7 +207,7 @@ def select(build):
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
-    write(build, "", folders, sources)
+    write(build, "", folders, sources, PAGE in files)
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")
@@ -203,35 +227,49 @@ def processor():
     return found[1].strip() if found else platform.machine()
 
 
-def why_not_noted(commit):
-    """Why a pass does not say anything about this commit; empty if it does."""
-    if not shutil.which("git") or not (REPOSITORY / ".git").exists():
-        return "this is no repository of git"
-    if git("rev-parse", "HEAD").strip() != commit:
-        return "another commit was checked out meanwhile"
-    dirty = [line[3:] for line in git("status", "--porcelain").splitlines() if line[3:] != LAST]
-    return f"there are changes that are not committed: {', '.join(dirty[:5])}" if dirty else ""
+def state():
+    """The commit that the files are, and why they are none: one of both is empty."""
+    if not shutil.which("git") or run_git("rev-parse", "HEAD").returncode != 0:
+        return "", "git knows no commit of these files"
+    commit = git("rev-parse", "HEAD").strip()
+    files = differing(commit)
+    return ("", f"there are changes that are not committed: {', '.join(files[:5])}") if files else (commit, "")
 
 
-def record(commit, minutes, more):
-    why = why_not_noted(commit)
+def start(build):
+    (build / "changes").mkdir(parents=True, exist_ok=True)
+    (build / "changes/start").write_text("\n".join(state()), encoding="utf-8")
+
+
+def record(build, minutes, log):
+    before, why = (build / "changes/start").read_text(encoding="utf-8").split("\n")
+    commit, why_now = state()
+    why = why or why_now or ("" if before == commit else "another commit was checked out meanwhile")
     if why:
         print(f"\nNot noted in {LAST}: {why}")
         return
+    skipped = sorted(set(re.findall(r"Test +#\d+: (\S+) [.]*[*]{3}(?:Skipped|Not Run)", log.read_text(errors="replace"))))
+    compiler = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.M)
+    version = subprocess.run([compiler[1], "--version"], capture_output=True, text=True, check=False).stdout if compiler else ""
     text = ("# Written by tests/run --all, which passed at this commit. tests/run --change tests what differs from it.\n"
-            f"commit   {commit}\n"
-            f"date     {datetime.date.today().isoformat()}\n"
-            f"machine  {processor()}, {os.cpu_count()} processors{', ' + more if more else ''}\n"
-            f"minutes  {minutes}\n")
+            f"commit    {commit}\n"
+            f"date      {datetime.date.today().isoformat()}\n"
+            f"machine   {processor()}, {os.cpu_count()} processors\n"
+            f"compiler  {version.partition(chr(10))[0]}\n"
+            f"minutes   {minutes}\n"
+            f"skipped   {' '.join(skipped) or 'none'}\n")
     (REPOSITORY / LAST).write_text(text, encoding="utf-8")
     print(f"\nNoted in {LAST}: commit it, and tests/run --change starts from here.")
 
 
 def main():
-    if len(sys.argv) == 3 and sys.argv[1] == "select":
-        select(Path(sys.argv[2]).resolve())
-    elif len(sys.argv) in (4, 5) and sys.argv[1] == "record":
-        record(sys.argv[2], sys.argv[3], sys.argv[4] if len(sys.argv) == 5 else "")
+    command, arguments = sys.argv[1:2], [Path(word).resolve() for word in sys.argv[2:]]
+    if command == ["select"] and len(arguments) == 1:
+        select(arguments[0])
+    elif command == ["start"] and len(arguments) == 1:
+        start(arguments[0])
+    elif command == ["record"] and len(arguments) == 3:
+        record(arguments[0], sys.argv[3], arguments[2])
     else:
         fail(__doc__)
 

@@ -32,19 +32,21 @@ FILES = {
     "tests/CMakeLists.txt": "add_library(support STATIC support/support.cpp)\n"
                             "add_subdirectory(core)\nadd_subdirectory(contact)\nadd_subdirectory(threads)\n"
                             "add_subdirectory(io)\n",
-    "tests/support/support.cpp": "", "tests/support/more.h": "", "tests/style/layers.cmake": "",
+    "tests/support/support.cpp": "", "tests/support/more.h": "", "tests/io/shared.h": "",
+    "tests/contact/other.h": '#include "io/shared.h"\n', "tests/style/layers.cmake": "",
     "tests/pages/commands.txt": "",
     "demos/CMakeLists.txt": "add_executable(demo_drop drop.cpp)\ntarget_link_libraries(demo_drop tetskin_core)\n",
     "demos/drop.cpp": "int main() {}\n",
     "README.md": "",
 }
+FILES["plugin/tetskin/io/io.cpp"] = "int io();\n"
 for folder in ("core", "contact", "io"):
     FILES[f"tests/{folder}/CMakeLists.txt"] = (f"add_executable(test_{folder} test.cpp)\n"
                                                f"target_link_libraries(test_{folder} support tetskin_{folder})\n")
     FILES[f"tests/{folder}/test.cpp"] = "int main() {}\n"
 FILES["tests/threads/CMakeLists.txt"] = ("add_executable(test_threads test.cpp)\n"
                                          "target_link_libraries(test_threads support tetskin_threads tetskin_contact)\n")
-FILES["tests/threads/test.cpp"] = "int main() {}\n"
+FILES["tests/threads/test.cpp"] = '#include "../contact/other.h"\nint main() {}\n'
 
 
 def run(command, folder, **more):
@@ -140,9 +142,17 @@ class Selection(InASmallProject):
         self.write("tests/io/test.cpp", "int main() { return 0; }\n")
         self.assertEqual(self.result(), ("io", [], ""))
 
+    def test_a_header_of_tests_selects_those_of_other_folders_that_include_it(self):
+        self.write("tests/contact/other.h", '#include "io/shared.h"\n// more\n')
+        self.assertEqual(self.result(), ("contact;threads", [], ""))
+        self.setUp()
+        self.write("tests/io/shared.h")
+        self.assertEqual(self.result(), ("contact;io;threads", [], ""))
+
     def test_demos_have_no_tests_with_sanitizers(self):
         self.write("demos/drop.cpp", "int main() { return 0; }\n")
         self.assertEqual(self.result(), ("", [], ""))
+        self.assertIn("demo_drop", self.select().stdout)
 
     def test_committed_new_deleted_and_renamed_files_count(self):
         self.write("plugin/tetskin/io/io.cpp")
@@ -151,10 +161,25 @@ class Selection(InASmallProject):
         self.write("plugin/tetskin/contact/new.h")  # not added to the repository
         self.assertEqual(self.result()[0], "contact;io;threads")
         (self.root / "plugin/tetskin/contact/new.h").unlink()
-        self.git("mv", "plugin/tetskin/threads/threads.cpp", "plugin/tetskin/threads/other.cpp")
+        self.setUp()
+        self.git("mv", "plugin/tetskin/io/io.cpp", "plugin/tetskin/threads/other.cpp")
         tests, sources, _ = self.result()
-        self.assertEqual(tests, "io;threads")
-        self.assertEqual(sources, ["plugin/tetskin/io/io.cpp", "plugin/tetskin/threads/other.cpp"])
+        self.assertEqual(tests, "io;threads", "where it was, and where it is")
+        self.assertEqual(sources, ["plugin/tetskin/threads/other.cpp"])
+
+    def test_what_git_is_told_to_ignore_counts_where_it_may_be_compiled(self):
+        (self.root / ".git/info/exclude").write_text("*.h\n", encoding="utf-8")
+        self.git("config", "status.showUntrackedFiles", "no")
+        self.write("plugin/tetskin/io/new.h")
+        self.assertEqual(self.result()[0], "io")
+        self.assertIn("plugin/tetskin/io/new.h", self.all_passes().stdout)
+        (self.root / ".git/info/exclude").unlink()
+        self.git("config", "--unset", "status.showUntrackedFiles")
+
+    def test_names_may_have_blanks_and_any_letter(self):
+        self.write("plugin/tetskin/io/a b \u00e9.h")
+        self.select()
+        self.assertEqual((self.root / "build/changes/sources").read_text(encoding="utf-8"), "plugin/tetskin/io/a b \u00e9.h\n")
 
     def test_a_librarys_list_of_files_counts_as_the_library(self):
         with open(self.root / "plugin/tetskin/io/CMakeLists.txt", "a", encoding="utf-8") as file:
@@ -168,12 +193,13 @@ class Selection(InASmallProject):
 
     def test_the_machinery_of_the_tests_selects_everything(self):
         for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/style/layers.cmake", "tests/run", "demos/setup.sh",
-                     "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed"):
+                     "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed",
+                     "tests/pages/page.py", "tests/models/run", "plugin/packages/conan/conanfile.py"):
             with self.subTest(name):
                 self.setUp()
                 before = (self.root / name).read_text(encoding="utf-8") if (self.root / name).exists() else ""
                 self.write(name, before + "# more\n")
-                self.assertIn(name, self.result()[2])
+                self.assertIn(f"{name} has changed, on which all tests depend", self.result()[2])
 
     def test_a_file_of_no_target_selects_everything(self):
         for name in ("plugin/tetskin/tetskin.h", "new.cpp"):
@@ -222,35 +248,57 @@ class Selection(InASmallProject):
         self.assertEqual(done.returncode, 2)
         self.assertIn("configure", done.stderr)
 
-    def test_a_pass_is_noted_on_a_clean_tree_only(self):
-        def record(commit):
-            return run([sys.executable, "-B", "tests/tiers/selection.py", "record", commit, "24", "without avx512"],
-                       self.root)
+    def all_passes(self, meanwhile=lambda: None):
+        """What tests/run --all does before and after its tests."""
+        selection = [sys.executable, "-B", "tests/tiers/selection.py"]
+        started = run([*selection, "start", "build"], self.root)
+        self.assertEqual(started.returncode, 0, started.stderr)
+        meanwhile()
+        log = self.root / "build/log"
+        log.write_text(" 1/3 Test #1: core.A ........   Passed    0.01 sec\n"
+                       " 2/3 Test #2: core.Kernels/avx512 ...***Skipped   0.01 sec\n"
+                       " 3/3 Test #3: consumer.flags ...***Not Run (Disabled)   0.00 sec\n", encoding="utf-8")
+        return run([*selection, "record", "build", "24", str(log)], self.root)
 
+    def test_a_pass_is_noted_with_what_was_skipped(self):
         self.write("plugin/tetskin/io/io.cpp")
-        self.assertIn("not committed: plugin/tetskin/io/io.cpp", record(self.first).stdout)
-        self.assertIn(self.first, (self.root / "tests/last_full_run").read_text(encoding="utf-8"))
         self.commit("io")
         self.assertEqual(self.result()[0], "io")
-        self.assertIn("another commit", record(self.first).stdout)
-        self.assertIn("commit it", record(self.git("rev-parse", "HEAD").strip()).stdout)
+        self.assertIn("commit it", self.all_passes().stdout)
         noted = (self.root / "tests/last_full_run").read_text(encoding="utf-8")
-        self.assertIn("without avx512", noted)
-        self.assertIn("minutes  24", noted)
+        self.assertIn("skipped   consumer.flags core.Kernels/avx512\n", noted)
+        self.assertIn("minutes   24\n", noted)
         self.assertEqual(self.result(), ("", [], ""))
+
+    def test_a_pass_of_what_is_not_committed_is_not_noted(self):
+        self.write("plugin/tetskin/io/io.cpp")
+        self.assertIn("not committed: plugin/tetskin/io/io.cpp", self.all_passes().stdout)
+        done = self.all_passes(meanwhile=lambda: self.git("checkout", "-q", "plugin"))
+        self.assertIn("not committed: plugin/tetskin/io/io.cpp", done.stdout, "as it was when the tests began")
+        done = self.all_passes(meanwhile=lambda: self.write("plugin/tetskin/io/io.cpp"))
+        self.assertIn("not committed: plugin/tetskin/io/io.cpp", done.stdout)
+        self.setUp()
+
+        def commit():
+            self.write("plugin/tetskin/io/io.cpp")
+            self.commit("io")
+
+        self.assertIn("another commit", self.all_passes(commit).stdout)
+        self.assertIn(self.first, (self.root / "tests/last_full_run").read_text(encoding="utf-8"))
 
 
 class Script(InASmallProject):
     """tests/run itself, with stand-ins for apt, cmake and ctest that note how they were called."""
 
-    def run_script(self, *arguments, without=()):
+    def run_script(self, *arguments, without=(), ctest=""):
         tools = self.root.parent / "tools"
         shutil.rmtree(tools, ignore_errors=True)
         tools.mkdir()
         calls = self.root.parent / "calls"
         calls.unlink(missing_ok=True)
         for name, body in {"dpkg-query": "echo installed", "apt-get": "", "apt-cache": "", "cmake": "",
-                           "ctest": "case \"$*\" in *show-only*) echo '  Test   #1: consumer.shared' ;; esac"}.items():
+                           "ctest": ctest or "case \"$*\" in *show-only*) echo '  Test #1: consumer.shared'; "
+                                            "echo '  Test #2: consumer.readme' ;; esac"}.items():
             (tools / name).write_text(f"#!/bin/bash\necho {name} \"$@\" >>{calls}\n{body}\n", encoding="utf-8")
             (tools / name).chmod(0o755)
         for name in ("bash", "sh", "env", "git", "dirname", "cat", "mkdir", "touch", "nproc", "awk", "sed", "sort", "tee",
@@ -270,21 +318,22 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$ --exclude-regex ^()$", self.ctest_call(calls))
-        self.assertIn("not run, since", done.stdout)
-        self.assertIn("consumer.shared", done.stdout)
+        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes)$", self.ctest_call(calls))
+        self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
+        self.assertIn("consumer.readme: the first page has not changed", done.stdout)
 
     def test_change_leaves_out_what_nothing_has_changed_for_and_says_why(self):
         self.write("plugin/tetskin/io/io.cpp")
         done, calls = self.run_script("--change")
-        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized)$", self.ctest_call(calls))
-        self.assertIn("configuration.thread_sanitized: nothing has changed that is tested on several threads", done.stdout)
+        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes)$",
+                      self.ctest_call(calls))
+        self.assertIn("configuration.thread_sanitized: nothing that is tested on several threads", done.stdout)
         self.setUp()
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
                       "style[.]alone_changes)$", self.ctest_call(calls))
-        self.assertIn("configuration.sanitized_changes: no library has changed", done.stdout)
+        self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)
@@ -300,6 +349,7 @@ class Script(InASmallProject):
         self.assertIn("Noted in tests/last_full_run", done.stdout)
         self.setUp()
         done, _ = self.run_script("--all", "-R", "Weld")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertNotIn("Noted", done.stdout, "a part has passed, not all")
 
     def test_change_takes_no_arguments(self):
@@ -309,6 +359,7 @@ class Script(InASmallProject):
         self.assertNotIn("ctest", calls)
 
     def test_a_missing_tool_stops_the_script(self):
+        self.assertEqual(self.run_script("--coverage", "-R", "Weld")[0].returncode, 2)
         for tool in ("python3", "git"):
             with self.subTest(tool):
                 self.setUp()
@@ -317,14 +368,15 @@ class Script(InASmallProject):
                 self.assertIn(tool, done.stderr)
                 self.assertNotIn("ctest", calls)
 
-    def test_a_test_that_fails_fails_the_script(self):
+    def test_a_test_that_fails_fails_the_script_and_is_not_noted(self):
         self.write("README.md")
-        done, _ = self.run_script("--change")
-        self.assertEqual(done.returncode, 0)
-        (self.root.parent / "tools/ctest").write_text("#!/bin/bash\nexit 8\n", encoding="utf-8")
-        done = run([shutil.which("bash"), "tests/run", "--change"], self.root,
-                   env={"PATH": str(self.root.parent / "tools"), "HOME": "/tmp"})
+        done, _ = self.run_script("--change", ctest="exit 8")
         self.assertEqual(done.returncode, 8, done.stdout + done.stderr)
+        self.setUp()
+        done, _ = self.run_script("--all", ctest="exit 8")
+        self.assertEqual(done.returncode, 8, done.stdout + done.stderr)
+        self.assertNotIn("Noted", done.stdout)
+        self.assertIn(self.first, (self.root / "tests/last_full_run").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":
