@@ -78,21 +78,67 @@ run_form() {
   same_hello "$folder/form/hello"
 }
 
+# pinned FILE HASH: ends the script unless the file has this SHA-256.
+pinned() {
+  local found
+  found=$(sha256sum "$1" | cut -d ' ' -f 1)
+  [ "$found" = "$2" ] || fail "the SHA-256 of $1 is not the pinned one: expected $2, found $found." \
+    "Remove the file and run again, or set BULLET_SOURCE to a folder of Bullet's sources"
+}
+
+# distribution_source PACKAGE FILE: fetches the file, which is part of the distribution's newest source package of this
+# name. apt has sources, lists and a cache of its own here, and runs no hooks: the machine's stay as they are, and any
+# user may run this.
+distribution_source() {
+  local apt=$folder/apt list
+  command -v apt-get >/dev/null || return 1
+  rm -rf "$apt"
+  mkdir -p "$apt/sources" "$apt/lists/partial" "$apt/cache"
+  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources; do
+    [ ! -f "$list" ] || sed -E 's/^deb[[:space:]]/deb-src /; s/^Types:.*/Types: deb-src/' "$list" \
+      >"$apt/sources/$(basename "$list")"
+  done
+  cat >"$apt/apt.conf" <<END
+Dir::Etc::SourceList "/dev/null";
+Dir::Etc::SourceParts "$apt/sources";
+Dir::State::Lists "$apt/lists";
+Dir::Cache "$apt/cache";
+#clear APT::Update;
+END
+  # This also fails where one of the machine's sources cannot be reached, which need not be the one with the package.
+  apt-get -q -c "$apt/apt.conf" update || true
+  (cd "$apt" && apt-get -q -c "$apt/apt.conf" source --download-only "$1") || return 1
+  mv "$apt/$(basename "$2")" "$2" || return 1
+  rm -rf "$apt"
+}
+
 # bullet_source: sets `bullet` to a folder with the sources of Bullet: BULLET_SOURCE, if this is set, otherwise those of
-# version 3.25, fetched once.
+# version 3.24 in the distribution, which a machine with nothing but a mirror of packages can fetch, or else those of
+# version 3.25 on GitHub. Either is fetched and unpacked once; its hash is checked each time.
 bullet_source() {
-  bullet=${BULLET_SOURCE:-$repository/build/platforms/bullet3-3.25}
-  [ -z "${BULLET_SOURCE:-}" ] || [ -f "$bullet/src/btBulletCollisionCommon.h" ] || fail "no Bullet in $bullet"
-  if [ ! -f "$bullet/VERSION" ]; then
-    local file=$repository/build/platforms/bullet3-3.25.tar.gz
-    needs curl curl
-    curl -fsSL --retry 2 --max-time 300 -o "$file" \
-      https://github.com/bulletphysics/bullet3/archive/refs/tags/3.25.tar.gz ||
-      not_run "no network, and BULLET_SOURCE is not set to a folder of Bullet's sources"
-    echo "c45afb6399e3f68036ddb641c6bf6f552bf332d5ab6be62f7e6c54eda05ceb77  $file" | sha256sum -c --quiet ||
-      fail "what was fetched is not Bullet 3.25"
-    tar -xzf "$file" -C "$repository/build/platforms"
+  local all=$repository/build/platforms
+  local packaged=$all/bullet_3.24+dfsg.orig.tar.xz released=$all/bullet3-3.25.tar.gz archive
+  bullet=${BULLET_SOURCE:-}
+  if [ -z "$bullet" ]; then
+    [ -f "$packaged" ] || [ -f "$released" ] || distribution_source bullet "$packaged" ||
+      { curl -fsSL --retry 2 --max-time 300 -o "$released.part" \
+        https://github.com/bulletphysics/bullet3/archive/refs/tags/3.25.tar.gz && mv "$released.part" "$released"; } ||
+      not_run "neither apt's sources nor GitHub gave Bullet's sources, and BULLET_SOURCE is not set to a folder of them"
+    if [ -f "$packaged" ]; then
+      archive=$packaged bullet=$all/bullet3-3.24
+      pinned "$archive" 43c1edae2024ba18bb5d7bfd3bb2394b066a79151a29789504a2d8efcdc333d7
+    else
+      archive=$released bullet=$all/bullet3-3.25
+      pinned "$archive" c45afb6399e3f68036ddb641c6bf6f552bf332d5ab6be62f7e6c54eda05ceb77
+    fi
+    if [ ! -d "$bullet" ]; then
+      rm -rf "$folder/unpacked"
+      mkdir "$folder/unpacked"
+      tar -xf "$archive" -C "$folder/unpacked"
+      mv -T "$folder/unpacked/$(basename "$bullet")" "$bullet"
+    fi
   fi
+  [ -f "$bullet/src/btBulletCollisionCommon.h" ] || fail "no Bullet in $bullet"
   echo "Bullet $(cat "$bullet/VERSION") in $bullet"
 }
 # Bullet's own build asks for a version of CMake that recent ones do not know.
