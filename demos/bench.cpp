@@ -7,7 +7,7 @@
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 #include <tetskin/core/src/skinning/skinning.h>
 #include <tetskin/io/files.h>
 

@@ -5,7 +5,7 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/elastic_body.h>
 #ifdef TETSKIN_BENCH_THREADS
@@ -21,6 +21,9 @@
 #include "scenes/table.h"
 
 namespace tetskin::bench {
+
+using namespace bullet_detail;
+
 namespace {
 
 using benchmark::State;

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/deepest_vertex.h"
 
-#include <tetskin/core/src/shared/mesh/triangle_bvh.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/triangle_bvh.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/model.h"
 
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>

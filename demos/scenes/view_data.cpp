@@ -3,7 +3,7 @@
 #include "scenes/view_data.h"
 
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
 #include <cassert>

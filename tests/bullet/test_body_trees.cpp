@@ -2,13 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "deformable_test.h"
 
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <thread>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using test::added;

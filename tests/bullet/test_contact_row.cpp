@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/solver/contact_row.h>
+#include <tetskin/bullet/src/rows/contact_row.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,9 @@
 #include <utility>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using State = ContactRow::State;

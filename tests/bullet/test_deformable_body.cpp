@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cmath>
 

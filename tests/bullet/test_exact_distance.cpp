@@ -5,9 +5,12 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
+#include <tetskin/bullet/src/base/exact_distance.h>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using test::pointsWithin;

@@ -4,9 +4,12 @@
 // An application's own body, with Bullet's own forces, in a world where bodies of this library come and go.
 #include "deformable_test.h"
 
-#include <tetskin/bullet/src/shared/forces/body_forces.h>
+#include <tetskin/bullet/src/base/body_forces.h>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using test::added;

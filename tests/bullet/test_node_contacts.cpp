@@ -6,13 +6,16 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <BulletSoftBody/btSoftBodyInternals.h>
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
-#include <tetskin/bullet/src/solver/node_contacts.h>
+#include <tetskin/bullet/src/base/exact_distance.h>
+#include <tetskin/bullet/src/search/node_contacts.h>
 
 #include <algorithm>
 #include <set>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using test::pointsWithin;

@@ -9,6 +9,9 @@
 #include <vector>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 struct Sampled {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

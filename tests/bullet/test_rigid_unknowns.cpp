@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-#include <tetskin/bullet/src/solver/rigid_unknowns.h>
+#include <tetskin/bullet/src/rows/rigid_unknowns.h>
 
 #include <array>
 #include <cmath>
@@ -12,6 +12,9 @@
 #include "deformable_test.h"
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using Eigen::MatrixXd;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <memory>
 

@@ -3,7 +3,7 @@
 #include "skin_test.h"
 #include "support/allocation_count.h"
 
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <map>

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "copy_checks.h"
 
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <cmath>

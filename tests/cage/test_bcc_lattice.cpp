@@ -7,7 +7,7 @@
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/lattice/cage_joints.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <random>

@@ -9,7 +9,7 @@
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/lattice/inside_fill.h>
 #include <tetskin/cage/src/lattice/surface_cover.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

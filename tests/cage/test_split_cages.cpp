@@ -9,7 +9,7 @@
 #include "support/component_models.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cmath>
 #include <random>

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 namespace tetskin::test {
 namespace {

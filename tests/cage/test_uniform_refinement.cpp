@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/uniform_refinement.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
 #include "support/odd_meshes.h"
 

@@ -5,8 +5,8 @@
 // then with Bullet, and compares every vertex with brute force in double precision after every update. See
 // tests/clients/run.
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/triangle_bvh.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/triangle_bvh.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <gtest/gtest.h>
 

@@ -7,13 +7,16 @@
 #include "contact_test.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
-#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
+#include <tetskin/bullet/src/base/exact_distance.h>
 
 #include <cmath>
 #include <memory>
 #include <optional>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// `SurfaceContact` uses the same algorithm for other convex shapes, but adds the margin; it treats hulls by their

@@ -8,11 +8,14 @@
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
-#include <tetskin/contact/src/rigid/mesh_probe.h>
+#include <tetskin/bullet/src/search/mesh_probe.h>
 
 #include <functional>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 constexpr int kSide = 12;  // samples along a side of the terrain

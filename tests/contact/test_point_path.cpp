@@ -4,11 +4,14 @@
 
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
-#include <tetskin/contact/src/rigid/hull_probe.h>
-#include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/contact/src/rigid/point_path.h>
+#include <tetskin/bullet/src/search/hull_probe.h>
+#include <tetskin/bullet/src/search/mesh_probe.h>
+#include <tetskin/bullet/src/search/point_path.h>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 constexpr btScalar kKept = btScalar(0.002), kReach = btScalar(0.005);

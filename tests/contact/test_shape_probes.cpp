@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact_test.h"
 
-#include <tetskin/contact/src/rigid/convex_probe.h>
-#include <tetskin/contact/src/rigid/hull_probe.h>
-#include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/search/convex_probe.h>
+#include <tetskin/bullet/src/search/hull_probe.h>
+#include <tetskin/bullet/src/search/mesh_probe.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// Unsigned distance to a mesh, by testing all triangles.

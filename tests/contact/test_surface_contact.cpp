@@ -3,9 +3,12 @@
 #include "contact_test.h"
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-#include <tetskin/bullet/src/shared/bodies/exact_distance.h>
+#include <tetskin/bullet/src/base/exact_distance.h>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 constexpr double kAllowedGap = 0.003 * kBodySize;

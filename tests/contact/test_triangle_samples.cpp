@@ -2,13 +2,18 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact_test.h"
 
-#include <tetskin/contact/src/rigid/mesh_probe.h>
-#include <tetskin/contact/src/rigid/surface_collider.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/search/mesh_probe.h>
+#include <tetskin/bullet/src/search/point_collider.h>
+#include <tetskin/contact/src/rigid/surface_patches.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <random>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+using namespace contact_detail;
+
 namespace {
 
 constexpr btScalar kSampleMargin = btScalar(0.002), kSampleSlack = btScalar(0.005);
@@ -41,8 +46,8 @@ class TriangleSamples : public ::testing::Test {
     for (const Eigen::Vector3d& p : cage_.nodes) nodes_.push_back({toBullet(p), toBullet(p)});
   }
 
-  SurfaceCollider searchWith(double spacing) const { return searchWith(mesh_, spacing); }
-  SurfaceCollider searchWith(const TriangleMesh& mesh, double spacing) const {
+  PointCollider searchWith(double spacing) const { return searchWith(mesh_, spacing); }
+  PointCollider searchWith(const TriangleMesh& mesh, double spacing) const {
     return {makeContactPatches(embed(cage_, mesh).value(), mesh, divisionsFor(mesh, spacing)), kSampleMargin,
             kSampleSlack};
   }
@@ -95,7 +100,7 @@ TEST_F(TriangleSamples, TouchAsDeepAsALookAtEachOfThemFinds) {
   const btSphereShape ball(btScalar(0.15));
   const btBoxShape box(btVector3(btScalar(0.2), btScalar(0.1), btScalar(0.15)));
   const btCapsuleShapeZ pole(btScalar(0.03), 2);
-  SurfaceCollider search = searchWith(0.02);
+  PointCollider search = searchWith(0.02);
   std::mt19937 random(3);
   int touching = 0;
   for (int k = 0; k < 150; ++k) {
@@ -152,7 +157,7 @@ TEST_F(TriangleSamples, TouchTrianglesAsDeepAsALookAtEachOfThemFinds) {
   MeshProbe probe, whole;
   probe.take(shape, btScalar(0.03));
   whole.take(shape, btScalar(0.03));
-  SurfaceCollider search = searchWith(0.03);
+  PointCollider search = searchWith(0.03);
   std::mt19937 random(4);
   int touching = 0;
   for (int k = 0; k < 8; ++k) {
@@ -195,7 +200,7 @@ TEST_F(TriangleSamples, OverAFloorAreNotLookedAt) {
   MeshProbe mesh;
   mesh.take(flat, btScalar(0.03));
   const auto ask = [&](ShapeProbe& probe, double spacing, const btVector3& at) {
-    SurfaceCollider search = searchWith(spacing);
+    PointCollider search = searchWith(spacing);
     AskedProbe counting(probe);
     ShapeMemory memory;
     search.begin(nodes_, 0);
@@ -233,7 +238,7 @@ TEST_F(TriangleSamples, FarFromASmallShapeAreNotLookedAt) {
         mesh.triangles.push_back({b, a + 1, b + 1});
       }
     }
-    SurfaceCollider search = searchWith(mesh, 0.01);
+    PointCollider search = searchWith(mesh, 0.01);
     const btSphereShape ball(btScalar(0.02));
     ExactProbe probe;
     probe.take(*ExactShape::exactShape(ball));
@@ -258,7 +263,7 @@ TEST_F(TriangleSamples, OfLargeTrianglesAreLookedAtNearAShapeAlone) {
   ExactProbe probe;
   probe.take(*ExactShape::exactShape(ball));
   const btTransform at = placeAt(btVector3(btScalar(0.013), btScalar(0.321), btScalar(0.017)));
-  SurfaceCollider search = searchWith(0.005);
+  PointCollider search = searchWith(0.005);
   AskedProbe counting(probe);
   ShapeMemory memory;
   search.begin(nodes_, 0);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/base/hash.h>
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/base/median.h>
+#include <tetskin/core/src/base/hash.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/median.h>
 
 #include <map>
 #include <random>

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/bone_palette.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 
 #include <cmath>
 #include <limits>

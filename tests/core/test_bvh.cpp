@@ -5,8 +5,8 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/bvh/bvh.h>
-#include <tetskin/core/src/shared/mesh/triangle_bvh.h>
+#include <tetskin/core/src/base/bvh/bvh.h>
+#include <tetskin/core/src/base/mesh/triangle_bvh.h>
 
 #include <algorithm>
 #include <cmath>

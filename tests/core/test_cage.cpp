@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <limits>
 #include <random>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cmath>
 #include <limits>

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <limits>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
 
 #include <algorithm>
 #include <cmath>

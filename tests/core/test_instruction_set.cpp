@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 
 #include <algorithm>
 #include <cmath>

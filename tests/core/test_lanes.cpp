@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #define TETSKIN_KERNELS first_of_unit
-#include <tetskin/core/src/shared/kernels/lanes.h>
+#include <tetskin/core/src/base/kernels/lanes.h>
 #undef TETSKIN_KERNELS
 #define TETSKIN_KERNELS second_of_unit
-#include <tetskin/core/src/shared/kernels/lanes.h>
+#include <tetskin/core/src/base/kernels/lanes.h>
 #undef TETSKIN_KERNELS
 
 namespace tetskin::kernels {

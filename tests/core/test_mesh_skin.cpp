@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 
 #include <limits>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "support/smooth_maps.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/skinning/quadratic_point.h>
+#include <tetskin/core/src/exported/quadratic_point.h>
 
 #include <cmath>
 

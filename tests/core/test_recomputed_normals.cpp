@@ -3,8 +3,8 @@
 #include "carried_normals.h"
 
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 
 #include <limits>
 #include <random>

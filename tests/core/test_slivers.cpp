@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <string>

@@ -3,8 +3,8 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/core/src/search/tet_filter.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
 
 #include <algorithm>
 #include <set>

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/search/tet_search.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <algorithm>
 #include <limits>

@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/triangle_samples.h>
+#include <tetskin/core/src/base/mesh/triangle_samples.h>
 
 #include <cmath>
 

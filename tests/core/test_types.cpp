@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/types.h>
 
 #include <limits>

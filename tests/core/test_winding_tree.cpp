@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 namespace tetskin::test {
 namespace {

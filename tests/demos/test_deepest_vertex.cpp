@@ -3,7 +3,7 @@
 #include "scenes/deepest_vertex.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
+#include <tetskin/core/src/base/mesh/triangle_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 

@@ -3,7 +3,7 @@
 //
 // --self-contact in the programs that drop, pile and drag bodies.
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 

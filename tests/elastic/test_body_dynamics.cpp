@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <algorithm>
 #include <limits>

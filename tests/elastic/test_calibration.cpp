@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/uniform_refinement.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 

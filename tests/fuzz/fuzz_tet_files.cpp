@@ -6,7 +6,7 @@
 // cages.
 #include "fuzz_files.h"
 
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 
 #include <string>

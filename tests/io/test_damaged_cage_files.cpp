@@ -3,7 +3,7 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 
 #include <random>

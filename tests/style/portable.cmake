@@ -1,8 +1,8 @@
 cmake_policy(SET CMP0057 NEW)
 # What only some compilers and systems have is in the files named here; objects of the application are not asked for
 # their types; and the top level has what it is meant to have.
-set(extensions plugin/tetskin/export.h plugin/tetskin/core/src/shared/base/compiler.h
-  plugin/tetskin/core/src/shared/kernels/lanes.h)
+set(extensions plugin/tetskin/export.h plugin/tetskin/core/src/base/compiler.h
+  plugin/tetskin/core/src/base/kernels/lanes.h)
 set(faults)
 file(GLOB_RECURSE files plugin/tetskin/*.h plugin/tetskin/*.cpp)
 foreach(file ${files})

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/brute_force.h"
 
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <utility>

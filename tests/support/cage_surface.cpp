@@ -4,7 +4,7 @@
 
 #include "support/odd_meshes.h"
 
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <limits>

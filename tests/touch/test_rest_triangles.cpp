@@ -5,7 +5,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
+#include <tetskin/core/src/base/mesh/triangle_geometry.h>
 #include <tetskin/touch/src/tree/nearest_triangle.h>
 
 #include <limits>

@@ -15,8 +15,11 @@
 
 namespace tetskin {
 
+namespace bullet_detail {
+class RecordedForces;
+}
+
 class ForceRecord;
-class SystemSolve;
 
 /// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
 /// What the world's own `stepSimulation` takes beyond these is Bullet's: its solve of rigid bodies, its integration,
@@ -105,13 +108,9 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 
  private:
   struct Impl;
-  friend struct Impl;
   friend class ForceRecord;
-  friend class SystemSolve;
   std::unique_ptr<Impl> impl_;
 };
-
-class RecordedForces;
 
 /// Options of a DeformableWorld.
 struct DeformableWorldOptions {
@@ -223,8 +222,8 @@ class TETSKIN_BULLET_API ForceRecord {
   AppliedForces forcesBetween(const btCollisionObject& object, const btCollisionObject& other) const;
 
  private:
-  explicit ForceRecord(std::shared_ptr<RecordedForces> recorded);
-  std::shared_ptr<RecordedForces> recorded_;
+  explicit ForceRecord(std::shared_ptr<bullet_detail::RecordedForces> recorded);
+  std::shared_ptr<bullet_detail::RecordedForces> recorded_;
 };
 
 }  // namespace tetskin

@@ -6,7 +6,7 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/surface_contact.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 
 #include <array>
 #include <cmath>

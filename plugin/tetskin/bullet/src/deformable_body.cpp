@@ -4,13 +4,13 @@
 #include <BulletSoftBody/btDeformableLinearElasticityForce.h>
 #include <BulletSoftBody/btDeformableNeoHookeanForce.h>
 #include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/src/base/body_elements.h>
+#include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
-#include <tetskin/bullet/src/shared/bodies/body_elements.h>
-#include <tetskin/bullet/src/shared/forces/body_forces.h>
-#include <tetskin/bullet/src/shared/solver/required_solver.h>
-#include <tetskin/core/src/shared/base/median.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/median.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cassert>
@@ -21,6 +21,8 @@
 #include <string>
 
 namespace tetskin {
+
+using namespace bullet_detail;
 
 namespace {
 

@@ -6,6 +6,9 @@
 #include <cassert>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace world_detail {
 
 /// True while Bullet detects contacts: it then goes through pairs and trees that adding or removing an object changes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/forces/body_forces.h>
-#include <tetskin/bullet/src/shared/solver/required_solver.h>
+#include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
@@ -9,6 +9,9 @@
 #include <cmath>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using contact_detail::SoftContactRows;
@@ -108,7 +111,7 @@ const std::vector<SoftContact>& SoftContacts::contacts() const {
   contacts.clear();
   impl_->force.excludeDeleted();
   for (const auto* list : {&impl_->force.lastContacts(), &impl_->force.sleepingContacts()}) {
-    for (const SoftPointContact& from : *list) {
+    for (const PointContact& from : *list) {
       assert(from.body && btSoftBody::upcast(from.object));
       const btScalar impulse = from.normal.dot(from.impulse);
       if (!(impulse > 0)) continue;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/bullet/src/shared/bodies/own_objects.h>
-#include <tetskin/bullet/src/shared/solver/required_solver.h>
-#include <tetskin/contact/src/rigid/contact_points.h>
-#include <tetskin/contact/src/rigid/surface_algorithm.h>
+#include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/exported/point_search.h>
+#include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/contact/surface_contact.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// Default margin, relative to the body's size.
@@ -55,8 +57,8 @@ Status checkFit(const btSoftBody& body, const Embedding& embedding, const Triang
   return {};
 }
 
-Status checkCount(const Divisions& divisions) {
-  if (countOfSamples(divisions) <= kMaxSamples) return {};
+Status checkCount(const contact_detail::Divisions& divisions) {
+  if (contact_detail::countOfSamples(divisions) <= kMaxSamples) return {};
   return refused(StatusCode::InvalidOption,
                  "the sample spacing of surface contact is so small that the mesh would need more than 10,000,000 "
                  "samples; make it larger, in the unit of the mesh at rest");
@@ -75,7 +77,7 @@ Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
     return refused(StatusCode::InvalidOption,
                    "surface contact needs a btCollisionDispatcher, or a dispatcher derived from it");
   }
-  if (contactsOf(body)) {
+  if (PointSearch::exists(body)) {
     return refused(StatusCode::InvalidOption, "the body already has surface contact; destroy that first");
   }
   return {};
@@ -92,51 +94,19 @@ double largestSide(const btSoftBody& body) {
   return boundingBox(nodePositions(body)).sizes().maxCoeff();
 }
 
-/// Removes the body's pairs, so that the next step creates them and their algorithms anew.
-void forgetPairs(btSoftBody& body, btDeformableMultiBodyDynamicsWorld& world) {
-  if (btBroadphaseProxy* proxy = body.getBroadphaseHandle()) {
-    world.getPairCache()->cleanProxyFromPairs(proxy, world.getDispatcher());
-  }
-}
-
 }  // namespace
 
 struct SurfaceContact::Impl {
-  Impl(const btDispatcher& dispatcher, btSoftBody& body, SurfaceCollider search, btScalar thickness)
-      : contacts(std::make_shared<BodyContacts>(dispatcher, *bodyWithTrees(body), std::move(search), thickness)) {}
+  Impl(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, ContactPatches patches,
+       const SearchDistances& distances)
+      : search(world, *bodyWithTrees(body), std::move(patches), distances) {}
 
-  void begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach);
-  void end();
-
-  std::shared_ptr<BodyContacts> contacts;
+  PointSearch search;
   std::vector<SurfaceContactPoint> points;  ///< as last reported
-  btScalar marginBefore = 0;
 };
 
-void SurfaceContact::Impl::begin(btDeformableMultiBodyDynamicsWorld& world, btScalar reach) {
-  assert(contacts->bodyLives() && !(reach < contacts->search().margin()));
-  btSoftBody& body = contacts->body();
-  marginBefore = body.getCollisionShape()->getMargin();
-  body.getCollisionShape()->setMargin(contacts->search().margin());
-  bodyWithTrees(body)->setReach(reach);
-  bodyWithTrees(body)->setSurfaceContacts(contacts);
-  registerSurfaceAlgorithms(static_cast<btCollisionDispatcher&>(*world.getDispatcher()));
-  forgetPairs(body, world);
-  body.activate();
-}
-
-void SurfaceContact::Impl::end() {
-  if (!contacts->bodyLives()) return;
-  btSoftBody& body = contacts->body();
-  body.getCollisionShape()->setMargin(marginBefore);
-  bodyWithTrees(body)->setReach(-1);
-}
-
 SurfaceContact::SurfaceContact(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-
-SurfaceContact::~SurfaceContact() {
-  impl_->end();
-}
+SurfaceContact::~SurfaceContact() = default;
 
 Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                             const SoftBodyBinding& binding, const TriangleMesh& mesh,
@@ -145,31 +115,35 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
        {checkContactOptions(options), checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
     if (!status.ok()) return status;
   }
-  const Divisions divisions = options.sampleSpacing
-                                  ? divisionsFor(mesh, *options.sampleSpacing)
-                                  : defaultDivisions(binding.embedding(), mesh, dataOf(binding).restNodes);
+  const contact_detail::Divisions divisions =
+      options.sampleSpacing ? contact_detail::divisionsFor(mesh, *options.sampleSpacing)
+                            : contact_detail::defaultDivisions(binding.embedding(), mesh, dataOf(binding).restNodes);
   if (Status status = checkCount(divisions); !status.ok()) return status;
   const double size = largestSide(body);
-  const auto margin = static_cast<btScalar>(options.margin.value_or(kSurfaceMargin * size));
-  ContactPatches patches = makeContactPatches(binding.embedding(), mesh, divisions);
-  const btScalar reach = margin + beyondNodes(patches) * static_cast<btScalar>(size);
-  auto impl =
-      std::make_unique<Impl>(*world.getDispatcher(), body,
-                             SurfaceCollider(std::move(patches), margin, static_cast<btScalar>(kSearchSlack * size)),
-                             static_cast<btScalar>(kMeshThickness * size));
+  ContactPatches patches = contact_detail::makeContactPatches(binding.embedding(), mesh, divisions);
+  SearchDistances distances;
+  distances.margin = static_cast<btScalar>(options.margin.value_or(kSurfaceMargin * size));
+  distances.slack = static_cast<btScalar>(kSearchSlack * size);
+  distances.thickness = static_cast<btScalar>(kMeshThickness * size);
+  distances.beyondNodes = beyondNodes(patches) * static_cast<btScalar>(size);
   deformableSolverOf(body)->requireOwnSolve();
-  impl->begin(world, reach);
-  return std::unique_ptr<SurfaceContact>(new SurfaceContact(std::move(impl)));
+  return std::unique_ptr<SurfaceContact>(
+      new SurfaceContact(std::make_unique<Impl>(world, body, std::move(patches), distances)));
 }
 
 const std::vector<SurfaceContactPoint>& SurfaceContact::contacts() const {
   impl_->points.clear();
-  if (impl_->contacts->bodyLives()) addContactPoints(*impl_->contacts, impl_->points);
+  if (const BodyWithTrees* body = impl_->search.body()) {
+    for (const PointContact& contact : body->pointContacts()) {
+      if (!contact.object) continue;
+      impl_->points.push_back({contact.position, contact.normal, contact.distance, contact.object, contact.impulse});
+    }
+  }
   return impl_->points;
 }
 
 std::size_t SurfaceContact::sampleCount() const {
-  return impl_->contacts->search().patches().pointCount;
+  return impl_->search.patches().pointCount;
 }
 
 }  // namespace tetskin

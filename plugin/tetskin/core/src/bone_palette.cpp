@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/bone_palette.h>
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <algorithm>

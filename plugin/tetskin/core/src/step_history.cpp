@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/base/instantiate.h>
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/base/positive_values.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <cassert>
 #include <cmath>

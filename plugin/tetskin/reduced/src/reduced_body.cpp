@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/BulletReducedDeformableBody/btReducedDeformableBodySolver.h>
-#include <tetskin/bullet/src/shared/bodies/body_elements.h>
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/bullet/src/base/body_elements.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/reduced/reduced_body.h>
 #include <tetskin/reduced/src/bodies/modal_body.h>
 
@@ -14,6 +14,9 @@
 #include <sstream>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using reduced_detail::CageModes;

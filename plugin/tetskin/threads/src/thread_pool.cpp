@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/compiler.h>
+#include <tetskin/core/src/base/compiler.h>
 #include <tetskin/threads/thread_pool.h>
 
 #include <algorithm>

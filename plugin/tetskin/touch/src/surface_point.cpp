@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/core/src/shared/skin_binding.h>
-#include <tetskin/core/src/shared/skinning/quadratic_point.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/core/src/exported/quadratic_point.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/point_data.h>
 #include <tetskin/touch/src/points/point_jacobian.h>
@@ -11,6 +11,8 @@
 #include <cassert>
 
 namespace tetskin {
+
+using namespace bullet_detail;
 
 using touch_detail::dataOf;
 using touch_detail::PointData;

@@ -13,6 +13,9 @@
 #include <limits>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using touch_detail::Joint;

@@ -9,6 +9,9 @@
 #include <cmath>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using touch_detail::Joint;

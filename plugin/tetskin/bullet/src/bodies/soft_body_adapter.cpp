@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
+#include <tetskin/bullet/src/base/dangling_nodes.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// Index of the node pointed to, or -1. Pointers are compared as numbers: dangling ones must not be subtracted.
@@ -39,7 +42,7 @@ TetMesh readTetMesh(const btSoftBody& body) {
   return mesh;
 }
 
-Status checkDangling(const TetMesh& read) {
+Status bullet_detail::checkDangling(const TetMesh& read) {
   const auto dangles = [](const Tet& tet) { return std::find(tet.begin(), tet.end(), -1) != tet.end(); };
   const auto count = std::count_if(read.tets.begin(), read.tets.end(), dangles);
   if (count == 0) return {};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/shared/bodies/body_elements.h>
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/core/src/shared/base/positive_values.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/base/body_elements.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/positive_values.h>
 
 #include <algorithm>
 #include <cassert>
@@ -13,6 +13,9 @@
 #include <numeric>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// Least mass of a node relative to the mean: lighter nodes explode on cages with slivers.
@@ -116,7 +119,7 @@ void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
 
 }  // namespace
 
-Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
+Status bullet_detail::checkCage(const TetMesh& cage, const TetMeshReport& report) {
   if (Status status = validate(cage, report); !status.ok()) return status;
   const TetMeshReport::Fault& flat = report.zeroVolume.count > 0 ? report.zeroVolume : report.repeatedNode;
   if (flat.count == 0) return {};
@@ -125,7 +128,7 @@ Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
                                       std::to_string(flat.first) + "; Bullet divides by their volume, so remove them"};
 }
 
-void appendElements(const TetMesh& cage, btSoftBody& body) {
+void bullet_detail::appendElements(const TetMesh& cage, btSoftBody& body) {
   assert(static_cast<std::size_t>(body.m_nodes.size()) == cage.nodeCount() && body.m_tetras.size() == 0);
   for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
   // Bullet's own function searches linearly for an existing link; these are already distinct.
@@ -137,7 +140,8 @@ void appendElements(const TetMesh& cage, btSoftBody& body) {
   for (int i = 0; i < body.m_nodes.size(); ++i) body.m_nodes[i].index = i;
 }
 
-void collideWithRigidBodies(const TetMesh& cage, std::optional<double> margin, double friction, btSoftBody& body) {
+void bullet_detail::collideWithRigidBodies(const TetMesh& cage, std::optional<double> margin, double friction,
+                                           btSoftBody& body) {
   const double size = boundingBox(cage.nodes).sizes().maxCoeff();
   body.getCollisionShape()->setMargin(static_cast<btScalar>(margin.value_or(kMarginFraction * size)));
   body.m_cfg.kDF = static_cast<btScalar>(friction);
@@ -184,7 +188,8 @@ SoftBodyOptions withCageDefaults(const Cage& cage, SoftBodyOptions options) {
   return options;
 }
 
-Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options) {
+Result<BuiltBody> bullet_detail::buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                           const SoftBodyOptions& options) {
   if (Status status = checkOptions(options); !status.ok()) return status;
   TetMesh positive = cage.mesh;
   if (Status status = checkCage(cage.mesh, repairTetMesh(positive)); !status.ok()) return status;

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 
 ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
                            const ElasticMaterial& material, std::vector<double> stiffnessScale,
@@ -41,4 +41,4 @@ double ElasticForce::totalElasticEnergy(btScalar) {
   return body_.dynamics->energy(nullptr);
 }
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

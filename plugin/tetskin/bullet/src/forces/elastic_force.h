@@ -4,10 +4,10 @@
 // Internal to tetskin::bullet: the corotated elasticity of one body, as an entry in Bullet's list of forces.
 #pragma once
 
+#include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
-#include <tetskin/bullet/src/shared/forces/body_forces.h>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 
 /// A `DeformableSolver` finds the body here, and solves for it: for Bullet, the force is always 0. It is in the list so
 /// that Bullet reports when the body leaves the world, and can ask for its energy.
@@ -36,4 +36,4 @@ class ElasticForce : public InactiveForce {
   ForcedBody body_;
 };
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

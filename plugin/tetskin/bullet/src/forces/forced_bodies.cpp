@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 namespace {
 
 Status badTet(std::size_t tet, const char* fault) {
@@ -121,4 +121,4 @@ bool ForcedBody::hasItsRestShapes() const {
   return hasOwnCounts() && restMeasureOf(*body) == restMeasure;
 }
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

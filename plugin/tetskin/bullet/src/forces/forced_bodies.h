@@ -6,12 +6,12 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/elastic/src/shared/dynamics/body_dynamics.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <memory>
 #include <vector>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 
 /// The material of a body.
 struct ElasticMaterial {
@@ -59,4 +59,4 @@ struct ForcedBody {
   bool hasItsRestShapes() const;
 };
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

@@ -6,11 +6,11 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
-#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
+#include <tetskin/elastic/src/base/elastic_kernels.h>
 
 #include <cmath>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 
 /// True if any of the three is NaN.
 inline bool isNaN(const btVector3& v) {
@@ -36,4 +36,4 @@ inline btMatrix3x3 symmetricMatrix(const btScalar d[6]) {
   return {d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]};
 }
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

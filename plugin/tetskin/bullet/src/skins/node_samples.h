@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace tetskin {
+namespace tetskin::bullet_detail {
 
 using FourNodes = std::array<int, 4>;
 
@@ -61,4 +61,4 @@ FourNodes nodesToSample(std::size_t count, std::size_t strideBytes, At&& at) {
   return best;
 }
 
-}  // namespace tetskin
+}  // namespace tetskin::bullet_detail

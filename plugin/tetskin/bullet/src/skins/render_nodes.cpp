@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/bullet/src/base/dangling_nodes.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cassert>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 PointView<const btScalar> renderNodePositions(const btSoftBody& body) {

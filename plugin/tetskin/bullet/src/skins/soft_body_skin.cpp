@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/bullet/src/shared/bodies/dangling_nodes.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/dangling_nodes.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
-#include <tetskin/core/src/shared/base/compiler.h>
-#include <tetskin/core/src/shared/skin_binding.h>
+#include <tetskin/core/src/base/compiler.h>
+#include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {

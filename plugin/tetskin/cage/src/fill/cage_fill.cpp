@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/fill/cage_fill.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
-#include <tetskin/core/src/shared/mesh/uniform_refinement.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
 #include <algorithm>
 #include <cassert>

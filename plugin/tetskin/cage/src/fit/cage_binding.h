@@ -6,7 +6,7 @@
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <vector>
 

@@ -11,8 +11,8 @@
 #include <tetskin/cage/src/fit/cage_fit.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/cage/src/lattice/surface_cover.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,7 @@
 //   François Labelle, Jonathan Richard Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral
 //   Angles", SIGGRAPH 2007, section 3 (the body-centred cubic lattice and its tets)
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
-#include <tetskin/core/src/shared/base/hash.h>
+#include <tetskin/core/src/base/hash.h>
 
 #include <algorithm>
 #include <cassert>

@@ -22,7 +22,7 @@
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 namespace tetskin::cage_detail {
 

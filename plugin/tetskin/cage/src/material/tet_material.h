@@ -5,8 +5,8 @@
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/material/tet_cells.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <cassert>
 #include <vector>

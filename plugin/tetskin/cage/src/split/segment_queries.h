@@ -5,7 +5,7 @@
 #include <tetskin/cage/src/material/tet_material.h>
 #include <tetskin/cage/src/split/lattice_links.h>
 #include <tetskin/cage/src/surface/triangle_crossing.h>
-#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/base/bvh/bvh.h>
 
 #include <deque>
 #include <tuple>

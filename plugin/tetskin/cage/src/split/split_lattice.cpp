@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/split/split_lattice.h>
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
-#include <tetskin/core/src/shared/mesh/face_neighbours.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/mesh/face_neighbours.h>
 
 #include <algorithm>
 #include <cassert>

@@ -4,7 +4,7 @@
 // Clips edges and triangles to a tet, in barycentric weights.
 #pragma once
 
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <array>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/split/tet_copies.h>
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <cassert>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/split/tet_clip.h>
 #include <tetskin/cage/src/split/tet_pieces.h>
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/cage/src/split/segment_queries.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <vector>
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/surface/orientation.h>
 #include <tetskin/cage/src/surface/surface.h>
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>

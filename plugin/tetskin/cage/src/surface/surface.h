@@ -6,7 +6,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/contact/src/soft/contact_body.h>
 
 #include <algorithm>
@@ -173,10 +173,7 @@ void ContactBody::measure(DeformedTet& tet, int t) const {
 
 btVector3 ContactBody::velocityAt(int tet, const btScalar weights[4]) const {
   assert(tet >= 0 && static_cast<std::size_t>(tet) < data().tets.size());
-  const Tet& n = data().tets[static_cast<std::size_t>(tet)];
-  btVector3 v(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) v += weights[k] * body->m_nodes[n[k]].m_v;
-  return v;
+  return bullet_detail::CarriedPoint(4, data().tets[static_cast<std::size_t>(tet)], weights).velocity(*body);
 }
 
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet) {

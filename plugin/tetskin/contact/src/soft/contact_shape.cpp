@@ -3,9 +3,9 @@
 #include <tetskin/contact/src/soft/other_components.h>
 #include <tetskin/contact/src/soft/sample_normals.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
 
 #include <algorithm>
 #include <cassert>

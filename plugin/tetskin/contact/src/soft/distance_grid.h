@@ -5,8 +5,8 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
-#include <tetskin/core/src/shared/mesh/triangle_bvh.h>
-#include <tetskin/core/src/shared/mesh/winding_tree.h>
+#include <tetskin/core/src/base/mesh/triangle_bvh.h>
+#include <tetskin/core/src/base/mesh/winding_tree.h>
 
 #include <array>
 #include <vector>

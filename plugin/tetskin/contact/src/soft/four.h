@@ -6,7 +6,7 @@
 #pragma once
 
 #define TETSKIN_KERNELS contact
-#include <tetskin/core/src/shared/kernels/lanes.h>
+#include <tetskin/core/src/base/kernels/lanes.h>
 #undef TETSKIN_KERNELS
 
 #include <LinearMath/btVector3.h>

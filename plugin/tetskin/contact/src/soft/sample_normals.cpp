@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/contact/src/soft/sample_normals.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>

@@ -7,7 +7,7 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/base/bvh/bvh.h>
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/bodies/contact_filter.h>
+#include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
@@ -27,33 +27,26 @@ constexpr std::uint32_t kFirstPoint = 0x40000000U;
 /// Those of the other body's points, where a contact is told by the body that it meets.
 constexpr std::uint32_t kFirstTurned = 0xC0000000U;
 
-btVector3 velocityOf(const SoftPointContact& contact) {
-  btVector3 v(0, 0, 0);
-  for (std::uint32_t k = 0; k < contact.nodeCount; ++k) {
-    v += contact.weights[k] * contact.body->m_nodes[contact.nodes[k]].m_v;
-  }
+/// Of the point relative to the body that it meets.
+btVector3 velocityOf(const PointContact& contact) {
+  const btVector3 v = contact.at.velocity(*contact.body);
   const btSoftBody& object = *btSoftBody::upcast(contact.object);
-  if (!object.isActive()) return v;
-  for (std::size_t k = 0; k < 4; ++k) v -= contact.objectWeights[k] * object.m_nodes[contact.objectNodes[k]].m_v;
-  return v;
+  return object.isActive() ? v - contact.onObject.velocity(object) : v;
 }
 
 /// The same contact as one of the other body: a sleeping body has no rows of its own.
-SoftPointContact swapRoles(const SoftPointContact& from) {
-  assert(from.nodeCount == 4 && btSoftBody::upcast(from.object));
-  SoftPointContact contact = from;
+PointContact swapRoles(const PointContact& from) {
+  assert(btSoftBody::upcast(from.object));
+  PointContact contact = from;
   contact.body = const_cast<btSoftBody*>(btSoftBody::upcast(from.object));
   contact.object = from.body;
-  std::copy(from.objectNodes.begin(), from.objectNodes.end(), contact.nodes.begin());
-  std::copy(from.objectWeights.begin(), from.objectWeights.end(), contact.weights.begin());
-  std::copy_n(from.nodes.begin(), 4, contact.objectNodes.begin());
-  std::copy_n(from.weights.begin(), 4, contact.objectWeights.begin());
+  std::swap(contact.at, contact.onObject);
   contact.normal = -from.normal;
   contact.point = from.point - kFirstPoint + kFirstTurned;
   return contact;
 }
 
-bool sleeps(const SoftPointContact& contact) {
+bool sleeps(const PointContact& contact) {
   return !contact.body->isActive() && !contact.object->isActive();
 }
 
@@ -132,7 +125,7 @@ void SoftContactRows::removeSoftBody(btSoftBody* body) {
   gone_.push_back(body);
 }
 
-std::vector<SoftPointContact>* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
+PointContacts* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
   assert(seconds > 0);
   keepSleeping();
   runTasks(threads, bodies_.size(), [&](std::size_t k) {
@@ -238,16 +231,12 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
   assert(touch.sample >= 0 && s < first.data().samples.size());
   assert(touch.tet >= 0 && static_cast<std::size_t>(touch.tet) < second.data().tets.size());
   const EmbeddedPoint<btScalar>& sample = first.data().samples[s];
-  SoftPointContact contact;
+  PointContact contact;
   contact.body = first.body;
   contact.object = second.body;
   contact.point = kFirstPoint + static_cast<std::uint32_t>(first.data().sampleNodes[s]);
-  contact.nodeCount = 4;
-  std::copy(sample.nodes.begin(), sample.nodes.end(), contact.nodes.begin());
-  std::copy(sample.weights.begin(), sample.weights.end(), contact.weights.begin());
-  const Tet& tet = second.data().tets[static_cast<std::size_t>(touch.tet)];
-  std::copy(tet.begin(), tet.end(), contact.objectNodes.begin());
-  std::copy(touch.weights, touch.weights + 4, contact.objectWeights.begin());
+  contact.at = {4, sample.nodes, sample.weights};
+  contact.onObject = {4, second.data().tets[static_cast<std::size_t>(touch.tet)], touch.weights};
   contact.position = touch.point;
   contact.normal = touch.normal;
   contact.distance = touch.distance;

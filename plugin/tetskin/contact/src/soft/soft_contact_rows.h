@@ -5,7 +5,7 @@
 // where a DeformableSolver finds it, but applies no force itself.
 #pragma once
 
-#include <tetskin/bullet/src/shared/solver/row_source.h>
+#include <tetskin/bullet/src/base/row_source.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 
 #include <map>
@@ -13,6 +13,8 @@
 #include <utility>
 
 namespace tetskin::contact_detail {
+
+using namespace bullet_detail;
 
 class SoftContactRows : public RowSource {
  public:
@@ -27,10 +29,10 @@ class SoftContactRows : public RowSource {
   /// True if the body lay wholly within another one in the last step.
   bool isWithin(const ContactBody& body) const;
   /// The contacts of the last step, and those between bodies that sleep, as they were when these fell asleep.
-  const std::vector<SoftPointContact>& lastContacts() const { return contacts_; }
-  const std::vector<SoftPointContact>& sleepingContacts() const { return sleeping_; }
+  const PointContacts& lastContacts() const { return contacts_; }
+  const PointContacts& sleepingContacts() const { return sleeping_; }
 
-  std::vector<SoftPointContact>* contacts(btScalar seconds, ParallelFor* threads) override;
+  PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
 
  private:
@@ -62,7 +64,7 @@ class SoftContactRows : public RowSource {
   int nextId_ = 0;
   std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids
-  std::vector<SoftPointContact> contacts_, sleeping_;
+  PointContacts contacts_, sleeping_;
 };
 
 }  // namespace tetskin::contact_detail

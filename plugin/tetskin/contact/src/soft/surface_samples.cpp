@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/surface_samples.h>
-#include <tetskin/core/src/shared/mesh/triangle_samples.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
+#include <tetskin/core/src/base/mesh/triangle_samples.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>

@@ -4,17 +4,17 @@
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/embedding/mapped_vertices.h>
 #include <tetskin/core/src/search/outside_neighbours.h>
 #include <tetskin/core/src/search/search_cage.h>
 #include <tetskin/core/src/search/tet_search.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <algorithm>
 #include <cassert>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/embedding/mapped_vertices.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/used_vertices.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
 
 #include <cassert>
 

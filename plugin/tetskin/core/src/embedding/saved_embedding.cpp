@@ -13,9 +13,9 @@
 //   12 per vertex          by slot: weights of nodes 0, 1, 2, one plane after the other
 //   12 per vertex outside  by slot: closest weights, one plane after the other
 //   8                      hash of all that precedes
-#include <tetskin/core/src/shared/base/bytes.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/bytes.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <algorithm>
 #include <cassert>

@@ -3,9 +3,9 @@
 //
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>
 #include <cassert>

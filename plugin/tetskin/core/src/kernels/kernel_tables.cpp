@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/core/src/kernels/kernel_tables.h>
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
 
 namespace tetskin::kernels {
 

@@ -6,7 +6,7 @@
 // memory, and a run of few vertices, as most are, costs little more than its vertices.
 #pragma once
 
-#include <tetskin/core/src/shared/kernels/lanes.h>
+#include <tetskin/core/src/base/kernels/lanes.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 

@@ -5,7 +5,7 @@
 // the restrictions of skinning_kernels.h apply to this header, too.
 #pragma once
 
-#include <tetskin/core/src/shared/kernels/dispatch.h>
+#include <tetskin/core/src/base/kernels/dispatch.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -8,19 +8,13 @@
 // linker keeps for everyone.
 #pragma once
 
-#include <tetskin/core/src/shared/kernels/dispatch.h>
+#include <tetskin/core/src/base/kernels/dispatch.h>
+#include <tetskin/core/src/base/kernels/run.h>
 
 #include <cstddef>
 #include <cstdint>
 
 namespace tetskin::kernels {
-
-/// The slots [firstSlot, the next run's firstSlot) belong to the tet of these nodes.
-struct Run {
-  int nodes[4] = {};
-  std::uint32_t firstSlot = 0;
-  std::uint32_t tet = 0;
-};
 
 /// How points follow their tet.
 enum class Surface {

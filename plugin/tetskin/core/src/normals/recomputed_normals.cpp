@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/normals/recomputed_normals.h>
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/mesh/weld.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
 #include <tetskin/core/src/search/outside_neighbours.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/base/point_reader.h>
+#include <tetskin/core/src/base/point_reader.h>
 #include <tetskin/core/types.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/search/search_cage.h>
-#include <tetskin/core/src/shared/base/median.h>
 
 #include <algorithm>
 #include <cassert>

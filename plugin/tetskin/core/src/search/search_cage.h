@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/types.h>
 
 #include <cstddef>

@@ -3,8 +3,8 @@
 //
 // This work is based on:
 //   Matthias Müller, "Blazing Fast Neighbor Search with Spatial Hashing", Ten Minute Physics 11, 2022
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/search/spatial_hash.h>
-#include <tetskin/core/src/shared/base/lists.h>
 
 #include <cassert>
 #include <limits>

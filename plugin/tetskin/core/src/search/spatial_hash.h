@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/base/point_reader.h>
 #include <tetskin/core/src/kernels/search_kernels.h>
-#include <tetskin/core/src/shared/base/point_reader.h>
 #include <tetskin/core/types.h>
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 // The remaining points are decided in double.
 #pragma once
 
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/kernels/search_kernels.h>
 #include <tetskin/core/src/search/spatial_hash.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,9 +4,9 @@
 // Internal to embedding: finds which tet carries which point.
 #pragma once
 
+#include <tetskin/core/src/base/point_reader.h>
 #include <tetskin/core/src/search/search_cage.h>
 #include <tetskin/core/src/search/tolerances.h>
-#include <tetskin/core/src/shared/base/point_reader.h>
 
 #include <cstddef>
 #include <cstdint>

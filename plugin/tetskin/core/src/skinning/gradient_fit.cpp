@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
-#include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
 
 #include <Eigen/Eigenvalues>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/base/lists.h>
+#include <tetskin/core/src/base/lists.h>
 
 #include <cstdint>
 #include <vector>

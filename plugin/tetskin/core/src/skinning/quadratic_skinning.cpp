@@ -4,7 +4,7 @@
 // This work is based on:
 //   Doug L. James, "Phong Deformation: A Better C0 Interpolant for Embedded Deformation", ACM TOG 39(4), 2020,
 //   doi 10.1145/3386569.3392371
-#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>

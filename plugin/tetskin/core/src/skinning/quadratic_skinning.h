@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
+#include <tetskin/core/src/kernels/skinning_kernels.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
 #include <vector>

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
+#include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/kernels/kernel_tables.h>
-#include <tetskin/core/src/shared/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/instantiate.h>
+#include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
 #include <algorithm>

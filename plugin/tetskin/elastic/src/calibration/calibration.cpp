@@ -3,7 +3,7 @@
 //
 // This work is based on:
 //   Lewis Fry Richardson, "The Deferred Approach to the Limit", Phil. Trans. A 226, 1927 (the extrapolation)
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/src/shared/mesh/uniform_refinement.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/elastic/src/calibration/rest_body.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/base/run_by_size.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/run_by_size.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/kernels/instruction_set.h>
-#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
+#include <tetskin/core/src/base/kernels/instruction_set.h>
+#include <tetskin/elastic/src/base/elastic_kernels.h>
 
 namespace tetskin::kernels {
 

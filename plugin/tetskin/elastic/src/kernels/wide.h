@@ -5,8 +5,8 @@
 // points.
 #pragma once
 
-#include <tetskin/core/src/shared/kernels/lanes.h>
-#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
+#include <tetskin/core/src/base/kernels/lanes.h>
+#include <tetskin/elastic/src/base/elastic_kernels.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 

@@ -9,8 +9,8 @@
 
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/src/shared/base/aligned.h>
-#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
+#include <tetskin/core/src/base/aligned.h>
+#include <tetskin/elastic/src/base/elastic_kernels.h>
 
 #include <cassert>
 #include <cstdint>

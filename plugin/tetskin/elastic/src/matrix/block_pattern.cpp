@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
-#include <tetskin/core/src/shared/base/lists.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
 #include <tetskin/elastic/src/matrix/block_rows.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/src/shared/base/lists.h>
+#include <tetskin/core/src/base/lists.h>
 #include <tetskin/elastic/src/matrix/linear_elasticity.h>
 
 #include <Eigen/SparseCore>

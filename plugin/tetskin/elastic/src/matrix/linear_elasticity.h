@@ -6,7 +6,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <vector>
 

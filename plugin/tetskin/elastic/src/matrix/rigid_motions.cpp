@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/disjoint_sets.h>
+#include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/elastic/src/matrix/rigid_motions.h>
 
 #include <cassert>

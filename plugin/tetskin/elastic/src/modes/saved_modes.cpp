@@ -13,7 +13,7 @@
 //   8 per mode         eigenvalue
 //   24 per mode, node  displacement
 //   8                  hash of all that precedes
-#include <tetskin/core/src/shared/base/bytes.h>
+#include <tetskin/core/src/base/bytes.h>
 #include <tetskin/elastic/vibration_modes.h>
 
 #include <algorithm>

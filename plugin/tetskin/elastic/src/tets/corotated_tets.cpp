@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/base/instantiate.h>
-#include <tetskin/core/src/shared/base/lists.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/core/src/base/lists.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/src/shared/base/aligned.h>
-#include <tetskin/elastic/src/shared/kernels/elastic_kernels.h>
+#include <tetskin/core/src/base/aligned.h>
+#include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/material.h>
 
 #include <array>

@@ -3,7 +3,7 @@
 //
 // This work is based on:
 //   Greg Turk, "The PLY Polygon File Format", 1994
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/src/mesh/ply_header.h>
 #include <tetskin/io/src/mesh/ply_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>

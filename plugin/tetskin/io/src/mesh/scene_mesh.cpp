@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/area_vectors.h>
+#include <tetskin/core/src/base/mesh/area_vectors.h>
 #include <tetskin/io/src/mesh/scene_mesh.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
 #include <tetskin/io/src/text/coordinate_fault.h>

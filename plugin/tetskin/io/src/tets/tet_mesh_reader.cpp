@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/gmsh_file.h>
 #include <tetskin/io/src/tets/medit_file.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
 #include <tetskin/io/src/text/atomic_file.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/shared/mesh/face_neighbours.h>
-#include <tetskin/core/src/shared/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/face_neighbours.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/reduced/src/modes/cage_modes.h>
 
 #include <Eigen/SparseCholesky>

@@ -63,17 +63,16 @@ void Joint::drop() {
   dropped_ = true;
 }
 
-Joint::Carried Joint::carriedPoint() const {
-  Carried carried;
+CarriedPoint Joint::carriedPoint() const {
+  CarriedPoint carried;
   const PointData& data = dataOf(point_);
   for (std::size_t c = 0; c < 3; ++c) {
     if (data.weights[c] == 0) continue;
     for (std::size_t k = 0; k < 4; ++k) {
       const int node = data.corners[c].nodes[k];
-      const auto last = carried.nodes.begin() + carried.nodeCount;
+      const auto last = carried.nodes.begin() + carried.count;
       const auto found = std::find(carried.nodes.begin(), last, node);
-      assert(found != last || carried.nodeCount < kMaxPointNodes);
-      if (found == last) carried.nodes[carried.nodeCount++] = node;
+      if (found == last) carried.add(node, 0);
       carried.weights[static_cast<std::size_t>(found - carried.nodes.begin())] +=
           data.weights[c] * data.corners[c].weights[k];
     }
@@ -82,7 +81,7 @@ Joint::Carried Joint::carriedPoint() const {
 }
 
 /// The point, evaluated in the tet of the corner with the largest weight.
-Joint::Carried Joint::pointBeside(const btVector3& at) const {
+CarriedPoint Joint::pointBeside(const btVector3& at) const {
   const PointData& data = dataOf(point_);
   const auto c =
       static_cast<std::size_t>(std::max_element(data.weights.begin(), data.weights.end()) - data.weights.begin());
@@ -92,19 +91,15 @@ Joint::Carried Joint::pointBeside(const btVector3& at) const {
                   d = nodePosition(2) - nodePosition(3);
   const btScalar volume = a.dot(b.cross(d));
   const btVector3 r = at - nodePosition(3);
-  Carried carried;
-  carried.nodeCount = 4;
-  std::copy(nodes.begin(), nodes.end(), carried.nodes.begin());
-  carried.weights = {r.dot(b.cross(d)) / volume, r.dot(d.cross(a)) / volume, r.dot(a.cross(b)) / volume};
-  carried.weights[3] = 1 - carried.weights[0] - carried.weights[1] - carried.weights[2];
-  return carried;
+  const btScalar x = r.dot(b.cross(d)) / volume, y = r.dot(d.cross(a)) / volume, z = r.dot(a.cross(b)) / volume;
+  return {4, nodes, std::array<btScalar, 4>{x, y, z, 1 - x - y - z}};
 }
 
 /// The points beside are as far from the point as the tet is wide; a flat tet has none.
 void Joint::weld() {
   const btTransform anchor = anchor_.inWorld();
   btScalar farthest = 0;
-  for (std::uint32_t k = 0; k < carried_.nodeCount; ++k) {
+  for (std::uint32_t k = 0; k < carried_.count; ++k) {
     farthest = std::max(farthest, (point_.body()->m_nodes[carried_.nodes[k]].m_x - anchor.getOrigin()).length());
   }
   for (int k = 0; k < 2; ++k) {
@@ -116,25 +111,15 @@ void Joint::weld() {
   arm_ = farthest;
 }
 
-btVector3 Joint::positionOf(const Carried& point) const {
-  assert(point.nodeCount > 0);
-  const btVector3 first = point_.body()->m_nodes[point.nodes[0]].m_x;
-  btVector3 sum(0, 0, 0);
-  for (std::uint32_t k = 1; k < point.nodeCount; ++k) {
-    sum += point.weights[k] * (point_.body()->m_nodes[point.nodes[k]].m_x - first);
-  }
-  return first + sum;
-}
-
 btVector3 Joint::offset() const {
-  return positionOf(carried_) - anchor_.inWorld().getOrigin();
+  return carried_.position(*point_.body()) - anchor_.inWorld().getOrigin();
 }
 
 btScalar Joint::turn() const {
   if (!(arm_ > 0)) return 0;
-  const btVector3 point = positionOf(carried_);
-  const btVector3 x = (positionOf(beside_[0]) - point).normalized();
-  const btVector3 z = x.cross(positionOf(beside_[1]) - point).normalized(), y = z.cross(x);
+  const btVector3 point = carried_.position(*point_.body());
+  const btVector3 x = (beside_[0].position(*point_.body()) - point).normalized();
+  const btVector3 z = x.cross(beside_[1].position(*point_.body()) - point).normalized(), y = z.cross(x);
   const btMatrix3x3 now(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
   btQuaternion turned;
   (now * anchor_.inWorld().getBasis().transpose()).getRotation(turned);
@@ -159,16 +144,14 @@ void Joint::wake() {
   if (moves && !other->isActive()) other->activate();
 }
 
-PointJoint Joint::rowOf(const Carried& point, const btVector3& anchor) const {
-  assert(point_.body() && point.nodeCount > 0);
+PointJoint Joint::rowOf(const CarriedPoint& point, const btVector3& anchor) const {
+  assert(point_.body() && point.count > 0);
   PointJoint row;
   row.body = point_.body();
-  row.nodeCount = point.nodeCount;
-  row.nodes = point.nodes;
-  row.weights = point.weights;
+  row.at = point;
   row.object = anchor_.object;
   row.anchor = anchor;
-  row.offset = positionOf(point) - anchor;
+  row.offset = point.position(*point_.body()) - anchor;
   return row;
 }
 

@@ -56,18 +56,11 @@ class Joint : public ActiveJoint {
   void finish(btScalar seconds, const PointJoint* joints) override;
 
  private:
-  /// A point that nodes carry.
-  struct Carried {
-    std::uint32_t nodeCount = 0;
-    std::array<int, kMaxPointNodes> nodes{};
-    std::array<btScalar, kMaxPointNodes> weights{};
-  };
-  Carried carriedPoint() const;
-  Carried pointBeside(const btVector3& at) const;
-  btVector3 positionOf(const Carried& point) const;
+  CarriedPoint carriedPoint() const;
+  CarriedPoint pointBeside(const btVector3& at) const;
   void weld();
   void wake();
-  PointJoint rowOf(const Carried& point, const btVector3& anchor) const;
+  PointJoint rowOf(const CarriedPoint& point, const btVector3& anchor) const;
   void makeSpring(btScalar seconds, PointJoint& row) const;
 
   SurfacePoint point_;
@@ -76,9 +69,9 @@ class Joint : public ActiveJoint {
   double nodeMass_;  ///< mean mass of the body's nodes that can move
   bool dropped_ = false;
   bool hidden_ = false;  ///< this joint keeps the body and the object from colliding
-  Carried carried_;
+  CarriedPoint carried_;
   btScalar arm_ = 0;          ///< of a weld: distance of the other two points; 0: the weld holds the point alone
-  Carried beside_[2];         ///< of a weld: the other two points
+  CarriedPoint beside_[2];    ///< of a weld: the other two points
   btTransform anchorBefore_;  ///< in world space, when last read
   int added_ = 0;             ///< rows added in this step
   bool slept_ = false;        ///< the body slept when this step began: its forces stay as they are

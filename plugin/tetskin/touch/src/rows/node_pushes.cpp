@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/shared/bodies/body_trees.h>
-#include <tetskin/bullet/src/shared/solver/required_solver.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/touch/src/rows/node_pushes.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
@@ -33,9 +33,7 @@ class Load : public ActiveJoint {
       PointJoint& load = joints.emplace_back();
       load.body = body_;
       load.constant = true;
-      load.nodeCount = 1;
-      load.nodes[0] = push.node;
-      load.weights[0] = 1;
+      load.at.add(push.node, 1);
       load.impulse = toBullet(static_cast<double>(seconds) * push.push);
     }
   }

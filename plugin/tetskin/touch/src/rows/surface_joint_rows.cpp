@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/src/shared/forces/body_forces.h>
-#include <tetskin/bullet/src/shared/solver/required_solver.h>
+#include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <algorithm>

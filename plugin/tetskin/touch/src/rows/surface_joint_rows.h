@@ -5,7 +5,7 @@
 // forces, where a DeformableSolver finds it and asks for rows.
 #pragma once
 
-#include <tetskin/bullet/src/shared/solver/row_source.h>
+#include <tetskin/bullet/src/base/row_source.h>
 
 #include <memory>
 
@@ -14,6 +14,8 @@ class DeformableSolver;
 }
 
 namespace tetskin::touch_detail {
+
+using namespace bullet_detail;
 
 /// One force or joint at a point.
 class ActiveJoint {

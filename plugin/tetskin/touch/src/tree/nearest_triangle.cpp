@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
+#include <tetskin/core/src/base/mesh/triangle_geometry.h>
 #include <tetskin/touch/src/tree/nearest_triangle.h>
 
 #include <algorithm>

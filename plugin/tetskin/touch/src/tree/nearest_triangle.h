@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/base/bvh/bvh.h>
 
 #include <vector>
 

@@ -8,7 +8,7 @@
 //   1997, doi 10.1080/10867651.1997.10487468
 #pragma once
 
-#include <tetskin/core/src/shared/mesh/triangle_geometry.h>
+#include <tetskin/core/src/base/mesh/triangle_geometry.h>
 
 namespace tetskin::touch_detail {
 

@@ -4,7 +4,7 @@
 // Internal to SurfaceTree: rays against the surface of one body at a time, by a tree that is fitted to it.
 #pragma once
 
-#include <tetskin/core/src/shared/bvh/bvh.h>
+#include <tetskin/core/src/base/bvh/bvh.h>
 #include <tetskin/touch/src/tree/ray_triangle.h>
 #include <tetskin/touch/surface_point.h>
 

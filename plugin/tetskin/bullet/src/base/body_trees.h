@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::bullet: the bounding-volume trees of a body's faces and nodes (btSoftBody::m_fdbvt, m_fdbvnt,
+// m_ndbvt), which rays and collisions by faces search.
+//
+// Bullet's own builder, btSoftBody::initializeFaceTree, compares all pairs of faces, and joins neighbours until one
+// tree is left: for a surface of two components that share no edge it never ends. Bullet calls it from a ray test of a
+// body without a tree, and from the first step after anything that sets m_bUpdateRtCst, such as setMass.
+#pragma once
+
+#include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/bullet/src/base/point_contacts.h>
+#include <tetskin/export.h>
+
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+/// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
+/// positions. Existing trees are deleted; the new ones belong to the body. Cost O(n log n) for n faces and nodes.
+TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
+
+/// Does what Bullet would do in the next step if m_bUpdateRtCst is set, but with our trees. The tree of faces is only
+/// updated if it was not omitted, and only rebuilt if nodes or faces have been added or moved in memory. Cost O(links +
+/// faces + nodes) without a rebuild; nothing if the flag is not set.
+void updateConstants(btSoftBody& body);
+
+/// A soft body that keeps its trees valid.
+///
+/// The trees follow when the body is moved or scaled by hand. In Bullet only that of the nodes does: until the next
+/// step, and for a sleeping body permanently, a ray searches for the faces at their old positions.
+///
+/// The tree of faces is also rebuilt at once where a step in a classic world deletes it, as it does if m_bUpdateRtCst
+/// is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are appended.
+class BodyWithTrees : public btSoftBody {
+ public:
+  BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes);
+
+  /// Builds the trees for the first time; before, the body behaves as in Bullet.
+  /// faces  false: instead of the tree of faces, there is a single leaf that no ray hits and no node touches, whatever
+  ///        moves the body. A ray then misses, refits cost nothing, and Bullet's builder, which only tests whether
+  ///        there is a tree, is not called
+  void makeTrees(bool faces);
+  bool hasNoFaceTree() const { return kind_ == Kind::Skipped; }
+  /// Rebuilds the tree of faces, or the leaf that replaces it.
+  void renewFaceTree();
+
+  /// Expires when the body is destroyed.
+  std::weak_ptr<const void> lifetime() const { return lifetime_; }
+  /// An object that must live as long as the body: only one, owned by whoever sets it.
+  std::shared_ptr<void>& companion() { return companion_; }
+  /// The object of tetskin::contact that finds contacts of the body's surface with rigid bodies; expired if there is
+  /// none.
+  const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
+  void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
+
+  /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
+  /// them when a step begins.
+  PointContacts& pointContacts() { return pointContacts_; }
+  const PointContacts& pointContacts() const { return pointContacts_; }
+
+  /// While this is set, the search for contacts of the surface waits until the solver calls `waitingSearch`, when all
+  /// pairs of the step are known: searches of several bodies then run side by side.
+  void setSearchWaits(bool waits) { searchWaits_ = waits; }
+  bool searchWaits() const { return searchWaits_; }
+  /// Searches for the contacts of what has been met; empty if there is nothing. Whoever sets it empties it, too.
+  std::function<void()>& waitingSearch() { return waitingSearch_; }
+
+  /// From now on, the box in the broadphase also contains the nodes' positions at the end of the step, enlarged by
+  /// this: Bullet's own box only contains the positions at the beginning. Below 0: Bullet's own box.
+  void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
+  btScalar reach() const { return reach_; }
+
+  /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
+  /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
+  /// rests on a resting object is predicted to fall with it, or away from it. 0: none, as outside of steps.
+  void setSpeculation(btScalar distance) { speculation_ = distance; }
+  btScalar speculation() const { return speculation_; }
+
+  /// Also called by transformTo, translate and rotate.
+  void transform(const btTransform& transform) override;
+  void scale(const btVector3& factors) override;
+
+ private:
+  enum class Kind { None, Faces, Skipped };
+  class Shape;
+  void keepFaceTree();
+
+  OwnObject registered_{OwnObject::Kind::BodyWithTrees, static_cast<const btSoftBody*>(this)};
+  Kind kind_ = Kind::None;
+  btScalar reach_ = -1, speculation_ = 0;
+  bool searchWaits_ = false;
+  std::function<void()> waitingSearch_;
+  std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
+  std::shared_ptr<void> companion_;
+  PointContacts pointContacts_;
+  std::weak_ptr<void> surfaceContacts_;
+};
+
+/// The object of a body that `createSoftBody` has created; null for others.
+TETSKIN_BULLET_API BodyWithTrees* bodyWithTrees(btSoftBody& body);
+TETSKIN_BULLET_API const BodyWithTrees* bodyWithTrees(const btSoftBody& body);
+
+}  // namespace tetskin::bullet_detail

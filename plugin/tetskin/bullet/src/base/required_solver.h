@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin: tests whether a world has the solver that corotated bodies, contacts and joints need.
+#pragma once
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/deformable_world.h>
+
+#include <string>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+/// Message for an application whose world has another solver.
+constexpr const char* kUseDeformableSolver =
+    "create the world and its constraint solver with a DeformableSolver in place of Bullet's";
+
+/// The solver as one of these; null if it is another one.
+TETSKIN_BULLET_API DeformableSolver* deformableSolver(btSoftBodySolver* solver);
+/// The solver of the body's world; null if the body is in none, or its world has another solver.
+TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(const btSoftBody& body);
+
+/// The solver of any deformable world. Bullet reveals it to bodies only: if there is no body, an empty one is added for
+/// the duration of the call.
+TETSKIN_BULLET_API btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world);
+/// Null if the world has another solver.
+TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(btDeformableMultiBodyDynamicsWorld& world);
+
+/// Ok if nothing must be changed; otherwise InvalidOption, with a message about everything that must be.
+/// subject  what was requested: "surface contact"
+TETSKIN_BULLET_API Status refusal(const std::string& subject, const std::vector<std::string>& changes);
+
+}  // namespace tetskin::bullet_detail

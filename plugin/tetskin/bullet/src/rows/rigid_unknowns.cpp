@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/rows/rigid_unknowns.h>
+
+#include <Eigen/Geometry>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::bullet_detail {
+namespace {
+
+/// By how much Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
+constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
+
+/// The matrix of the cross product with a.
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
+}
+
+/// The Jacobian of a point of a rigid body.
+Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
+  return jacobian;
+}
+
+/// The inverse mass matrix that btRigidBody::applyImpulse applies; symmetric unless factors lock single axes.
+Eigen::MatrixXd inverseMassOf(const btRigidBody& rigid) {
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(6, 6);
+  const btVector3 &linear = rigid.getLinearFactor(), &angular = rigid.getAngularFactor();
+  for (int i = 0; i < 3; ++i) {
+    inverse(i, i) = static_cast<double>(rigid.getInvMass() * linear[i]);
+    for (int j = 0; j < 3; ++j) {
+      inverse(3 + i, 3 + j) = static_cast<double>(angular[i] * rigid.getInvInertiaTensorWorld()[i][j] * angular[j]);
+    }
+  }
+  return inverse;
+}
+
+Eigen::MatrixXd inverseMassOf(btMultiBody& body) {
+  const int size = 6 + body.getNumDofs();
+  Eigen::MatrixXd inverse(size, size);
+  btAlignedObjectArray<btScalar> force, answer, scratch;
+  btAlignedObjectArray<btVector3> vectors;
+  force.resize(size, 0);
+  answer.resize(size, 0);
+  for (int k = 0; k < size; ++k) {
+    force[k] = 1;
+    body.calcAccelerationDeltasMultiDof(&force[0], &answer[0], scratch, vectors);
+    force[k] = 0;
+    for (int i = 0; i < size; ++i) inverse(i, k) = static_cast<double>(answer[i]);
+  }
+  // Makes it symmetric, as it is up to rounding.
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+/// Of the path on which turning takes a point within a step: the difference to the straight path, per second.
+btVector3 bend(const btVector3& turning, const btVector3& arm, btScalar seconds) {
+  const btScalar rate = turning.length();
+  if (!(rate * seconds > SIMD_EPSILON)) return {0, 0, 0};
+  const btVector3 turned = quatRotate(btQuaternion(turning / rate, rate * seconds), arm);
+  return (turned - arm) / seconds - turning.cross(arm);
+}
+
+const btMultiBodyLinkCollider* linkOf(const btCollisionObject& object) {
+  return btMultiBodyLinkCollider::upcast(&object);
+}
+
+const void* keyOf(const btCollisionObject& object) {
+  const btMultiBodyLinkCollider* link = linkOf(object);
+  return link ? static_cast<const void*>(link->m_multiBody) : &object;
+}
+
+/// True if nothing that the object meets changes its motion.
+bool movesFreely(const btCollisionObject& object) {
+  if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
+  const btRigidBody* rigid = btRigidBody::upcast(&object);
+  return rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0;
+}
+
+}  // namespace
+
+void RigidUnknowns::clear() {
+  unknowns_.clear();
+  indices_.clear();
+  jacobians_.clear();
+}
+
+int RigidUnknowns::find(const btCollisionObject& object) const {
+  const auto found = indices_.find(keyOf(object));
+  return found == indices_.end() ? -1 : found->second;
+}
+
+int RigidUnknowns::addScalarJacobian(const btVector3& linear, const btVector3& angular) {
+  Jacobian jacobian = Jacobian::Zero(3, 6);
+  jacobian.row(0) << toEigen(linear).transpose(), toEigen(angular).transpose();
+  jacobians_.push_back(std::move(jacobian));
+  return static_cast<int>(jacobians_.size()) - 1;
+}
+
+int RigidUnknowns::add(const btCollisionObject& object) {
+  const btMultiBodyLinkCollider* link = linkOf(object);
+  const auto [found, isNew] = indices_.emplace(keyOf(object), static_cast<int>(unknowns_.size()));
+  if (!isNew) return found->second;
+  RigidUnknown& unknown = unknowns_.emplace_back();
+  if (link) {
+    unknown.multiBody = link->m_multiBody;
+    unknown.size = 6 + link->m_multiBody->getNumDofs();
+    unknown.inverseMass = inverseMassOf(*unknown.multiBody);
+  } else {
+    unknown.rigid = const_cast<btRigidBody*>(btRigidBody::upcast(&object));
+    unknown.inverseMass = inverseMassOf(*unknown.rigid);
+  }
+  return found->second;
+}
+
+int RigidUnknowns::addLinkPoint(const btCollisionObject& object, const btVector3& position) {
+  assert(linkOf(object) && linkOf(object)->m_multiBody);
+  const btMultiBodyLinkCollider& link = *linkOf(object);
+  const int size = 6 + link.m_multiBody->getNumDofs();
+  Jacobian jacobian(3, size);
+  btAlignedObjectArray<btScalar> row, scratch;
+  btAlignedObjectArray<btVector3> vectors;
+  btAlignedObjectArray<btMatrix3x3> matrices;
+  row.resize(size, 0);
+  for (int k = 0; k < 3; ++k) {
+    btVector3 axis(0, 0, 0);
+    axis[k] = 1;
+    link.m_multiBody->fillContactJacobianMultiDof(link.m_link, position, axis, &row[0], scratch, vectors, matrices);
+    for (int i = 0; i < size; ++i) jacobian(k, i) = static_cast<double>(row[i]);
+  }
+  jacobians_.push_back(std::move(jacobian));
+  return static_cast<int>(jacobians_.size()) - 1;
+}
+
+RigidPoint RigidUnknowns::at(const btCollisionObject& object, const btVector3& position) {
+  RigidPoint point;
+  point.arm = position - object.getWorldTransform().getOrigin();
+  if (!movesFreely(object)) return point;
+  point.unknown = add(object);
+  if (linkOf(object)) point.jacobian = addLinkPoint(object, position);
+  return point;
+}
+
+btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds) {
+  if (linkOf(object) && at.jacobian >= 0) {
+    const btMultiBody& body = *linkOf(object)->m_multiBody;
+    const Jacobian& jacobian = jacobians_[static_cast<std::size_t>(at.jacobian)];
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
+      sum += jacobian.col(k) * static_cast<double>(body.getVelocityVector()[k]);
+    }
+    return toBullet(sum);
+  }
+  const btRigidBody* rigid = btRigidBody::upcast(&object);
+  if (!rigid) return {0, 0, 0};
+  const btVector3 velocity =
+      rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
+  return rigid->isKinematicObject() ? carriedBy(*rigid, at.arm, velocity, seconds) : velocity;
+}
+
+/// Bullet computes the angular velocity of a kinematic body from the arc cosine of its rotation in a step, which leaves
+/// few digits. Its transforms in this step and the one before have all of them.
+btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
+                                   btScalar seconds) const {
+  assert(body.isKinematicObject());
+  const KinematicPath* path = paths_.find(body);
+  if (!path || !path->isKnown) return velocity;
+  const btTransform now = path->now();
+  const btVector3 turned = now.getBasis() * (path->before.getBasis().transpose() * arm);
+  const btVector3 carried = (now.getOrigin() - path->before.getOrigin() + turned - arm) / seconds;
+  if (path->done > 1) return carried;
+  // If the difference is larger, the body was put there, or it is a different one.
+  const btScalar maximum = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
+  return (carried - velocity).length() <= maximum ? carried : velocity;
+}
+
+bool RigidUnknowns::isLed(const btCollisionObject& object) const {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (!body || !body->isKinematicObject()) return false;
+  const KinematicPath* path = paths_.find(*body);
+  return !path || path->done <= path->steps;
+}
+
+RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {
+  return at.jacobian >= 0 ? jacobians_[static_cast<std::size_t>(at.jacobian)] : Jacobian(bodyJacobian(at));
+}
+
+btVector3 RigidUnknowns::velocity(const RigidPoint& at, const Eigen::VectorXd& change) const {
+  if (at.unknown < 0) return {0, 0, 0};
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
+  if (at.jacobian >= 0) {
+    return toBullet(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(unknown.first, unknown.size));
+  }
+  const Eigen::Vector3d linear = change.segment<3>(unknown.first), angular = change.segment<3>(unknown.first + 3);
+  return toBullet(linear) + toBullet(angular).cross(at.arm);
+}
+
+void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const {
+  if (at.unknown < 0) return;
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
+  if (at.jacobian >= 0) {
+    to.segment(unknown.first, unknown.size) +=
+        jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
+    return;
+  }
+  const Eigen::Vector3d force = toEigen(impulse);
+  to.segment<3>(unknown.first) += force;
+  to.segment<3>(unknown.first + 3) += toEigen(at.arm).cross(force);
+}
+
+void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
+                                 Eigen::MatrixXd& to) const {
+  if (a.unknown < 0 || b.unknown < 0) return;
+  const RigidUnknown &first = unknowns_[static_cast<std::size_t>(a.unknown)],
+                     &second = unknowns_[static_cast<std::size_t>(b.unknown)];
+  if (a.jacobian < 0 && b.jacobian < 0) {  // nearly always, so that no matrix is allocated
+    to.block<6, 6>(first.first, second.first) += sign * bodyJacobian(a).transpose() * h * bodyJacobian(b);
+    return;
+  }
+  to.block(first.first, second.first, first.size, second.size) += sign * jacobianOf(a).transpose() * h * jacobianOf(b);
+}
+
+double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {
+  if (at.unknown < 0) return 0.0;
+  const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
+  const Eigen::VectorXd moment = jacobianOf(at).transpose() * toEigen(direction);
+  return moment.dot(unknown.inverseMass * moment);
+}
+
+void RigidUnknowns::apply(const RigidUnknown& unknown, const Eigen::VectorXd& change) {
+  const auto part = change.segment(unknown.first, unknown.size);
+  if (!part.allFinite()) return;
+  if (unknown.rigid) {
+    btRigidBody& rigid = *unknown.rigid;
+    rigid.setLinearVelocity(rigid.getLinearVelocity() + toBullet(part.head<3>()));
+    rigid.setAngularVelocity(rigid.getAngularVelocity() + toBullet(part.segment<3>(3)));
+    return;
+  }
+  std::vector<btScalar> delta(static_cast<std::size_t>(unknown.size));
+  for (Eigen::Index k = 0; k < unknown.size; ++k) delta[static_cast<std::size_t>(k)] = static_cast<btScalar>(part[k]);
+  unknown.multiBody->applyDeltaVeeMultiDof(delta.data(), 1);
+}
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::bullet: the contacts of one body with everything that it touches.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/search/convex_probe.h>
+#include <tetskin/bullet/src/search/hull_probe.h>
+#include <tetskin/bullet/src/search/mesh_probe.h>
+#include <tetskin/bullet/src/search/point_collider.h>
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+/// What is stored about one shape of one object.
+struct KnownShape {
+  const btCollisionShape* shape = nullptr;
+  btVector3 low = {0, 0, 0}, high = {0, 0, 0};  ///< its box: if it differs, the shape is another one
+  std::shared_ptr<const HullFaces> hull;        ///< of a convex hull: its faces, kept for the probe
+  unsigned lastStep = 0;                        ///< last step in which it was near
+  bool isRemembered = false;                    ///< it has an entry in `memory`
+  ShapeMemory memory;
+};
+
+struct KnownObject {
+  std::unordered_map<std::uint64_t, KnownShape> shapes;  ///< by number of the shape
+  unsigned step = 0;                                     ///< number of the last step in which the object was met
+};
+
+class BodyContacts {
+ public:
+  /// dispatcher  the one whose pairs are handled; only compared
+  /// body        created by `createSoftBody`
+  /// thickness   depth up to which a point behind a mesh's surface still belongs to it
+  BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, PointCollider search, btScalar thickness);
+  ~BodyContacts();
+  BodyContacts(const BodyContacts&) = delete;
+  BodyContacts& operator=(const BodyContacts&) = delete;
+
+  const btDispatcher* dispatcher() const { return dispatcher_; }
+  /// If this is false, only `forget` and the accessors may be called.
+  bool bodyLives() const { return !lifetime_.expired(); }
+
+  /// Adds the contacts with an object to the body's, shape by shape; at once, or when the body's waiting search is
+  /// called.
+  void collide(const btCollisionObjectWrapper& rigid);
+
+  /// Forgets an object that is not met any more, or not at present.
+  void forget(const btCollisionObject& object);
+
+  BodyWithTrees& body() const { return body_; }
+  const PointCollider& search() const { return search_; }
+
+ private:
+  /// An object that is met, and its shape and path at that moment.
+  struct Met {
+    const btCollisionObject* object;
+    const btCollisionShape* shape;
+    ShapePath path;
+  };
+  void search(const Met& met);
+  void searchWaiting();
+  void readNodes();
+  void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
+                    const btCollisionObject& object);
+  std::vector<int> childrenNear(const btCompoundShape& compound, const ShapePath& path) const;
+  void addContact(const ContactCandidate& touch, const btCollisionObject& object);
+  WorldBox boxAround(const btCollisionShape& shape, const ShapePath& path) const;
+  bool isNear(const WorldBox& box) const;
+  KnownShape& knownShape(const btCollisionShape& shape, std::uint64_t number, const btCollisionObject& object);
+  ShapeMemory& memoryOf(KnownShape& known);
+  ShapeProbe* probeOf(const btCollisionShape& shape, KnownShape& known);
+  void forgetUnused(KnownObject& object);
+
+  const btDispatcher* dispatcher_;
+  BodyWithTrees& body_;
+  std::weak_ptr<const void> lifetime_;  ///< of the body: afterwards, another one may have its address
+  PointCollider search_;
+  btScalar thickness_;
+  std::vector<NodePath> nodes_;
+  bool nodesRead_ = false;    ///< since the search began
+  std::vector<Met> waiting_;  ///< those that are yet to be searched for
+  ExactProbe exact_;
+  HullProbe hull_;
+  ConvexProbe convex_;
+  MeshProbe mesh_;
+  std::unordered_map<const btCollisionObject*, KnownObject> known_;
+  std::size_t remembered_ = 0, maxRemembered_;  ///< numbers of shapes
+  ShapeMemory overflow_;                        ///< used for shapes beyond the limit, of which nothing is kept
+};
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::bullet: the hook by which Bullet asks for the contacts of a pair.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/search/body_contacts.h>
+
+#include <memory>
+
+namespace tetskin::bullet_detail {
+
+/// From now on, the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see
+/// `contactsOf`. Bodies without contacts of this kind get Bullet's algorithms. The object that is registered has no
+/// state and is never destroyed, so that nothing need be unregistered. May be called repeatedly.
+void registerContactAlgorithms(btCollisionDispatcher& dispatcher);
+
+/// Null if the body has none, or they have been destroyed.
+std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body);
+
+}  // namespace tetskin::bullet_detail

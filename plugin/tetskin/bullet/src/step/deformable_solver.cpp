@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The functions that Bullet calls. The stages that they call are in step.cpp.
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletSoftBody/btDeformableContactProjection.h>
+#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/contact_filter.h>
+#include <tetskin/bullet/src/search/node_contacts.h>
+#include <tetskin/bullet/src/step/step.h>
+#include <tetskin/core/src/base/run_by_size.h>
+
+#include <cassert>
+
+namespace tetskin {
+namespace {
+
+template <class Constraint>
+void dropAll(btAlignedObjectArray<Constraint>& constraints) {
+  while (constraints.size() > 0) constraints.pop_back();
+}
+
+}  // namespace
+
+DeformableSolver::DeformableSolver() : impl_(std::make_unique<Impl>(*this)) {
+  m_useProjection = true;
+  setImplicit(false);
+  setLineSearch(false);
+  m_dt = 0;
+}
+DeformableSolver::~DeformableSolver() = default;
+
+void DeformableSolver::setThreads(ParallelFor* threads) {
+  impl_->threads = threads;
+}
+void DeformableSolver::setNodeNormals(bool on) {
+  impl_->nodeNormals = on;
+}
+void DeformableSolver::requireOwnSolve() {
+  impl_->always = true;
+}
+bool DeformableSolver::ownSolveActive() const {
+  return impl_->always || (m_useProjection && !m_lineSearch && !m_implicit);
+}
+int DeformableSolver::iterations() const {
+  return impl_->iterations;
+}
+int DeformableSolver::linearSolves() const {
+  return impl_->passes;
+}
+int DeformableSolver::unconvergedSystems() const {
+  return impl_->unconverged;
+}
+const StepTimes& DeformableSolver::stepTimes() const {
+  return impl_->clock.times();
+}
+
+/// Bullet calls this when a step begins, and, with a time below 0, when a body has left the world.
+void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
+  if (!(dt > 0)) return impl_->dropRemoved(softBodies);
+  impl_->clock.restart();
+  impl_->gather(softBodies, dt);
+  impl_->clock.end(&StepTimes::prediction);
+  updateSoftBodies();
+}
+
+void DeformableSolver::updateSoftBodies() {
+  if (impl_->nodeNormals) btDeformableBodySolver::updateSoftBodies();
+}
+
+void DeformableSolver::predictMotion(btScalar dt) {
+  Impl& impl = *impl_;
+  impl.clock.restart();
+  if (impl.solving != ownSolveActive()) {
+    // The world's settings may have changed since the step before.
+    impl.solving = ownSolveActive();
+    impl.collect(impl.all);
+    impl.assign();
+  }
+  impl.solving ? impl.predict() : btDeformableBodySolver::predictMotion(dt);
+  impl.noteObjects();
+  impl.clock.end(&StepTimes::prediction);
+}
+
+/// Returns false if Bullet has to search for the contacts.
+bool DeformableSolver::Impl::findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object) {
+  using Collision = btSoftBody::fCollision;
+  const std::size_t index = bodies.indexOf(&body);
+  if (index == bodies.bodies().size() || (body.m_cfg.collisions & Collision::RVSmask) != Collision::SDF_RD)
+    return false;
+  const SolvedBody& solved = bodies.bodies()[index];
+  if (!solved.paths) return false;
+  if ((body.m_cfg.collisions & Collision::SDF_RDN) != 0) {
+    findNodeContacts(body, object, *solved.paths, solved.elastic != nullptr);
+  }
+  return true;
+}
+
+/// Runs the searches that have waited for threads.
+void DeformableSolver::Impl::searchSurfaces() {
+  std::vector<BodyWithTrees*> waiting;
+  for (const SolvedBody& solved : bodies.bodies()) {
+    auto* body = bodyWithTrees(*solved.body);
+    if (!body) continue;
+    body->setSearchWaits(false);
+    if (body->waitingSearch()) waiting.push_back(body);
+  }
+  runTasks(threads, waiting.size(), [&](std::size_t k) {
+    waiting[k]->waitingSearch()();
+    waiting[k]->waitingSearch() = nullptr;
+  });
+}
+
+/// Bullet calls this for a body and a rigid object whose boxes overlap.
+void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
+  if (impl_->solving) {
+    if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
+    impl_->obstacleChanges.syncRigidObject(*body, *object);
+    if (impl_->findNodeContactsOf(*body, *object)) return;
+  }
+  btDeformableBodySolver::processCollision(body, object);
+}
+
+void DeformableSolver::setupDeformableSolve(bool implicit) {
+  btDeformableBodySolver::setupDeformableSolve(implicit && !impl_->solving);
+}
+
+/// This solver solves for the rows; Bullet's own constraints of the same nodes would apply them twice. Collision
+/// detection has run since the prediction.
+void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
+  impl_->dropRemovedObjects();
+  impl_->searchSurfaces();
+  impl_->clock.end(&StepTimes::rigidSearch);
+  btDeformableBodySolver::setConstraints(info);
+  if (!impl_->solving) return;
+  btDeformableContactProjection& projection = m_objective->m_projection;
+  assert(static_cast<std::size_t>(projection.m_nodeRigidConstraints.size()) >= impl_->bodies.bodies().size());
+  for (std::size_t b = 0; b < impl_->bodies.bodies().size(); ++b) {
+    if (!impl_->bodies.bodies()[b].elastic) continue;
+    const auto at = static_cast<int>(b);
+    dropAll(projection.m_nodeRigidConstraints[at]);
+    dropAll(projection.m_nodeAnchorConstraints[at]);
+    dropAll(projection.m_faceRigidConstraints[at]);
+  }
+}
+
+/// A world without projection calls this instead.
+void DeformableSolver::setLagrangeMultiplier() {
+  impl_->solving ? setProjection() : btDeformableBodySolver::setLagrangeMultiplier();
+}
+
+void DeformableSolver::solveDeformableConstraints(btScalar dt) {
+  Impl& impl = *impl_;
+  impl.clock.restart();
+  if (impl.solving) {
+    impl.assemble();
+    impl.clock.end(&StepTimes::rows);
+    impl.solve();
+    impl.finishContacts();
+    impl.writeBack();
+  } else {
+    impl.iterations = impl.passes = impl.unconverged = 0;
+    btDeformableBodySolver::solveDeformableConstraints(dt);
+  }
+  impl.clock.end(&StepTimes::system);
+}
+
+void DeformableSolver::applyTransforms(btScalar dt) {
+  Impl& impl = *impl_;
+  impl.hidden.show(m_softBodies);
+  // A body that has fallen asleep since the step began was not solved for: its velocities are not to be used.
+  for (int i = 0; i < m_softBodies.size(); ++i) {
+    btSoftBody& body = *m_softBodies[i];
+    if (body.isActive() || !impl.solving) continue;
+    for (int n = 0; n < body.m_nodes.size(); ++n) {
+      body.m_nodes[n].m_v.setZero();
+      body.m_nodes[n].m_splitv.setZero();
+    }
+  }
+  impl.driven.beforeIntegration(m_softBodies);
+  btDeformableBodySolver::applyTransforms(dt);
+  impl.driven.end(m_softBodies, dt);
+  impl.inStep = false;
+  impl.rigids.paths().endStep();
+}
+
+}  // namespace tetskin

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: its members, and the stages of a step, in their order.
+//
+// A node has four numbers:
+//   node            in its body, as the application has it
+//   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
+//   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
+//   wide            where a slot's three numbers are, in groups of slots, one to each lane of a register
+// The first two differ by a sum. The last two are BlockMatrix's alone (`slotOf`, `wideOf`): nodes would have to be
+// renumbered in the application's body to be rid of them.
+#pragma once
+
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/bullet/src/motion/driven_nodes.h>
+#include <tetskin/bullet/src/motion/sleepers.h>
+#include <tetskin/bullet/src/motion/stillness.h>
+#include <tetskin/bullet/src/rows/contact_rows.h>
+#include <tetskin/bullet/src/search/obstacle_changes.h>
+#include <tetskin/bullet/src/step/hidden_bodies.h>
+#include <tetskin/bullet/src/step/recorded_forces.h>
+#include <tetskin/bullet/src/step/step_clock.h>
+#include <tetskin/bullet/src/step/step_objects.h>
+#include <tetskin/bullet/src/system/other_forces.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin {
+
+using namespace bullet_detail;
+
+struct DeformableSolver::Impl {
+  explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
+
+  // The stages of a step; implemented in step.cpp.
+  /// seconds  above 0
+  void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
+  void predict();
+  void assemble();
+  void solve();
+  void finishContacts();
+  void writeBack();
+
+  ForceList& forces() { return solver.m_objective->m_lf; }
+  const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
+  btScalar dt() const { return solver.m_dt; }
+
+  // Steps of the stage `gather`.
+  void fallAsleep();
+  bool collect(const btAlignedObjectArray<btSoftBody*>& world);
+  void assign();
+
+  // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  /// Drops the bodies that have left the world.
+  void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
+  void numberAnew();
+  /// Call it before Bullet detects contacts, and again when it has called the application since.
+  void noteObjects();
+  void dropRemovedObjects();
+  void dropRemovedForces();
+  bool takesPart(const btDeformableLagrangianForce& force) const;
+
+  // Steps of the stage `predict`; those about forces are in step_forces.cpp.
+  /// Sets what Bullet's code uses in a step that is solved here.
+  void useOwnSettings();
+  /// Applies the impulses of other forces.
+  void applyOthers();
+  void predictVelocities(SolvedBody& body, ParallelFor* inner);
+  /// The velocity error that is not visible, whatever the unit of length: see step_rows.cpp.
+  double unseenSpeed(const SolvedBody& body) const;
+  /// maximum  bound of the iterations
+  void solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const;
+  void writePrediction(SolvedBody& body) const;
+  void predictByBullet(SolvedBody& body);
+  void predictPositions(SolvedBody& body);
+
+  // Detection of contacts.
+  bool findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object);
+  void searchSurfaces();
+
+  // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
+  void readContacts(SolvedBody& body);
+  void addOthers();
+  /// Collects the rows of contacts and anchors, and of the other constraints of rigid bodies, and adds each to the
+  /// system on which it acts.
+  void collectRows();
+  std::vector<RowSource*> rowSources();
+  void collectRigidRowsOfWorlds();
+  void joinByRows();
+  void reuseLastVelocity(SolvedBody& body);
+  /// fastest  speed of the body's fastest node
+  void speculate(const SolvedBody& body, btScalar fastest) const;
+
+  // Steps of the stage `solve`.
+  void solveSystem(SolvedSystem& system, ParallelFor* inner);
+
+  // Steps of the stage `writeBack`.
+  void writeVelocities(SolvedBody& body) const;
+
+  DeformableSolver& solver;
+  OwnObject registered{OwnObject::Kind::DeformableSolver, static_cast<const btSoftBodySolver*>(&solver)};
+  SolverBodies bodies;
+  DrivenNodes driven;
+  Sleepers sleepers;
+  Stillness stillness;
+  ObstacleChanges obstacleChanges;
+  RigidUnknowns rigids;
+  ContactRows rows;
+  OtherForces others;
+  StepClock clock;
+  HiddenBodies hidden;
+  StepObjects objects;
+  bool inStep = false;                     ///< from `gather` until positions have been integrated
+  std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
+  RecordDrawing recordDrawing;
+  ParallelFor* threads = nullptr;
+  bool nodeNormals = true;
+  bool always = false;  ///< see DeformableSolver::requireOwnSolve
+  bool solving = true;  ///< value for this step
+  int iterations = 0, passes = 0, unconverged = 0;
+  btAlignedObjectArray<btSoftBody*> all;
+};
+
+}  // namespace tetskin

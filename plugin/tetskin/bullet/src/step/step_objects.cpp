@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/step/step_objects.h>
+
+#include <algorithm>
+
+namespace tetskin::bullet_detail {
+namespace {
+
+/// Gives access to a member of a base class, whose name a derived class may use.
+struct IslandFinder : btDeformableMultiBodyDynamicsWorld {
+  static void find(btDeformableMultiBodyDynamicsWorld& world) {
+    (world.*(&IslandFinder::calculateSimulationIslands))();
+  }
+};
+
+}  // namespace
+
+std::vector<StepObjects::Noted> StepObjects::objectsOf(const btCollisionWorld& world) {
+  const btCollisionObjectArray& all = world.getCollisionObjectArray();
+  std::vector<Noted> objects;
+  objects.reserve(static_cast<std::size_t>(all.size()));
+  for (int k = 0; k < all.size(); ++k) {
+    const btBroadphaseProxy* proxy = all[k]->getBroadphaseHandle();
+    objects.emplace_back(all[k], proxy ? proxy->m_uniqueId : 0);
+  }
+  return objects;
+}
+
+void StepObjects::note(btDeformableMultiBodyDynamicsWorld* world) {
+  world_ = world;
+  noted_.clear();
+  if (world) noted_ = objectsOf(*world);
+}
+
+bool StepObjects::haveChanged() const {
+  return world_ && objectsOf(*world_) != noted_;
+}
+
+StepObjects::Gone StepObjects::gone() const {
+  Gone gone;
+  if (!world_) return gone;
+  std::vector<Noted> here = objectsOf(*world_);
+  std::sort(here.begin(), here.end());
+  for (const Noted& object : noted_) {
+    if (!std::binary_search(here.begin(), here.end(), object)) gone.insert(object.first);
+  }
+  return gone;
+}
+
+void findIslands(btDeformableMultiBodyDynamicsWorld& world) {
+  IslandFinder::find(world);
+}
+
+}  // namespace tetskin::bullet_detail

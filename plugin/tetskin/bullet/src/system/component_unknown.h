@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: the rigid motion of a component of a stiff body as a separate unknown; the nodes'
+// velocities are relative to it. Sweeps would find it slowly, and for the stiffest bodies rounding would hide its
+// inertia.
+#pragma once
+
+#include <tetskin/bullet/src/base/carried_point.h>
+#include <tetskin/bullet/src/forces/forced_bodies.h>
+#include <tetskin/core/src/base/aligned.h>
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace tetskin::bullet_detail {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// The velocity of a row's point in each of the six motions.
+using RowMotions = Eigen::Matrix<double, 3, 6>;
+
+/// Z are the six motions, A is the matrix without rows, b the right side.
+struct ComponentUnknown {
+  std::size_t body = 0;                                      ///< in SolverBodies::bodies
+  Eigen::Index first = 0;                                    ///< index of its six among the system's reduced unknowns
+  AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout
+  AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, in the wide layout
+  Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
+  Vector6 began = Vector6::Zero();                                         ///< Z^T b
+
+  /// Empty if some node of the component is pinned.
+  /// dynamics  whose matrix has no rows added yet
+  static std::optional<ComponentUnknown> make(const Dynamics& dynamics, std::size_t component, ParallelFor* threads);
+
+  /// Z^T A times a vector in the wide layout.
+  Vector6 imageProducts(const btScalar* wide) const;
+  /// Z^T times a vector in the wide layout.
+  Vector6 motionProducts(const btScalar* wide) const;
+  /// Adds A Z q to a vector in the wide layout.
+  void addImages(const Vector6& q, btScalar* wide) const;
+  /// Adds Z q to the solution.
+  void addMotions(const Vector6& q, Dynamics& dynamics) const;
+  /// Z at the point where a row acts on the body; 0 if it belongs to another component.
+  RowMotions motionsAt(const Dynamics& dynamics, const CarriedPoint& point) const;
+
+ private:
+  using Points = AlignedVector<btScalar>[Dynamics::kRigidMotions];
+  void findImages(const Dynamics& dynamics, const Points& points, bool rounded, ParallelFor* threads);
+};
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The reduced unknowns of a system: V of rigid bodies, and q of the components of stiff bodies. They are eliminated
+// from the nodes' equations, and are computed from the nodes' velocities afterwards.
+#include <tetskin/bullet/src/forces/node_vectors.h>
+#include <tetskin/bullet/src/system/system_solve.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin::bullet_detail {
+namespace {
+
+/// Stiffness factor from which on the rigid motions of components are separate unknowns.
+constexpr double kStiffPart = 5.0;
+/// Most components of a body whose rigid motions are separate unknowns.
+constexpr std::size_t kMaxParts = 4;
+
+Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
+  Eigen::Matrix3d to;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) to(i, j) = static_cast<double>(m[i][j]);
+  }
+  return to;
+}
+
+/// In one place, and into a vector of its own: the compiler takes seconds for each kind of vector that Eigen solves
+/// into.
+Vector6 ldltSolve(const Eigen::Matrix<double, 6, 6>& matrix, const Vector6& right) {
+  return matrix.ldlt().solve(right);
+}
+
+}  // namespace
+
+void SystemSolve::numberRigids() {
+  Eigen::Index size = 0;
+  for (const std::size_t r : system_.rigids) {
+    RigidUnknown& unknown = in_.rigids.list()[r];
+    unknown.first = size;
+    size += unknown.size;
+  }
+  inverseMass_ = Matrix::Zero(size, size);
+  for (const std::size_t r : system_.rigids) {
+    const RigidUnknown& unknown = in_.rigids.list()[r];
+    inverseMass_.block(unknown.first, unknown.first, unknown.size, unknown.size) = unknown.inverseMass;
+  }
+  schurComplement_.setInverseMass(inverseMass_);
+  rigidSize_ = reducedSize_ = size;
+  rigidMomentum_ = rigidPush_ = Vector::Zero(size);
+}
+
+void SystemSolve::collectComponents() {
+  endParts_.assign(system_.rows.size(), {});
+  std::vector<std::vector<ComponentUnknown>> found(bodies_.size());
+  forEachBody([&](Body& body, ParallelFor* inner) {
+    if (!needsComponents(body)) return;
+    for (std::size_t component = 0; component < std::min(body.dynamics().componentCount(), kMaxParts); ++component) {
+      std::optional<ComponentUnknown> unknown = ComponentUnknown::make(body.dynamics(), component, inner);
+      if (unknown) found[body.solved.place].push_back(std::move(*unknown));
+    }
+  });
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    bodies_[k].firstComponent = components_.size();
+    for (ComponentUnknown& unknown : found[k]) {
+      unknown.body = bodies_[k].index;
+      unknown.first = reducedSize_;
+      reducedSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
+      components_.push_back(std::move(unknown));
+    }
+    bodies_[k].lastComponent = components_.size();
+  }
+  forEachBody([&](Body& body, ParallelFor*) { findEndParts(body); });
+  reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
+}
+
+/// The separate unknowns do not include other forces on the nodes.
+bool SystemSolve::needsComponents(const Body& body) const {
+  const SolvedBody& solved = body.solved;
+  if (!solved.elastic || solved.rowCount == 0 || !system_.forces.empty() || !solved.fixed.empty()) return false;
+  return !(solved.dynamics->stiffnessNumber() < kStiffPart) || isJoined(body);
+}
+
+bool SystemSolve::isJoined(const Body& body) const {
+  return std::any_of(body.ends.list().begin(), body.ends.list().end(), [&](const BodyEnd& end) {
+    return end.index == 0 && system_.rows[end.row]->joined && !system_.rows[end.row]->constant;
+  });
+}
+
+void SystemSolve::findEndParts(const Body& body) {
+  assert(endParts_.size() == system_.rows.size());
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    for (const BodyEnd& end : body.ends.list()) {
+      const RowMotions motions = components_[c].motionsAt(body.dynamics(), pointOf(end.row, end.index));
+      if (!motions.isZero(0.0)) endParts_[end.row][end.index] = {static_cast<int>(c), motions};
+    }
+  }
+}
+
+/// Moves the rigid motions of the components out of the solution into the separate unknowns.
+void SystemSolve::moveIntoComponents(const Body& body) {
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    const ComponentUnknown& component = components_[c];
+    reduced_.segment<6>(component.first) = ldltSolve(component.mass, component.imageProducts(body.matrix().solution()));
+    component.addMotions(-reduced_.segment<6>(component.first), body.dynamics());
+  }
+}
+
+void SystemSolve::moveOutOfComponents(const Body& body) {
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c)
+    components_[c].addMotions(reduced_.segment<6>(components_[c].first), body.dynamics());
+}
+
+/// Z^T A (y + Z q)
+Vector6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
+  return images_.segment<6>(component.first) + component.mass * reduced_.segment<6>(component.first);
+}
+
+/// The nodes' equations also contain each component's rigid motion, and must agree with its own equation about it:
+/// together they are singular, and where they contradict each other the conjugate gradient does not converge. Forces of
+/// stiff bodies, whose sum is 0, differ by rounding of that size.
+void SystemSolve::matchComponents(const Body& body) {
+  btScalar* residual = body.matrix().residual();
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    const ComponentUnknown& component = components_[c];
+    const Vector6 excess = component.motionProducts(residual) - reducedResidual_.segment<6>(component.first);
+    component.addImages(-ldltSolve(component.mass, excess), residual);
+  }
+}
+
+bool SystemSolve::couplesReduced(std::size_t r) const {
+  assert(r < endParts_.size());
+  const ContactRow& row = *system_.rows[r];
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (row.ends[e].rigid.unknown >= 0 || endParts_[r][e].component >= 0) return true;
+  }
+  return false;
+}
+
+/// Index of the component's six among the reduced unknowns.
+Eigen::Index SystemSolve::firstOf(const EndPart& end) const {
+  assert(end.component >= 0 && static_cast<std::size_t>(end.component) < components_.size());
+  return components_[static_cast<std::size_t>(end.component)].first;
+}
+
+/// The velocity that the reduced unknowns give a row.
+btVector3 SystemSolve::reducedVelocity(std::size_t r, const Vector& reduced) const {
+  btVector3 sum(0, 0, 0);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const EndPart& end = endParts_[r][e];
+    btVector3 velocity = in_.rigids.velocity(system_.rows[r]->ends[e].rigid, reduced);
+    if (end.component >= 0) velocity += toBullet(end.motions * reduced.segment<6>(firstOf(end)));
+    sum += btScalar(signOf(e)) * velocity;
+  }
+  return sum;
+}
+
+/// The transpose of `reducedVelocity`: adds the effect of an impulse of the row on the reduced unknowns.
+void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
+  for (std::size_t e = 0; e < 2; ++e) {
+    const EndPart& end = endParts_[r][e];
+    const btVector3 own = btScalar(signOf(e)) * push;
+    in_.rigids.addImpulse(system_.rows[r]->ends[e].rigid, own, to);
+    if (end.component >= 0) to.segment<6>(firstOf(end)) += end.motions.transpose() * toEigen(own);
+  }
+}
+
+/// The momentum of rigid bodies and components that is left.
+void SystemSolve::findReducedResiduals() {
+  assert(reducedResidual_.size() == reducedSize_ && rigidMomentum_.size() == rigidSize_);
+  reducedResidual_.setZero();
+  reducedResidual_.head(rigidSize_) -= rigidMomentum_;
+  imagesBefore_ = images_;
+  for (const ComponentUnknown& component : components_) {
+    partsBefore_.segment<6>(component.first) = momentumOf(component);
+    reducedResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
+  }
+  for (std::size_t r = 0; r < system_.rows.size() && reducedSize_ > 0; ++r) {
+    addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, reducedResidual_);
+  }
+}
+
+/// The matrix of the reduced unknowns without the masses of rigid bodies: what rows, and the masses of components,
+/// couple them by.
+SystemSolve::Matrix SystemSolve::reducedStiffness() const {
+  Matrix reduced = Matrix::Zero(reducedSize_, reducedSize_);
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    if (system_.rows[r]->state == ContactRow::State::Apart || !couplesReduced(r)) continue;
+    const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
+    for (std::size_t a = 0; a < 2; ++a) {
+      for (std::size_t b = 0; b < 2; ++b) addReducedStiffness(r, a, b, h, reduced);
+    }
+  }
+  for (const ComponentUnknown& component : components_)
+    reduced.block<6, 6>(component.first, component.first) += component.mass;
+  return reduced;
+}
+
+/// Adds the block of two ends of a row. The block of a rigid body and a component, and its transpose, are added when
+/// the component's end comes first.
+void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
+                                      Matrix& reduced) const {
+  const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
+  const double sign = signOf(a) * signOf(b);
+  in_.rigids.addStiffness(first.rigid, second.rigid, h, sign, reduced);
+  const EndPart &end = endParts_[r][a], &other = endParts_[r][b];
+  if (end.component < 0) return;
+  if (other.component >= 0) {
+    reduced.block<6, 6>(firstOf(end), firstOf(other)) += sign * end.motions.transpose() * h * other.motions;
+  }
+  for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
+    Vector push = Vector::Zero(rigidSize_);
+    in_.rigids.addImpulse(second.rigid, toBullet(sign * h * end.motions.col(k)), push);
+    reduced.col(firstOf(end) + k).head(rigidSize_) += push;
+    reduced.row(firstOf(end) + k).head(rigidSize_) += push.transpose();
+  }
+}
+
+void SystemSolve::eliminate() {
+  if (reducedSize_ == 0) return;
+  schurComplement_.factor(reducedStiffness());
+  const Vector reduced = schurComplement_.solve(reducedResidual_);
+  forEachBody([&](Body& body, ParallelFor*) { addReduced(body, reduced, -1, false, body.matrix().residual()); });
+}
+
+/// Adds the effect of changes of the reduced unknowns on the body's nodes.
+/// withOthers  adds that of the steps of the rows' other ends, too
+/// to          in the wide layout: residuals or products
+void SystemSolve::addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers,
+                             btScalar* to) const {
+  for (const CoupledEnd& coupled : body.coupled) {
+    const bool byOther = withOthers && coupled.byOther;
+    if (!byOther && !coupled.byReduced) continue;
+    const BodyEnd& end = coupled.end;
+    const btScalar own = btScalar(signOf(end.index));
+    btVector3 velocity(0, 0, 0);
+    if (coupled.byReduced) velocity = reducedVelocity(end.row, reduced);
+    if (byOther) velocity -= own * endSteps_[end.row][1 - end.index];
+    body.ends.addImpulse(end, (sign * own) * (coupled.tangent * velocity), to);
+  }
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    components_[c].addImages(static_cast<double>(sign) * reduced.segment<6>(components_[c].first), to);
+  }
+}
+
+/// Computes the reduced unknowns from the nodes' change in the pass.
+void SystemSolve::moveReduced() {
+  assert(before_.size() == system_.rows.size());
+  forEachBody([&](Body& body, ParallelFor*) {
+    if (body.moves) readSolution(body);
+  });
+  forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
+  if (reducedSize_ == 0) return;
+  // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
+  Vector push = reducedResidual_, left = reducedResidual_;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
+  }
+  for (const ComponentUnknown& component : components_) {
+    push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
+  }
+  reducedStep_ = schurComplement_.solve(push);
+  reduced_ += reducedStep_;
+  forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
+  if (rigidSize_ == 0) return;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), left);
+  }
+  rigidPush_ = left.head(rigidSize_);
+  rigidMomentum_ += rigidPush_;
+}
+
+/// The residual that is left is small in terms of velocity, but with stiff rows its impulses need not be small. The few
+/// unknowns take them up, so that momentum agrees with the rows' impulses while velocities hardly change.
+void SystemSolve::settleReduced() {
+  if (reducedSize_ == 0) return;
+  const Vector change = schurComplement_.solve(reducedResidual_);
+  reduced_ += change;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * reducedVelocity(r, change);
+  }
+}
+
+}  // namespace tetskin::bullet_detail

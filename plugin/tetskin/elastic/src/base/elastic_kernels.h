@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to elasticity: the inner loops, compiled once for each instruction set and chosen at run time. They use
+// plain types only, as tetskin/core/src/kernels/skinning_kernels.h does, and for the same reason.
+//
+// Values of eight tets (a pack), or of eight rows of the matrix (a chunk), are adjacent in memory. `S[kGroup]` of
+// consecutive quantities is called wide. Points are four scalars: x, y, z, and one without meaning.
+#pragma once
+
+#include <tetskin/core/src/base/kernels/dispatch.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tetskin::kernels {
+
+/// Tets and rows that are stored side by side: as many floats as AVX2 has lanes, twice those of SSE2, half those of
+/// AVX-512.
+constexpr int kGroup = 8;
+
+/// Scalars of a chunk's vectors, of its symmetric blocks (xx xy xz yy yz zz), and of an entry's blocks (by rows).
+constexpr std::size_t kWideVector = 3 * kGroup, kWideSymmetric = 6 * kGroup, kWideBlock = 9 * kGroup;
+/// Scalars of a tet's corners: four points.
+constexpr std::size_t kCorners = 16;
+
+/// Eight tets at rest.
+template <class S>
+struct TetPack {
+  S gradients[9][kGroup];          ///< of the barycentric weights of nodes 1, 2 and 3, rest space
+  S shear[kGroup];                 ///< 2 mu x volume; 0 for padding in the last pack
+  S bulk[kGroup];                  ///< lambda x volume
+  std::uint32_t nodes[4][kGroup];  ///< slots of the nodes
+};
+
+template <class S>
+struct TetWork {
+  std::size_t firstPack = 0, lastPack = 0;
+  const TetPack<S>* packs = nullptr;
+  S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack
+  const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
+  const S* points = nullptr;     ///< by slot
+  S* corners = nullptr;          ///< by tet
+  S* sums = nullptr;             ///< by slot: forces are added here; null: they are written to `corners`
+  S alpha = 0, flatAlpha = 0;    ///< the second one: of flat and inverted tets, at least the first
+};
+
+template <class S>
+struct TetFindings {
+  S maxTurned = 0;  ///< the largest squared difference between a tet's rotation and that of the matrix, as quaternions
+  double turned = 0.0;  ///< sum of these differences, each a quarter of the squared angle
+  double energy = 0.0;
+};
+
+/// Rows of the matrix, of which no two are neighbours.
+template <class S>
+struct RowWork {
+  std::size_t firstChunk = 0, lastChunk = 0;
+  const std::uint32_t* starts = nullptr;      ///< by chunk, 2 each, and the end: its lower entries, its upper ones
+  const std::uint32_t* neighbours = nullptr;  ///< by entry, 8 slots each
+  S* blocks = nullptr;                        ///< by entry
+  S* diagonal = nullptr;                      ///< by chunk
+  S* inverse = nullptr;                       ///< by chunk: inverse of the diagonal
+  const S* masses = nullptr;                  ///< by chunk; 0: pinned, or no node
+
+  // Used by the assembly.
+  const std::uint32_t* sums = nullptr;   ///< by entry, and the end: index of the first of its terms
+  const std::uint32_t* terms = nullptr;  ///< 16 per term: corners of the rows' nodes, corners of the neighbours
+  const S* corners = nullptr;            ///< rotated gradients, see `rotatedGradients`
+  S minMass = 0;                         ///< relative to the trace of the stiffness's diagonal block; see `assemble`
+
+  // Used by products and solves. Wide vectors are by chunk, points by slot.
+  S* residual = nullptr;   ///< transformed: (D + L)^-1 r
+  S* direction = nullptr;  ///< transformed
+  S* rest = nullptr;       ///< `backward`: U t; `forward`: t + y
+  S* step = nullptr;       ///< the vector t
+  S* solution = nullptr;
+  const S* extra = nullptr;  ///< the product of other operators with t; null: none
+  S* stepPoints = nullptr;   ///< t as points
+  S* lowerPoints = nullptr;  ///< y as points
+  S factor = 0;              ///< factor of the previous direction, or of the step
+
+  // Used for the start of solves.
+  const S* first = nullptr;   ///< wide
+  const S* second = nullptr;  ///< wide; null: 0
+};
+
+/// Points summed by lists of corners.
+template <class S>
+struct SumWork {
+  std::size_t firstSlot = 0, lastSlot = 0;
+  const std::uint32_t* starts = nullptr;  ///< by slot, and the end
+  const std::uint32_t* corners = nullptr;
+  const S* from = nullptr;
+  S* points = nullptr;
+};
+
+/// The loops of one instruction set.
+///
+/// Of the conjugate gradient, with A = L + D + U and the preconditioner (D + L) D^-1 (D + U), by Eisenstat's trick:
+///   backward  p <- D r + factor p;  t = (D + U)^-1 p;  rest = U t
+///   forward   y = (D + L)^-1 (rest + extra);  rest <- t + y, which is (D + L)^-1 A t;  returns p . (t + y)
+///   advance   solution += factor t;  r -= factor rest;  returns r . D r
+///   lower     rest <- (D + L)^-1 residual, which may be the same vector;  returns rest . D rest
+/// `backward` must be called for the last rows first, `forward` and `lower` for the first ones.
+template <class S>
+struct ElasticTable {
+  /// Elastic forces at the points' positions, by corner or, with the same bits, summed; updates `rotations`.
+  TetFindings<S> (*forces)(const TetWork<S>&, bool energy);
+  /// R g sqrt(alpha mu V) of all four corners; the fourth scalar of each is lambda / mu. Where a tet is flat at the
+  /// points' positions, with `flatAlpha`.
+  void (*rotatedGradients)(const TetWork<S>&);
+  void (*sum)(const SumWork<S>&);
+  /// Computes the blocks, the diagonal, and its inverse, which is 0 where the mass is 0.
+  void (*assemble)(const RowWork<S>&);
+  /// Computes rest = A stepPoints.
+  void (*multiply)(const RowWork<S>&);
+  void (*backward)(const RowWork<S>&);
+  S (*forward)(const RowWork<S>&);
+  S (*advance)(const RowWork<S>&);
+  S (*lower)(const RowWork<S>&);
+  /// Computes step = first - second, 0 where the mass is 0, and the same as points.
+  void (*difference)(const RowWork<S>&);
+  /// Returns first . second.
+  S (*inner)(const RowWork<S>&);
+};
+
+TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const ElasticTable<float> elasticFloat;
+                                 extern const ElasticTable<double> elasticDouble;)
+
+/// The table for the processor's `instructionSet()`.
+template <class S>
+const ElasticTable<S>& elasticInUse();
+
+}  // namespace tetskin::kernels

@@ -1,0 +1,530 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+using kernels::kGroup;
+
+/// Mean and largest rotation of tets since the assembly, in radians, up to which a matrix is still used: only the
+/// matrix is outdated, while forces are those of the current rotations.
+constexpr double kMeanTurn = 0.015, kMaxTurn = 0.3;
+/// These angles apply to steps of this many seconds and more; for shorter ones they are reduced in proportion, so that
+/// the simulation converges.
+constexpr double kFullTurnStep = 1.0 / 240.0;
+/// A matrix with rotations that are outdated by an angle of phi takes rigid rotation for strain; its stress rotates the
+/// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the rotation. This
+/// much is allowed: values from 1 to 0.01 are stable.
+constexpr double kMaxGain = 0.1;
+/// Value of dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last
+/// for a step.
+constexpr double kStiff = 1e3;
+/// Value of dt^2 times that sum over the inertia, above which a rotation by a tenth of a radian that arises within a
+/// step stores noticeable energy.
+constexpr double kFeelsTurns = 1.0;
+
+/// alpha over dt^2 of flat and inverted tets of a pressed body, at least: their forces change faster with a node's
+/// position than the matrix knows. Without, nodes of a body that is squashed flat jump between two positions for ever,
+/// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
+constexpr double kFlatAlpha = 200.0;
+
+/// Sums side by side, none of which waits for the one before.
+struct LaneSums {
+  double lanes[kGroup] = {};
+
+  double total() const { return std::accumulate(lanes, lanes + kGroup, 0.0); }
+};
+
+}  // namespace
+
+template <class S>
+BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
+    : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), pinned_(nodes) {
+  findComponents(rest.tets);
+  if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
+  for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
+    v->assign(4 * matrix_.slotCount(), S(0));
+  }
+  for (AlignedVector<S>* v : {&rightSide_, &image_, &began_}) v->assign(matrix_.wideSize(), S(0));
+}
+
+/// Slots without a node, which have no mass, count as part of the first component.
+template <class S>
+void BodyDynamics<S>::findComponents(const std::vector<Tet>& tets) {
+  DisjointSets sets(nodeCount());
+  for (const Tet& tet : tets) {
+    for (std::size_t k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
+  }
+  partOf_.assign(matrix_.slotCount(), 0);
+  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // numbers begin at 1
+  std::uint32_t components = 0;
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
+    if (number == 0) number = ++components;
+    partOf_[matrix_.slotOf(n)] = number - 1;
+  }
+  motions_.resize(components);
+  stiffness_.assign(components, 0.0);
+}
+
+template <class S>
+void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
+  assert(tets_ && lame.size() == tets_->count());
+  const RestTets& rest = tets_->rest();
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  for (std::size_t t = 0; t < lame.size(); ++t) {
+    tets_->setMaterial(t, lame[t]);
+    const std::uint32_t component = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
+    stiffness_[component] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
+  }
+  changed_ = true;
+}
+
+template <class S>
+void BodyDynamics<S>::setMass(std::size_t node, S mass) {
+  assert(!(mass < S(0)));
+  const S before = matrix_.mass(node);
+  if (before == mass) return;
+  matrix_.setMass(node, mass);
+  changed_ = true;
+  pinned_ += mass == S(0);
+  assert(pinned_ > 0 || before != S(0));
+  pinned_ -= before == S(0);
+}
+
+template <class S>
+double BodyDynamics<S>::alphaFor(double seconds) const {
+  return tets_ ? seconds * (damping_ + seconds) : 0.0;
+}
+
+template <class S>
+void BodyDynamics<S>::prepareForces(ParallelFor* threads) {
+  if (tets_) tets_->forces(points_.data(), forces_.data(), threads);
+}
+
+template <class S>
+void BodyDynamics<S>::prepare(double seconds, ParallelFor* threads) {
+  assert(seconds > 0.0);
+  prepareForces(threads);
+  assembleIfNeeded(seconds, 1.0, threads);
+}
+
+template <class S>
+void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads) {
+  const double alpha = alphaFor(seconds);
+  const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep);
+  // A stiff component rotates as a whole, and may be a single tet among many of other components.
+  const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
+  const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
+  if (!changed_ && alpha == alpha_ && !turned) return;
+  const auto flatAlpha = static_cast<S>(pressed_ ? kFlatAlpha * seconds * seconds : 0.0);
+  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
+  alpha_ = alpha;
+  changed_ = false;
+}
+
+/// Calls visit(slot, first scalar in wide vectors) for all slots.
+template <class Visit>
+void bySlots(std::size_t slots, Visit&& visit) {
+  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
+  }
+}
+
+template <class S>
+void BodyDynamics<S>::findMotions(double seconds) {
+  assert(!motions_.empty());
+  std::vector<PinnedNodes> pinned(motions_.size());
+  for (std::size_t n = 0; pinned_ > 0 && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (matrix_.massAt(slot) != S(0)) continue;
+    const S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    pinned[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
+  }
+  // Moments about the components' previous positions: this needs one pass only, and keeps the digits far from the
+  // origin.
+  std::vector<ComponentMoments> moments(motions_.size());
+  const auto add = [&](std::size_t slot, ComponentMoments& sums, const Eigen::Vector3d& about) {
+    sums.add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], about.data());
+  };
+  if (motions_.size() == 1) {  // nearly always: its sums stay in registers
+    ComponentMoments sums;
+    const Eigen::Vector3d about = motions_.front().about();
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) add(slot, sums, about);
+    moments.front() = sums;
+  } else {
+    for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+      add(slot, moments[partOf_[slot]], motions_[partOf_[slot]].about());
+    }
+  }
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    pinned[k].finish(seconds);
+    const Eigen::Vector3d near = motions_[k].about();
+    motions_[k].find(moments[k], near, pinned[k], seconds);
+  }
+}
+
+/// The velocities become those of the rigid motion, and `relative_` the difference to them. Forces do not depend on the
+/// position of a component: without its translation, points have the same rounding in each step, and differences in
+/// rounding are not taken for strain. Everything is relative to an anchor near the component, for which this precision
+/// suffices.
+template <class S>
+void BodyDynamics<S>::moveRigidly(double seconds) {
+  assert(seconds > 0.0 && partOf_.size() == matrix_.slotCount());
+  struct Rigid {
+    S anchor[3], fromAnchor[3], velocity[3], field[9];
+  };
+  std::vector<Rigid> components;
+  for (const ComponentMotion& motion : motions_) {
+    const RigidVelocity exact = motion.velocities(seconds);
+    const Eigen::Vector3d anchor = motion.anchor();
+    Rigid& component = components.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      component.anchor[k] = static_cast<S>(anchor[k]);
+      component.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
+      component.velocity[k] = static_cast<S>(exact.velocity[k]);
+    }
+    for (int k = 0; k < 9; ++k) component.field[k] = static_cast<S>(exact.field[k]);
+  }
+  const auto dt = static_cast<S>(seconds);
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    const Rigid& component = components[partOf_[slot]];
+    S *x = &points_[4 * slot], *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
+    const S position[3] = {x[0] - component.anchor[0], x[1] - component.anchor[1], x[2] - component.anchor[2]};
+    const S arm[3] = {position[0] - component.fromAnchor[0], position[1] - component.fromAnchor[1],
+                      position[2] - component.fromAnchor[2]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S turning =
+          component.field[3 * k] * arm[0] + component.field[3 * k + 1] * arm[1] + component.field[3 * k + 2] * arm[2];
+      moved[k] = position[k] + dt * turning;
+      const S rigid = component.velocity[k] + turning;
+      beside[k] = v[k] - rigid;
+      v[k] = rigid;
+    }
+  }
+}
+
+/// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
+template <class S>
+double BodyDynamics<S>::allowedTurn() const {
+  return std::min(1.0, std::sqrt(kMaxGain / stiffnessNumber_) / kMeanTurn);
+}
+
+template <class S>
+void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
+  assert(seconds > 0.0);
+  if (!tets_) return assembleIfNeeded(seconds, 1.0, threads);
+  findMotions(seconds);
+  if (changed_) {
+    stiffnessOverInertia_ = 0.0;
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      const double inertia = motions_[k].minInertia();
+      if (inertia > 0.0) stiffnessOverInertia_ = std::max(stiffnessOverInertia_, stiffness_[k] / inertia);
+    }
+  }
+  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
+  stiff_ = stiffnessNumber_ > kStiff;
+  moveRigidly(seconds);
+  tets_->forces(moved_.data(), forces_.data(), threads);
+  assembleIfNeeded(seconds, allowedTurn(), threads);
+}
+
+template <class S>
+double BodyDynamics<S>::roundingSpeed(double seconds) const {
+  constexpr double kFraction = 0.1;  // of the last digit
+  double reach = 0.0;
+  for (const ComponentMotion& motion : motions_) reach = std::max(reach, motion.reach());
+  return kFraction * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
+}
+
+template <class S>
+double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                                        const std::array<double, 3>& direction) const {
+  if (!tets_) return 0.0;
+  const ComponentMotion& motion = motions_[partOf_[matrix_.slotOf(node)]];
+  return motion.compliance(Eigen::Vector3d(point[0], point[1], point[2]),
+                           Eigen::Vector3d(direction[0], direction[1], direction[2]));
+}
+
+template <class S>
+void BodyDynamics<S>::startLater(double seconds) {
+  assert(seconds > 0.0);
+  S* solution = matrix_.solution();
+  squaredDeviation_ = 0.0;
+  if (!tets_) {
+    std::fill_n(solution, matrix_.wideSize(), S(0));
+    std::fill(rightSide_.begin(), rightSide_.end(), S(0));
+    return;
+  }
+  if (guess_.isUsed()) guess_.remember(matrix_);
+  const auto dt = static_cast<S>(seconds);
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S mass = matrix_.massAt(slot);
+    S* deviation = &relative_[4 * slot];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S impulse = mass * deviation[k];
+      began_[wide + k * kGroup] = deviation[k];
+      rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
+      if (stiff_ && mass != S(0)) {
+        squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
+        deviation[k] = S(0);
+      }
+      solution[wide + k * kGroup] = deviation[k];
+    }
+  });
+}
+
+template <class S>
+void BodyDynamics<S>::start(double seconds, ParallelFor* threads) {
+  startLater(seconds);
+  S* residual = matrix_.residual();
+  if (!tets_ || (stiff_ && pinned_ == 0)) {
+    std::copy(rightSide_.begin(), rightSide_.end(), residual);
+    return;
+  }
+  matrix_.multiply(relative_.data(), image_.data(), threads);
+  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+void BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
+  assert(tets_ && maximum >= 0);
+  limits.enough = limits.tolerance * limits.tolerance * squaredDeviation_;
+  // Stiff bodies begin with 0.
+  const bool guesses = maximum > 0 && !stiff_;
+  if (guesses) guess_.improve(matrix_, limits, threads);
+  gradient.start({&matrix_}, limits, nullptr, threads);
+  const double squared = gradient.squaredResidual();
+  gradient.iterate(maximum, threads);
+  if (guesses) guess_.learn(squared, gradient.iterations());
+}
+
+template <class S>
+double BodyDynamics<S>::squaredSolution() const {
+  const S* solution = matrix_.solution();
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S v = solution[wide + k * kGroup];
+      sum += static_cast<double>(matrix_.massAt(slot) * v * v);
+    }
+  });
+  return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::squaredChange() const {
+  const S* solution = matrix_.solution();
+  LaneSums sums;
+  for (std::size_t chunk = 0; chunk < matrix_.slotCount() / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      double squared = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = kernels::kWideVector * chunk + k * kGroup + lane;
+        const auto change = static_cast<double>(solution[at] - began_[at]);
+        squared += change * change;
+      }
+      sums.lanes[lane] += static_cast<double>(matrix_.massAt(kGroup * chunk + lane)) * squared;
+    }
+  }
+  return sums.total();
+}
+
+template <class S>
+double BodyDynamics<S>::squaredByMatrix() const {
+  const S* solution = matrix_.solution();
+  LaneSums sums;
+  for (std::size_t k = 0; k < image_.size(); k += kGroup) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      sums.lanes[lane] += static_cast<double>(solution[k + lane]) * static_cast<double>(image_[k + lane]);
+    }
+  }
+  return std::max(sums.total(), 0.0);
+}
+
+template <class S>
+void BodyDynamics<S>::rightSide(std::size_t node, S out[3]) const {
+  for (std::size_t k = 0; k < 3; ++k) out[k] = rightSide_[matrix_.wideOf(node) + k * kGroup];
+}
+
+template <class S>
+const S* BodyDynamics<S>::times(const S* points, ParallelFor* threads) {
+  matrix_.multiply(points, image_.data(), threads);
+  return image_.data();
+}
+
+template <class S>
+void BodyDynamics<S>::restart(ParallelFor* threads) {
+  assert(rightSide_.size() == matrix_.wideSize() && image_.size() == matrix_.wideSize());
+  const S* solution = matrix_.solution();
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = solution[wide + k * kGroup];
+  });
+  matrix_.multiply(relative_.data(), image_.data(), threads);
+  S* residual = matrix_.residual();
+  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+}
+
+template <class S>
+double BodyDynamics<S>::energy(ParallelFor* threads) {
+  return tets_ ? tets_->energy(points_.data(), threads) : 0.0;
+}
+
+/// Moments of the velocities of the current solution.
+template <class S>
+std::vector<ComponentMomentum> BodyDynamics<S>::momentaNow() const {
+  const S* solution = matrix_.solution();
+  std::vector<ComponentMomentum> now(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S* v = &velocities_[4 * slot];
+    double velocity[3];
+    for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
+    const std::uint32_t component = partOf_[slot];
+    now[component].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[component].about().data());
+  });
+  return now;
+}
+
+template <class S>
+void BodyDynamics<S>::bendTurns(double seconds) {
+  if (!tets_ || seconds * seconds * stiffnessOverInertia_ < kFeelsTurns) return;
+  S* solution = matrix_.solution();
+  const std::vector<ComponentMomentum> now = momentaNow();
+  std::vector<ComponentMoments> moments(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    S v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = velocities_[4 * slot + k] + solution[wide + k * kGroup];
+    const std::uint32_t component = partOf_[slot];
+    moments[component].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[component].about().data());
+  });
+  std::vector<RigidVelocity> chords;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    chords.push_back(motions_[k].chord(now[k], moments[k], motions_[k].about(), seconds));
+  }
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    chords[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const {
+  assert(component < componentCount());
+  double mass = 0.0, centroid[3] = {};
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != component) continue;
+    if (matrix_.massAt(slot) == S(0)) return false;
+    const auto m = static_cast<double>(matrix_.massAt(slot));
+    mass += m;
+    for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(moved_[4 * slot + k]);
+  }
+  if (!(mass > 0.0)) return false;
+  for (AlignedVector<S>& motion : motions) motion.assign(4 * matrix_.slotCount(), S(0));
+  for (std::size_t n = 0; n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n);
+    if (partOf_[slot] != component) continue;
+    S arm[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      arm[k] = moved_[4 * slot + k] - static_cast<S>(centroid[k] / mass);
+      motions[k][4 * slot + k] = S(1);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {  // about axis k
+      motions[3 + k][4 * slot + (k + 1) % 3] = -arm[(k + 2) % 3];
+      motions[3 + k][4 * slot + (k + 2) % 3] = arm[(k + 1) % 3];
+    }
+  }
+  return true;
+}
+
+template <class S>
+void BodyDynamics<S>::projectToRigidMotion() {
+  S* solution = matrix_.solution();
+  std::vector<ComponentMomentum> own(motions_.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    double v[3];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
+    own[partOf_[slot]].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[partOf_[slot]].about().data());
+  });
+  std::vector<RigidVelocity> rigid;
+  for (std::size_t k = 0; k < motions_.size(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    rigid[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] = static_cast<S>(v[k]);
+  });
+}
+
+template <class S>
+Eigen::Vector3d BodyDynamics<S>::placeOf(const HeldPoint<S>& point) const {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < point.nodeCount; ++k) {
+    const S* x = &points_[4 * matrix_.slotOf(static_cast<std::size_t>(point.nodes[k]))];
+    place += static_cast<double>(point.weights[k]) * Eigen::Vector3d(x[0], x[1], x[2]);
+  }
+  return place;
+}
+
+template <class S>
+void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse,
+                                     std::vector<HeldPoint<S>>* held) {
+  const auto componentOf = [&](const HeldPoint<S>& point) {
+    return partOf_[matrix_.slotOf(static_cast<std::size_t>(point.nodes[0]))];
+  };
+  std::vector<Resistance> resistance(motions_.size(), Resistance::Zero());
+  if (held) {
+    for (const HeldPoint<S>& point : *held) {
+      const std::uint32_t component = componentOf(point);
+      const Eigen::Map<const Eigen::Matrix3d> stiffness(point.stiffness.data());
+      motions_[component].addResistance(placeOf(point), stiffness, resistance[component]);
+    }
+  }
+  const std::vector<ComponentMomentum> now = momentaNow();
+  std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
+  for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
+    const std::size_t slot = matrix_.slotOf(n), component = partOf_[slot];
+    if (matrix_.massAt(slot) == S(0)) continue;
+    const S* x = &points_[4 * slot];
+    const std::array<double, 3> from = impulse(n);
+    const Eigen::Vector3d given(from[0], from[1], from[2]);
+    impulses[component] += given;
+    torques[component] += (Eigen::Vector3d(x[0], x[1], x[2]) - motions_[component].about()).cross(given);
+  }
+  std::vector<RigidVelocity> excess;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    excess.push_back(motions_[k].excess(now[k], impulses[k], torques[k], resistance[k]));
+  }
+  if (held) {
+    for (HeldPoint<S>& point : *held) {
+      double v[3];
+      const Eigen::Vector3d place = placeOf(point);
+      excess[componentOf(point)].at(place.data(), v);
+      for (std::size_t k = 0; k < 3; ++k) point.change[k] = -v[k];
+    }
+  }
+  S* solution = matrix_.solution();
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    excess[partOf_[slot]].at(&points_[4 * slot], v);
+    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
+  });
+}
+
+#define TETSKIN_INSTANTIATE(Scalar) template class BodyDynamics<Scalar>;
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail
