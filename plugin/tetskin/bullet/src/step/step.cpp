@@ -198,10 +198,8 @@ void DeformableSolver::Impl::assign() {
 void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
-  forEachBody(bodies.bodies(), threads, [this](SolvedBody& body, ParallelFor*) {
-    readNodes(*body.body, false, *body.dynamics);
-    body.unseenSpeed = unseenSpeed(body);
-  });
+  forEachBody(bodies.bodies(), threads,
+              [](SolvedBody& body, ParallelFor*) { readNodes(*body.body, false, *body.dynamics); });
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
     // With other forces, the velocities at the beginning of the step determine the tolerances.
@@ -231,6 +229,7 @@ void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* in
   Dynamics& dynamics = *body.dynamics;
   dynamics.setPressed(body.hadRows);
   dynamics.predict(static_cast<double>(dt()), inner);
+  body.unseenSpeed = unseenSpeed(body);
   dynamics.matrix().free();
   if (body.deferSolve) return dynamics.startLater(static_cast<double>(dt()));
   dynamics.start(static_cast<double>(dt()), inner);
