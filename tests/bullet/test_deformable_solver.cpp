@@ -4,10 +4,15 @@
 // Bodies solved by the library's own solver that land, rest and slide, and that carry what lands on them.
 #include "deformable_test.h"
 
+#include <tetskin/bullet/src/base/body_trees.h>
+
 #include <chrono>
 #include <cmath>
 
 namespace tetskin {
+
+using namespace bullet_detail;
+
 namespace {
 
 using test::added;
@@ -140,7 +145,9 @@ TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
     options.forceModel = model;
     const auto body = added(world, cageAbove(0.1), options);
     step(world, 10);
-    ASSERT_GT(body->body().m_nodeRigidContacts.size(), 0);
+    const bool bullets = model != ForceModel::Corotated;
+    ASSERT_TRUE(bullets ? body->body().m_nodeRigidContacts.size() > 0
+                        : !bodyWithTrees(body->body())->pointContacts().empty());
     world.ground().setLinearVelocity(btScalar(NAN) * btVector3(1, 1, 1));
     step(world, 1);
     for (int n = 0; n < body->body().m_nodes.size(); ++n) {

@@ -25,7 +25,7 @@ class TouchSearchTest : public ::testing::Test {
     patches_ = makeContactPatches(embed(cage_, mesh_).value(), mesh_, {});
   }
 
-  PointCollider makeSearch() const { return PointCollider(patches_, kMargin, kSlack); }
+  PointCollider makeSearch() const { return PointCollider(patches_, kSlack); }
   void moveBy(const btVector3& now, const btVector3& direction) {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       nodes_[n].now = toBullet(cage_.nodes[n]) + now;
@@ -40,7 +40,7 @@ class TouchSearchTest : public ::testing::Test {
                                      ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::exactShape(shape));
-    search.begin(nodes_, speculation_);
+    search.begin(nodes_, kMargin, speculation_);
     return search.find(probe, {at, at}, memory);
   }
   std::vector<ContactCandidate> findAnew(const btCollisionShape& shape, const btVector3& at) {

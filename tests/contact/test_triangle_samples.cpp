@@ -48,8 +48,7 @@ class TriangleSamples : public ::testing::Test {
 
   PointCollider searchWith(double spacing) const { return searchWith(mesh_, spacing); }
   PointCollider searchWith(const TriangleMesh& mesh, double spacing) const {
-    return {makeContactPatches(embed(cage_, mesh).value(), mesh, divisionsFor(mesh, spacing)), kSampleMargin,
-            kSampleSlack};
+    return {makeContactPatches(embed(cage_, mesh).value(), mesh, divisionsFor(mesh, spacing)), kSampleSlack};
   }
   /// Each node moves by another random way.
   void deform(std::mt19937& random, btScalar size, btScalar speed) {
@@ -114,7 +113,7 @@ TEST_F(TriangleSamples, TouchAsDeepAsALookAtEachOfThemFinds) {
     const auto part = [&] { return btScalar(random()) / btScalar(0x80000000u) - 1; };
     const btTransform at =
         placeAt(btVector3(part() / 2, part() / 2, part() / 2), btQuaternion(part(), part(), part(), 1).normalized());
-    search.begin(nodes_, 0);
+    search.begin(nodes_, kSampleMargin, 0);
     ShapeMemory memory;
     btVector3 low, high;
     shape.getAabb(at, low, high);
@@ -163,7 +162,7 @@ TEST_F(TriangleSamples, TouchTrianglesAsDeepAsALookAtEachOfThemFinds) {
   for (int k = 0; k < 8; ++k) {
     deform(random, btScalar(0.01), btScalar(0.001));
     const btTransform at = placeAt(btVector3(0, btScalar(-0.3 - 0.005 * (k % 3)), 0));
-    search.begin(nodes_, 0);
+    search.begin(nodes_, kSampleMargin, 0);
     ShapeMemory memory;
     const btScalar found = deepest(search.find(probe, {at, at}, memory));
     const btScalar all = deepestOfAll(search.patches(), [&](const btVector3& p) {
@@ -203,7 +202,7 @@ TEST_F(TriangleSamples, OverAFloorAreNotLookedAt) {
     PointCollider search = searchWith(spacing);
     AskedProbe counting(probe);
     ShapeMemory memory;
-    search.begin(nodes_, 0);
+    search.begin(nodes_, kSampleMargin, 0);
     Questions asked;
     asked.touches = search.find(counting, {placeAt(at), placeAt(at)}, memory).size();
     asked.points = counting.points;
@@ -249,7 +248,7 @@ TEST_F(TriangleSamples, FarFromASmallShapeAreNotLookedAt) {
     WorldBox around;
     around.extend(low.m_floats, high.m_floats);
     ShapeMemory memory;
-    search.begin(nodes_, 0);
+    search.begin(nodes_, kSampleMargin, 0);
     EXPECT_FALSE(search.find(counting, {at, at}, memory, &around).empty());
     return counting.points + counting.balls;
   };
@@ -266,7 +265,7 @@ TEST_F(TriangleSamples, OfLargeTrianglesAreLookedAtNearAShapeAlone) {
   PointCollider search = searchWith(0.005);
   AskedProbe counting(probe);
   ShapeMemory memory;
-  search.begin(nodes_, 0);
+  search.begin(nodes_, kSampleMargin, 0);
   EXPECT_FALSE(search.find(counting, {at, at}, memory).empty());
   EXPECT_GT(search.patches().pointCount, 50000U);
   EXPECT_LT(counting.points + counting.balls, 500);

@@ -8,6 +8,7 @@
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
+#include <tetskin/bullet/src/search/contact_algorithm.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
@@ -231,7 +232,13 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
     force->setIndices(solver.getIndices());
   }
   addToList(impl->list, impl->gravity, *impl->elasticity, *impl->body);
-  if (corotated) static_cast<DeformableSolver&>(solver).requireOwnSolve();
+  if (corotated) {
+    static_cast<DeformableSolver&>(solver).requireOwnSolve();
+    btDispatcher& dispatcher = *world.getDispatcher();
+    if (!isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
+      registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
+    }
+  }
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 

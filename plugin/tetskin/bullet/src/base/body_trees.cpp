@@ -174,6 +174,10 @@ BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<b
   m_collisionShape = new Shape(*this);
 }
 
+btScalar BodyWithTrees::margin() const {
+  return static_cast<const Shape*>(m_collisionShape)->btSoftBodyCollisionShape::getMargin();
+}
+
 BodyWithTrees* bodyWithTrees(btSoftBody& body) {
   return asOwn<BodyWithTrees>(OwnObject::Kind::BodyWithTrees, &body);
 }

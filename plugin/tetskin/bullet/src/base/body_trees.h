@@ -14,12 +14,13 @@
 #include <tetskin/bullet/src/base/point_contacts.h>
 #include <tetskin/export.h>
 
-#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
+
+class BodyContacts;
 
 /// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
 /// positions. Existing trees are deleted; the new ones belong to the body. Cost O(n log n) for n faces and nodes.
@@ -54,27 +55,33 @@ class BodyWithTrees : public btSoftBody {
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
   /// An object that must live as long as the body: only one, owned by whoever sets it.
   std::shared_ptr<void>& companion() { return companion_; }
-  /// The object of tetskin::contact that finds contacts of the body's surface with rigid bodies; expired if there is
-  /// none.
-  const std::weak_ptr<void>& surfaceContacts() const { return surfaceContacts_; }
-  void setSurfaceContacts(std::weak_ptr<void> contacts) { surfaceContacts_ = std::move(contacts); }
+  /// What finds the contacts of other points than the nodes with rigid objects; expired if there is nothing.
+  const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
+  void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
+  /// What finds the contacts of the nodes, or null.
+  const std::shared_ptr<BodyContacts>& nodeContacts() const { return nodeContacts_; }
+  void setNodeContacts(std::shared_ptr<BodyContacts> contacts) { nodeContacts_ = std::move(contacts); }
+  /// The solver that reads the contacts of the nodes; null if Bullet searches for them. Whether the body is still in
+  /// its world, another solver's name in the body tells.
+  const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
+  void setNodesSolver(const btSoftBodySolver* solver) { nodesSolver_ = solver; }
 
   /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
   /// them when a step begins.
   PointContacts& pointContacts() { return pointContacts_; }
   const PointContacts& pointContacts() const { return pointContacts_; }
 
-  /// While this is set, the search for contacts of the surface waits until the solver calls `waitingSearch`, when all
-  /// pairs of the step are known: searches of several bodies then run side by side.
+  /// While this is set, searches wait until all pairs of the step are known: those of several bodies then run side by
+  /// side.
   void setSearchWaits(bool waits) { searchWaits_ = waits; }
   bool searchWaits() const { return searchWaits_; }
-  /// Searches for the contacts of what has been met; empty if there is nothing. Whoever sets it empties it, too.
-  std::function<void()>& waitingSearch() { return waitingSearch_; }
 
   /// From now on, the box in the broadphase also contains the nodes' positions at the end of the step, enlarged by
   /// this: Bullet's own box only contains the positions at the beginning. Below 0: Bullet's own box.
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
   btScalar reach() const { return reach_; }
+  /// The distance that is kept from objects: that of the shape, without what a step adds to it.
+  btScalar margin() const;
 
   /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
   /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
@@ -95,11 +102,12 @@ class BodyWithTrees : public btSoftBody {
   Kind kind_ = Kind::None;
   btScalar reach_ = -1, speculation_ = 0;
   bool searchWaits_ = false;
-  std::function<void()> waitingSearch_;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;
   PointContacts pointContacts_;
-  std::weak_ptr<void> surfaceContacts_;
+  std::weak_ptr<BodyContacts> surfaceContacts_;
+  std::shared_ptr<BodyContacts> nodeContacts_;
+  const btSoftBodySolver* nodesSolver_ = nullptr;
 };
 
 /// The object of a body that `createSoftBody` has created; null for others.

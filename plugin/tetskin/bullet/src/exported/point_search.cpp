@@ -20,10 +20,9 @@ void forgetPairs(btSoftBody& body, btDeformableMultiBodyDynamicsWorld& world) {
 
 PointSearch::PointSearch(btDeformableMultiBodyDynamicsWorld& world, BodyWithTrees& body, ContactPatches patches,
                          const SearchDistances& distances)
-    : contacts_(std::make_shared<BodyContacts>(*world.getDispatcher(), body,
-                                               PointCollider(std::move(patches), distances.margin, distances.slack),
-                                               distances.thickness)),
-      marginBefore_(body.getCollisionShape()->getMargin()) {
+    : contacts_(std::make_shared<BodyContacts>(
+          world.getDispatcher(), body, PointCollider(std::move(patches), distances.slack), distances.thickness)),
+      marginBefore_(body.margin()) {
   assert(!(distances.margin < 0) && !(distances.beyondNodes < 0));
   body.getCollisionShape()->setMargin(distances.margin);
   body.setReach(distances.margin + distances.beyondNodes);
@@ -41,7 +40,8 @@ PointSearch::~PointSearch() {
 }
 
 bool PointSearch::exists(const btSoftBody& body) {
-  return contactsOf(body) != nullptr;
+  const BodyWithTrees* made = bodyWithTrees(body);
+  return made && !made->surfaceContacts().expired();
 }
 
 const BodyWithTrees* PointSearch::body() const {

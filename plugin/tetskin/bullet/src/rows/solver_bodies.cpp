@@ -186,7 +186,7 @@ void SolverBodies::attachPersistent() {
     body.hasRows = &kept.hasRows;
     body.hadRows = kept.hasRows;
     body.paddedTrees = &kept.paddedTrees;
-    body.paths = &kept.paths;
+    body.byBullet = !body.elastic || needsBulletsTrees(*body.body);
     body.solve = &kept.solve;
     if (body.elastic) {
       body.dynamics = body.elastic->dynamics.get();

@@ -6,7 +6,6 @@
 
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/rows/contact_row.h>
-#include <tetskin/bullet/src/search/node_paths.h>
 #include <tetskin/bullet/src/search/padded_trees.h>
 
 #include <cassert>
@@ -46,7 +45,7 @@ struct SolvedBody {
   std::vector<FrictionAnchor>* frictionAnchors = nullptr;
   PointContacts* bulletsContacts = nullptr;  ///< contacts of this step that Bullet has found
   PaddedTrees* paddedTrees = nullptr;        ///< when Bullet's trees of the body were fitted, and by how much
-  NodePaths* paths = nullptr;                ///< of this step, unless Bullet searches for the body's contacts
+  bool byBullet = true;                      ///< Bullet searches for its contacts with rigid objects, by its own trees
   elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;  ///< of the body's own system
   int iterations = 0;            ///< of this step; coupled bodies store them in the first one
   int rowCount = 0;              ///< rows of contacts and anchors
@@ -135,7 +134,6 @@ class SolverBodies {
     bool hasRows = false;  ///< true if any row acts on the body
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
-    NodePaths paths;
     elastic_detail::ConjugateGradient<btScalar> solve;
   };
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btAabbUtil2.h>
+#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <algorithm>
 #include <cassert>
@@ -19,6 +21,9 @@ namespace {
 /// so that a least recently used rule would drop each one just before its turn.
 constexpr std::size_t kMaxMemoryBytes = std::size_t(32) << 20;
 constexpr std::size_t kMinRemembered = 64;
+/// Of nodes, relative to the body's size: the distance around them within which a search finds clearances, and the
+/// depth up to which one behind a mesh's surface still belongs to it. As of surfaces: see SurfaceContact.
+constexpr btScalar kNodesSlack = btScalar(0.005), kMeshThickness = btScalar(0.03);
 /// Steps after which a shape that was not near is forgotten.
 constexpr unsigned kForgottenAfter = 64;
 
@@ -66,31 +71,27 @@ ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
 
 }  // namespace
 
-BodyContacts::BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, PointCollider search,
+BodyContacts::BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, PointCollider search,
                            btScalar thickness)
-    : dispatcher_(&dispatcher),
+    : dispatcher_(dispatcher),
       body_(body),
       lifetime_(body.lifetime()),
       search_(std::move(search)),
       thickness_(thickness),
       maxRemembered_(maxRemembered(search_.patches())) {}
 
-BodyContacts::~BodyContacts() {
-  if (bodyLives()) body_.waitingSearch() = nullptr;
-}
-
 /// What sleeps is searched for at once: a contact wakes it, before Bullet finds out what moves.
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   assert(bodyLives());
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
+  if (!dispatcher_ && (body_.m_cfg.collisions & btSoftBody::fCollision::SDF_RDN) == 0) return;
   const Met met{&object, rigid.getCollisionShape(), pathOf(rigid)};
   if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) {
     nodesRead_ = false;
     return search(met);
   }
   waiting_.push_back(met);
-  body_.waitingSearch() = [this] { searchWaiting(); };
 }
 
 /// The nodes do not move between the searches of a step.
@@ -115,7 +116,13 @@ void BodyContacts::readNodes() {
     const btSoftBody::Node& node = body_.m_nodes[n];
     nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
   }
-  search_.begin(nodes_, body_.speculation());
+  // What is known to be clear is so by a distance from the margin.
+  const btScalar margin = body_.margin();
+  for (auto known = known_.begin(); known != known_.end() && margin != margin_; ++known) {
+    for (auto& [number, shape] : known->second.shapes) shape.memory = {};
+  }
+  margin_ = margin;
+  search_.begin(nodes_, margin, body_.speculation());
 }
 
 /// A box around the shape at both ends of its path.
@@ -157,9 +164,20 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   readNodes();
   // Points count as touching a mesh up to some depth behind it, and a shape that turns leaves the box on its way.
   const WorldBox around = box.grownBy((shape.isConcave() ? thickness_ : btScalar(0)) + beyondBox(shape, path));
-  const std::vector<ContactCandidate>& touches = search_.find(*probe, path, memoryOf(known), &around);
-  for (const ContactCandidate& touch : touches) addContact(touch, object);
-  if (!touches.empty() && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
+  bool touches = false;
+  for (const ContactCandidate& touch : search_.find(*probe, path, memoryOf(known), &around)) {
+    if (passesOver(search_.patches().patches[touch.patch])) continue;
+    addContact(touch, object);
+    touches = true;
+  }
+  if (touches && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
+}
+
+/// Anchors hold nodes where they are, and what is pinned does not move.
+bool BodyContacts::passesOver(const ContactPatch& patch) const {
+  if (patch.nodeCount > 1) return false;
+  const btSoftBody::Node& node = body_.m_nodes[search_.patches().nodes[patch.firstNode]];
+  return node.m_battach != 0 || !(node.m_im > 0);
 }
 
 void BodyContacts::addContact(const ContactCandidate& touch, const btCollisionObject& object) {
@@ -265,6 +283,28 @@ ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& kno
   if (!shape.isConcave()) return nullptr;
   mesh_.take(static_cast<const btConcaveShape&>(shape), thickness_);
   return &mesh_;
+}
+
+std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body) {
+  std::vector<LoosePatch> patches(static_cast<std::size_t>(body.m_nodes.size()));
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    LoosePatch& patch = patches[static_cast<std::size_t>(n)];
+    patch.nodes = {n};
+    patch.weights = {1};
+    patch.centroid = toEigen(body.m_nodes[n].m_x);
+  }
+  const auto size = static_cast<btScalar>(boundingBox(nodePositions(body)).sizes().maxCoeff());
+  return std::make_shared<BodyContacts>(nullptr, body, PointCollider(clustered(patches), kNodesSlack * size),
+                                        kMeshThickness * size);
+}
+
+std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher, bool nodes) {
+  const BodyWithTrees* made = bodyWithTrees(body);
+  if (!made) return nullptr;
+  std::shared_ptr<BodyContacts> atSurface = made->surfaceContacts().lock();
+  if (atSurface && atSurface->dispatcher() == &dispatcher) return atSurface;
+  const bool isOurs = made->nodesSolver() && made->nodesSolver() == const_cast<btSoftBody&>(body).getSoftBodySolver();
+  return nodes && isOurs ? made->nodeContacts() : nullptr;
 }
 
 }  // namespace tetskin::bullet_detail

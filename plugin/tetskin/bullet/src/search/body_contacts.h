@@ -37,11 +37,10 @@ struct KnownObject {
 
 class BodyContacts {
  public:
-  /// dispatcher  the one whose pairs are handled; only compared
+  /// dispatcher  the one whose pairs are handled, only compared; null: any
   /// body        created by `createSoftBody`
   /// thickness   depth up to which a point behind a mesh's surface still belongs to it
-  BodyContacts(const btDispatcher& dispatcher, BodyWithTrees& body, PointCollider search, btScalar thickness);
-  ~BodyContacts();
+  BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, PointCollider search, btScalar thickness);
   BodyContacts(const BodyContacts&) = delete;
   BodyContacts& operator=(const BodyContacts&) = delete;
 
@@ -49,9 +48,11 @@ class BodyContacts {
   /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
 
-  /// Adds the contacts with an object to the body's, shape by shape; at once, or when the body's waiting search is
-  /// called.
+  /// Adds the contacts with an object to the body's, shape by shape; at once, or, if the body's search waits, in
+  /// `searchWaiting`.
   void collide(const btCollisionObjectWrapper& rigid);
+  bool isWaiting() const { return !waiting_.empty(); }
+  void searchWaiting();
 
   /// Forgets an object that is not met any more, or not at present.
   void forget(const btCollisionObject& object);
@@ -67,7 +68,7 @@ class BodyContacts {
     ShapePath path;
   };
   void search(const Met& met);
-  void searchWaiting();
+  bool passesOver(const ContactPatch& patch) const;
   void readNodes();
   void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                     const btCollisionObject& object);
@@ -85,6 +86,7 @@ class BodyContacts {
   std::weak_ptr<const void> lifetime_;  ///< of the body: afterwards, another one may have its address
   PointCollider search_;
   btScalar thickness_;
+  btScalar margin_ = 0;  ///< of the last search
   std::vector<NodePath> nodes_;
   bool nodesRead_ = false;    ///< since the search began
   std::vector<Met> waiting_;  ///< those that are yet to be searched for
@@ -96,5 +98,12 @@ class BodyContacts {
   std::size_t remembered_ = 0, maxRemembered_;  ///< numbers of shapes
   ShapeMemory overflow_;                        ///< used for shapes beyond the limit, of which nothing is kept
 };
+
+/// What finds the contacts of the body's nodes.
+std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body);
+
+/// What finds the body's contacts in a world with this dispatcher; null if Bullet does.
+/// nodes  whether it finds those of nodes
+std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher, bool nodes);
 
 }  // namespace tetskin::bullet_detail

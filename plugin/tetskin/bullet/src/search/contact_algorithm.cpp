@@ -29,14 +29,38 @@ btCollisionAlgorithmCreateFunc* bulletsMaker(const btCollisionDispatcher& dispat
   return closest ? bullets.getClosestPointsAlgorithmCreateFunc(a, b) : bullets.getCollisionAlgorithmCreateFunc(a, b);
 }
 
-/// The algorithm of one pair. When the body's contacts have been destroyed, it calls the one that would be there
-/// without them.
+/// Creates the algorithms for pairs in which the soft body is the first, or the second.
+class Maker : public btCollisionAlgorithmCreateFunc {
+ public:
+  /// others  what serves nodes and other bodies, if the application has registered that; null: Bullet's own
+  Maker(btCollisionAlgorithmCreateFunc* others, bool softIsSecond, bool closestPoints)
+      : others_(others), closestPoints_(closestPoints) {
+    m_swapped = softIsSecond;
+  }
+  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                 const btCollisionObjectWrapper* first,
+                                                 const btCollisionObjectWrapper* second) override;
+  std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher) const {
+    return bullet_detail::contactsOf(body, dispatcher, others_ == nullptr);
+  }
+  /// The algorithm that would be there without this.
+  btCollisionAlgorithm* makeOther(btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* first,
+                                  const btCollisionObjectWrapper* second) const;
+
+ private:
+  btCollisionAlgorithmCreateFunc* others_;
+  bool closestPoints_;
+};
+
+/// The algorithm of one pair. Where nothing of this library finds the body's contacts, it calls the one that would be
+/// there without it.
 class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
  public:
-  ContactAlgorithm(std::weak_ptr<BodyContacts> contacts, const btCollisionAlgorithmConstructionInfo& info,
+  ContactAlgorithm(const Maker& maker, const btCollisionAlgorithmConstructionInfo& info,
                    const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second, bool softIsSecond)
       : btSoftRigidCollisionAlgorithm(nullptr, info, first, second, softIsSecond),
-        contacts_(std::move(contacts)),
+        maker_(maker),
+        soft_(btSoftBody::upcast((softIsSecond ? second : first)->getCollisionObject())),
         rigid_((softIsSecond ? first : second)->getCollisionObject()),
         softIsSecond_(softIsSecond) {}
   ~ContactAlgorithm() override {
@@ -47,15 +71,20 @@ class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
   }
   void processCollision(const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second,
                         const btDispatcherInfo& info, btManifoldResult* result) override {
-    if (const auto contacts = contacts_.lock()) return contacts->collide(*(softIsSecond_ ? first : second));
-    if (!other_) other_ = m_dispatcher->findAlgorithm(first, second, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    const std::shared_ptr<BodyContacts> contacts = maker_.contactsOf(*soft_, *m_dispatcher);
+    if (contacts != contacts_.lock()) contacts_ = contacts;
+    if (contacts) return contacts->collide(*(softIsSecond_ ? first : second));
+    btCollisionAlgorithmConstructionInfo of(m_dispatcher, 1);
+    if (!other_) other_ = maker_.makeOther(of, first, second);
     other_->processCollision(first, second, info, result);
   }
 
  private:
-  std::weak_ptr<BodyContacts> contacts_;
+  const Maker& maker_;
+  const btSoftBody* soft_;
   const btCollisionObject* rigid_;
   btCollisionAlgorithm* other_ = nullptr;
+  std::weak_ptr<BodyContacts> contacts_;  ///< those that know the rigid object
   bool softIsSecond_;
 };
 
@@ -63,43 +92,30 @@ class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
 // algorithms.
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgorithm), "no room in Bullet's pool");
 
-/// Creates the algorithms for pairs in which the soft body is the first, or the second.
-class Maker : public btCollisionAlgorithmCreateFunc {
- public:
-  /// others  what serves bodies without surface contact, if the application has registered that; null: Bullet's own
-  Maker(btCollisionAlgorithmCreateFunc* others, bool softIsSecond, bool closestPoints)
-      : others_(others), closestPoints_(closestPoints) {
-    m_swapped = softIsSecond;
-  }
-  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                 const btCollisionObjectWrapper* first,
-                                                 const btCollisionObjectWrapper* second) override;
-
- private:
-  btCollisionAlgorithmCreateFunc* others_;
-  bool closestPoints_;
-};
+btCollisionAlgorithm* Maker::makeOther(btCollisionAlgorithmConstructionInfo& info,
+                                       const btCollisionObjectWrapper* first,
+                                       const btCollisionObjectWrapper* second) const {
+  const auto& dispatcher = static_cast<const btCollisionDispatcher&>(*info.m_dispatcher1);
+  const int a = first->getCollisionShape()->getShapeType(), b = second->getCollisionShape()->getShapeType();
+  auto* others = others_ ? others_ : bulletsMaker(dispatcher, a, b, closestPoints_);
+  assert(others);
+  return others->CreateCollisionAlgorithm(info, first, second);
+}
 
 btCollisionAlgorithm* Maker::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                       const btCollisionObjectWrapper* first,
                                                       const btCollisionObjectWrapper* second) {
   assert(info.m_dispatcher1 && first && second);
   const btSoftBody* soft = btSoftBody::upcast((m_swapped ? second : first)->getCollisionObject());
-  const std::shared_ptr<BodyContacts> contacts = soft ? contactsOf(*soft) : nullptr;
-  if (!contacts || contacts->dispatcher() != info.m_dispatcher1) {
-    const auto& dispatcher = static_cast<const btCollisionDispatcher&>(*info.m_dispatcher1);
-    const int a = first->getCollisionShape()->getShapeType(), b = second->getCollisionShape()->getShapeType();
-    auto* others = others_ ? others_ : bulletsMaker(dispatcher, a, b, closestPoints_);
-    assert(others);
-    return others->CreateCollisionAlgorithm(info, first, second);
-  }
+  if (!soft || !bodyWithTrees(*soft)) return makeOther(info, first, second);
   if (closestPoints_) {
+    if (!contactsOf(*soft, *info.m_dispatcher1)) return makeOther(info, first, second);
     // A query such as contactTest: Bullet's algorithm would add its contacts to those of the step.
     void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(btEmptyAlgorithm));
     return new (memory) btEmptyAlgorithm(info);
   }
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
-  return new (memory) ContactAlgorithm(contacts, info, first, second, m_swapped);
+  return new (memory) ContactAlgorithm(*this, info, first, second, m_swapped);
 }
 
 /// All makers, by what they stand in for: as few as there are algorithms that applications have registered.
@@ -154,11 +170,6 @@ void registerContactAlgorithms(btCollisionDispatcher& dispatcher) {
       registerFor(dispatcher, type, SOFTBODY_SHAPE_PROXYTYPE, closest);
     }
   }
-}
-
-std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body) {
-  const BodyWithTrees* made = bodyWithTrees(body);
-  return made ? std::static_pointer_cast<BodyContacts>(made->surfaceContacts().lock()) : nullptr;
 }
 
 }  // namespace tetskin::bullet_detail

@@ -17,7 +17,4 @@ namespace tetskin::bullet_detail {
 /// state and is never destroyed, so that nothing need be unregistered. May be called repeatedly.
 void registerContactAlgorithms(btCollisionDispatcher& dispatcher);
 
-/// Null if the body has none, or they have been destroyed.
-std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body);
-
 }  // namespace tetskin::bullet_detail

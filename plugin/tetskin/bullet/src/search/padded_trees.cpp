@@ -23,7 +23,9 @@ bool collidesWithSoftBodies(btSoftBody& body) {
 
 bool needsBulletsTrees(btSoftBody& body) {
   constexpr int kFaces = btSoftBody::fCollision::SDF_RDF | btSoftBody::fCollision::SDF_MDF;
-  return body.m_bUpdateRtCst || (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
+  const int rigid = body.m_cfg.collisions & btSoftBody::fCollision::RVSmask;
+  const bool atNodes = rigid == 0 || rigid == btSoftBody::fCollision::SDF_RD;
+  return body.m_bUpdateRtCst || !atNodes || (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
 }
 
 void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {

@@ -13,8 +13,8 @@ namespace tetskin::bullet_detail {
 
 /// True if Bullet tests the body against any soft body, itself included.
 bool collidesWithSoftBodies(btSoftBody& body);
-/// True if Bullet's own search for contacts is going to use the body's trees: it searches for them on the body's faces,
-/// whose nodes must then be at their predicted positions.
+/// True if Bullet's own search for contacts is going to use the body's trees, as the application wants contact at its
+/// faces, or of another kind than at nodes. Its nodes must then be at their predicted positions.
 bool needsBulletsTrees(btSoftBody& body);
 
 /// Where the nodes were when a body's tree of faces was fitted. The leaves are padded: as long as nodes stay in them,

@@ -30,15 +30,15 @@ btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b) {
   return btSqrt(squared);
 }
 
-PointCollider::PointCollider(ContactPatches patches, btScalar margin, btScalar slack)
-    : patches_(std::move(patches)), margin_(margin), slack_(slack) {
-  assert(!(margin < 0) && !(slack < 0));
+PointCollider::PointCollider(ContactPatches patches, btScalar slack) : patches_(std::move(patches)), slack_(slack) {
+  assert(!(slack < 0));
   for (const PatchCluster& cluster : patches_.clusters) spread_ = std::max(spread_, cluster.spread);
 }
 
-void PointCollider::begin(const std::vector<NodePath>& nodes, btScalar speculation) {
-  assert(speculation >= 0);
+void PointCollider::begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation) {
+  assert(margin >= 0 && speculation >= 0);
   nodes_ = &nodes;
+  margin_ = margin;
   speculation_ = speculation;
   reach_ = margin_ + speculation;
   clustersRead_ = false;

@@ -86,14 +86,14 @@ constexpr std::size_t kManyTouches = 64;
 class PointCollider {
  public:
   /// slack  distance beyond the reach up to which clearances are computed and kept
-  PointCollider(ContactPatches patches, btScalar margin, btScalar slack);
+  PointCollider(ContactPatches patches, btScalar slack);
 
   const ContactPatches& patches() const { return patches_; }
-  btScalar margin() const { return margin_; }
 
   /// Sets the nodes' paths in this step; they must stay valid until the next call.
+  /// margin       kept from shapes
   /// speculation  height above the margin up to which points still touch
-  void begin(const std::vector<NodePath>& nodes, btScalar speculation);
+  void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
   /// The points of the body that touch this shape, patch by patch: the deepest points of each patch, and others so far
   /// apart that none is missed, at most kMaxTouches, or kTriangleTouches. Valid until the next call.
   /// memory  of the same shape, or an empty one
@@ -129,9 +129,9 @@ class PointCollider {
   void rememberTouched();
 
   ContactPatches patches_;
-  btScalar margin_, slack_;
-  btScalar speculation_ = 0, reach_ = 0;  ///< of this step; the reach includes the margin
-  btScalar spread_ = 1;                   ///< the largest spread of all clusters
+  btScalar slack_;
+  btScalar margin_ = 0, speculation_ = 0, reach_ = 0;  ///< of this step; the reach includes the margin
+  btScalar spread_ = 1;                                ///< the largest spread of all clusters
   const std::vector<NodePath>* nodes_ = nullptr;
   bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;   ///< world space, around the paths of all their points

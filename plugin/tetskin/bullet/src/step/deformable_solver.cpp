@@ -6,7 +6,7 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
-#include <tetskin/bullet/src/search/node_contacts.h>
+#include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>
 #include <tetskin/core/src/base/run_by_size.h>
 
@@ -82,41 +82,14 @@ void DeformableSolver::predictMotion(btScalar dt) {
   impl.clock.end(&StepTimes::prediction);
 }
 
-/// Returns false if Bullet has to search for the contacts.
-bool DeformableSolver::Impl::findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object) {
-  using Collision = btSoftBody::fCollision;
-  const std::size_t index = bodies.indexOf(&body);
-  if (index == bodies.bodies().size() || (body.m_cfg.collisions & Collision::RVSmask) != Collision::SDF_RD)
-    return false;
-  const SolvedBody& solved = bodies.bodies()[index];
-  if (!solved.paths) return false;
-  if ((body.m_cfg.collisions & Collision::SDF_RDN) != 0) {
-    findNodeContacts(body, object, *solved.paths, solved.elastic != nullptr);
-  }
-  return true;
-}
-
-/// Runs the searches that have waited for threads.
-void DeformableSolver::Impl::searchSurfaces() {
-  std::vector<BodyWithTrees*> waiting;
-  for (const SolvedBody& solved : bodies.bodies()) {
-    auto* body = bodyWithTrees(*solved.body);
-    if (!body) continue;
-    body->setSearchWaits(false);
-    if (body->waitingSearch()) waiting.push_back(body);
-  }
-  runTasks(threads, waiting.size(), [&](std::size_t k) {
-    waiting[k]->waitingSearch()();
-    waiting[k]->waitingSearch() = nullptr;
-  });
-}
-
-/// Bullet calls this for a body and a rigid object whose boxes overlap.
+/// Bullet calls this for a body and a rigid object whose boxes overlap, and whose contacts it is to find.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
   if (impl_->solving) {
     if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
+    const SolvedBody* solved = impl_->bodies.find(body);
+    // Otherwise, the algorithm of the pair has called it; but a dispatcher may be none of Bullet's.
+    if (solved && !solved->byBullet) return bodyWithTrees(*body)->nodeContacts()->collide(*object);
     impl_->obstacleChanges.syncRigidObject(*body, *object);
-    if (impl_->findNodeContactsOf(*body, *object)) return;
   }
   btDeformableBodySolver::processCollision(body, object);
 }
@@ -129,7 +102,7 @@ void DeformableSolver::setupDeformableSolve(bool implicit) {
 /// detection has run since the prediction.
 void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
   impl_->dropRemovedObjects();
-  impl_->searchSurfaces();
+  impl_->searchWaiting();
   impl_->clock.end(&StepTimes::rigidSearch);
   btDeformableBodySolver::setConstraints(info);
   if (!impl_->solving) return;

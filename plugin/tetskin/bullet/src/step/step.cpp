@@ -57,8 +57,8 @@ void prepareStep(const SolvedBody& solved, btScalar dt) {
 }
 
 /// Moves the nodes by their velocities, which are bounded before. Returns the square of the highest speed.
-double moveNodes(btSoftBody& body, btScalar dt, std::vector<NodeTravel>& travels) {
-  assert(travels.size() == static_cast<std::size_t>(body.m_nodes.size()));
+double moveNodes(btSoftBody& body, btScalar dt) {
+  assert(dt > 0);
   const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
   const btScalar kept = 1 - body.m_cfg.drag;
   double maximum = 0.0;
@@ -71,7 +71,6 @@ double moveNodes(btSoftBody& body, btScalar dt, std::vector<NodeTravel>& travels
     if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
     maximum = std::max(maximum, std::min(squared, allowed * allowed));
     node.m_q = node.m_x + dt * node.m_v;
-    travels[static_cast<std::size_t>(n)] = {node.m_x, node.m_q};
     node.m_splitv.setZero();
     node.m_constrained = false;
   }
@@ -200,6 +199,7 @@ void DeformableSolver::Impl::predict() {
   applyOthers();
   forEachBody(bodies.bodies(), threads,
               [](SolvedBody& body, ParallelFor*) { readNodes(*body.body, false, *body.dynamics); });
+  for (SolvedBody& body : bodies.bodies()) prepareSearch(body);
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
     // With other forces, the velocities at the beginning of the step determine the tolerances.
@@ -208,12 +208,11 @@ void DeformableSolver::Impl::predict() {
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     predictVelocities(body, inner);
     writePrediction(body);
-    if (!needsBulletsTrees(*body.body)) predictPositions(body);
+    if (!body.byBullet) predictPositions(body);
   });
   for (SolvedBody& body : bodies.bodies()) {
     clearContacts(*body.body);
-    needsBulletsTrees(*body.body) ? predictByBullet(body) : setBroadphaseBox(*body.body);
-    if (auto* own = bodyWithTrees(*body.body)) own->setSearchWaits(threads != nullptr);
+    body.byBullet ? predictByBullet(body) : setBroadphaseBox(*body.body);
   }
 }
 
@@ -263,7 +262,6 @@ void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
 /// By Bullet's own function, which also refits the trees of nodes and faces.
 void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
   body.paddedTrees->forget();
-  body.paths = nullptr;
   solver.predictDeformableMotion(body.body, dt());
   if (body.elastic) speculate(body, fastestNode(*body.body));
 }
@@ -271,7 +269,7 @@ void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
 /// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees and the box in the broadphase.
 void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
   prepareStep(body, dt());
-  const double squared = moveNodes(*body.body, dt(), body.paths->begin(body.dynamics->nodeCount()));
+  const double squared = moveNodes(*body.body, dt());
   const auto fastest = static_cast<btScalar>(std::sqrt(squared));
   body.paddedTrees->fit(*body.body, *body.dynamics, fastest * dt());
   if (body.elastic) speculate(body, fastest);

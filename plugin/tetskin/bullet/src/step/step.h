@@ -78,8 +78,8 @@ struct DeformableSolver::Impl {
   void predictPositions(SolvedBody& body);
 
   // Detection of contacts.
-  bool findNodeContactsOf(btSoftBody& body, const btCollisionObjectWrapper& object);
-  void searchSurfaces();
+  void prepareSearch(SolvedBody& body) const;
+  void searchWaiting();
 
   // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
   void readContacts(SolvedBody& body);

@@ -79,6 +79,11 @@ void DeformableSolver::Impl::dropRemovedObjects() {
   for (int b = 0; b < solver.m_softBodies.size(); ++b) {
     dropContactsWith(gone, solver.m_softBodies[b]->m_nodeRigidContacts);
     dropContactsWith(gone, solver.m_softBodies[b]->m_faceRigidContacts);
+    if (auto* own = bodyWithTrees(*solver.m_softBodies[b])) {
+      for (PointContact& contact : own->pointContacts()) {
+        if (gone.count(contact.object) > 0) contact.object = nullptr;
+      }
+    }
   }
   findIslands(*objects.world());
 }

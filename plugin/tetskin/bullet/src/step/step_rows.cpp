@@ -6,6 +6,7 @@
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/rows/rigid_rows.h>
+#include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 
@@ -14,6 +15,33 @@
 #include <unordered_map>
 
 namespace tetskin {
+
+/// Nodes may have been appended.
+void DeformableSolver::Impl::prepareSearch(SolvedBody& body) const {
+  auto* own = bodyWithTrees(*body.body);
+  if (!own) return;
+  own->setSearchWaits(threads != nullptr);
+  own->setNodesSolver(body.byBullet ? nullptr : static_cast<const btSoftBodySolver*>(&solver));
+  if (body.byBullet) return;
+  const auto& contacts = own->nodeContacts();
+  const auto count = static_cast<std::size_t>(body.body->m_nodes.size());
+  if (!contacts || contacts->search().patches().nodes.size() != count) own->setNodeContacts(makeNodeContacts(*own));
+  if (own->surfaceContacts().expired()) own->setReach(own->margin());
+}
+
+/// Runs the searches that have waited for threads.
+void DeformableSolver::Impl::searchWaiting() {
+  std::vector<std::shared_ptr<BodyContacts>> waiting;
+  for (const SolvedBody& solved : bodies.bodies()) {
+    auto* own = bodyWithTrees(*solved.body);
+    if (!own) continue;
+    own->setSearchWaits(false);
+    for (const auto& contacts : {own->surfaceContacts().lock(), own->nodeContacts()}) {
+      if (contacts && contacts->isWaiting()) waiting.push_back(contacts);
+    }
+  }
+  runTasks(threads, waiting.size(), [&](std::size_t k) { waiting[k]->searchWaiting(); });
+}
 
 /// The distance is twice the path of a body that gravity accelerates for a step: of two bodies in contact, the
 /// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
