@@ -130,7 +130,7 @@ class Drag {
   /// The stretch of the spring, over the body's size; nothing if there is no spring.
   std::optional<double> stretch() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
-  double nodeSpeed() const;
+  double nodeSpeed() const { return scenes::nodeSpeed({&body_}) / kSize; }
   /// Records the run that follows.
   Recording record(const std::string& view) const;
   ViewMoment moment() const;
@@ -262,12 +262,6 @@ bool Drag::step(int frame) {
 std::optional<double> Drag::stretch() const {
   if (!spring_) return {};
   return static_cast<double>(spring_->stretch()) / kSize;
-}
-
-double Drag::nodeSpeed() const {
-  double squared = 0.0;
-  for (int n = 0; n < body_.m_nodes.size(); ++n) squared += static_cast<double>(body_.m_nodes[n].m_v.length2());
-  return std::sqrt(squared / body_.m_nodes.size()) / kSize;
 }
 
 void Drag::measure(double t) {

@@ -167,7 +167,7 @@ class Pile {
   /// Pairs of bodies that touch each other.
   std::size_t pairCount() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
-  double nodeSpeed() const;
+  double nodeSpeed() const { return scenes::nodeSpeed(bodies_) / kSize; }
   /// Of all steps so far.
   StageTimes stageTimes() const;
 
@@ -262,15 +262,6 @@ std::size_t Pile::pairCount() const {
     if (c.body != c.other) pairs.insert(std::minmax(c.body, c.other));
   }
   return pairs.size();
-}
-
-double Pile::nodeSpeed() const {
-  double squared = 0.0, count = 0.0;
-  for (const btSoftBody* body : bodies_) {
-    for (int n = 0; n < body->m_nodes.size(); ++n) squared += static_cast<double>(body->m_nodes[n].m_v.length2());
-    count += body->m_nodes.size();
-  }
-  return std::sqrt(squared / count) / kSize;
 }
 
 Recording Pile::record(const PileOptions& options, const std::string& view) const {

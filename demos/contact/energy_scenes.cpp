@@ -8,13 +8,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 BodyOptions bodyOfStiffness(double stiffness) {
@@ -24,7 +25,7 @@ BodyOptions bodyOfStiffness(double stiffness) {
 }
 
 /// Runs for half a second.
-void reportEnergy(Run& run, ContactWorld& world, SoftObject& body, const Distance& distance) {
+void reportEnergy(Run& run, MeasuringWorld& world, SoftObject& body, const Distance& distance) {
   const double start = world.energy();
   double maximum = 0.0, gap = HUGE_VAL;
   world.simulate(0.5, [&] {
@@ -40,7 +41,7 @@ double toFloor(const Vector3d& p) {
 }
 
 void land(Run& run, const ModelPtr& model, const Eigen::Isometry3d& at, double stiffness, double speed) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& body = world.addSoft(model, bodyOfStiffness(stiffness), at);
   body.push(speed * Vector3d(0.3, -1, 0));
@@ -60,7 +61,7 @@ void landBox(Run& run, double stiffness, double speed) {
 /// A rigid ball falls on a soft one of 1 kg that lies on the floor.
 void crush(Run& run, double stiffness, double mass, double speed) {
   constexpr double kRadius = 0.25;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& body = world.addSoftOn(0.0, makeBall(), bodyOfStiffness(stiffness));
   btRigidBody& ball = world.addSphere({0.1, 1.0 + kRadius + 0.02, 0}, kRadius, mass);
@@ -73,7 +74,7 @@ void crush(Run& run, double stiffness, double mass, double speed) {
 /// Two kinematic plates close on a cube until it has half its width, and let go of it.
 void squeeze(Run& run, double stiffness) {
   constexpr double kThickness = 0.2, kClosed = 0.25, kSpeed = 0.5, kSpeedBack = 5.0;
-  ContactWorld world(run, Vector3d::Zero());
+  MeasuringWorld world(run, Vector3d::Zero());
   SoftObject& body = world.addSoft(makeBox({0.5, 0.5, 0.5}), bodyOfStiffness(stiffness), Vector3d(0, 0, 0));
   const auto at = [&](int side, double inner) {
     return btTransform(btQuaternion::getIdentity(), toBullet(Vector3d(side * (inner + kThickness), 0, 0)));

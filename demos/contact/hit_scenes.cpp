@@ -8,13 +8,14 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 const Vector3d kWeightless = Vector3d::Zero();
@@ -22,7 +23,7 @@ const Vector3d kBallStart(-0.75, 0.3, 0.05), kBallVelocity(5, 0, 0);
 constexpr double kBallRadius = 0.15;
 
 /// Runs for half a second, until everything that met has parted.
-void reportLost(Run& run, ContactWorld& world) {
+void reportLost(Run& run, MeasuringWorld& world) {
   const Momentum before = world.momentum();
   const double start = world.energy();
   double maximum = 0.0;
@@ -42,7 +43,7 @@ BodyOptions hitBody(double stiffness) {
 /// A zone that surrounds the whole scene.
 enum class Zone { None, Trigger, Ghost };
 
-void addZone(ContactWorld& world, Zone zone) {
+void addZone(MeasuringWorld& world, Zone zone) {
   constexpr double kHalf = 5.0;
   if (zone == Zone::Trigger) world.addTrigger(kHalf);
   if (zone == Zone::Ghost) world.addGhost(kHalf);
@@ -50,7 +51,7 @@ void addZone(ContactWorld& world, Zone zone) {
 
 /// Nothing meets anything: the accuracy of the figures themselves.
 void miss(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless).push(Vector3d(1, 2, 3), Vector3d(1, -2, 0.5));
   btRigidBody& ball = world.addSphere({-3, 3, 0}, kBallRadius, 1);
   ball.setLinearVelocity(toBullet(-kBallVelocity));
@@ -60,7 +61,7 @@ void miss(Run& run, double stiffness) {
 
 /// A rigid ball hits a soft one of 1 kg off its centre.
 void hit(Run& run, double stiffness, double mass, Zone zone) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   addZone(world, zone);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
   world.addSphere(kBallStart, kBallRadius, mass).setLinearVelocity(toBullet(kBallVelocity));
@@ -69,7 +70,7 @@ void hit(Run& run, double stiffness, double mass, Zone zone) {
 
 /// A multibody without links hits the soft ball.
 void hitByMultiBody(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
   constexpr btScalar kMass = 1;
   auto shape = std::make_unique<btSphereShape>(static_cast<btScalar>(kBallRadius));
@@ -87,7 +88,7 @@ void hitByMultiBody(Run& run, double stiffness) {
 
 /// A soft ball falls on a box that lies on a heavy one; all are free.
 void onBoxes(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   world.addBox({0, -0.2, 0}, {1.5, 0.2, 1.5}, 20);
   world.addBox({0, 0.15, 0}, {0.4, 0.15, 0.4}, 1);
   world.addSoft(makeBall(), hitBody(stiffness), Vector3d(0.2, 0.9, 0)).push(Vector3d(0, -3, 0));
@@ -96,7 +97,7 @@ void onBoxes(Run& run, double stiffness) {
 
 /// Two free boxes close on a soft one from both sides, out of line.
 void betweenBoxes(Run& run, double stiffness, double mass, double otherMass) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   world.addSoft(makeBox({0.5, 0.5, 0.5}), hitBody(stiffness), kWeightless);
   const Vector3d half(0.2, 0.4, 0.4);
   world.addBox({-0.8, 0.1, 0}, half, mass).setLinearVelocity(btVector3(3, 0, 0));

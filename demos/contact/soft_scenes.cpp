@@ -10,14 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 #include "scenes/timer.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -32,7 +33,7 @@ BodyOptions bodyOf(double stiffness) {
 void stack(Run& run, const std::vector<double>& stiffnesses) {
   constexpr double kHeight = 0.5, kSize = 1.0;
   const ModelPtr model = makeBox({0.5, 0.5 * kHeight, 0.5});
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   std::vector<SoftObject*> boxes;
   double height = 0.0;
@@ -63,7 +64,7 @@ struct Collision {
 void collide(Run& run, const Collision& collision) {
   constexpr double kApart = 1.05;
   const ModelPtr model = makeBall();
-  ContactWorld world(run, Vector3d::Zero());
+  MeasuringWorld world(run, Vector3d::Zero());
   const double along = std::sqrt(kApart * kApart - collision.aside * collision.aside);
   // Off the origin, so that head-on, too, there is angular momentum to lose.
   const Vector3d at(0, 0, 0.5);
@@ -159,7 +160,7 @@ double minDistance(const std::vector<SoftObject*>& bodies) {
 /// Bodies that begin inside each other, for three seconds.
 void part(Run& run, const Vector3d& gravity, const ModelPtr& model, const std::vector<Vector3d>& centres,
           const Distance& distance) {
-  ContactWorld world(run, gravity);
+  MeasuringWorld world(run, gravity);
   if (!gravity.isZero()) world.addFloor();
   ContactShapeOptions shape;
   shape.sampleCount = 300;  // as each of seven bodies meets six others

@@ -5,15 +5,16 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/elastic/elastic_body.h>
 
 #include <Eigen/Core>
 
-#include "contact/body_model.h"
+#include "measure/body_model.h"
 
 class btMultiBody;
 class btRigidBody;
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 /// Linear momentum, and angular momentum about the world's origin.
 struct Momentum {
@@ -49,7 +50,7 @@ double kineticEnergy(const btRigidBody& body);
 double kineticEnergy(const btMultiBody& body);  ///< kinetic energy of its base
 /// The energy of corotated elasticity.
 /// stiffnessScale  tetCount; empty: 1
-double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,
+double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli,
                      const std::vector<double>& stiffnessScale);
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure
