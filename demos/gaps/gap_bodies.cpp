@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
 #include "scenes/stuffed_solid.h"
@@ -86,7 +87,7 @@ const std::vector<std::string>& bodyNames() {
 measure::ModelPtr makeGapBody(const std::string& name, std::size_t tets, std::size_t triangles) {
   TriangleMesh mesh = meshNamed(name, triangles);
   mesh.groups.clear();
-  measure::CagedMesh body = measure::inWorldSize(std::move(mesh), tets);
+  scenes::CagedMesh body = scenes::inWorld(std::move(mesh), tets);
   return measure::makeModel(std::move(body.mesh), std::move(body.cage));
 }
 

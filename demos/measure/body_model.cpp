@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "measure/body_model.h"
 
-#include <tetskin/cage/create_cage.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,8 +10,7 @@
 #include <random>
 #include <utility>
 
-#include "scenes/input_error.h"
-#include "scenes/placement.h"
+#include "scenes/caged_mesh.h"
 
 namespace tetskin::measure {
 namespace {
@@ -39,14 +36,6 @@ void appendCopies(TriangleMesh& mesh, Copies copies) {
   for (int copy = 1; copy < copies.count; ++copy) {
     for (const Vector3d& p : once) mesh.positions.push_back(p + Vector3d(offset(), offset(), offset()));
   }
-}
-
-Cage builtCage(const TriangleMesh& mesh, std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  auto cage = createCage(mesh, options);
-  scenes::require(cage.status());
-  return std::move(cage).value();
 }
 
 TriangleMesh icosahedron() {
@@ -149,29 +138,20 @@ ModelPtr makeModel(TriangleMesh mesh, Cage cage) {
   auto model = std::make_shared<BodyModel>();
   model->size = boundingBox(mesh.positions).sizes().maxCoeff();
   model->volume = volumeOf(mesh);
-  auto binding = SoftBodyBinding::create(cage, mesh);
-  scenes::require(binding.status());
-  model->binding = binding.value();
+  model->binding = scenes::boundTo(cage, mesh);
   model->mesh = std::move(mesh);
   model->cage = std::move(cage);
   return model;
 }
 
 ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies) {
-  Cage cage = builtCage(mesh, tets);
+  Cage cage = scenes::builtCage(mesh, tets);
   if (copies.count == 1) return makeModel(std::move(mesh), std::move(cage));
   appendCopies(mesh, copies);
   // What is known of single vertices does not hold for the copies; a convex body has no duplicate tets.
   cage.vertexTets.clear();
   cage.meshHash.reset();
   return makeModel(std::move(mesh), std::move(cage));
-}
-
-CagedMesh inWorldSize(TriangleMesh mesh, std::size_t tets) {
-  Cage cage = builtCage(mesh, tets);
-  const scenes::Placement position = scenes::placementOf(boundingBox(cage.mesh.nodes));
-  position.toWorld(mesh.positions);
-  return {std::move(mesh), position.toWorld(std::move(cage))};
 }
 
 ModelPtr makeBall(std::size_t tets, int level, Copies copies) {

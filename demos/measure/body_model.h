@@ -37,14 +37,6 @@ ModelPtr makeModel(TriangleMesh mesh, Cage cage);
 /// A mesh in a cage that is built for it, without copies.
 ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies = {});
 
-/// A mesh and a cage built for it, moved so that the cage's box has its centre at the origin, and scaled to
-/// scenes::kSize.
-struct CagedMesh {
-  TriangleMesh mesh;
-  Cage cage;
-};
-CagedMesh inWorldSize(TriangleMesh mesh, std::size_t tets);
-
 /// A ball of radius 0.5 in a built cage: an icosphere of 10 x 4^level + 2 vertices, turned so that no vertex is at its
 /// lowest point.
 ModelPtr makeBall(std::size_t tets = 1000, int level = 4, Copies copies = {});

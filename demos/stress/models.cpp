@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "measure/body_model.h"
 #include "scenes/bar.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/slotted_beam.h"
 
 namespace tetskin::stress {
@@ -17,11 +17,11 @@ constexpr std::size_t kTriangles = 2000, kTets = 200;
 constexpr std::size_t kLargeTets = 300000;
 constexpr std::size_t kMillionTriangles = 2000000;  ///< makes three million vertices
 
-using Carried = measure::CagedMesh;
+using Carried = scenes::CagedMesh;
 
 /// The bar along x, in tets without volume fractions.
 Carried makeBarModel(std::size_t triangles, std::size_t tets) {
-  Carried bar = measure::inWorldSize(scenes::makeBar(triangles), tets);
+  Carried bar = scenes::inWorld(scenes::makeBar(triangles), tets);
   return {std::move(bar.mesh), TetMesh(std::move(bar.cage).mesh)};
 }
 
@@ -32,7 +32,7 @@ const Carried& smallBar() {
 }
 
 const Carried& slottedBeam() {
-  static const Carried beam = measure::inWorldSize(scenes::makeSlottedBeam(kTriangles), kTets);
+  static const Carried beam = scenes::inWorld(scenes::makeSlottedBeam(kTriangles), kTets);
   return beam;
 }
 
