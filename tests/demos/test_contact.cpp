@@ -116,7 +116,6 @@ TEST(Contact, PromisesNothingOfBulletsSolver) {
 TEST(Contact, RefusesWhatItDoesNotKnow) {
   const CommandFolder folder;
   test::expectRefused(folder.run(TETSKIN_CONTACT, {"--only", "flying"}), "flying");
-  test::expectRefused(folder.run(TETSKIN_CONTACT, {"--elasticity", "magic"}), "magic");
   test::expectRefused(folder.run(TETSKIN_CONTACT, {"--elasticity", "bullet", "--contact", "surface"}),
                       "--contact surface");
   folder.write("other.json", "{\"a\": 1}");
