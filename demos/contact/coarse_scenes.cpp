@@ -61,12 +61,6 @@ Obstacle obstacleOf(const Support& support, double size) {
   return measure::obstacleOf(support.make(size), centres);
 }
 
-BodyOptions optionsFor(double size, double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness * size;  // gravity grows with the size, too
-  return options;
-}
-
 /// The least distance of the drawn triangles, corners and what is between them, less the margin, S.
 double gapAsDrawn(SoftObject& body, double size, const Distance& distance) {
   constexpr int kParts = 48;
@@ -88,8 +82,9 @@ void lieOnSupports(Run& run, const Vector3d& half, const Support& support, doubl
   MeasuringWorld world(run, Vector3d(0, -scenes::kEarth * size, 0));
   const Obstacle obstacle = obstacleOf(support, size);
   obstacle.addTo(world);
+  // Gravity grows with the size, too.
   SoftObject& body =
-      world.addSoft(makeCoarseBox(half * size), optionsFor(size, 500.0), Vector3d(0, size * (half.y() + kFall), 0));
+      world.addSoft(makeCoarseBox(half * size), BodyOptions{500.0 * size}, Vector3d(0, size * (half.y() + kFall), 0));
   double gap = HUGE_VAL;
   for (int tenth = 0; tenth < 30; ++tenth) {
     world.simulate(0.1);
@@ -104,8 +99,7 @@ void ballsOnMat(Run& run) {
   constexpr double kHalfHeight = 0.2, kRadius = 0.05, kTouching = 0.005, kMass = 0.01;
   const ModelPtr mat = makeCoarseBox({1.0, kHalfHeight, 1.0}, 3000);
   MeasuringWorld world(run);
-  BodyOptions options;
-  options.stiffness = 500;
+  BodyOptions options{500};
   options.pinned = [](const Vector3d& p) { return p.y() < 0.01 - kHalfHeight; };
   SoftObject& body = world.addSoft(mat, options, Vector3d(0, -kHalfHeight, 0));
   std::vector<const btRigidBody*> balls;
@@ -134,8 +128,7 @@ void ballsOnMat(Run& run) {
 /// A cube on an equal one that is turned by 45 degrees and held at its bottom, so that edges cross.
 void cubeOnCube(Run& run) {
   MeasuringWorld world(run);
-  BodyOptions options;
-  options.stiffness = 500;
+  BodyOptions options{500};
   Eigen::Isometry3d turned(Eigen::AngleAxisd(0.25 * EIGEN_PI, Vector3d::UnitY()));
   turned.pretranslate(Vector3d(0, 0.51, 0));
   SoftObject& upper = world.addSoft(makeCoarseBox(kCube), options, turned);

@@ -26,13 +26,6 @@ Vector3d gravityOn(double slope) {
   return scenes::kEarth * Vector3d(std::sin(slope), -std::cos(slope), 0);
 }
 
-BodyOptions bodyOf(double stiffness, double friction) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  options.friction = friction;
-  return options;
-}
-
 ModelPtr flatBox(int divisions = 16, Copies copies = {}) {
   return makeBox({0.5, 0.25, 0.5}, divisions, copies);
 }
@@ -52,7 +45,7 @@ Rolled roll(Run& run, const Rolling& rolling) {
   constexpr double kSlope = 10.0 * EIGEN_PI / 180, kRadius = 0.5, kFrom = 0.1, kUntil = 2.5, kSpeed = 1.0;
   MeasuringWorld world(run, gravityOn(0.0));
   world.addFloor();
-  BodyOptions options = bodyOf(rolling.stiffness, 0.8);
+  BodyOptions options = BodyOptions{rolling.stiffness, 0.8};
   options.damping = 0.05;
   options.tolerance = rolling.tolerance;
   SoftObject& ball = world.addSoftOn(0.0, makeBall(rolling.tets), options, -2.0);
@@ -133,7 +126,7 @@ class Turntable {
 constexpr double kRiderSize = 0.5;
 
 SoftObject& addRider(MeasuringWorld& world, double stiffness, double friction, double radius) {
-  return world.addSoftOn(0.0, makeBox(Vector3d(0.25, 0.125, 0.25)), bodyOf(stiffness, friction), radius);
+  return world.addSoftOn(0.0, makeBox(Vector3d(0.25, 0.125, 0.25)), BodyOptions{stiffness, friction}, radius);
 }
 
 /// A box rides on the table at 2 m from the axis; this needs a friction coefficient of 0.66.
@@ -181,7 +174,7 @@ void creep(Run& run, double stiffness) {
   constexpr double kFriction = 0.5, kFraction = 0.975;
   MeasuringWorld world(run, gravityOn(std::atan(kFraction * kFriction)));
   world.addFloor();
-  SoftObject& box = world.addSoftOn(0.0, flatBox(), bodyOf(stiffness, kFriction));
+  SoftObject& box = world.addSoftOn(0.0, flatBox(), BodyOptions{stiffness, kFriction});
   world.simulate(1);
   const std::vector<Vector3d> before = box.surface();
   world.simulate(5);
@@ -235,7 +228,7 @@ Steps randomSteps() {
 }
 
 void stop(Run& run, double stiffness, const Steps& steps) {
-  run.report("distance over a point's", slide(run, flatBox(), bodyOf(stiffness, 0.5), steps));
+  run.report("distance over a point's", slide(run, flatBox(), BodyOptions{stiffness, 0.5}, steps));
 }
 
 /// How far a ball rolls in 1.5 seconds.
@@ -257,14 +250,11 @@ void copies(Run& run, const std::function<double(Copies)>& distance) {
 }
 
 void copiesThatRoll(Run& run) {
-  BodyOptions options;
-  options.friction = 0.8;
-  copies(run, [&](Copies count) { return rollDistance(run, makeBall(1000, 2, count), options); });
+  copies(run, [&](Copies count) { return rollDistance(run, makeBall(1000, 2, count), BodyOptions{50.0, 0.8}); });
 }
 
 void copiesThatStop(Run& run) {
-  BodyOptions options;
-  copies(run, [&](Copies count) { return slide(run, flatBox(8, count), options, equalSteps()); });
+  copies(run, [&](Copies count) { return slide(run, flatBox(8, count), {}, equalSteps()); });
 }
 
 }  // namespace

@@ -28,18 +28,11 @@ using namespace measure;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-Vector3d angularMomentumAbout(const Vector3d& pivot, const btSoftBody& body) {
-  Momentum sum;
-  addMomentum(sum, body);
-  return sum.angular - pivot.cross(sum.linear);
-}
-
 /// A bar of 1 m is thrown so that it turns about the middle of its end, where one node is pinned.
 void turnPinnedBar(Run& run, double stiffness) {
   const Vector3d pivot(-0.5, 0, 0), spin(0, 1, 5);
   MeasuringWorld world(run, Vector3d::Zero());
-  BodyOptions options;
-  options.stiffness = stiffness;
+  BodyOptions options{stiffness};
   options.pinned = [&](const Vector3d& p) { return (p - pivot).norm() < 1e-6; };
   SoftObject& bar = world.addSoft(makeLattice({8, 2, 2}, 0.125), options, Vector3d(0, 0, 0));
   bar.push(spin.cross(bar.motion().centroid - pivot), spin);
@@ -74,9 +67,8 @@ class Pendulum {
     rod->setJointPos(0, static_cast<btScalar>(angle));
     rod_ = &world.addMultiBody(std::move(rod), 0, std::move(shape));
     const Isometry3d turn(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
-    BodyOptions options;
-    options.stiffness = stiffness;
-    cube_ = &world.addSoft(model_, options, turn * Eigen::Translation3d(0, -2.0 * kRodHalf.y() - kHalf, 0));
+    cube_ =
+        &world.addSoft(model_, BodyOptions{stiffness}, turn * Eigen::Translation3d(0, -2.0 * kRodHalf.y() - kHalf, 0));
   }
 
   SoftObject& cube() { return *cube_; }

@@ -36,9 +36,7 @@ void plate(Run& run, double stiffness) {
   const btRigidBody& plate = world.addBox({0, half.y(), 0}, half, 0.1);
   world.simulate(0.5);
   const double before = lowestCorner(plate, half);
-  BodyOptions options;
-  options.stiffness = stiffness;
-  world.addSoft(makeBall(), options, Vector3d(0.2, 0.85, 0)).push(Vector3d(0, -3, 0));
+  world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0.2, 0.85, 0)).push(Vector3d(0, -3, 0));
   double lowest = HUGE_VAL;
   world.simulate(0.5, [&] { lower(lowest, lowestCorner(plate, half)); });
   run.report("sinks, S", before - lowest);
@@ -48,9 +46,7 @@ constexpr double kHeavyMass = 10.0, kHeavyStiffness = 500.0;
 const Vector3d kHeavyHalf(0.4, 0.15, 0.4);
 
 SoftObject& addCube(MeasuringWorld& world, double height) {
-  BodyOptions options;
-  options.stiffness = kHeavyStiffness;
-  return world.addSoftOn(height, makeBox({0.5, 0.5, 0.5}), options);
+  return world.addSoftOn(height, makeBox({0.5, 0.5, 0.5}), BodyOptions{kHeavyStiffness});
 }
 
 /// Two seconds to come to rest, and one of measurement.

@@ -42,17 +42,11 @@ class MovedPlate {
 
 const Vector3d kPlateHalf(1.5, 0.2, 1.5), kPlateCentre(0, -0.2, 0);
 
-BodyOptions movedBody(double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  return options;
-}
-
 /// A plate moves up under a ball, and throws it.
 void kick(Run& run, double stiffness, double speed) {
   MeasuringWorld world(run);
   MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
-  SoftObject& ball = world.addSoftOn(0.0, makeBall(), movedBody(stiffness));
+  SoftObject& ball = world.addSoftOn(0.0, makeBall(), BodyOptions{stiffness});
   double gap = HUGE_VAL;
   for (int k = 0; k < 36; ++k) {
     plate.advance(speed * kStep);
@@ -67,7 +61,7 @@ void carry(Run& run, double stiffness) {
   constexpr double kSpeed = 1.0;
   MeasuringWorld world(run);
   MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
-  SoftObject& box = world.addSoftOn(0.0, makeBox({0.5, 0.25, 0.5}), movedBody(stiffness));
+  SoftObject& box = world.addSoftOn(0.0, makeBox({0.5, 0.25, 0.5}), BodyOptions{stiffness});
   double gap = 0.0;
   for (int k = 0; k < 480; ++k) {
     plate.advance(kSpeed * kStep);
@@ -85,7 +79,7 @@ void grip(Run& run, double stiffness) {
   const double start = 0.5 + kMargin + half.x();
   MovedPlate left(world, {-start, 0, 0}, half, Vector3d::UnitX());
   MovedPlate right(world, {start, 0, 0}, half, -Vector3d::UnitX());
-  SoftObject& cube = world.addSoft(makeBox({0.5, 0.5, 0.5}), movedBody(stiffness), Vector3d(0, 0, 0));
+  SoftObject& cube = world.addSoft(makeBox({0.5, 0.5, 0.5}), BodyOptions{stiffness}, Vector3d(0, 0, 0));
   const auto simulate = [&](double seconds, double speed) {
     for (long k = 0; k < std::lround(seconds / kStep); ++k) {
       left.advance(speed * kStep);
@@ -105,7 +99,7 @@ void fallOnThin(Run& run, double stiffness, double speed) {
   MeasuringWorld world(run);
   const double half = 0.01;
   world.addBox({0, -half, 0}, {2, half, 2});
-  SoftObject& ball = world.addSoft(makeBall(), movedBody(stiffness), Vector3d(0, 1, 0));
+  SoftObject& ball = world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, 1, 0));
   ball.push(Vector3d(0, -speed, 0));
   double gap = HUGE_VAL;
   world.simulate(0.5, [&] { lower(gap, ball.floorGap()); });

@@ -67,9 +67,8 @@ void restInV(Run& run, double stiffness) {
     world.addRigid(std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)),
                    btTransform(turn, quatRotate(turn, btVector3(0, btScalar(-0.5), 0))));
   }
-  BodyOptions options;
-  options.stiffness = stiffness;
-  SoftObject& body = world.addSoft(makeBall(), options, Vector3d(0, std::sqrt(2.0) * (0.5 + kMargin), 0));
+  SoftObject& body =
+      world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, std::sqrt(2.0) * (0.5 + kMargin), 0));
   world.simulate(4);
   Weighing weighing(body);
   double fastest = 0.0;
@@ -102,9 +101,7 @@ void deep(Run& run, double stiffness, double depth, bool inMesh) {
   } else {
     world.addFloor();
   }
-  BodyOptions options;
-  options.stiffness = stiffness;
-  SoftObject& body = world.addSoft(makeBall(), options, Vector3d(0, 0.5 - depth, 0));
+  SoftObject& body = world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, 0.5 - depth, 0));
   double fastest = 0.0;
   world.simulate(3, [&] { raise(fastest, body.fastest()); });
   run.report("fastest node, S/s", fastest);
@@ -118,11 +115,7 @@ void addRestScenes(ContactScenes& scenes) {
     scenes.push_back({"rest/ball/" + name, [=](Run& run) { rest(run, makeBall(), options); }});
     scenes.push_back({"rest/box/" + name, [=](Run& run) { rest(run, makeBox({0.5, 0.25, 0.5}), options); }});
   };
-  for (const double k : {50.0, 500.0, 5000.0}) {
-    BodyOptions options;
-    options.stiffness = k;
-    add("k" + text(k), options);
-  }
+  for (const double k : {50.0, 500.0, 5000.0}) add("k" + text(k), BodyOptions{k});
   for (const double k : {50.0, 500.0}) {
     scenes.push_back({"rest/ball in a V/k" + text(k), [=](Run& run) { restInV(run, k); }});
   }

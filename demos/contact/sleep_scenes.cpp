@@ -24,8 +24,7 @@ constexpr double kFrame = 1.0 / 60;
 constexpr int kLongest = 30 * 60;  ///< frames in which bodies must have fallen asleep
 
 BodyOptions sleepingBody() {
-  BodyOptions options;
-  options.stiffness = 300.0;
+  BodyOptions options{300.0};
   options.sleeps = true;
   return options;
 }

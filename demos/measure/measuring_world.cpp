@@ -277,4 +277,18 @@ double MeasuringWorld::energy() const {
   return energy;
 }
 
+void reportConserved(Run& run, MeasuringWorld& world, double seconds, const std::function<void()>& after) {
+  const Momentum before = world.momentum();
+  const double start = world.energy();
+  double maximum = 0.0;
+  world.simulate(seconds, [&] {
+    raise(maximum, world.energy());
+    if (after) after();
+  });
+  const Momentum end = world.momentum();
+  run.report("linear momentum lost", (end.linear - before.linear).norm() / before.linearScale);
+  run.report("angular momentum lost", (end.angular - before.angular).norm() / before.angularScale);
+  if (run.kind != Kind::Bullet) run.report("energy over its start", maximum / start);
+}
+
 }  // namespace tetskin::measure

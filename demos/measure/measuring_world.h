@@ -39,15 +39,16 @@ using Distance = std::function<double(const Eigen::Vector3d&)>;
 
 struct BodyOptions {
   double stiffness = 50.0;     ///< Young's modulus over density x gravity x size
+  double friction = 0.5;       ///< combined with that of any obstacle of the scene
   double youngsModulus = 0.0;  ///< Pa; above 0: used instead of `stiffness`
   double mass = 1.0;           ///< kg
-  double friction = 0.5;       ///< combined with that of any obstacle of the scene
   double damping = 0.02;       ///< seconds
   double tolerance = 5e-3;     ///< tolerance of the library's solver
   bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever kind the run has
   bool sleeps = false;         ///< it may fall asleep
   double sampleSpacing = 0.0;  ///< of contact at the surface; 0: the default
-  std::function<bool(const Eigen::Vector3d&)> pinned;  ///< chooses pinned nodes by rest position, in the model's space
+  std::function<bool(const Eigen::Vector3d&)> pinned =
+      {};  ///< chooses pinned nodes by rest position, in the model's space
 };
 
 /// A soft body in a MeasuringWorld, which owns it.
@@ -163,5 +164,10 @@ class MeasuringWorld {
   std::vector<std::unique_ptr<SoftObject>> soft_;
   std::map<const BodyModel*, std::shared_ptr<const ContactShape>> shapesOfModels_;
 };
+
+/// Simulates. Reports how much momentum is lost, and the largest energy over its start, which Bullet's material would
+/// need other formulas for.
+/// after  called after each step
+void reportConserved(Run& run, MeasuringWorld& world, double seconds, const std::function<void()>& after = {});
 
 }  // namespace tetskin::measure

@@ -72,6 +72,15 @@ void addMomentum(Momentum& sum, const btMultiBody& body) {
   sum.add(p, toEigen(body.getBasePos()).cross(p) + toEigen(quatRotate(toBase.inverse(), spin)));
 }
 
+Vector3d angularMomentumAbout(const Vector3d& pivot, const btSoftBody& body) {
+  Vector3d sum = Vector3d::Zero();
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    sum += massOf(node) * (toEigen(node.m_x) - pivot).cross(toEigen(node.m_v));
+  }
+  return sum;
+}
+
 RigidMotion rigidMotionOf(const btSoftBody& body) {
   RigidMotion motion;
   for (int n = 0; n < body.m_nodes.size(); ++n) {

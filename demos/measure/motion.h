@@ -30,6 +30,9 @@ void addMomentum(Momentum& sum, const btRigidBody& body);
 /// Adds the momentum of the base: links are ignored.
 void addMomentum(Momentum& sum, const btMultiBody& body);
 
+/// Without pinned nodes.
+Eigen::Vector3d angularMomentumAbout(const Eigen::Vector3d& pivot, const btSoftBody& body);
+
 /// How a body moves as a whole; pinned nodes are left out.
 struct RigidMotion {
   double mass = 0.0;

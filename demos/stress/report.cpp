@@ -164,17 +164,13 @@ std::string toMarkdown(const std::vector<Row>& rows) {
 }
 
 void RowPrinter::print(const Row& row) {
-  std::vector<TableColumn> columns = columnsOf(row, {{"hash", "", 16}, {"", "ms", 7}, {"expectations"}});
-  std::vector<std::string> cells = cellsOf(
-      row, {hashWord(row.verdict), scenes::formatted("%.0f", row.verdict.milliseconds), pinnedWord(row.verdict)});
-  if (!hash_) {
-    columns.erase(columns.end() - 3);
-    cells.erase(cells.end() - 3);
-  }
-  PrintedTable table(columns);
-  if (columns.front().title != title_) std::printf("%s", table.header().c_str());
-  title_ = columns.front().title;
-  table.add(cells);
+  const TableColumn hash = hash_ ? TableColumn{"hash", "", 16} : TableColumn{};
+  PrintedTable table(columnsOf(row, {hash, {"", "ms", 7}, {"expectations"}}));
+  table.add(cellsOf(row, {hash_ ? hashWord(row.verdict) : "", scenes::formatted("%.0f", row.verdict.milliseconds),
+                          pinnedWord(row.verdict)}));
+  const bool isClaim = row.stressCase.claim.has_value();
+  if (headed_ != isClaim) std::printf("%s", table.header().c_str());
+  headed_ = isClaim;
   std::printf("%s", table.latest().c_str());
   std::fflush(stdout);
 }

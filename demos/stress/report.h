@@ -34,7 +34,7 @@ class RowPrinter {
 
  private:
   bool hash_;
-  std::string title_;  ///< of the last header's first column
+  std::optional<bool> headed_;  ///< whether the last header was that of claims
 };
 /// Prints the stability maps as letters.
 void printMap(const std::vector<Row>& rows);

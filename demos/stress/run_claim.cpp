@@ -138,7 +138,7 @@ Motion motionOf(const SoftObject& body) {
           whole.mass * scenes::kEarth * whole.centroid.y(),
           reachOf(scenes::nodesOf(body.soft()), whole.centroid),
           momentum.linear,
-          momentum.angular - whole.centroid.cross(momentum.linear)};
+          angularMomentumAbout(whole.centroid, body.soft())};
 }
 
 /// The body of a claim in its world.
